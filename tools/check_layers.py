@@ -65,7 +65,7 @@ MAY_INCLUDE = {
     "tests": "*",
     "tests/reference": "engine/annotation",
     "tools/report": "engine/base",
-    "tools/bench": "engine/base engine/annotation engine/bricks engine/session tests/reference "
+    "tools/bench": "engine/base engine/annotation engine/bricks engine/components engine/projects engine/session tests/reference "
     "tools/golden tools/report",
     "tools/golden": "engine/base engine/annotation/script engine/session engine/live shaders tools/report",
     "tools": "engine/base engine/volume engine/graph engine/projects engine/annotation/script engine/annotation/trace "

@@ -12,6 +12,7 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/file.h"
 #include "engine/base/image_metrics.h"
+#include "engine/base/text.h"
 #include "tools/bench/reference_scene.h"
 #include "tools/golden/blessing.h"
 
@@ -89,7 +90,6 @@ struct Prepared {
     const Run* run;
     golden::Studio* studio;
     Session session;
-    std::vector<double> milliseconds = {};
 };
 
 /// Studios by what decides how the device holds a volume; runs that agree in it share one.
@@ -102,9 +102,10 @@ public:
         golden::Golden drawn = scene_.drawn;
         drawn.settings.insert(drawn.settings.end(), run.settings.begin(), run.settings.end());
         const uint64_t budget = run.budget_device ? run.budget_device : scene_.budget_device;
-        Session session = drawn.session_path.empty() ? parse_session(drawn.session_text, std::filesystem::absolute("."),
-                                                                     drawn.name, drawn.settings)
-                                                     : drawn.open().session;
+        Session session =
+            drawn.session_path.empty()
+                ? parse_session(drawn.session_text, std::filesystem::absolute(drawn.folder), drawn.name, drawn.settings)
+                : drawn.open().session;
         const std::string key = sentence(spelled(session.render.sampling), " ", spelled(session.render.paging), " ",
                                          budget, " ", session.light.occlusion.rays);
         std::unique_ptr<golden::Studio>& studio = studios_[key];
@@ -155,6 +156,70 @@ std::string words_of_volume(const VolumeInfo& info)
     return sentence(info.size.x, " x ", info.size.y, " x ", info.size.z, " ", name_of(info.type));
 }
 
+/// One of the runs that are timed in turns.
+struct Timed {
+    std::string name;
+    std::function<double()> draw;  ///< milliseconds
+    std::vector<double> milliseconds = {};
+};
+
+/// Starts another program where it draws the same; otherwise a note says why it does not.
+std::unique_ptr<Peer> started_peer(const Scene& scene, const golden::Studio& studio, const MeasureOptions& options,
+                                   std::vector<PeerRun>& runs, std::vector<std::string>& notes)
+{
+    PeerOptions asked = options.peer;
+    asked.mappers.clear();
+    const VolumeSource& source = *studio.opened().source;
+    for (const std::string& mapper : options.peer.mappers) {
+        std::optional<std::string> why = why_not_by_peer(studio.session(), source, studio.camera(), mapper);
+        if (!scene.drawn.script.empty()) why = "the scene is painted";
+        if (why)
+            notes.push_back(sentence("VTK (", mapper, ") does not draw the same: ", *why, "."));
+        else
+            asked.mappers.push_back(mapper);
+    }
+    if (asked.mappers.empty()) return nullptr;
+    if (asked.program.empty()) {
+        notes.emplace_back("VTK is not measured beside: no program draws with it.");
+        return nullptr;
+    }
+    runs = peer_runs(asked, options.quick);
+    try {
+        return std::make_unique<Peer>(asked, studio.session(), source, studio.camera());
+    } catch (const shvr::Error& error) {
+        runs.clear();
+        notes.push_back(sentence("VTK is not measured beside: ", error.what(), "."));
+        return nullptr;
+    }
+}
+
+Measured first_look_of_peer(Peer& peer, const PeerRun& run, const ImageF& reference)
+{
+    Measured measured{.name = run.name,
+                      .family = run.family,
+                      .settings = {sentence("VTK ", peer.version()), sentence("mapper ", run.mapper),
+                                   sentence("step ", digits_of(run.step))},
+                      .scale = 1.0,
+                      .error = {},
+                      .time = {},
+                      .first_ms = peer.draw(run),
+                      .work = {},
+                      .device_bytes = 0,
+                      .on_front = false};
+    measured.error = error_of(peer.picture(run), reference);
+    return measured;
+}
+
+void time_in_turns(std::vector<Timed>& timed, int rounds, const std::function<void(double)>& tell)
+{
+    // To and fro, so that a machine that grows slower or faster does so for all.
+    for (int round = 0; round < rounds; ++round) {
+        tell(double(round) / rounds);
+        for (Timed& each : timed) each.milliseconds.push_back(each.draw());
+        std::ranges::reverse(timed);
+    }
+}
+
 }  // namespace
 
 MeasuredScene measure_scene(const Scene& scene, const MeasureOptions& options)
@@ -176,14 +241,17 @@ MeasuredScene measure_scene(const Scene& scene, const MeasureOptions& options)
         say(each.run->name, double(measured.result.runs.size()) / double(runs.size()));
         measured.result.runs.push_back(first_look(each, measured.pictures.reference, measured.pictures));
     }
-    // To and fro, so that a machine that grows slower or faster does so for all.
-    for (int round = 0; round < options.rounds; ++round) {
-        say("timing", double(round) / options.rounds);
-        for (Prepared& each : prepared) each.milliseconds.push_back(draw(each, false).wall_ms);
-        std::ranges::reverse(prepared);
-    }
-    for (const Prepared& each : prepared)
-        std::ranges::find(measured.result.runs, each.run->name, &Measured::name)->time = time_of(each.milliseconds);
+    std::vector<PeerRun> peer_runs;
+    const std::unique_ptr<Peer> peer = started_peer(scene, any, options, peer_runs, measured.result.notes);
+    for (const PeerRun& run : peer_runs)
+        measured.result.runs.push_back(first_look_of_peer(*peer, run, measured.pictures.reference));
+
+    std::vector<Timed> timed;
+    for (Prepared& each : prepared) timed.push_back({each.run->name, [&each] { return draw(each, false).wall_ms; }});
+    for (const PeerRun& run : peer_runs) timed.push_back({run.name, [&] { return peer->draw(run); }});
+    time_in_turns(timed, options.rounds, [&](double share) { say("timing", share); });
+    for (const Timed& each : timed)
+        std::ranges::find(measured.result.runs, each.name, &Measured::name)->time = time_of(each.milliseconds);
     find_front(measured.result.runs);
     return measured;
 }

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "engine/base/image.h"
+#include "tools/bench/peer.h"
 #include "tools/bench/results.h"
 #include "tools/bench/scenes.h"
 #include "tools/golden/studio.h"
@@ -15,7 +16,8 @@ struct MeasureOptions {
     std::string device;
     bool quick = false;
     int rounds = 7;
-    int threads = 2;             ///< of the reference
+    int threads = 2;  ///< of the reference
+    PeerOptions peer = {};
     std::filesystem::path kept;  ///< folder in which references are kept from run to run; it exists
     std::function<void(const std::string& what, double share)> tell = {};  ///< may throw, which ends the work
 };

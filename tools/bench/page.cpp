@@ -51,7 +51,7 @@ std::string table_of_csv(const std::string& csv, const std::string& scene)
     bool is_head = true;
     for (size_t end = 0; (end = text.find('\n')) != std::string::npos; text.erase(0, end + 1)) {
         std::string line = text.substr(0, end);
-        if (!is_head && !line.starts_with("\"" + scene + "\"")) continue;
+        if (!is_head && !scene.empty() && !line.starts_with("\"" + scene + "\"")) continue;
         std::string row;
         for (size_t comma = 0; comma != std::string::npos; line.erase(0, comma == std::string::npos ? 0 : comma + 1)) {
             comma = line.find(',');
@@ -73,6 +73,47 @@ std::string figure_of(const Image8& image, const std::string& caption)
                     escaped(caption), "</figcaption></figure>\n");
 }
 
+std::string cell_of(const Measured* run)
+{
+    return run ? sentence("<td>", escaped(run->name), "</td><td>", number(run->time.median_ms), "</td><td>",
+                          number(run->error.rmse), "</td>")
+               : "<td>none</td><td>-</td><td>-</td>";
+}
+
+/// What another program's error costs SHVR.
+std::string peer_table_of(const Results& results, const std::string& scene)
+{
+    std::string rows;
+    for (const AtPeersError& row : at_peers_errors(results)) {
+        if (row.scene != scene) continue;
+        const auto ratio = [&](const Measured* run) {
+            const double peer_ms = row.peer->time.median_ms;
+            return run && peer_ms > 0.0 ? number(run->time.median_ms / peer_ms) : std::string("-");
+        };
+        rows += "<tr>" + cell_of(row.peer) + cell_of(row.fastest) + "<td><b>" + ratio(row.fastest) + "</b></td>" +
+                cell_of(row.same_step) + "<td>" + ratio(row.same_step) + "</td></tr>\n";
+    }
+    if (rows.empty()) return {};
+    return "<p>Time at equal error: SHVR's fastest run whose error is no larger than VTK's, and its run of the same "
+           "step.</p>\n<table><tr><th>VTK</th><th>ms</th><th>RMSE</th><th>SHVR</th><th>ms</th><th>RMSE</th><th>time "
+           "over VTK's</th><th>same step</th><th>ms</th><th>RMSE</th><th>time over VTK's</th></tr>\n" +
+           rows + "</table>\n";
+}
+
+std::string sentences_of(const std::vector<std::string>& notes)
+{
+    std::string markup;
+    for (const std::string& note : notes) markup += "<p>" + escaped(note) + "</p>\n";
+    return markup;
+}
+
+std::string section_of(const Sweep& sweep)
+{
+    return sentence("<h2>", escaped(sweep.name), "</h2>\n<p>", escaped(sweep.what), "</p>\n",
+                    sweep.svg.empty() ? report::svg_of(sweep.plot) : sweep.svg,
+                    "\n<details><summary>As a table</summary>", table_of_csv(csv_of(sweep), {}), "</details>\n");
+}
+
 std::string insets_of(const Pictures& pictures)
 {
     const Image8 truth = to_image8(pictures.reference);
@@ -82,6 +123,12 @@ std::string insets_of(const Pictures& pictures)
         markup += figure_of(seen, name) + figure_of(difference_picture(seen, truth), name + ": difference, 16 times");
     }
     return markup;
+}
+
+/// The qualities, and another program's run at what interactive has.
+bool is_labelled(const Measured& run)
+{
+    return run.family == "quality" || (is_peer(run.family) && run.name.ends_with("step 0.5"));
 }
 
 double error_by(const Measured& run, Metric metric)
@@ -98,11 +145,11 @@ report::Plot plot_of(const SceneResult& scene, Metric metric)
                       .y_label = metric == Metric::rmse ? "RMSE in linear light" : "visible difference (mean FLIP)",
                       .series = {}};
     for (const char* family : families()) {
-        report::PlotSeries series{family, {}, false};
+        report::PlotSeries series{family, {}, false, is_peer(family)};
         for (const Measured& run : scene.runs)
             if (run.family == family)
                 series.points.push_back({run.time.median_ms, error_by(run, metric),
-                                         run.family == "quality" ? run.name : std::string(), run.on_front});
+                                         is_labelled(run) ? run.name : std::string(), run.on_front});
         if (!series.points.empty()) plot.series.push_back(std::move(series));
     }
     return plot;
@@ -110,24 +157,24 @@ report::Plot plot_of(const SceneResult& scene, Metric metric)
 
 report::Plot plot_of_qualities(const Results& results)
 {
-    // Samples, which are the same on every machine: the plot can be kept, and compared.
+    // What is read, which is the same on every machine: the plot can be kept, and compared.
     report::Plot plot{.title = "draft, interactive, good, reference: from left to right",
-                      .x_label = "samples of a picture",
+                      .x_label = "texels read for a picture",
                       .y_label = "RMSE in linear light",
                       .series = {}};
     for (const SceneResult& scene : results.scenes) {
-        report::PlotSeries series{scene.name, {}, true};
+        report::PlotSeries series{scene.name, {}, true, false};
         for (const Measured& run : scene.runs) {
-            const auto samples = std::ranges::find(run.work, "samples", &std::pair<std::string, uint64_t>::first);
-            if (run.family == "quality" && samples != run.work.end())
-                series.points.push_back({double(samples->second), run.error.rmse, {}, false});
+            const auto reads = std::ranges::find(run.work, "density_reads", &std::pair<std::string, uint64_t>::first);
+            if (run.family == "quality" && reads != run.work.end())
+                series.points.push_back({double(reads->second), run.error.rmse, {}, false});
         }
         plot.series.push_back(std::move(series));
     }
     return plot;
 }
 
-std::string page_of(const Results& results, const std::vector<Pictures>& pictures)
+std::string page_of(const Results& results, const std::vector<Pictures>& pictures, const std::vector<Sweep>& sweeps)
 {
     std::string body =
         sentence("<h1>Speed against error</h1>\n<p>", escaped(results.driver), ", ", escaped(results.processor), ", ",
@@ -135,7 +182,8 @@ std::string page_of(const Results& results, const std::vector<Pictures>& picture
                  " x ", results.height, " pixels; medians of ", results.rounds,
                  " rounds in turns. Errors are against the double-precision reference renderer, which "
                  "shares no code with what it measures.</p>\n");
-    body += report::svg_of(plot_of_qualities(results));
+    body += sentences_of(results.left_out);
+    if (!results.scenes.empty()) body += report::svg_of(plot_of_qualities(results));
     const std::string equal_errors = equal_error_csv(results), equal_times = equal_time_csv(results);
     for (size_t i = 0; i < results.scenes.size(); ++i) {
         const SceneResult& scene = results.scenes[i];
@@ -143,17 +191,18 @@ std::string page_of(const Results& results, const std::vector<Pictures>& picture
                          "</p>\n", report::svg_of(plot_of(scene, Metric::rmse)),
                          report::svg_of(plot_of(scene, Metric::flip)));
         if (i < pictures.size()) body += "<div>" + insets_of(pictures[i]) + "</div>\n";
-        body += table_of(scene);
+        body += sentences_of(scene.notes) + peer_table_of(results, scene.name) + table_of(scene);
         body += "<details><summary>Equal error: the fastest of each knob</summary>" +
                 table_of_csv(equal_errors, scene.name) + "</details>\n";
         body += "<details><summary>Equal time: the most exact of each knob</summary>" +
                 table_of_csv(equal_times, scene.name) + "</details>\n";
     }
+    for (const Sweep& sweep : sweeps) body += section_of(sweep);
     return report::page("SHVR: speed against error", STYLE, body);
 }
 
 std::vector<std::string> write_files(const Results& results, const std::vector<Pictures>& pictures,
-                                     const std::filesystem::path& output)
+                                     const std::vector<Sweep>& sweeps, const std::filesystem::path& output)
 {
     std::vector<std::string> written;
     const auto write = [&](const std::string& name, const std::string& text) {
@@ -169,10 +218,15 @@ std::vector<std::string> write_files(const Results& results, const std::vector<P
     write("bench.csv", csv_of(results));
     write("equal_error.csv", equal_error_csv(results));
     write("equal_time.csv", equal_time_csv(results));
+    write("equal_peer.csv", equal_peer_csv(results));
     write("front.csv", front_csv(results));
     write_plot("pareto", plot_of_qualities(results));
     for (const SceneResult& scene : results.scenes) write_plot("pareto-" + scene.name, plot_of(scene, Metric::rmse));
-    write("report.html", page_of(results, pictures));
+    for (const Sweep& sweep : sweeps) {
+        write(sentence("sweep-", sweep.name, ".csv"), csv_of(sweep));
+        write(sentence("sweep-", sweep.name, ".svg"), sweep.svg.empty() ? report::svg_of(sweep.plot) : sweep.svg);
+    }
+    write("report.html", page_of(results, pictures, sweeps));
     return written;
 }
 

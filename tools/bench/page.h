@@ -2,6 +2,7 @@
 // The bench's results for people: one self-contained page, and the plots as files.
 
 #include "tools/bench/measure.h"
+#include "tools/bench/sweeps.h"
 #include "tools/report/plot.h"
 
 namespace shvr::bench {
@@ -9,13 +10,13 @@ namespace shvr::bench {
 enum class Metric { rmse, flip };
 /// A scene's runs: milliseconds to the right, error upwards, a series for each family, the qualities labelled.
 report::Plot plot_of(const SceneResult& scene, Metric metric);
-/// The qualities of all scenes by their samples: one series for each scene.
+/// The qualities of all scenes by what they read: one series for each scene.
 report::Plot plot_of_qualities(const Results& results);
-std::string page_of(const Results& results, const std::vector<Pictures>& pictures);
-/// bench.json, bench.csv, front.csv, equal_error.csv, equal_time.csv, pareto*.svg and .png, report.html. Returns their
-/// paths.
+std::string page_of(const Results& results, const std::vector<Pictures>& pictures, const std::vector<Sweep>& sweeps);
+/// bench.json, bench.csv, front.csv, equal_error.csv, equal_time.csv, equal_peer.csv, pareto*.svg and .png, sweep-*.csv
+/// and .svg, report.html. Returns their paths.
 std::vector<std::string> write_files(const Results& results, const std::vector<Pictures>& pictures,
-                                     const std::filesystem::path& output);
+                                     const std::vector<Sweep>& sweeps, const std::filesystem::path& output);
 std::string text_of(const std::vector<Change>& changes);
 
 }  // namespace shvr::bench

@@ -10,6 +10,7 @@
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/text.h"
+#include "tools/bench/peer.h"
 
 namespace shvr::bench {
 
@@ -85,6 +86,12 @@ const Measured* best(const SceneResult& scene, const std::string& family, const 
     return found;
 }
 
+uint64_t counted(const Measured& run, const char* name)
+{
+    const auto found = std::ranges::find(run.work, name, &std::pair<std::string, uint64_t>::first);
+    return found == run.work.end() ? 0 : found->second;
+}
+
 std::vector<std::string> families_of(const SceneResult& scene)
 {
     std::vector<std::string> families;
@@ -141,6 +148,7 @@ Json json_of(const Results& results)
                           {"what", scene.what},
                           {"volume", scene.volume},
                           {"reference_seconds", scene.reference_seconds},
+                          {"notes", scene.notes},
                           {"runs", runs}});
     }
     return {{"shvr_bench", SCHEMA},
@@ -152,6 +160,7 @@ Json json_of(const Results& results)
             {"load", results.load},
             {"rounds", results.rounds},
             {"size", {results.width, results.height}},
+            {"left_out", results.left_out},
             {"scenes", scenes}};
 }
 
@@ -171,8 +180,10 @@ Results read_results(const std::filesystem::path& file)
         for (const Json& scene : json.at("scenes")) {
             results.scenes.push_back(
                 {scene.at("name"), scene.at("what"), scene.at("volume"), scene.at("reference_seconds"), {}});
+            results.scenes.back().notes = scene.value("notes", std::vector<std::string>());
             for (const Json& run : scene.at("runs")) results.scenes.back().runs.push_back(measured_of(run));
         }
+        results.left_out = json.value("left_out", std::vector<std::string>());
         return results;
     } catch (const Json::exception& error) {
         fail(file.string(), ": is not what shvr bench writes: ", error.what());
@@ -214,15 +225,15 @@ std::string csv_of(const Results& results)
 
 std::string front_csv(const Results& results)
 {
-    std::string text = "scene,run,family,settings,samples,rmse\n";
+    std::string text = "scene,run,family,settings,samples,reads,rmse\n";
     for (const SceneResult& scene : results.scenes)
         for (const Measured& run : scene.runs) {
+            if (is_peer(run.family)) continue;  // whether it is there differs, and its work is not known
             std::string settings;
             for (const std::string& setting : run.settings) settings += (settings.empty() ? "" : " ") + setting;
-            const auto samples = std::ranges::find(run.work, "samples", &std::pair<std::string, uint64_t>::first);
             text += sentence(cell(scene.name), ",", cell(run.name), ",", cell(run.family), ",", cell(settings), ",",
-                             samples == run.work.end() ? 0 : samples->second, ",", std::setprecision(5), run.error.rmse,
-                             "\n");
+                             counted(run, "samples"), ",", counted(run, "density_reads"), ",", std::setprecision(5),
+                             run.error.rmse, "\n");
         }
     return text;
 }
@@ -259,6 +270,44 @@ std::string equal_time_csv(const Results& results)
                                      digits_of(run->error.rmse), "\n");
             }
         }
+    return text;
+}
+
+std::vector<AtPeersError> at_peers_errors(const Results& results)
+{
+    std::vector<AtPeersError> rows;
+    for (const SceneResult& scene : results.scenes)
+        for (const Measured& peer : scene.runs) {
+            if (!is_peer(peer.family)) continue;
+            AtPeersError row{.scene = scene.name, .peer = &peer};
+            for (const Measured& run : scene.runs) {
+                if (is_peer(run.family)) continue;
+                const bool is_near = run.error.rmse <= peer.error.rmse;
+                if (is_near && (!row.fastest || run.time.median_ms < row.fastest->time.median_ms)) row.fastest = &run;
+                // "step 0.5" of "VTK step 0.5".
+                if (run.family == "step" && peer.name.ends_with(" " + run.name)) row.same_step = &run;
+            }
+            rows.push_back(row);
+        }
+    return rows;
+}
+
+std::string equal_peer_csv(const Results& results)
+{
+    std::string text =
+        "scene,peer,peer_ms,peer_rmse,run,median_ms,rmse,time_ratio,same_step_ms,same_step_rmse,same_step_ratio\n";
+    for (const AtPeersError& row : at_peers_errors(results)) {
+        const double peer_ms = row.peer->time.median_ms;
+        text += sentence(cell(row.scene), ",", cell(row.peer->name), ",", digits_of(peer_ms), ",",
+                         digits_of(row.peer->error.rmse), ",", cell(row.fastest ? row.fastest->name : "none"));
+        for (const Measured* const run : {row.fastest, row.same_step}) {
+            const double ms = run ? run->time.median_ms : 0.0;
+            text += run ? sentence(",", digits_of(ms), ",", digits_of(run->error.rmse), ",",
+                                   peer_ms > 0.0 ? digits_of(ms / peer_ms) : std::string())
+                        : ",,,";
+        }
+        text += "\n";
+    }
     return text;
 }
 

@@ -45,6 +45,7 @@ struct SceneResult {
     std::string volume;              ///< "64 x 64 x 64 uint8"
     double reference_seconds = 0.0;  ///< 0: it was kept from before
     std::vector<Measured> runs;
+    std::vector<std::string> notes = {};  ///< sentences: why another program is not among the runs
 };
 
 struct Results {
@@ -55,6 +56,7 @@ struct Results {
     int rounds = 0;
     uint32_t width = 0, height = 0;
     std::vector<SceneResult> scenes;
+    std::vector<std::string> left_out = {};  ///< sentences: scenes whose data is not there
 };
 
 /// Sets `on_front`.
@@ -65,12 +67,25 @@ nlohmann::ordered_json json_of(const Results& results);
 Results read_results(const std::filesystem::path& file);
 /// One line a run.
 std::string csv_of(const Results& results);
-/// What is the same in every run of one machine: the error and the samples of each run.
+/// What is the same in every run of one machine: the error and the work of each run of SHVR's.
 std::string front_csv(const Results& results);
 /// The fastest run of each scene and family that has at most this RMSE.
 std::string equal_error_csv(const Results& results);
 /// The most exact run of each scene and family that takes no longer than each quality.
 std::string equal_time_csv(const Results& results);
+
+/// Another program's run, and what SHVR takes for an error that is no larger: its fastest run, and that of the same
+/// step.
+struct AtPeersError {
+    std::string scene;
+    const Measured* peer = nullptr;
+    const Measured* fastest = nullptr;    ///< null: SHVR never comes as near
+    const Measured* same_step = nullptr;  ///< whatever its error; null: none was measured
+};
+/// Pointers into `results`.
+std::vector<AtPeersError> at_peers_errors(const Results& results);
+/// Its rows, with SHVR's time over the other's.
+std::string equal_peer_csv(const Results& results);
 
 /// What is worse in `b` than in `a`: an error by more than 1 % (a picture's error is the same in every run of one
 /// machine), a counter at all (where driver and instructions agree: elsewhere a ray may end a sample later), a median

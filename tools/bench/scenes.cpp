@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/text.h"
 #include "engine/session/quality.h"
@@ -15,8 +16,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* FAMILIES[] = {"quality",    "step",     "pre-integrated", "opacity limit", "sampling",
-                                    "resolution", "skipping", "occlusion rays", "budget"};
+constexpr const char* FAMILIES[] = {"quality",    "step",   "pre-integrated", "opacity limit",  "sampling",
+                                    "resolution", "coarse", "skipping",       "occlusion rays", "budget",
+                                    "detail",     "VTK",    "VTK OpenGL"};
+constexpr int64_t MAX_SESSION_BYTES = 1 << 20;
+/// Shading without highlights that does not fade where there is no surface: other programs define it in the same way.
+Json matt()
+{
+    return {{"light", {{"specular", 0}, {"gradient_fade", 0}}}};
+}
 
 struct Point {
     double intensity, opacity;
@@ -58,6 +66,39 @@ ScriptOp line_of_script(const std::string& text)
 {
     const JsonDocument document(text, "bench");
     return read_script_op(document.root());
+}
+
+struct Example {
+    const char *name, *what;
+};
+constexpr Example EXAMPLES[] = {{"stent", "a scan: CT of a stent in an aorta"},
+                                {"cranium", "a scan: CT of a head, opaque bone in translucent skin"}};
+
+std::string scene_names(const std::vector<Scene>& own)
+{
+    std::string names;
+    for (const Scene& scene : own) names += scene.name + ", ";
+    for (const Example& example : EXAMPLES) names += sentence(example.name, ", ", example.name, "-matt, ");
+    return names.substr(0, names.size() - 2);
+}
+
+/// As tools/fetch_example left it, without what people painted since; "-matt": without highlights and fading.
+/// Fails where it is not there.
+Scene example_scene(const Example& example, bool is_matt, const SceneChoice& choice)
+{
+    const std::filesystem::path folder = choice.examples / example.name / "shvr";
+    if (!is_file(folder / "session.json"))
+        fail("scene ", example.name, ": ", (folder / "session.json").string(),
+             " is missing; expected the scan, which tools/fetch_example ", example.name, " gets");
+    Json session = Json::parse(read_text(folder / "session.json", MAX_SESSION_BYTES));
+    session.erase("annotation");
+    session["render"]["size"] = {choice.pixels.x, choice.pixels.y};
+    for (const std::string_view key : keys_of_quality()) session["render"].erase(std::string(key));
+    if (is_matt) session.merge_patch(matt());
+    Scene scene = scene_of(example.name + std::string(is_matt ? "-matt" : ""),
+                           example.what + std::string(is_matt ? ", matt: as VTK can draw it, too" : ""), session);
+    scene.drawn.folder = folder;
+    return scene;
 }
 
 Scene painted_scene(const Json& session, int64_t side)
@@ -131,37 +172,61 @@ std::vector<Scene> own_scenes(int64_t side, const glm::uvec2& pixels)
                          {"radius", (4 + i) * unit},
                          {"color", i % 2 ? "#ff6020" : "#40c0ff"}});
     scenes.push_back(scene_of("surfaces", "opaque balls in translucent tissue", made(tissue, {{"surfaces", balls}})));
+    // Three of the above as other programs define shading, too.
+    const Json noisy = points_of({{50, 0.0}, {58, 1.0}, {255, 1.0}});
+    scenes.push_back(
+        scene_of("tubes-matt", "the clean opaque tubes, matt: as VTK can draw them, too", made(opaque, matt())));
+    scenes.push_back(scene_of("noisy-surface-matt", "the opaque surface in the noise, matt: as VTK can draw it, too",
+                              made(noisy, matt())));
+    scenes.push_back(
+        scene_of("tissue-matt", "the half-transparent tissue, matt: as VTK can draw it, too", made(tissue, matt())));
     return scenes;
 }
 
-std::vector<Scene> chosen_scenes(const std::vector<std::string>& names, int64_t side, const glm::uvec2& pixels)
+ChosenScenes chosen_scenes(const SceneChoice& choice)
 {
-    std::vector<Scene> own = own_scenes(side, pixels), scenes;
-    if (names.empty()) return own;
-    for (const std::string& name : names) {
+    const std::vector<Scene> own = own_scenes(choice.side, choice.pixels);
+    ChosenScenes chosen;
+    if (choice.names.empty()) {
+        chosen.scenes = own;
+        for (const Example& example : EXAMPLES)
+            for (const bool is_matt : {false, true}) try {
+                    chosen.scenes.push_back(example_scene(example, is_matt, choice));
+                } catch (const shvr::Error& missing) {
+                    if (!is_matt) chosen.left_out.push_back(missing.what());
+                }
+        return chosen;
+    }
+    for (const std::string& name : choice.names) {
         const auto found = std::ranges::find(own, name, &Scene::name);
         if (found != own.end()) {
-            scenes.push_back(*found);
+            chosen.scenes.push_back(*found);
             continue;
         }
-        std::string known;
-        for (const Scene& scene : own) known += (known.empty() ? "" : ", ") + scene.name;
+        const auto is_named = [&](const Example& example) {
+            return name == example.name || name == std::string(example.name) + "-matt";
+        };
+        if (const auto* const example = std::ranges::find_if(EXAMPLES, is_named); example != std::end(EXAMPLES)) {
+            chosen.scenes.push_back(example_scene(*example, name != example->name, choice));
+            continue;
+        }
         if (!std::filesystem::exists(name))
-            fail("--scenes: ", in_quotes(name), " is neither a scene (", known, ") nor the path of a session");
+            fail("--scenes: ", in_quotes(name), " is neither a scene (", scene_names(own),
+                 ") nor the path of a session");
         const std::string stem = std::filesystem::path(name).stem().string();
-        scenes.push_back({.name = stem,
-                          .what = "session " + name,
-                          .drawn = {.name = stem,
-                                    .folder = ".",
-                                    .why = name,
-                                    .loosened = {},
-                                    .session_path = name,
-                                    .session_text = {},
-                                    .settings = {},
-                                    .script = {}}});
-        scenes.back().drawn.settings = {sentence("render.size=[", pixels.x, ",", pixels.y, "]")};
+        chosen.scenes.push_back({.name = stem,
+                                 .what = "session " + name,
+                                 .drawn = {.name = stem,
+                                           .folder = ".",
+                                           .why = name,
+                                           .loosened = {},
+                                           .session_path = name,
+                                           .session_text = {},
+                                           .settings = {},
+                                           .script = {}}});
+        chosen.scenes.back().drawn.settings = {sentence("render.size=[", choice.pixels.x, ",", choice.pixels.y, "]")};
     }
-    return scenes;
+    return chosen;
 }
 
 std::vector<Run> runs_of(const Scene& scene, bool quick)
@@ -176,13 +241,32 @@ std::vector<Run> runs_of(const Scene& scene, bool quick)
             runs.back().settings.push_back(sentence(key, "=", digits_of(value)));
         }
     };
-    sweep("step", "render.step_voxels", {4, 2, 1, 0.5, 0.25, 0.125}, {2, 1, 0.5, 0.25});
-    sweep("pre-integrated", "render.step_voxels", {1, 0.5, 0.25, 0.125}, {1, 0.25}, {"render.preintegration=true"});
+    sweep("step", "render.step_voxels", {4, 2, 1, 0.5, 0.25, 0.125, 0.0625}, {2, 1, 0.5, 0.25, 0.125, 0.0625});
+    sweep("pre-integrated", "render.step_voxels", {1, 0.5, 0.25, 0.125, 0.0625}, {1, 0.25, 0.0625},
+          {"render.preintegration=true"});
     sweep("opacity limit", "render.opacity_limit", {0.9, 0.95, 0.99, 0.999755859375, 1}, {0.9});
     for (const char* sampling : {"exact", "hardware"})
         runs.push_back({sentence("sampling ", sampling), "sampling", {sentence("render.sampling=", sampling)}});
     for (const double scale : quick ? std::vector{0.5} : std::vector{0.7, 0.5, 0.35})
         runs.push_back({sentence("resolution ", digits_of(scale)), "resolution", {}, scale});
+    // Coarser than anyone works with, to see what an error of another program's costs.
+    const auto coarse = [&](double scale, double step, bool preintegration) {
+        runs.push_back(
+            {sentence("coarse ", digits_of(scale), preintegration ? ", pre-integrated " : ", step ", digits_of(step)),
+             "coarse",
+             {sentence("render.step_voxels=", digits_of(step))},
+             scale});
+        if (preintegration) runs.back().settings.emplace_back("render.preintegration=true");
+    };
+    coarse(0.7, 1.0, false);
+    coarse(0.5, 2.0, false);
+    if (!quick)
+        for (const double scale : {0.7, 0.5, 0.35}) {
+            coarse(scale, 3.0, false);
+            coarse(scale, 1.0, true);
+            if (scale != 0.5) coarse(scale, 2.0, false);
+            if (scale != 0.7) coarse(scale, 1.0, false);
+        }
     runs.push_back({"skipping off", "skipping", {"render.skip_empty_space=false"}});
     const std::string& text = scene.drawn.session_text;
     if (text.find("\"occlusion\"") != std::string::npos)
@@ -190,6 +274,7 @@ std::vector<Run> runs_of(const Scene& scene, bool quick)
     if (scene.budget_device > 0)
         for (const uint64_t mib : {16, 48})
             runs.push_back({sentence("budget ", mib, " MiB"), "budget", {}, 1.0, mib << 20});
+    if (text.find("\"paging\"") != std::string::npos) sweep("detail", "render.detail", {0.25, 0.5, 1, 2, 4}, {0.5, 2});
     return runs;
 }
 

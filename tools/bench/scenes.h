@@ -4,6 +4,7 @@
 // line offer. Plain data.
 
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,9 +22,20 @@ struct Scene {
 
 /// Of `side` voxels and this many pixels.
 std::vector<Scene> own_scenes(int64_t side, const glm::uvec2& pixels);
+
+struct SceneChoice {
+    std::vector<std::string> names;  ///< empty: all of our own, and the examples that are there
+    int64_t side = 64;               ///< voxels
+    glm::uvec2 pixels{120, 90};
+    std::filesystem::path examples;  ///< folder in which tools/fetch_example left the scans
+};
+struct ChosenScenes {
+    std::vector<Scene> scenes;
+    std::vector<std::string> left_out;  ///< a sentence for each whose data is not there
+};
 /// Those of the names; a name that is none of ours is the path of a session, project or volume. Fails where it is
-/// neither.
-std::vector<Scene> chosen_scenes(const std::vector<std::string>& names, int64_t side, const glm::uvec2& pixels);
+/// neither, or names an example that is not there.
+ChosenScenes chosen_scenes(const SceneChoice& choice);
 
 /// A way to draw a scene.
 struct Run {

@@ -3,8 +3,10 @@
 #include <iostream>
 #include <thread>
 
+#include "engine/base/file.h"
 #include "tools/bench/page.h"
 #include "tools/cli/cli.h"
+#include "tools/cli/haptics_report.h"
 
 namespace shvr::cli {
 
@@ -14,7 +16,12 @@ struct ErrorBenchOptions {
     Common common;
     std::vector<std::string> scenes;
     std::string output;
+    std::vector<std::string> sweeps;
     std::vector<std::string> compared;  ///< none, or two files
+    std::vector<std::string> mappers = {"fixed"};
+    std::string peer, examples;  ///< empty: those of the tree that the program was built in
+    int64_t side = 0;            ///< 0: 32 where quick, otherwise 64
+    std::vector<uint32_t> size;  ///< of pictures; empty: 48 x 36 where quick, otherwise 120 x 90
     bool quick = false, ignores_time = false;
     int rounds = 0;  ///< 0: 3 where quick, otherwise 7
 };
@@ -26,6 +33,11 @@ void print_out(const std::string& text)
     if (!std::cout) fail("standard output: cannot be written");
 }
 
+int threads_of(const ErrorBenchOptions& options)
+{
+    return options.common.threads > 0 ? options.common.threads : int(std::thread::hardware_concurrency());
+}
+
 Json pareto_row(const bench::SceneResult& scene, const bench::Measured& run)
 {
     return {{"scene", scene.name},
@@ -35,14 +47,83 @@ Json pareto_row(const bench::SceneResult& scene, const bench::Measured& run)
             {"flip_mean", run.error.flip_mean}};
 }
 
+constexpr const char* SWEEPS[] = {"blur", "labelling", "proxy"};
+constexpr int64_t MAX_SWEEP_BYTES = 1 << 20;
+
+/// A file of the tree that the program was built in; empty if it is not there.
+std::filesystem::path in_tree(const std::filesystem::path& path)
+{
+    std::error_code unknown;
+    const auto program = std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();
+    const std::filesystem::path found = std::filesystem::weakly_canonical(program / "../.." / path, unknown);
+    return std::filesystem::exists(found, unknown) ? found : std::filesystem::path();
+}
+
+bench::Sweep proxy_sweep(const std::filesystem::path& output, LongWork& work)
+{
+    const std::filesystem::path csv = output / "sweep-proxy.csv", svg = output / "sweep-proxy.svg";
+    sweep_proxy(csv.string(), svg.string(), work);
+    return {.name = "proxy",
+            .what =
+                "The probe's proxy by exact integration and by points, over sizes of the ball: time against error, "
+                "as shvr haptics bench --sweep measures it.",
+            .error = "RMS error, % of the radius",
+            .rows = {},
+            .plot = {},
+            .svg = read_text(svg, MAX_SWEEP_BYTES),
+            .table = read_text(csv, MAX_SWEEP_BYTES)};
+}
+
+std::vector<bench::Sweep> chosen_sweeps(const ErrorBenchOptions& options, LongWork& work)
+{
+    std::vector<std::string> names = options.sweeps;
+    if (names.empty() && options.scenes.empty()) names.assign(std::begin(SWEEPS), std::end(SWEEPS));
+    const bench::SweepOptions asked{
+        .quick = options.quick, .threads = threads_of(options), .scratch = options.output, .poll = [&] {
+            work.stop_if_asked();
+        }};
+    std::vector<bench::Sweep> sweeps;
+    for (const std::string& name : names) {
+        const Progress progress = work.begin(name);
+        tell(progress, 0.0);
+        sweeps.push_back(name == "blur"        ? bench::sweep_blur(asked)
+                         : name == "labelling" ? bench::sweep_labelling(asked)
+                                               : proxy_sweep(options.output, work));
+    }
+    return sweeps;
+}
+
+bench::ChosenScenes scenes_of(const ErrorBenchOptions& options, const glm::uvec2& pixels)
+{
+    if (options.scenes.empty() && !options.sweeps.empty()) return {};
+    return bench::chosen_scenes(
+        {.names = options.scenes,
+         .side = options.side > 0 ? options.side
+                 : options.quick  ? 32
+                                  : 64,
+         .pixels = pixels,
+         .examples = options.examples.empty() ? in_tree("build/example") : std::filesystem::path(options.examples)});
+}
+
+bench::PeerOptions peer_of(const ErrorBenchOptions& options)
+{
+    bench::PeerOptions peer{.program = {}, .mappers = options.mappers, .threads = threads_of(options)};
+    if (options.peer != "none")
+        peer.program =
+            options.peer.empty() ? in_tree("tools/peers/vtk_raycast.py") : std::filesystem::path(options.peer);
+    return peer;
+}
+
 void run_scenes(const ErrorBenchOptions& options)
 {
     if (options.output.empty())
         throw UsageError("--output is missing; expected the folder for bench.json and the report");
     golden::set_environment(options.common.device);
-    const int64_t side = options.quick ? 32 : 64;
-    const glm::uvec2 pixels = options.quick ? glm::uvec2(48, 36) : glm::uvec2(120, 90);
-    const std::vector<bench::Scene> scenes = bench::chosen_scenes(options.scenes, side, pixels);
+    const glm::uvec2 pixels = !options.size.empty() ? glm::uvec2(options.size.at(0), options.size.at(1))
+                              : options.quick       ? glm::uvec2(48, 36)
+                                                    : glm::uvec2(120, 90);
+    const auto [scenes, left_out] = scenes_of(options, pixels);
+    for (const std::string& sentence : left_out) say(options.common, sentence);
     const std::filesystem::path output = options.output;
     std::filesystem::create_directories(output);
 
@@ -51,28 +132,30 @@ void run_scenes(const ErrorBenchOptions& options)
     results.rounds = options.rounds > 0 ? options.rounds : options.quick ? 3 : 7;
     results.width = pixels.x;
     results.height = pixels.y;
+    results.left_out = left_out;
     std::vector<bench::Pictures> pictures;
     for (const bench::Scene& scene : scenes) {
         const Progress progress = work.begin(scene.name);
-        bench::MeasuredScene measured = bench::measure_scene(
-            scene,
-            {.device = options.common.device,
-             .quick = options.quick,
-             .rounds = results.rounds,
-             .threads = options.common.threads > 0 ? options.common.threads : int(std::thread::hardware_concurrency()),
-             .kept = output,
-             .tell = [&](const std::string&, double share) {
-                 work.stop_if_asked();
-                 tell(progress, share);
-             }});
+        bench::MeasuredScene measured = bench::measure_scene(scene, {.device = options.common.device,
+                                                                     .quick = options.quick,
+                                                                     .rounds = results.rounds,
+                                                                     .threads = threads_of(options),
+                                                                     .peer = peer_of(options),
+                                                                     .kept = output,
+                                                                     .tell = [&](const std::string&, double share) {
+                                                                         work.stop_if_asked();
+                                                                         tell(progress, share);
+                                                                     }});
         results.scenes.push_back(std::move(measured.result));
         pictures.push_back(std::move(measured.pictures));
     }
-    const std::vector<std::string> written = bench::write_files(results, pictures, output);
+    const std::vector<bench::Sweep> sweeps = chosen_sweeps(options, work);
+    const std::vector<std::string> written = bench::write_files(results, pictures, sweeps, output);
     Json pareto = Json::array();
     std::string text;
     for (const bench::SceneResult& scene : results.scenes) {
         text += scene.name + "\n";
+        for (const std::string& note : scene.notes) text += "  " + note + "\n";
         for (const bench::Measured& run : scene.runs) {
             if (run.on_front) pareto.push_back(pareto_row(scene, run));
             text += sentence(run.on_front ? "  * " : "    ", run.name, ": ", run.time.median_ms, " ms, RMSE ",
@@ -80,7 +163,10 @@ void run_scenes(const ErrorBenchOptions& options)
         }
     }
     if (options.common.json)
-        print({{"bench", (output / "bench.json").string()}, {"pareto", pareto}, {"written", written}});
+        print({{"bench", (output / "bench.json").string()},
+               {"pareto", pareto},
+               {"left_out", left_out},
+               {"written", written}});
     else
         print_out(text + "* on the front: no other run is better in both\n" + (output / "report.html").string() + "\n");
 }
@@ -121,14 +207,37 @@ void add_bench(CLI::App& program)
         ->add_option(
             "--scenes", options->scenes,
             "Scenes, with commas between: tubes, noisy-surface, tissue, fog, peaks, uint16, anisotropic, paged, "
-            "painted, occluded, surfaces, or paths of sessions; without it all of our own")
+            "painted, occluded, surfaces; tubes-matt, noisy-surface-matt, tissue-matt, which VTK draws the same; "
+            "stent, "
+            "cranium, stent-matt, cranium-matt (tools/fetch_example); or paths of sessions. Without it all that are "
+            "there")
         ->delimiter(',');
+    command
+        ->add_option("--sweeps", options->sweeps,
+                     "blur, labelling, proxy: speed against error beside pictures; without it and --scenes all")
+        ->delimiter(',')
+        ->check(CLI::IsMember(std::vector<std::string>(std::begin(SWEEPS), std::end(SWEEPS))));
+    command->add_option("--side", options->side, "Voxels along each side of our own scenes; 64, or 32 where quick")
+        ->check(CLI::Range(16, 512));
+    command->add_option("--size", options->size, "Pixels, width,height; 120,90, or 48,36 where quick")
+        ->delimiter(',')
+        ->expected(2)
+        ->check(CLI::Range(8, 4096));
+    command->add_option(
+        "--peer", options->peer,
+        "Program that draws with VTK, where it draws the same: tools/peers/vtk_raycast.py, unless given; "
+        "none: SHVR alone");
+    command->add_option("--mappers", options->mappers, "VTK's: fixed (its better one on processors), gpu (OpenGL)")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"fixed", "gpu"}));
+    command->add_option("--examples", options->examples,
+                        "Folder of the scans; that of tools/fetch_example, unless given");
     command->add_flag("--quick", options->quick, "Small volumes, few runs: seconds a scene");
     command->add_option("--rounds", options->rounds, "Timed pictures of each run, in turns")
         ->check(CLI::Range(1, 1000));
     command->add_option(
         "-o,--output", options->output,
-        "Folder for bench.json, bench.csv, equal_*.csv, pareto*.svg and .png, report.html; references are "
+        "Folder for bench.json, bench.csv, equal_*.csv, pareto*.svg and .png, sweep-*, report.html; references are "
         "kept there, too");
     command->add_option("--compare", options->compared, "Two bench.json instead: exit 3 where the second is worse")
         ->expected(2);
@@ -140,6 +249,7 @@ void add_bench(CLI::App& program)
     add_output_options(*command, options->common);
     command->footer(
         "Example:\n  shvr bench --scenes tubes,tissue --quick -o bench\n"
+        "  shvr bench --scenes noisy-surface-matt --side 128 --size 256,192 -o beside-vtk\n"
         "  shvr bench --compare before/bench.json after/bench.json");
     command->callback([options] {
         if (options->compared.empty())

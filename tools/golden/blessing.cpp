@@ -131,18 +131,25 @@ std::optional<std::string> why_not_blessed(const Golden& golden)
 
 std::optional<std::string> why_other_work(const Golden& golden, const Drawn& drawn)
 {
+    if (!drawn.work_is_exact) return std::nullopt;
     const Json side_car = parsed_side_car(golden);
-    if (!drawn.work_is_exact || !side_car.contains("work") || !side_car["work"].is_object()) return std::nullopt;
-    if (side_car.value("driver", "") != drawn.maker.driver ||
+    const Json work = side_car.contains("work") && side_car["work"].is_object() ? side_car["work"] : Json::object();
+    std::string differing, missing;
+    for (const auto& [name, value] : drawn.work) {
+        const auto recorded = work.find(name);
+        if (recorded == work.end())
+            missing += (missing.empty() ? "" : ", ") + name;
+        else if (*recorded != value)
+            differing +=
+                sentence(differing.empty() ? "" : ", ", name, " ", value, " (recorded: ", recorded->dump(), ")");
+    }
+    // Whoever draws: a counter that is not recorded watches over nothing.
+    if (!missing.empty())
+        return sentence(golden.side_car().string(), ": work lacks ", missing,
+                        "; expected every counter of the picture, as ", bless_command(golden), " records them");
+    if (differing.empty() || side_car.value("driver", "") != drawn.maker.driver ||
         side_car.value("instructions", "") != drawn.maker.instructions)
         return std::nullopt;
-    std::string differing;
-    for (const auto& [name, value] : drawn.work) {
-        const auto recorded = side_car["work"].find(name);
-        if (recorded == side_car["work"].end() || *recorded == value) continue;
-        differing += sentence(differing.empty() ? "" : ", ", name, " ", value, " (recorded: ", recorded->dump(), ")");
-    }
-    if (differing.empty()) return std::nullopt;
     return "other work: " + differing;
 }
 

@@ -35,8 +35,9 @@ Drawn drawn_by(Studio& studio);
 
 /// Why picture and side-car do not belong together, or one is missing; null if all is well.
 std::optional<std::string> why_not_blessed(const Golden& golden);
-/// The counters that differ from the side-car's, in a sentence; null where they are equal, or are not compared: the
-/// side-car has none, or another driver or another processor's instructions drew it (rays may end a sample later).
+/// The counters that the side-car lacks, or that differ from its own, in a sentence; null where there are none: also
+/// where bricks are paged, and of those that differ where another driver or another processor's instructions drew it
+/// (rays may end a sample later).
 std::optional<std::string> why_other_work(const Golden& golden, const Drawn& drawn);
 
 struct Blessed {

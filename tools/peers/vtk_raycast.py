@@ -3,10 +3,12 @@
 and step. Prints one JSON line about the run, one for every frame, and one at the end.
 
 tools/peers/vtk_raycast.py SESSION [--camera NAME] [--mapper fixed|gpu] [--frames 5] [--threads 2] [-o PICTURE.pfm]
+tools/peers/vtk_raycast.py --serve SESSION   draws on request, a line of JSON each, as shvr bench asks (README.md)
 
 Needs Debian's python3-vtk9 and, without a display, xvfb.
 """
 import argparse
+import ctypes
 import json
 import os
 import resource
@@ -17,11 +19,15 @@ from pathlib import Path
 
 # Defaults of a session (engine/session/README.md).
 LIGHT = {"shaded": True, "ambient": 0.3, "diffuse": 0.7, "specular": 0.2, "shininess": 32, "direction": [0, 0, 0]}
+FIXED_POINT_ONE = 32767  # VTKKW_FP_SCALE
 RENDER = {"size": [512, 512], "step_voxels": 0.5, "background": "#ffffff"}
 
 
 def linear_color(text):
-    """"#rrggbb" to linear light: VTK has no colour curve, so its input and output are linear light."""
+    """"#rrggbb" to linear light: VTK has no colour curve, so its input and output are linear light. Three numbers are
+    linear light already."""
+    if not isinstance(text, str):
+        return text
     encoded = [int(text[i:i + 2], 16) / 255 for i in (1, 3, 5)]
     return [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in encoded]
 
@@ -29,6 +35,7 @@ def linear_color(text):
 def read_header(path):
     """Fields of a detached NRRD header."""
     fields = dict(line.split(": ", 1) for line in path.read_text().splitlines() if ": " in line)
+    fields.update(line.split(":=", 1) for line in path.read_text().splitlines() if ":=" in line)
     if fields.get("encoding") != "raw" or "data file" not in fields:
         sys.exit(f"{path}: expected a detached header of raw voxels")
     return fields
@@ -48,7 +55,9 @@ def open_volume(vtk, path):
     reader.SetDataScalarType(types[fields["type"]])
     reader.SetDataExtent(0, sizes[0] - 1, 0, sizes[1] - 1, 0, sizes[2] - 1)
     reader.SetDataSpacing(spacing)
-    reader.SetDataOrigin([0.5 * s for s in spacing])
+    # `padded` voxels on every side repeat the border, so that the volume reaches its outer faces.
+    padded = int(fields.get("padded", 0))
+    reader.SetDataOrigin([(0.5 - padded) * s for s in spacing])
     if fields.get("endian", "little") == "little":
         reader.SetDataByteOrderToLittleEndian()
     else:
@@ -99,6 +108,9 @@ def aim(vtk, renderer, camera, direction, ambient):
     view.SetFocalPoint(camera["target"])
     view.SetViewUp(camera.get("up", [0, 0, 1]))
     view.SetViewAngle(camera.get("fov_y_degrees", 30))
+    if camera.get("projection") == "orthographic":
+        view.ParallelProjectionOn()
+        view.SetParallelScale(0.5 * camera["height"])
     light = vtk.vtkLight()
     light.SetAmbientColor(ambient)  # VTK's default is none
     light.PositionalOff()
@@ -110,8 +122,33 @@ def aim(vtk, renderer, camera, direction, ambient):
     renderer.ResetCameraClippingRange()
 
 
+def write_pfm(path, width, height, values):
+    """A portable float map, with rows from the bottom as in VTK."""
+    if sys.byteorder == "big":
+        values.byteswap()
+    path.write_bytes(f"PF\n{width} {height}\n-1.0\n".encode() + values.tobytes())
+
+
+def save_fixed_point(mapper, window, background, path):
+    """The mapper's own picture, of 15 bits a channel, over the background: what it drew before OpenGL showed it."""
+    image = mapper.GetRayCastImage()
+    (row_pixels, _), (used_x, used_y), (left, bottom) = (image.GetImageMemorySize(), image.GetImageInUseSize(),
+                                                         image.GetImageOrigin())
+    width, height = window.GetSize()
+    address = int(image.GetImage().split("_")[1], 16)  # VTK wraps the pointer as "_00000000deadbeef_p_void"
+    pixels = (ctypes.c_ushort * (4 * row_pixels * used_y)).from_address(address)
+    values = array("f", list(background) * (width * height))
+    for y in range(used_y):
+        for x in range(used_x):
+            at, to = 4 * (row_pixels * y + x), 3 * (width * (bottom + y) + left + x)
+            through = 1 - pixels[at + 3] / FIXED_POINT_ONE
+            for channel in range(3):
+                values[to + channel] = pixels[at + channel] / FIXED_POINT_ONE + through * background[channel]
+    write_pfm(path, width, height, values)
+
+
 def save(vtk, window, path):
-    """A portable float map, with rows from the bottom as in VTK. The rendered image has 8 bits per channel."""
+    """What the window shows, of 8 bits a channel."""
     grab = vtk.vtkWindowToImageFilter()
     grab.SetInput(window)
     grab.SetInputBufferTypeToRGB()
@@ -120,10 +157,7 @@ def save(vtk, window, path):
     grab.Update()
     image = grab.GetOutput()
     width, height, _ = image.GetDimensions()
-    values = array("f", (byte / 255 for byte in bytes(memoryview(image.GetPointData().GetScalars()))))
-    if sys.byteorder == "big":
-        values.byteswap()
-    path.write_bytes(f"PF\n{width} {height}\n-1.0\n".encode() + values.tobytes())
+    write_pfm(path, width, height, array("f", (b / 255 for b in bytes(memoryview(image.GetPointData().GetScalars())))))
 
 
 def say(**values):
@@ -150,49 +184,106 @@ def import_vtk():
     return types.SimpleNamespace(**{name: value for part in parts for name, value in vars(part).items()})
 
 
+class Scene:
+    """A session: its volume, read once, and its pictures."""
+
+    def __init__(self, vtk, path, camera):
+        self.vtk, self.session = vtk, json.loads(Path(path).read_text())
+        if "path" not in self.session["volume"] or self.session.get("annotation"):
+            sys.exit(f"{path}: expected a volume in a file, and no mask")
+        self.camera = self.session["cameras"][camera]
+        self.light = {**LIGHT, **self.session.get("light", {})}
+        self.settings = {**RENDER, **self.session.get("render", {})}
+        self.points = self.session["transfer_function"]["points"]
+        self.reader, self.unit = open_volume(vtk, Path(path).parent / self.session["volume"]["path"])
+        self.reader.Update()
+
+    def planes(self):
+        """The session's cut, in voxels, as planes that face inwards."""
+        planes, cut = self.vtk.vtkPlaneCollection(), self.session.get("cut")
+        spacing = self.reader.GetDataSpacing()
+        for side, sign in (("lower", 1), ("upper", -1)):
+            for axis in range(3 if cut else 0):
+                plane, normal, origin = self.vtk.vtkPlane(), [0, 0, 0], [0, 0, 0]
+                normal[axis], origin[axis] = sign, cut[side][axis] * spacing[axis]
+                plane.SetNormal(normal)
+                plane.SetOrigin(origin)
+                planes.AddItem(plane)
+        return planes
+
+
+class Drawn:
+    """A scene by one mapper at one step, in a window of its own; drawn any number of times."""
+
+    def __init__(self, scene, kind, step, threads):
+        vtk = scene.vtk
+        self.vtk, self.kind = vtk, kind
+        self.mapper = make_mapper(vtk, kind, step * scene.unit, threads)
+        self.mapper.SetInputConnection(scene.reader.GetOutputPort())
+        self.mapper.SetClippingPlanes(scene.planes())
+        self.volume = vtk.vtkVolume()
+        self.volume.SetMapper(self.mapper)
+        self.volume.SetProperty(make_property(vtk, scene.points, scene.light, scene.unit))
+        self.background = linear_color(scene.settings["background"])
+        self.renderer = vtk.vtkRenderer()
+        self.renderer.SetBackground(self.background)
+        self.renderer.AddVolume(self.volume)
+        self.window = vtk.vtkRenderWindow()
+        self.window.SetOffScreenRendering(1)
+        self.window.SetMultiSamples(0)
+        self.window.SetSize(scene.settings["size"])
+        self.window.AddRenderer(self.renderer)
+        # The OpenGL mapper adds ambient light without the volume's colour, so the light carries the colour of a volume
+        # of one colour. The fixed-point mapper multiplies by it.
+        ambient = linear_color(scene.points[0]["color"]) if kind == "gpu" else [1.0, 1.0, 1.0]
+        aim(vtk, self.renderer, scene.camera, scene.light["direction"], ambient)
+
+    def draw(self):
+        """Milliseconds."""
+        self.volume.Modified()
+        self.renderer.GetActiveCamera().Modified()
+        started = time.monotonic()
+        self.window.Render()
+        self.window.WaitForCompletion()
+        return (time.monotonic() - started) * 1e3
+
+    def save(self, path):
+        if self.kind == "fixed":
+            save_fixed_point(self.mapper, self.window, self.background, Path(path))
+        else:
+            save(self.vtk, self.window, Path(path))
+
+
 def draw(options):
     vtk = import_vtk()
-    session = json.loads(Path(options.session).read_text())
-    if "path" not in session["volume"] or session.get("annotation"):
-        sys.exit(f"{options.session}: expected a volume in a file, and no mask")
-    light, settings = {**LIGHT, **session.get("light", {})}, {**RENDER, **session.get("render", {})}
     started = time.monotonic()
-    reader, unit = open_volume(vtk, Path(options.session).parent / session["volume"]["path"])
-    reader.Update()
+    scene = Scene(vtk, options.session, options.camera)
     load_ms = (time.monotonic() - started) * 1e3
-
-    mapper = make_mapper(vtk, options.mapper, settings["step_voxels"] * unit, options.threads)
-    mapper.SetInputConnection(reader.GetOutputPort())
-    volume = vtk.vtkVolume()
-    volume.SetMapper(mapper)
-    points = session["transfer_function"]["points"]
-    volume.SetProperty(make_property(vtk, points, light, unit))
-    renderer = vtk.vtkRenderer()
-    renderer.SetBackground(linear_color(settings["background"]))
-    renderer.AddVolume(volume)
-    window = vtk.vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetMultiSamples(0)
-    window.SetSize(settings["size"])
-    window.AddRenderer(renderer)
-    # The OpenGL mapper adds ambient light without the volume's colour, so the light carries the colour of a volume of
-    # one colour. The fixed-point mapper multiplies by it.
-    ambient = linear_color(points[0]["color"]) if options.mapper == "gpu" else [1.0, 1.0, 1.0]
-    aim(vtk, renderer, session["cameras"][options.camera], light["direction"], ambient)
-
+    drawn = Drawn(scene, options.mapper, scene.settings["step_voxels"], options.threads)
     for frame in range(options.frames + 1):
-        volume.Modified()
-        renderer.GetActiveCamera().Modified()
-        started = time.monotonic()
-        window.Render()
-        window.WaitForCompletion()
-        say(frame=frame, ms=(time.monotonic() - started) * 1e3)
+        say(frame=frame, ms=drawn.draw())
     # Querying the driver's name costs memory and time.
     peak_mib = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     if options.output:
-        save(vtk, window, Path(options.output))
-    say(vtk=vtk.vtkVersion.GetVTKVersion(), mapper=mapper.GetClassName(), renderer=renderer_name(window),
+        drawn.save(options.output)
+    say(vtk=vtk.vtkVersion.GetVTKVersion(), mapper=drawn.mapper.GetClassName(), renderer=renderer_name(drawn.window),
         load_ms=load_ms, peak_mib=peak_mib)
+
+
+def serve(options):
+    """A request is {"mapper", "step", "output": a file or null}, its answer {"ms"}; ends with standard input."""
+    vtk = import_vtk()
+    scene, kept = Scene(vtk, options.session, options.camera), {}
+    say(vtk=vtk.vtkVersion.GetVTKVersion())
+    for line in sys.stdin:
+        asked = json.loads(line)
+        key = asked["mapper"], asked["step"]
+        if key not in kept:
+            kept[key] = Drawn(scene, *key, options.threads)
+        ms = kept[key].draw()
+        if asked["output"]:
+            kept[key].save(asked["output"])
+        say(ms=ms)
 
 
 def main():
@@ -204,6 +295,7 @@ def main():
     parser.add_argument("--frames", type=int, default=5, help="after the first, which also prepares")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("-o", "--output", help="picture to write, in linear light (.pfm)")
+    parser.add_argument("--serve", action="store_true", help="draw on request, by lines on standard input")
     options = parser.parse_args()
     if not os.environ.get("DISPLAY"):
         xvfb = ["xvfb-run", "-a", "-s", "-screen 0 640x480x24", sys.executable, *sys.argv]
@@ -211,7 +303,7 @@ def main():
             os.execvp(xvfb[0], xvfb)
         except FileNotFoundError:
             sys.exit("there is no display and no xvfb-run; expected one of them (Debian: xvfb)")
-    draw(options)
+    (serve if options.serve else draw)(options)
 
 
 if __name__ == "__main__":

@@ -251,13 +251,13 @@ void draw(Canvas& canvas, const Plot& plot)
     double row = 48.0;
     for (size_t i = 0; i < plot.series.size(); ++i) {
         const PlotSeries& series = plot.series[i];
-        const Color color = COLORS[i % COLORS.size()];
+        const Color color = series.is_other ? INK : COLORS[i % COLORS.size()];
         const int kind = int(i % MARKS);
         if (series.is_joined) draw_steps(canvas, series, x, y, color);
         for (const PlotPoint& point : series.points) {
             if (!(point.x > 0.0) || !(point.y > 0.0)) continue;
             canvas.mark(x.at(point.x), y.at(point.y), kind, 4.5, color,
-                        point.on_front || series.is_joined ? 1.0 : 0.45);
+                        point.on_front || series.is_joined || series.is_other ? 1.0 : 0.45);
             if (!point.label.empty()) canvas.text(x.at(point.x) + 8, y.at(point.y) - 5, point.label, 0);
         }
         canvas.mark(plot.width - legend, row - 4.0, kind, 4.5, color, 1.0);

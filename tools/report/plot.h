@@ -19,6 +19,7 @@ struct PlotSeries {
     std::string name;
     std::vector<PlotPoint> points;
     bool is_joined = false;  ///< a line of its colour from point to point, all of which are full
+    bool is_other = false;   ///< what the others are compared with: full, in the ink of the axes
 };
 
 struct Plot {

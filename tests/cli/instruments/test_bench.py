@@ -2,18 +2,44 @@
 import copy
 import csv
 import json
+import os
+import shutil
 import struct
+import subprocess
+import sys
 import unittest
 import xml.etree.ElementTree
+from pathlib import Path
 
 from harness import CliTest
 
+ROOT = Path(__file__).resolve().parents[3]
+HAS_VTK = bool(shutil.which("xvfb-run") or os.environ.get("DISPLAY")) and subprocess.run(
+    ["/usr/bin/python3", "-c", "import vtkmodules"], capture_output=True, check=False).returncode == 0
+# Answers as tools/peers/vtk_raycast.py does: a black picture in so many milliseconds as its step is.
+STAND_IN = f"""#!{sys.executable}
+import json, sys
+from array import array
+scene = json.load(open(sys.argv[2]))
+width, height = scene["render"]["size"]
+print("something else")
+print(json.dumps({{"vtk": "0.0"}}), flush=True)
+for line in sys.stdin:
+    asked = json.loads(line)
+    print(asked["step"], file=open(sys.argv[0] + ".log", "a"))
+    if asked["output"]:
+        open(asked["output"], "wb").write(f"PF\\n{{width}} {{height}}\\n-1.0\\n".encode() + array("f", [0] * 3 * width * height).tobytes())
+    print(json.dumps({{"ms": 1000 * asked["step"]}}), flush=True)
+"""
 RUN_KEYS = ["name", "family", "settings", "error", "min_ms", "median_ms", "p95_ms", "work", "device_bytes", "on_front"]
 
 
 class Bench(CliTest):
     def bench(self, *arguments, scenes="fog", rounds=2, status=0):
+        """Without VTK, unless the arguments name it."""
         self.output = self.folder / "bench"
+        if "--peer" not in arguments:
+            arguments = ("--peer", "none", *arguments)
         return self.check_json("bench", "--scenes", scenes, "--quick", "--rounds", rounds, "-o", self.output, *arguments,
                                status=status)
 
@@ -55,12 +81,20 @@ class Bench(CliTest):
                 self.assertLess(runs["step 0.25"]["error"]["rmse"], limit)
                 self.assertEqual("occlusion rays 64" in runs, scene == "occluded")
                 if scene == "paged":
+                    # All voxels, then at least two and half a voxel a pixel: coarser levels, less work, more error.
+                    all_voxels, two, half = runs["step 0.5"], runs["detail 2"], runs["detail 0.5"]
+                    self.assertLessEqual(all_voxels["error"]["rmse"], two["error"]["rmse"])
+                    self.assertLess(two["error"]["rmse"], half["error"]["rmse"])
+                    self.assertGreater(two["work"]["samples"], half["work"]["samples"])
+                    # A worse quality is not drawn of finer bricks.
+                    bricks = [runs[name]["work"]["bricks_visited"] for name in ("draft", "interactive", "good")]
+                    self.assertEqual(bricks, sorted(bricks))
                     self.assertEqual(runs["budget 16 MiB"]["error"], runs["budget 48 MiB"]["error"])
 
     def test_files(self):
         told = self.bench()
         names = sorted(path.split("/")[-1] for path in told["written"])
-        self.assertEqual(names, ["bench.csv", "bench.json", "equal_error.csv", "equal_time.csv", "front.csv",
+        self.assertEqual(names, ["bench.csv", "bench.json", "equal_error.csv", "equal_peer.csv", "equal_time.csv", "front.csv",
                                  "pareto-fog.png", "pareto-fog.svg", "pareto.png", "pareto.svg", "report.html"])
         with open(self.output / "bench.csv", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
@@ -70,7 +104,7 @@ class Bench(CliTest):
             tree = xml.etree.ElementTree.parse(self.output / name).getroot()
             texts = {text.text for text in tree.iter("{http://www.w3.org/2000/svg}text")}
             self.assertIn("RMSE in linear light", texts)
-            self.assertIn("samples of a picture" if name == "pareto.svg" else "median time of a picture, ms", texts)
+            self.assertIn("texels read for a picture" if name == "pareto.svg" else "median time of a picture, ms", texts)
             # The legend names a front where one is drawn; no mark lies on the frame, which is at 74.
             self.assertEqual("front" in texts, name != "pareto.svg")
             marks = [float(mark.get("cx")) for mark in tree.iter("{http://www.w3.org/2000/svg}circle")]
@@ -103,6 +137,136 @@ class Bench(CliTest):
         text["render"] = {**text.get("render", {}), "paging": "always", "detail": 0}
         self.bench(scenes=str(self.write_json("paged.json", text)), rounds=1)
         self.assertEqual(self.runs()["step 0.5"]["error"], unpaged["step 0.5"]["error"])
+
+    def stand_in(self, text=STAND_IN):
+        path = self.folder / "peer.py"
+        path.write_text(text)
+        path.chmod(0o755)
+        return path
+
+    def notes(self):
+        return json.loads((self.output / "bench.json").read_text())["scenes"][0]["notes"]
+
+    def test_another_program_is_measured_in_the_same_rounds_and_by_the_same_reference(self):
+        self.bench("--peer", self.stand_in(), scenes="tissue-matt", rounds=3)
+        # Each twice to begin with, then to and fro with all others.
+        asked = (self.folder / "peer.py.log").read_text().split()
+        there = ["2.0", "1.0", "0.5", "0.25"]
+        self.assertEqual(asked, [step for step in there for _ in range(2)] + there + there[::-1] + there)
+        runs = self.runs()
+        self.assertEqual([runs[f"VTK step {step}"]["median_ms"] for step in ("2", "1", "0.5", "0.25")],
+                         [2000, 1000, 500, 250])
+        black = runs["VTK step 1"]["error"]["rmse"]  # that of a black picture
+        self.assertGreater(black, 0.1)
+        with open(self.output / "equal_peer.csv", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([row["peer"] for row in rows], ["VTK step 2", "VTK step 1", "VTK step 0.5", "VTK step 0.25"])
+        own = [run for run in runs.values() if not run["family"].startswith("VTK")]
+        fastest = min((run for run in own if run["error"]["rmse"] <= black), key=lambda run: run["median_ms"])
+        for row in rows:
+            self.assertEqual(row["run"], fastest["name"])
+            self.assertAlmostEqual(float(row["time_ratio"]) * float(row["peer_ms"]), fastest["median_ms"], places=6)
+            self.assertEqual(float(row["same_step_rmse"]), runs[row["peer"].removeprefix("VTK ")]["error"]["rmse"])
+        # The front that is kept is SHVR's own, whether VTK is there or not.
+        self.assertNotIn("VTK", (self.output / "front.csv").read_text())
+        page = (self.output / "report.html").read_text()
+        for word in ("Time at equal error", "VTK step 0.5", ">VTK</text>"):
+            self.assertIn(word, page)
+        self.check("bench", "--compare", self.output / "bench.json", self.output / "bench.json")
+
+    def test_where_another_program_is_not_there_or_draws_otherwise_a_sentence_says_so(self):
+        for peer, says in [("none", "VTK is not measured beside"), (self.folder / "gone.py", "cannot be started"),
+                           (self.stand_in("#!/bin/sh\necho 'no such module' >&2; exit 1\n"), "no such module")]:
+            self.bench("--peer", peer, scenes="fog", rounds=1)
+            self.assertEqual(len(self.notes()), 1)
+            self.assertIn(says, self.notes()[0])
+            self.assertIn("not measured beside", (self.output / "report.html").read_text())
+            self.assertNotIn("VTK step 1", self.runs())
+        peer = self.stand_in()
+        for scene, says in [("tissue", "gradient_fade"), ("painted", "painted"), ("surfaces", "surfaces"),
+                            ("occluded", "gradient_fade"), ("paged", "gradient_fade")]:
+            self.bench("--peer", peer, scenes=scene, rounds=1)
+            self.assertIn(says, self.notes()[0])
+            self.assertNotIn("VTK step 1", self.runs())
+
+    @unittest.skipUnless(HAS_VTK, "python3-vtk9 and xvfb are not installed")
+    def test_vtk_draws_the_same_picture(self):
+        # Near enough that nothing but its own rounding, steps and normals is between them: no shift, no other border.
+        for scene, limit in [("fog", 0.006), ("tissue-matt", 0.02), ("tubes-matt", 0.03)]:
+            self.bench("--peer", ROOT / "tools/peers/vtk_raycast.py", scenes=scene, rounds=1)
+            self.assertEqual(self.notes(), [])
+            runs = self.runs()
+            self.assertLess(runs["VTK step 0.25"]["error"]["rmse"], limit)
+            self.assertLess(runs["VTK step 0.25"]["error"]["rmse"], runs["VTK step 2"]["error"]["rmse"])
+
+    def test_an_example_that_is_not_there_is_said_and_one_that_is_is_drawn(self):
+        told = self.check_refused("bench", "--scenes", "stent", "--examples", self.folder, "-o", self.folder / "x",
+                                  says=["stent/shvr/session.json", "tools/fetch_example stent"])
+        self.assertNotIn("neither", told)
+        # As tools/fetch_example leaves it, of a small volume.
+        place = self.folder / "stent" / "shvr"
+        place.mkdir(parents=True)
+        shutil.copy(ROOT / "assets/examples/stent.session.json", place / "session.json")
+        header = "NRRD0004\ntype: short\ndimension: 3\nsizes: 20 20 20\nspacings: 1 1 1\nencoding: raw\n" \
+                 "endian: little\ndata file: stent.raw\n"
+        (self.folder / "stent/stent.nhdr").write_text(header)
+        (self.folder / "stent/stent.raw").write_bytes(b"".join(
+            struct.pack("<h", min(900, 20 * abs(x - 10) * abs(y - 10) + 9 * z))
+            for z in range(20) for y in range(20) for x in range(20)))
+        self.bench("--peer", self.stand_in(), "--examples", self.folder, scenes="stent,stent-matt", rounds=1)
+        self.assertLess(self.runs()["step 0.25"]["error"]["rmse"], 0.02)
+        self.assertIn("gradient_fade", self.notes()[0])
+        self.assertIn("VTK step 1", self.runs(1))
+        self.assertEqual(self.runs()["step 0.5"]["work"]["rays"] > 0, True)
+
+    def test_all_scenes_and_sweeps_are_measured_and_scans_that_are_not_there_are_said(self):
+        self.output = self.folder / "all"
+        result = self.check("bench", "--quick", "--side", 16, "--size", "8,8", "--rounds", 1, "--peer", "none",
+                            "--examples", self.folder, "-o", self.output, "--json")
+        told, kept = json.loads(result.stdout), json.loads((self.output / "bench.json").read_text())
+        self.assertEqual(told["left_out"], kept["left_out"])
+        self.assertEqual(len(told["left_out"]), 2)
+        page = (self.output / "report.html").read_text()
+        for name, sentence in zip(("stent", "cranium"), told["left_out"]):
+            self.assertIn(f"tools/fetch_example {name}", sentence)
+            self.assertIn(sentence, result.stderr)
+            self.assertIn(sentence, page)
+        names = [scene["name"] for scene in kept["scenes"]]
+        self.assertEqual(names, ["tubes", "noisy-surface", "tissue", "fog", "peaks", "uint16", "anisotropic", "paged",
+                                 "painted", "occluded", "surfaces", "tubes-matt", "noisy-surface-matt", "tissue-matt"])
+        for sweep in ("blur", "labelling", "proxy"):
+            self.assertIn(f"<h2>{sweep}</h2>", page)
+
+    def test_sweeps_beside_pictures(self):
+        self.output = self.folder / "sweeps"
+        told = self.check_json("bench", "--quick", "--sweeps", "blur,labelling", "-o", self.output)
+        names = [Path(path).name for path in told["written"]]
+        for name in ("sweep-blur.csv", "sweep-blur.svg", "sweep-labelling.csv", "sweep-labelling.svg"):
+            self.assertIn(name, names)
+
+        def rows(name):
+            with open(self.output / f"sweep-{name}.csv", encoding="utf-8") as file:
+                return list(csv.DictReader(file))
+        blur = {(row["series"], row["setting"]): float(row["error"]) for row in rows("blur")}
+        # Rounding to a level: 0.289 of it. Of floats, what lies beyond 4 sigma.
+        for kind, levels in (("uint8", 255), ("uint16", 65535)):
+            self.assertAlmostEqual(blur[kind, "sigma 2"] * levels, 12 ** -0.5, delta=0.02)
+        self.assertTrue(0 < blur["float32", "sigma 2"] < 1e-4, blur)
+        labelling = rows("labelling")
+        self.assertEqual({row["series"] for row in labelling}, {"over faces", "over corners"})
+        self.assertEqual([float(row["error"]) for row in labelling], [0.0] * 12)
+        self.assertGreater(min(float(row["ns_per_voxel"]) for row in labelling), 0.0)
+        page = (self.output / "report.html").read_text()
+        for word in ("<h2>blur</h2>", "<h2>labelling</h2>", "over corners", "sigma 0.5"):
+            self.assertIn(word, page)
+
+    def test_the_sweep_of_the_proxy_is_in_the_report(self):
+        self.output = self.folder / "sweeps"
+        self.check_json("bench", "--quick", "--sweeps", "proxy", "-o", self.output)
+        page = (self.output / "report.html").read_text()
+        for word in ("<h2>proxy</h2>", "microseconds a proxy", "even points"):
+            self.assertIn(word, page)
+        self.assertIn("exact,6,0,", (self.output / "sweep-proxy.csv").read_text())
 
     def test_a_session_of_ones_own(self):
         session = self.write_session(annotation={})

@@ -100,6 +100,26 @@ class Golden(CliTest):
         self.assertEqual(one["metrics"]["max_abs"], 0)
         self.assertRegex(one["reason"], r"other work: .*samples \d+ \(recorded: \d+\)")
 
+    def test_a_counter_that_the_side_car_lacks_fails_with_the_command_that_records_it(self):
+        self.bless("spheres")
+        path = self.folder / "golden/spheres.blessed.json"
+        side_car = json.loads(path.read_text())
+        for lacks in (["samples"], ["samples", "density_reads"], list(side_car["work"])):
+            work = {name: value for name, value in side_car["work"].items() if name not in lacks}
+            path.write_text(json.dumps({**side_car, "work": work}))
+            one = self.golden("run", "spheres", status=3)["goldens"][0]
+            self.assertEqual(one["metrics"]["max_abs"], 0)
+            self.assertRegex(one["reason"], r"^golden/spheres.blessed.json: work lacks [^.]*" + lacks[-1])
+            self.assertIn("shvr golden bless 'spheres' --folder 'golden' --reason", one["reason"])
+        path.write_text(json.dumps({key: value for key, value in side_car.items() if key != "work"}))
+        self.assertIn("work lacks rays, samples", self.golden("run", "spheres", status=3)["goldens"][0]["reason"])
+        # What the sentence says helps, and the picture stays as it is.
+        before = (self.folder / "golden/spheres.png").read_bytes()
+        self.bless("spheres")
+        self.assertEqual(self.golden("run", "spheres")["failed"], [])
+        self.assertEqual(json.loads(path.read_text())["work"], side_car["work"])
+        self.assertEqual((self.folder / "golden/spheres.png").read_bytes(), before)
+
     def test_the_report_holds_everything_itself(self):
         self.bless()
         self.write_session("scan.json", annotation={}, light={"ambient": 0.9})

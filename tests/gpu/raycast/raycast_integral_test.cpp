@@ -374,7 +374,8 @@ TEST_CASE_FIXTURE(OnDevice, "every type of voxel is drawn at its own intensities
                                                       {VoxelType::int16, {-1024.0, 3071.0}},
                                                       {VoxelType::float32, {-0.5, 2.25}}};
     for (const auto& [type, range] : types) {
-        CAPTURE(name_of(type));
+        const std::string type_name = name_of(type);  // of a pointer, doctest shows the address
+        CAPTURE(type_name);
         const double least = range.x, width = range.y - range.x;
         TestVolume volume = noise_volume({20, 9, 11}, 6);
         volume.type = type;

@@ -292,7 +292,8 @@ TEST_CASE_FIXTURE(OnDevice, "noise of the lowest bit does not sparkle")
 {
     std::mt19937 random(43);
     for (const auto& [type, largest] : {std::pair(VoxelType::uint8, 255.0), {VoxelType::uint16, 4095.0}}) {
-        CAPTURE(name_of(type));
+        const std::string type_name = name_of(type);  // of a pointer, doctest shows the address
+        CAPTURE(type_name);
         const double middle = std::floor(0.5 * largest);
         TestVolume volume = volume_of({32, 32, 32}, [&](const glm::dvec3&) { return middle + double(random() % 2); });
         volume.type = type;

@@ -34,7 +34,7 @@ std::string name_of(const RenderSettings& render)
 TEST_CASE("each quality is found again, is valid, and costs no less than the one before")
 {
     std::set<std::string> names;
-    double step = 100.0;
+    double step = 100.0, detail = 0.0;
     for (const Quality& quality : qualities()) {
         CAPTURE(quality.name);
         RenderSettings render;
@@ -43,6 +43,9 @@ TEST_CASE("each quality is found again, is valid, and costs no less than the one
         CHECK(names.insert(quality.name).second);
         CHECK(quality.step_voxels < step);
         step = quality.step_voxels;
+        // Voxels for each pixel at least: more is finer, and 0 is the finest.
+        CHECK((quality.detail == 0.0 || quality.detail >= detail));
+        detail = quality.detail == 0.0 ? 100.0 : quality.detail;
         CHECK((!quality.preintegration || quality.step_voxels <= 1.0));
         render.size = {7, 7};  // not one of its keys
         CHECK(name_of(render) == quality.name);
@@ -61,7 +64,7 @@ TEST_CASE("--set render.quality takes the place of what a file holds, and later 
     CHECK(name_of(draft.render) == "draft");
     CHECK(draft.render.saturation == 0.5);
     CHECK(parse({"render.quality=good", "render.step_voxels=0.3"}).render.step_voxels == 0.3);
-    CHECK(parse({"render.step_voxels=0.3", "render.quality=good"}).render.step_voxels == 0.25);
+    CHECK(parse({"render.step_voxels=0.3", "render.quality=good"}).render.step_voxels == 0.125);
     const std::string refused = error_of([] { parse({"render.quality=best"}); });
     CHECK_MESSAGE(contains(refused, "\"reference\""), refused);
 }

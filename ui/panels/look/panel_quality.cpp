@@ -71,8 +71,9 @@ bool numbers(RenderSettings& render, bool& is_reset, Actions& actions)
     is_reset |= resets("render.opacity_limit", actions);
     is_other |= slider("Detail", render.detail, 0.0, 8.0, "%.2g voxels a pixel");
     hint(
-        "Of volumes in several levels: a level is fine enough if its voxels are no larger than this. 0: always the "
-        "finest. Other volumes do not change.");
+        "Of volumes in several levels: for each pixel at least so many voxels are drawn. More is finer, and 0 always "
+        "the "
+        "finest level. Other volumes do not change.");
     is_reset |= resets("render.detail", actions);
     return is_other;
 }

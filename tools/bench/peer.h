@@ -1,0 +1,63 @@
+#pragma once
+// Another program beside SHVR: VTK's volume ray casters, which tools/peers/vtk_raycast.py draws on request. It is not
+// needed: where it cannot be started, that is a sentence.
+//
+// One thread.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/image.h"
+#include "engine/session/session.h"
+
+namespace shvr::bench {
+
+struct PeerOptions {
+    std::filesystem::path program;  ///< vtk_raycast.py, or what answers as it does; empty: none
+    std::vector<std::string> mappers = {"fixed"};
+    int threads = 2;
+};
+
+/// A picture of the peer's.
+struct PeerRun {
+    std::string name, family;  ///< "VTK step 0.5", "VTK"
+    std::string mapper;        ///< "fixed", "gpu"
+    double step = 1.0;         ///< reference lengths
+};
+/// Those of all mappers.
+std::vector<PeerRun> peer_runs(const PeerOptions& options, bool quick);
+/// Whether a family of runs is the peer's.
+bool is_peer(const std::string& family);
+
+/// Why VTK cannot draw the same picture, as the end of a sentence; null if it can.
+std::optional<std::string> why_not_by_peer(const Session& session, const VolumeSource& source, const Camera& camera,
+                                           const std::string& mapper);
+
+class Peer {
+public:
+    /// Starts it on a scene. Fails in a sentence where it does not start, or ends.
+    Peer(const PeerOptions& options, const Session& session, const VolumeSource& source, const Camera& camera);
+    ~Peer();
+    Peer(const Peer&) = delete;
+    Peer& operator=(const Peer&) = delete;
+
+    /// "9.1.0".
+    const std::string& version() const { return version_; }
+    /// Milliseconds.
+    double draw(const PeerRun& run);
+    /// In linear light.
+    ImageF picture(const PeerRun& run);
+
+private:
+    double ask(const PeerRun& run, const std::filesystem::path& output);
+    std::string next_line();
+    void end();
+
+    std::filesystem::path folder_;
+    int process_ = -1, socket_ = -1;
+    std::string received_, version_;
+};
+
+}  // namespace shvr::bench
