@@ -151,6 +151,10 @@ class Menus(Seen):
     def measure(self):
         x, y = self.middle()
         self.close_menus()
+        self.press("F10")          # one pane, with the ball in its middle
+        self.do("mousemove", x, y, pause_s=0.2)
+        self.press("Shift+Home")
+        self.do(pause_s=0.3)
         self.press("Alt+6")
         for at in (x - 20, x + 20):
             self.what_follows(lambda: self.do("mousemove", at, y, "sleep", 0.1, "click", 1, pause_s=0), "measure_at")
