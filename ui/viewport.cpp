@@ -5,6 +5,7 @@
 
 #include <GLFW/glfw3.h>
 
+#include "ui/mouse_feed.h"
 #include "ui/workbench/edit.h"
 #include "ui/workbench/sight/gestures.h"
 #include "ui/workbench/sight/hits.h"
@@ -14,7 +15,6 @@ namespace shvr::ui {
 namespace {
 
 constexpr double DEGREES_PER_HEIGHT = 180.0;  ///< a drag across the window turns the view by half a turn
-constexpr double DOUBLE_CLICK_S = 0.35;
 constexpr double DOUBLE_CLICK_PIXELS = 5.0;
 constexpr double ZOOM_PER_STEP = 1.12;
 
@@ -83,15 +83,16 @@ Viewport::Gesture Viewport::turning(const Model& model) const
     }
 }
 
-bool Viewport::is_double(double time_s, const glm::dvec2& at) const
+/// From press to press, as widgets take it (ui/mouse_feed.h), so that a long frame makes no two clicks of one double.
+bool Viewport::is_double(double earliest_s, const glm::dvec2& at) const
 {
-    return last_click_s_ && time_s - *last_click_s_ < DOUBLE_CLICK_S &&
+    return last_click_s_ && earliest_s - *last_click_s_ < MouseFeed::DOUBLE_CLICK_S &&
            glm::distance(at, last_click_) < DOUBLE_CLICK_PIXELS;
 }
 
 // ---- Buttons --------------------------------------------------------------------------------------------------------
 
-void Viewport::press(const ButtonEvent& event, double time_s, const Model& model, Actions& actions)
+void Viewport::press(const ButtonEvent& event, const When& when, const Model& model, Actions& actions)
 {
     if (gesture_ != Gesture::none) return;
     pane_ = pane_at(event.at, model);
@@ -111,24 +112,25 @@ void Viewport::press(const ButtonEvent& event, double time_s, const Model& model
     } else if (event.button == GLFW_MOUSE_BUTTON_MIDDLE) {
         gesture_ = is_map ? Gesture::move_in_map : turns || shift ? Gesture::move : turning(model);
     } else if (event.button == GLFW_MOUSE_BUTTON_LEFT) {
-        press_left(event, time_s, model, actions);
+        press_left(event, when, model, actions);
     }
     if (gesture_ != Gesture::press && gesture_ != Gesture::paint) click_.reset();
 }
 
-void Viewport::press_left(const ButtonEvent& event, double time_s, const Model& model, Actions& actions)
+void Viewport::press_left(const ButtonEvent& event, const When& when, const Model& model, Actions& actions)
 {
     const Pane::Kind kind = kind_of_pane(model);
     pressed_node_.reset();
+    pressed_s_ = when.latest_s;
+    is_second_ = is_double(when.earliest_s, event.at);
     if (event.mods & GLFW_MOD_SHIFT) {
         gesture_ = kind == Pane::Kind::map ? Gesture::move_in_map : Gesture::move;
     } else if ((event.mods & GLFW_MOD_CONTROL) && kind == Pane::Kind::slice) {
         gesture_ = Gesture::contrast;
     } else if ((event.mods & GLFW_MOD_ALT) || kind == Pane::Kind::map) {
         gesture_ = turning(model);
-        if (kind == Pane::Kind::map && is_double(time_s, event.at))
-            actions.emplace_back(ProbeOnto{pane_, in_pane(event.at, model)});
-        last_click_s_ = time_s;
+        if (kind == Pane::Kind::map && is_second_) actions.emplace_back(ProbeOnto{pane_, in_pane(event.at, model)});
+        last_click_s_ = pressed_s_;
         last_click_ = event.at;
     } else if (paints(model.tool())) {
         gesture_ = Gesture::stroke;
@@ -140,31 +142,30 @@ void Viewport::press_left(const ButtonEvent& event, double time_s, const Model& 
             pressed_node_ =
                 trace_hit(model.trace, model.panes[pane_].pane, in_pane(event.at, model), model.volume).node;
         // In the turn tool a double click means something else than two clicks, and something at once.
-        if (model.tool() == Tool::turn && is_double(time_s, event.at)) {
+        if (model.tool() == Tool::turn && is_second_) {
             click_.reset();
             actions.emplace_back(ProbeOnto{pane_, in_pane(event.at, model)});
         }
     }
 }
 
-void Viewport::release(const ButtonEvent& event, double time_s, const Model& model, Actions& actions)
+void Viewport::release(const ButtonEvent& event, const Model& model, Actions& actions)
 {
     if (gesture_ == Gesture::none || event.button != button_) return;
     if (gesture_ == Gesture::paint || gesture_ == Gesture::stroke) actions.emplace_back(Paint{false});
     if (gesture_ == Gesture::node) actions.emplace_back(DragNode{false});
-    if (gesture_ == Gesture::press) click(time_s, model, actions);
+    if (gesture_ == Gesture::press) click(model, actions);
     gesture_ = Gesture::none;
 }
 
-void Viewport::click(double time_s, const Model& model, Actions& actions)
+void Viewport::click(const Model& model, Actions& actions)
 {
     const glm::dvec2 pixel = in_pane(pressed_, model);
-    const bool is_second = is_double(time_s, pressed_);
-    last_click_s_ = is_second ? std::nullopt : std::optional(time_s);
+    last_click_s_ = is_second_ ? std::nullopt : std::optional(pressed_s_);
     last_click_ = pressed_;
     switch (model.tool()) {
         case Tool::turn:
-            if (!is_second) click_ = Click{{pane_, pixel, false}, time_s};
+            if (!is_second_) click_ = Click{{pane_, pixel, false}, pressed_s_};
             break;
         case Tool::trace:
             if (pressed_node_)
@@ -172,7 +173,7 @@ void Viewport::click(double time_s, const Model& model, Actions& actions)
             else
                 actions.emplace_back(NodeAt{pane_, pixel});
             break;
-        case Tool::select: actions.emplace_back(SelectAt{pane_, pixel, is_second}); break;
+        case Tool::select: actions.emplace_back(SelectAt{pane_, pixel, is_second_}); break;
         case Tool::measure: actions.emplace_back(MeasureAt{pane_, pixel}); break;
         case Tool::paint:
         case Tool::erase: break;
@@ -181,7 +182,7 @@ void Viewport::click(double time_s, const Model& model, Actions& actions)
 
 void Viewport::wait(double time_s, Actions& actions)
 {
-    if (!click_ || time_s - click_->at_s < DOUBLE_CLICK_S) return;
+    if (!click_ || time_s - click_->pressed_s < MouseFeed::DOUBLE_CLICK_S) return;
     actions.emplace_back(click_->what);
     click_.reset();
 }
@@ -264,9 +265,9 @@ void Viewport::handle(const InputEvent& event, const Model& model, bool ui_has_m
 {
     if (const auto* button = std::get_if<ButtonEvent>(&event.what)) {
         if (!button->pressed)
-            release(*button, event.time_s, model, actions);
+            release(*button, model, actions);
         else if (!ui_has_mouse && contains(button->at))
-            press(*button, event.time_s, model, actions);
+            press(*button, {event.earliest_s, event.time_s}, model, actions);
     } else if (const auto* move = std::get_if<MoveEvent>(&event.what)) {
         follow(*move, ui_has_mouse, model, actions);
     } else if (const auto* scroll = std::get_if<ScrollEvent>(&event.what)) {

@@ -57,10 +57,13 @@ private:
         cross,   ///< moves the cross of the slices
         contrast
     };
-    void press(const ButtonEvent& event, double time_s, const Model& model, Actions& actions);
-    void press_left(const ButtonEvent& event, double time_s, const Model& model, Actions& actions);
-    void release(const ButtonEvent& event, double time_s, const Model& model, Actions& actions);
-    void click(double time_s, const Model& model, Actions& actions);
+    struct When {
+        double earliest_s = 0.0, latest_s = 0.0;  ///< it happened between the two
+    };
+    void press(const ButtonEvent& event, const When& when, const Model& model, Actions& actions);
+    void press_left(const ButtonEvent& event, const When& when, const Model& model, Actions& actions);
+    void release(const ButtonEvent& event, const Model& model, Actions& actions);
+    void click(const Model& model, Actions& actions);
     void begin_drag(const Model& model, Actions& actions);
     void follow(const MoveEvent& event, bool ui_has_mouse, const Model& model, Actions& actions);
     void hover(const Model& model, bool jumps, Actions& actions);
@@ -70,7 +73,7 @@ private:
     glm::uvec2 pane_pixels(const Model& model) const;
     Gesture turning(const Model& model) const;
     glm::dvec2 in_pane(const glm::dvec2& at, const Model& model) const;
-    bool is_double(double time_s, const glm::dvec2& at) const;
+    bool is_double(double earliest_s, const glm::dvec2& at) const;
 
     Layout layout_;
     Gesture gesture_ = Gesture::none;
@@ -80,11 +83,13 @@ private:
     std::optional<uint32_t> pressed_node_;
     bool was_elsewhere_ = true;  ///< the pointer, before the next motion
     std::optional<Pointer> pointer_;
-    std::optional<double> last_click_s_;
+    double pressed_s_ = 0.0;              ///< the left button, at the latest
+    bool is_second_ = false;              ///< that press, of a double click
+    std::optional<double> last_click_s_;  ///< when it was pressed
     glm::dvec2 last_click_{0.0};
     struct Click {
         SelectAt what;
-        double at_s = 0.0;
+        double pressed_s = 0.0;
     };
     std::optional<Click> click_;  ///< of the turn tool, not yet carried out
 };

@@ -73,7 +73,7 @@ struct Window::Input {
     template <class Event>
     static void add(GLFWwindow* window, Event event)
     {
-        of(window).events.push_back({std::move(event), glfwGetTime()});
+        of(window).events.push_back({std::move(event), glfwGetTime(), of(window).earliest_s()});
     }
     /// The mouse position at the time of the event: GLFW reports only the current one, which is too late if one turn of
     /// the loop receives a whole gesture.

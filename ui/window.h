@@ -51,7 +51,8 @@ struct DamageEvent {};
 /// Positions are in pixels of the frame buffer.
 struct InputEvent {
     std::variant<KeyEvent, ButtonEvent, MoveEvent, ScrollEvent, DropEvent, DamageEvent> what;
-    double time_s = 0.0;  ///< when it was received
+    double time_s = 0.0;         ///< when it was received
+    double earliest_s = time_s;  ///< it happened no sooner: what comes while a long frame is drawn is received after it
 };
 
 class Swapchain;

@@ -42,16 +42,30 @@ def in_short(action):
     return action["op"] if action["op"] != "set" else "set " + ", ".join(names(action["values"], ""))
 
 
+def shift_of(mask):
+    """How many zero bits are below a channel's mask."""
+    return (mask & -mask).bit_length() - 1
+
+
 def read_xwd(data):
-    """Width, height and rows of red, green and blue of what xwd writes for 24 bits on a little-endian server."""
+    """Width, height and rows of red, green and blue of what xwd writes, in whatever whole bytes a pixel and order of
+    bytes its header states."""
     header = struct.unpack(">25I", data[:100])
-    header_bytes, width, height, line, colors = header[0], header[4], header[5], header[12], header[19]
+    header_bytes, image_format, width, height, order = header[0], header[2], header[4], header[5], header[7]
+    bits, line, masks, colors = header[11], header[12], header[14:17], header[19]
+    if image_format != 2 or bits % 8 or bits < 24 or any(mask >> shift != 255 for mask, shift in
+                                                         zip(masks, map(shift_of, masks))):
+        raise ValueError(f"xwd: format {image_format}, {bits} bits a pixel, masks {masks}; expected format 2 (ZPixmap), "
+                         "24 or 32 bits and 8 bits a channel: start Xvfb with -screen 0 ...x24")
+    size = bits // 8
+    places = [shift_of(mask) // 8 if order == 0 else size - 1 - shift_of(mask) // 8 for mask in masks]
     begin = header_bytes + 12 * colors
     rows = []
     for y in range(height):
-        row = data[begin + y * line: begin + y * line + 4 * width]
+        row = data[begin + y * line: begin + y * line + size * width]
         pixels = bytearray(3 * width)
-        pixels[0::3], pixels[1::3], pixels[2::3] = row[2::4], row[1::4], row[0::4]
+        for channel, place in enumerate(places):
+            pixels[channel::3] = row[place::size]
         rows.append(bytes(pixels))
     return width, height, rows
 

@@ -58,7 +58,7 @@ void number_row(const char* label, const char* key, double now, double least, do
         edited_key = nullptr;
         if (edited != now) prefer(actions, sentence('"', key, "\":", edited));
     }
-    if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
+    if (is_double_clicked()) {
         edited_key = nullptr;
         prefer(actions, sentence('"', key, "\":null"));
     }

@@ -74,11 +74,17 @@ bool slider_scalar(const char* label, ImGuiDataType type, void* value, const voi
     return is_changed;
 }
 
-bool resets(const char* key, Actions& actions)
+bool is_double_clicked()
 {
     const bool is_hovered = ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenBlockedByPopup);
     if (!is_hovered || !ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) return false;
     ImGui::ClearActiveID();  // the widget would follow the mouse, or take typed digits
+    return true;
+}
+
+bool resets(const char* key, Actions& actions)
+{
+    if (!is_double_clicked()) return false;
     actions.push_back(Set{patch_of(sentence(key, "=null"))});
     return true;
 }

@@ -32,6 +32,9 @@ bool slider(const char* label, double& value, double lower, double upper, const 
 bool slider_scalar(const char* label, ImGuiDataType type, void* value, const void* lower, const void* upper,
                    const char* format, ImGuiSliderFlags flags = 0);
 
+/// Whether the widget drawn last was double-clicked; it lets go of the mouse then, and would else follow it.
+bool is_double_clicked();
+
 /// A double click on the widget drawn last gives a setting what ships, or what is chosen for the volume: its key as in
 /// the table of engine/session, "light.ambient". Returns whether that happened, so that the widget's own change is not
 /// sent as well.

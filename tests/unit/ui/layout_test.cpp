@@ -48,6 +48,7 @@ TEST_CASE("Panels have ids of their own, and what nobody changed is as it ships"
     layout.panels["history"].folded = false;
     CHECK_FALSE(layout.is_folded(*panel_named("history")));
     CHECK(layout.is_folded(*panel_named("light")));
+    CHECK(layout.is_folded(*panel_named("touch")));
 }
 
 TEST_CASE("A floating panel comes back into a window that became smaller")

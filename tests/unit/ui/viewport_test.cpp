@@ -1,6 +1,7 @@
 // What the mouse means in each tool, without a display.
 
 #include "ui/viewport.h"
+#include "ui/mouse_feed.h"
 
 #include <doctest/doctest.h>
 
@@ -115,14 +116,36 @@ TEST_CASE("Each button means in each tool what the tool says")
     }
 }
 
+TEST_CASE(
+    "A double click is told by when its presses can have happened, not by when a long frame lets them be received")
+{
+    const auto clicked = [](double earliest_s, double latest_s) {
+        Mouse mouse(Tool::turn);
+        mouse.press(LEFT, 40.0, 40.0);
+        mouse.now_s += 0.4;  // held for long: the time runs from press to press
+        mouse.release(LEFT, 40.0, 40.0);
+        mouse.handle({ButtonEvent{LEFT, 0, true, {40.0, 40.0}}, 100.0 + latest_s, 100.0 + earliest_s});
+        mouse.release(LEFT, 40.0, 40.0);
+        return mouse.said;
+    };
+    CHECK(clicked(0.45, 0.45) == "probe_onto");
+    CHECK(clicked(0.45, 3.0) == "probe_onto");
+    CHECK(clicked(MouseFeed::DOUBLE_CLICK_S + 0.01, 3.0) == "");
+    // A third click is the first of the next two.
+    Mouse mouse(Tool::turn);
+    for (int i = 0; i < 3; ++i) mouse.click(40.0, 40.0);
+    CHECK(mouse.said == "probe_onto");
+    CHECK(mouse.viewport.is_waiting());
+}
+
 TEST_CASE("A click of the turn tool selects once it is no double click, which puts the probe there")
 {
     Mouse mouse(Tool::turn);
     mouse.click(40.0, 40.0);
     CHECK(mouse.said == "");
     CHECK(mouse.viewport.is_waiting());
-    CHECK(mouse.wait(0.2) == "");
-    CHECK(mouse.wait(0.2) == "select_at");
+    CHECK(mouse.wait(MouseFeed::DOUBLE_CLICK_S - 0.01) == "");
+    CHECK(mouse.wait(0.02) == "select_at");
     CHECK(!mouse.viewport.is_waiting());
     mouse.said.clear();
     mouse.click(40.0, 40.0);

@@ -149,8 +149,9 @@ void tools(const Model& model, Actions& actions)
     if (const auto plane = radio(PLANES, model.session.probe.touch.plane))
         set(actions, model, [&](Session& s) { s.probe.touch.plane = *plane; });
     double scale = model.session.interaction.workspace_scale;
-    if (slider("Reach", scale, 0.1, 10.0, "%.2f x", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp) &&
-        !resets("interaction.workspace_scale", actions))
+    const bool is_moved =
+        slider("Reach", scale, 0.1, 10.0, "%.2f x", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    if (!resets("interaction.workspace_scale", actions) && is_moved)
         set(actions, model, [&](Session& s) { s.interaction.workspace_scale = scale; });
     hint("How far the probe goes for a move of the device. At 1 its reach is the height of the view.");
 }
