@@ -37,6 +37,15 @@ struct LeapBoundParams {
     uvec3 changed_end;
 };
 
+/// Sample bits: whether a sample may show anything, by the eight voxels that it lies between. Its place is that of the
+/// upper ones, floor(position - 0.5) + 1, no further than the volume's last voxel. Two texels per cell, of two planes
+/// along z each: bit x + 4 y + 16 z.
+struct SampleBitsParams {
+    uvec3 cell_begin;  ///< the cells to compute
+    uvec3 cell_end;
+    float lower, upper;  ///< codes that are seen
+};
+
 struct LeapDistanceParams {
     uvec3 cell_counts;
     uvec3 cell_begin;  ///< the cells to compute

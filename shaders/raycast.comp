@@ -52,6 +52,10 @@ layout(constant_id = 9) const uint PREINTEGRATED = 0u;
 layout(constant_id = 10) const uint KEPT = KEPT_NOTHING;
 // A sample is in the group that weighs most among the eight voxels around it, not in that of the nearest.
 layout(constant_id = 11) const uint SMOOTH_BORDERS = 0u;
+#if !defined(PAGED) && !defined(FILTERED)
+#define BITTED
+layout(constant_id = 12) const uint HAS_SAMPLE_BITS = 0u;
+#endif
 #ifdef SHELLED
 layout(constant_id = 8) const uint SHELL = SHELL_BALL;   // the region's shape
 #endif
@@ -83,6 +87,10 @@ layout(binding = 11, scalar) readonly buffer Look { OcclusionLook data; } occlus
 #endif
 #ifdef SURFACED
 layout(binding = 12, rgba32f) uniform readonly image2D surfaces;   // linear RGB, length along the ray
+#endif
+
+#ifdef BITTED
+layout(binding = 14, r32ui) uniform readonly uimage3D sample_bits;   // leap.h
 #endif
 
 #if defined(PAGED) || defined(SHELLED)

@@ -225,6 +225,8 @@ void ResidentVolume::create_images()
     page_table_ = create("page table", shape->page_table);
     cell_ranges_ = create("cell ranges", shape->cells);
     leap_ = create("leap grid", shape->cells);
+    const ResourceDesc bits = image_desc(Format::r32_uint, shape->cells.texels * glm::uvec3(1, 1, 2));
+    if (!filtered_ && memory_.can_create(bits)) sample_bits_ = create("sample bits", bits);
     for (gpu::Storage& scratch : leap_scratch_) scratch = create("leap scratch", shape->cells);
 }
 
@@ -275,7 +277,7 @@ double ResidentVolume::loaded() const
 uint64_t ResidentVolume::bytes_for(const VolumeInfo& info)
 {
     const glm::i64vec3 counts(brick_counts(info.size));
-    constexpr uint64_t LEAP_IMAGES = 3;  // the grid and its two scratch images
+    constexpr uint64_t LEAP_IMAGES = 5;  // the grid, its two scratch images, and sample bits, which take two
     return uint64_t(counts.x * counts.y * counts.z) *
            (BrickTexels::CODE_BYTES + BrickTexels::RANGE_BYTES * (1 + LEAP_IMAGES) + sizeof(uint32_t));
 }
@@ -422,6 +424,9 @@ VolumeBinding ResidentVolume::import(FrameGraph& graph) const
             .leap = graph.import("leap grid", leap_.import()),
             .leap_scratch = {graph.import("leap scratch 0", leap_scratch_[0].import()),
                              graph.import("leap scratch 1", leap_scratch_[1].import())},
+            .sample_bits = sample_bits_ && visibility_.params.skipping != 0
+                               ? std::optional(graph.import("sample bits", sample_bits_.import()))
+                               : std::nullopt,
             .brick_counts = brick_counts_,
             .cell_counts = cell_counts_,
             .filtered = filtered_};

@@ -92,7 +92,7 @@ private:
     std::shared_ptr<const VolumeSource> source_;
     bool filtered_;
     glm::uvec3 brick_counts_{1}, cell_counts_{1}, atlas_slots_{1};
-    gpu::Storage atlas_, page_table_, cell_ranges_, leap_;
+    gpu::Storage atlas_, page_table_, cell_ranges_, leap_, sample_bits_;
     std::array<gpu::Storage, 2> leap_scratch_;
     std::vector<BrickTexels::Range> ranges_;  ///< by brick
     uint64_t places_revision_ = 1;

@@ -11,7 +11,7 @@
 namespace shvr::gpu {
 
 /// The most that one kernel binds, or holds.
-inline constexpr uint32_t MAX_STORAGE_IMAGES = 10, MAX_STORAGE_BUFFERS = 6, MAX_SAMPLED_IMAGES = 1;
+inline constexpr uint32_t MAX_STORAGE_IMAGES = 11, MAX_STORAGE_BUFFERS = 6, MAX_SAMPLED_IMAGES = 1;
 inline constexpr uint32_t MAX_PUSH_BYTES = 128, MAX_GROUP_THREADS = 128;
 
 /// Why a device with these limits cannot run the kernels, in words: what it has and what is expected; null: it can.

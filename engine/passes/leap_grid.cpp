@@ -46,6 +46,21 @@ void distance(FrameGraph& graph, const VolumeBinding& volume, uint32_t axis, con
     to = pass.write("leap", to);
 }
 
+/// A sample between the voxels of two cells has its bit in the upper one.
+void sample_bits(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input)
+{
+    if (!volume.sample_bits) return;
+    const CellBox cells{input.changed.begin, glm::min(input.changed.end + 1u, volume.cell_counts)};
+    Pass pass = graph.compute("sample_bits");
+    pass.read("leap", volume.leap);
+    pass.read("atlas", volume.atlas);
+    // A code next to what is seen counts: the ray caster's rounding may move a sample a few ulp past its voxels' codes.
+    pass.push(gpu::SampleBitsParams{cells.begin, cells.end, input.params.table_lower - 1.0f,
+                                    input.params.table_upper + 1.0f});
+    pass.dispatch(cells.end - cells.begin);
+    volume.sample_bits = pass.write("sample_bits", *volume.sample_bits);
+}
+
 }  // namespace
 
 void leap_grid_stage(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input, uint32_t stage)
@@ -55,7 +70,9 @@ void leap_grid_stage(FrameGraph& graph, VolumeBinding& volume, const LeapGridInp
         case 0: return occupancy(graph, volume, input, cells, gpu::LEAP_LIMIT, volume.leap_scratch[0]);
         case 1: return distance(graph, volume, 0, cells, volume.leap_scratch[0], volume.leap_scratch[1]);
         case 2: return distance(graph, volume, 1, cells, volume.leap_scratch[1], volume.leap_scratch[0]);
-        case 3: return distance(graph, volume, 2, cells, volume.leap_scratch[0], volume.leap);
+        case 3:
+            distance(graph, volume, 2, cells, volume.leap_scratch[0], volume.leap);
+            return sample_bits(graph, volume, input);
         default: SHVR_CHECK(false, "stage ", stage);
     }
 }
@@ -70,6 +87,7 @@ void leap_grid_patch(FrameGraph& graph, VolumeBinding& volume, const LeapGridInp
     volume.leap = pass.modify("leap", volume.leap);
     const CellBox inside{input.changed.begin, glm::min(input.changed.end, volume.cell_counts)};
     occupancy(graph, volume, input, inside, 1, volume.leap);
+    sample_bits(graph, volume, input);
 }
 
 }  // namespace shvr

@@ -6,6 +6,8 @@
 //
 //   occupancy -> scratch[0] -> distance along x -> scratch[1] -> along y -> scratch[0] -> along z -> leap
 //
+// The sample bits, where the volume has room for them, follow the last stage and every patch: 84 loads per cell.
+//
 // A patch makes the grid correct at once after a few cells changed, but some leaps are shorter than necessary until the
 // four stages have run. One thread per cell, few loads.
 
@@ -35,8 +37,8 @@ struct LeapGridInput {
 
 inline constexpr uint32_t LEAP_STAGES = 4;
 
-/// Adds one stage, 0 ... LEAP_STAGES - 1, and updates the handles of `volume` that it writes. The leap grid is valid
-/// after the last stage, provided that all four ran in order with the same input.
+/// Adds one stage, 0 ... LEAP_STAGES - 1, and updates the handles of `volume` that it writes. The leap grid and the
+/// sample bits are valid after the last stage, provided that all four ran in order with the same input.
 void leap_grid_stage(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input, uint32_t stage);
 
 /// Makes the existing grid correct for the new contents of the changed cells.

@@ -65,6 +65,10 @@ Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastIn
         volume.pages->reached = pass.modify("reached", volume.pages->reached);
     } else {
         pass.read("leap", volume.leap);
+        if (!volume.filtered) {
+            pass.read("sample_bits", volume.sample_bits.value_or(volume.leap));  // a stand-in is never read
+            pass.constant("HAS_SAMPLE_BITS", volume.sample_bits.has_value());
+        }
     }
     pass.read("atlas", volume.atlas);
     if (input.mask) {

@@ -26,6 +26,7 @@ struct VolumeBinding {
     Resource page_table;                   ///< uint per brick: slot
     Resource leap;                         ///< r32ui per cell, see shaders/leap.h
     std::array<Resource, 2> leap_scratch;  ///< intermediate results of its stages
+    std::optional<Resource> sample_bits;   ///< r32ui, two per cell, see shaders/leap.h; of exact texels, where wanted
     // Paged volumes:
     std::optional<PageBinding> pages;
     glm::uvec3 brick_counts{1};

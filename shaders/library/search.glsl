@@ -7,7 +7,6 @@
 
 // Lanes that have found nothing by then take a sample as the others do.
 const uint MAX_SEARCH_TURNS = 20u;
-
 // Whether the sample at `position` may show anything. Samples of paint may, whatever their density; and a step whose
 // ends are classified is not judged by its middle.
 bool may_be_seen(const RaycastParams params, vec3 position, const Place place)
@@ -18,11 +17,75 @@ bool may_be_seen(const RaycastParams params, vec3 position, const Place place)
     return place.is_painted || (density >= params.table_lower && density <= params.table_upper);
 }
 
+#ifdef BITTED
+// Where there are sample bits (leap.h), a sample costs one load until one may show something.
+
+const uint BITS_AHEAD = 16u;   // in a turn
+// Cells: leaps from places with less around them are not worth a loop. In noise nearly all are short.
+const uint NEAR = 1u;
+
+bool bit_is_set(const RaycastParams params, vec3 position)
+{
+    const ivec3 upper = min(ivec3(floor(position - 0.5)) + 1, ivec3(params.position_limit));
+    const uint bits = imageLoad(sample_bits, ivec3(upper.xy >> 2, upper.z >> 1)).x;
+    return (bits >> uint((upper.x & 3) | (upper.y & 3) << 2 | (upper.z & 1) << 4) & 1u) != 0u;
+}
+
+// As search_sample.
+void search_bits(const RaycastParams params, const Ray ray, float begin, uint end_step, inout uint i,
+                 inout uint unseen, inout Work work)
+{
+    uint turn = 0u;
+    bool searches;
+    do {
+        bool leaps_on;
+        do {
+            const vec3 position = sample_position(params, ray, begin, i);
+            const Place place = place_at(params, position);
+            leaps_on = place.distance > NEAR && i < end_step;
+            if (place.distance > 0u && i < end_step) {
+                i += steps_to_leave(params, ray, position, place);
+                unseen += SAMPLES_OF_LEAP;
+                if (COUNT_WORK != 0u) ++work.leaps;
+            }
+        } while (leaps_on);
+        bool is_found = false;
+        uint passed = 0u;
+        [[unroll]] for (uint k = 0u; k < BITS_AHEAD; ++k) {
+            is_found = is_found || bit_is_set(params, sample_position(params, ray, begin, min(i + k, end_step - 1u)));
+            passed += uint(!is_found);
+        }
+        if (i < end_step) {
+            i = min(i + passed, end_step);
+            unseen += passed;
+        }
+        searches = i < end_step;
+        if (is_found && searches) {
+            const vec3 position = sample_position(params, ray, begin, i);
+            const Place place = place_at(params, position);
+            searches = place.distance > 0u || !may_be_seen(params, position, place);
+            if (searches) {
+                if (COUNT_WORK != 0u && place.distance == 0u) note_sample(place, work);
+                ++i;
+                ++unseen;
+            }
+        }
+        ++turn;
+    } while (searches && i < end_step && turn < MAX_SEARCH_TURNS);
+}
+#endif
+
 // Goes on to a step whose sample may be seen, to the first that may not be followed further, or to `end_step`.
 // `unseen` counts samples that showed nothing.
 void search_sample(const RaycastParams params, const Ray ray, float begin, uint end_step, inout uint i,
                    inout uint unseen, inout Work work)
 {
+#ifdef BITTED
+    if (HAS_SAMPLE_BITS != 0u && PREINTEGRATED == 0u) {
+        search_bits(params, ray, begin, end_step, i, unseen, work);
+        return;
+    }
+#endif
     uint turn = 0u;
     bool searches;
     do {

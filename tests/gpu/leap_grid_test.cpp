@@ -262,9 +262,11 @@ TEST_CASE_FIXTURE(Refining, "painting patches what it can reach, and refining ma
                              .radius_voxels = 1.0 + below(8),
                              .path = {{below(150), below(130), below(140)}, {below(150), below(130), below(140)}}});
         const Grid patched = grid_of(*this, session);
+        const ImageF by_patch = draw(session, camera_looking("front", volume().info()));
         if (trial % 2 == 0) refine(session);  // every other time two changes precede it
         const Grid renewed = grid_of(*this, session);
-        draw(other, camera_looking("front", volume().info()));
+        // A sample bit that was not renewed loses paint.
+        CHECK(draw(other, camera_looking("front", volume().info())) == by_patch);
         const Grid fresh = grid_of(*this, session);
         if (trial % 2 == 0) CHECK(renewed.entries == fresh.entries);
         size_t wrong = 0;

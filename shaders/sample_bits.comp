@@ -1,0 +1,72 @@
+// Where samples of the exact density may show something (leap.h, sample bits): one cell per thread. A bit of a sample
+// between eight voxel centres is set if one of the codes there is not below what is seen, and one is not above it; so
+// are all bits of a cell beside paint.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
+#include "leap.h"
+
+layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
+layout(push_constant, scalar) uniform Push { SampleBitsParams params; };
+layout(binding = 0, r32ui) uniform readonly uimage3D leap;
+layout(binding = 1, r32ui) uniform readonly uimage3D atlas;   // library/density_exact.glsl
+layout(binding = 2, r32ui) uniform writeonly uimage3D sample_bits;
+
+const uint ALL = 0xffffffffu;
+
+// Of five codes in a row from an even one on: which are not below what is seen, and which are not above it. Bits 0 to 4
+// and 8 to 12.
+uint sides_of_row(ivec3 texel)
+{
+    uint sides = 0u;
+    [[unroll]] for (int pair = 0; pair < 3; ++pair) {
+        const uint codes = imageLoad(atlas, texel + ivec3(pair, 0, 0)).x;
+        const vec2 both = vec2(codes & 0xffffu, codes >> 16);
+        const uvec2 reach = uvec2(greaterThanEqual(both, vec2(params.lower)));
+        const uvec2 within = uvec2(lessThanEqual(both, vec2(params.upper)));
+        sides |= (reach.x | reach.y << 1u | within.x << 8u | within.y << 9u) << 2u * uint(pair);
+    }
+    return sides | (sides >> 1u & 0x0f0fu);   // of the four pairs of neighbours
+}
+
+void main()
+{
+    const uvec3 cell = params.cell_begin + gl_GlobalInvocationID;
+    if (any(greaterThanEqual(cell, params.cell_end))) return;
+    // Samples between the centres of these voxels and of those before them lie in up to eight cells.
+    bool is_empty = true, is_painted = false;
+    [[unroll]] for (uint i = 0u; i < 8u; ++i) {
+        const uvec3 before = uvec3(i & 1u, i >> 1u & 1u, i >> 2u);
+        const uint entry = imageLoad(leap, ivec3(cell - min(cell, before))).x;
+        is_empty = is_empty && entry >> LEAP_DISTANCE_SHIFT > 0u;
+        is_painted = is_painted || (entry & LEAP_PAINTED) != 0u;
+    }
+    uvec2 bits = uvec2(is_painted ? ALL : 0u);
+    if (!is_empty && !is_painted) {
+        const uint slot = imageLoad(leap, ivec3(cell)).x & LEAP_SLOT_MASK;
+        // The voxel before the cell: its apron is where the brick's own texels begin.
+        const ivec3 texel = ivec3(slot_origin(slot) + CELL_SIZE * (cell % BRICK_CELLS)) >> ivec3(1, 0, 0);
+        uint plane_before[4];   // four rows of bits, of two rows of voxels each
+        [[unroll]] for (int z = 0; z < 5; ++z) {
+            uint plane[4];
+            uint row_before = 0u;
+            [[unroll]] for (int y = 0; y < 5; ++y) {
+                const uint row = sides_of_row(texel + ivec3(0, y, z));
+                if (y > 0) plane[y - 1] = row | row_before;
+                row_before = row;
+            }
+            if (z > 0) {
+                uint seen = 0u;
+                [[unroll]] for (uint y = 0u; y < 4u; ++y) {
+                    const uint sides = plane[y] | plane_before[y];
+                    seen |= (sides & sides >> 8u & 0xfu) << 4u * y;
+                }
+                bits[(z - 1) >> 1] |= seen << 16u * uint((z - 1) & 1);
+            }
+            plane_before = plane;
+        }
+    }
+    imageStore(sample_bits, ivec3(cell.xy, 2u * cell.z), uvec4(bits.x));
+    imageStore(sample_bits, ivec3(cell.xy, 2u * cell.z + 1u), uvec4(bits.y));
+}
