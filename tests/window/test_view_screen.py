@@ -76,7 +76,8 @@ class Screen(Window):
         self.assertEqual(read_png_header(photograph)[0], WINDOW[0])
 
         self.started(session)   # remembered
-        self.do("key", "ctrl+b", "key", "p", pause_s=1)
+        self.do("key", "ctrl+b", pause_s=0.7)   # keys of one frame take the picture as it was
+        self.do("key", "p", pause_s=1)
         again = self.folder / "session-view-2.png"
         self.wait_for_file(again)
         self.finish()
