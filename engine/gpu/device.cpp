@@ -85,6 +85,19 @@ std::optional<uint32_t> compute_family(VkPhysicalDevice physical)
     return std::nullopt;
 }
 
+DeviceHas what_it_has(VkPhysicalDevice physical, const DeviceTraits& traits)
+{
+    const auto features = [&](VkFormat format) {
+        VkFormatProperties found;
+        vkGetPhysicalDeviceFormatProperties(physical, format, &found);
+        return found.optimalTilingFeatures;
+    };
+    return {.limits = traits.limits,
+            .max_buffer_bytes = traits.max_buffer_bytes,
+            .r8_uint = features(VK_FORMAT_R8_UINT),
+            .r32_uint = features(VK_FORMAT_R32_UINT)};
+}
+
 }  // namespace
 
 void check(VkResult result, const char* call)
@@ -298,7 +311,7 @@ void Device::create_device(bool presents)
     if (!traits_.storage_r16 || !has.features.shaderStorageImageExtendedFormats)
         fail("device ", traits_.name,
              ": R16_UNORM storage images cannot be read; expected a driver that can read them");
-    if (const auto why = why_too_limited(traits_.limits)) fail("device ", traits_.name, ": ", *why);
+    if (const auto why = why_too_limited(what_it_has(physical_, traits_))) fail("device ", traits_.name, ": ", *why);
 
     VkPhysicalDeviceVulkan13Features want13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
                                             .synchronization2 = VK_TRUE,

@@ -12,9 +12,18 @@ namespace shvr::gpu {
 
 /// The most that one kernel binds, or holds.
 inline constexpr uint32_t MAX_STORAGE_IMAGES = 11, MAX_STORAGE_BUFFERS = 6, MAX_SAMPLED_IMAGES = 1;
-inline constexpr uint32_t MAX_PUSH_BYTES = 128, MAX_GROUP_THREADS = 128;
+inline constexpr uint32_t MAX_PUSH_BYTES = 128, MAX_GROUP_THREADS = 128, MAX_SHARED_BYTES = 8192;
+/// The largest buffer that is bound whatever the volume: the parents of a region of 256^3 voxels (regions/).
+inline constexpr uint32_t MIN_BUFFER_BYTES = 64u << 20;
 
-/// Why a device with these limits cannot run the kernels, in words: what it has and what is expected; null: it can.
-std::optional<std::string> why_too_limited(const VkPhysicalDeviceLimits& limits);
+/// What a device says of itself.
+struct DeviceHas {
+    VkPhysicalDeviceLimits limits{};
+    uint64_t max_buffer_bytes = 0;
+    VkFormatFeatureFlags r8_uint = 0, r32_uint = 0;  ///< of images with optimal tiling
+};
+
+/// Why such a device cannot run the kernels, in words: what it has and what is expected; null: it can.
+std::optional<std::string> why_too_limited(const DeviceHas& has);
 
 }  // namespace shvr::gpu

@@ -12,6 +12,26 @@
 using namespace shvr;
 using namespace shvr::gpu;
 
+namespace {
+
+DeviceHas enough()
+{
+    constexpr VkFormatFeatureFlags STORED =
+        VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT | VK_FORMAT_FEATURE_TRANSFER_SRC_BIT | VK_FORMAT_FEATURE_TRANSFER_DST_BIT;
+    DeviceHas has{.max_buffer_bytes = MIN_BUFFER_BYTES, .r8_uint = STORED, .r32_uint = STORED};
+    has.limits.maxPerStageDescriptorStorageImages = MAX_STORAGE_IMAGES;
+    has.limits.maxPerStageDescriptorStorageBuffers = MAX_STORAGE_BUFFERS;
+    has.limits.maxPerStageDescriptorSampledImages = MAX_SAMPLED_IMAGES;
+    has.limits.maxPerStageResources = 128;
+    has.limits.maxPushConstantsSize = MAX_PUSH_BYTES;
+    has.limits.maxComputeWorkGroupInvocations = MAX_GROUP_THREADS;
+    has.limits.maxComputeSharedMemorySize = MAX_SHARED_BYTES;
+    has.limits.maxStorageBufferRange = MIN_BUFFER_BYTES;
+    return has;
+}
+
+}  // namespace
+
 TEST_CASE("a device is asked for what the kernel that needs most of it needs")
 {
     uint32_t images = 0, buffers = 0, sampled = 0, threads = 0, push = 0;
@@ -35,15 +55,26 @@ TEST_CASE("a device is asked for what the kernel that needs most of it needs")
 
 TEST_CASE("a device that has less is refused by what it lacks")
 {
-    VkPhysicalDeviceLimits limits{};
-    limits.maxPerStageDescriptorStorageImages = MAX_STORAGE_IMAGES;
-    limits.maxPerStageDescriptorStorageBuffers = MAX_STORAGE_BUFFERS;
-    limits.maxPerStageDescriptorSampledImages = MAX_SAMPLED_IMAGES;
-    limits.maxPerStageResources = 128;
-    limits.maxPushConstantsSize = MAX_PUSH_BYTES;
-    limits.maxComputeWorkGroupInvocations = MAX_GROUP_THREADS;
-    CHECK(!why_too_limited(limits));
-    limits.maxPerStageDescriptorStorageImages = 4;  // the least that Vulkan allows
-    CHECK(why_too_limited(limits) ==
+    CHECK(!why_too_limited(enough()));
+    DeviceHas has = enough();
+    has.limits.maxPerStageDescriptorStorageImages = 4;  // the least that Vulkan allows
+    CHECK(why_too_limited(has) ==
           sentence("it allows 4 storage images in a kernel; expected at least ", MAX_STORAGE_IMAGES));
+    has = enough();
+    has.limits.maxStorageBufferRange = 1 << 20;
+    CHECK(why_too_limited(has) == "it allows 1048576 bytes in a storage buffer; expected at least 67108864");
+    has = enough();
+    has.max_buffer_bytes = 1 << 20;
+    CHECK(why_too_limited(has) == "it allows 1048576 bytes in a buffer; expected at least 67108864");
+    has = enough();
+    has.limits.maxComputeSharedMemorySize = 4096;
+    CHECK(why_too_limited(has) == "it allows 4096 bytes that a group shares; expected at least 8192");
+    has = enough();
+    has.r8_uint = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT;
+    CHECK(why_too_limited(has) ==
+          "R8_UINT storage images cannot be read and written; expected a driver that can do so");
+    has = enough();
+    has.r32_uint = 0;
+    CHECK(why_too_limited(has) ==
+          "R32_UINT storage images cannot be read and written; expected a driver that can do so");
 }
