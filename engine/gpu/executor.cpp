@@ -161,9 +161,9 @@ struct Submission::Frame {
     }
 
     const PassData& pass(const Step& step) const { return graph.passes()[step.pass]; }
-    Storage& take(const std::string& name, const ResourceDesc& desc, Placement placement)
+    Storage& take(const std::string& name, const ResourceDesc& desc, Placement placement, bool is_counted_in = false)
     {
-        taken.push_back(&executor.take_transient(name, desc, placement));
+        taken.push_back(&executor.take_transient(name, desc, placement, is_counted_in));
         return *taken.back();
     }
     Storage& take_resource(const FrameGraph::ResourceData& resource)
@@ -208,8 +208,12 @@ void Submission::Frame::prepare()
     const auto& resources = graph.resources();
     const uint64_t alignment = executor.device_.traits().limits.minStorageBufferOffsetAlignment;
     storages.resize(resources.size());
-    for (uint32_t i = 0; i < resources.size(); ++i)
-        if (compiled.used[i] && !resources[i].imported) storages[i] = &take_resource(resources[i]);
+    for (uint32_t i = 0; i < resources.size(); ++i) {
+        if (!compiled.used[i] || resources[i].imported) continue;
+        Storage*& own = storages[compiled.memory_of[i]];
+        if (!own) own = &take_resource(resources[compiled.memory_of[i]]);
+        storages[i] = own;
+    }
     read_backs.resize(graph.read_back_count());
 
     uint64_t block_bytes = 0, counter_bytes = 0;
@@ -235,7 +239,7 @@ void Submission::Frame::prepare()
     }
     if (block_bytes) blocks = &take("blocks", buffer_desc(block_bytes), Placement::upload);
     if (counter_bytes) {
-        counters = &take("counters", buffer_desc(counter_bytes), Placement::download);
+        counters = &take("counters", buffer_desc(counter_bytes), Placement::download, true);
         std::memset(counters->mapped().data(), 0, counters->mapped().size());
     }
 
@@ -317,7 +321,7 @@ void Submission::Frame::transition_new_images()
 {
     std::vector<VkImageMemoryBarrier2> barriers;
     for (uint32_t i = 0; i < storages.size(); ++i) {
-        if (!compiled.used[i]) continue;
+        if (!compiled.used[i] || compiled.memory_of[i] != i) continue;
         Memory::Object& image = object(i);
         if (!image.image || image.in_general_layout) continue;
         transitioned.push_back(&image);
@@ -531,8 +535,10 @@ void Submission::Frame::note_unknown_states() const
 bool Submission::Frame::done() const
 {
     if (number == 0 || number <= executor.device_.done()) return true;
-    const VkResult result = vkGetFenceStatus(executor.device_.handle(), objects->fence());
-    check(result, "vkGetFenceStatus");
+    // Says what vkGetFenceStatus says, and tells validation that the frame was waited for.
+    const VkFence fence = objects->fence();
+    const VkResult result = vkWaitForFences(executor.device_.handle(), 1, &fence, VK_TRUE, 0);
+    check(result, "vkWaitForFences");
     if (result == VK_SUCCESS) executor.device_.note_done(number);
     return result == VK_SUCCESS;
 }
@@ -617,18 +623,22 @@ Executor::~Executor()
     vkDestroySampler(device_.handle(), sampler_, nullptr);
 }
 
-Storage& Executor::take_transient(const std::string& name, const ResourceDesc& wanted, Placement placement)
+Storage& Executor::take_transient(const std::string& name, const ResourceDesc& wanted, Placement placement,
+                                  bool is_counted_in)
 {
     ResourceDesc desc = wanted;
     if (placement != Placement::device) desc.bytes = rounded(desc.bytes);
     for (const auto& transient : transients_) {
         if (transient->taken || transient->placement != placement || !(transient->desc == desc)) continue;
+        // Kernels count where no copy has written: validation (1.3.239) does not always know that the copy's frame was
+        // waited for, and tells of a read after its write.
+        if (transient->is_counted_in != is_counted_in) continue;
         transient->taken = true;
         transient->last_run = runs_;
         return transient->storage;
     }
-    transients_.push_back(
-        std::make_unique<Transient>(Transient{desc, placement, runs_, true, memory_.create(name, desc, placement)}));
+    transients_.push_back(std::make_unique<Transient>(
+        Transient{desc, placement, runs_, true, is_counted_in, memory_.create(name, desc, placement)}));
     return transients_.back()->storage;
 }
 

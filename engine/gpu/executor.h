@@ -99,10 +99,12 @@ private:
         Placement placement;
         uint64_t last_run = 0;
         bool taken = false;
+        bool is_counted_in = false;  ///< by kernels
         Storage storage;
     };
     /// Where the host reads or writes, the storage may be larger than that.
-    Storage& take_transient(const std::string& name, const ResourceDesc& wanted, Placement placement);
+    Storage& take_transient(const std::string& name, const ResourceDesc& wanted, Placement placement,
+                            bool is_counted_in = false);
 
     Device& device_;
     Memory& memory_;

@@ -171,9 +171,8 @@ Resource FrameGraph::create(const std::string& name, const ResourceDesc& desc)
 Resource FrameGraph::upload_bytes(const std::string& name, std::span<const std::byte> bytes)
 {
     const Resource resource = create(name, buffer_desc(bytes.size()));
+    // Needs no barrier: the whole submission sees what the host wrote before it (Vulkan 1.3, 7.9).
     resources_[resource.index].contents.assign(bytes.begin(), bytes.end());
-    // Nothing is in flight: the whole submission sees what the host wrote before it (Vulkan 1.3, 7.9).
-    resources_[resource.index].state = {};
     return resource;
 }
 
@@ -329,15 +328,70 @@ void record_use(const PassData& pass, std::vector<ResourceState>& states)
     }
 }
 
+/// Memory of resources that no later pass needs, for equal ones that are first used then.
+class FreeMemory {
+public:
+    FreeMemory(const FrameGraph& graph, const std::vector<bool>& alive)
+        : resources_(graph.resources()), last_pass_(resources_.size())
+    {
+        for (uint32_t i = 0; i < alive.size(); ++i)
+            if (alive[i])
+                for (const Binding& binding : graph.passes()[i].bindings) last_pass_[binding.resource] = i;
+    }
+    /// The resource that `wanted` may take the place of, which is then taken.
+    std::optional<uint32_t> take(uint32_t wanted)
+    {
+        const auto found = std::find_if(free_.begin(), free_.end(), [&](uint32_t one) {
+            return is_shared(wanted) && resources_[one].desc == resources_[wanted].desc;
+        });
+        if (found == free_.end()) return std::nullopt;
+        const uint32_t taken = *found;
+        free_.erase(found);
+        return taken;
+    }
+    void note_end_of(uint32_t pass, const std::vector<Binding>& bindings)
+    {
+        for (const Binding& binding : bindings) {
+            uint32_t& last = last_pass_[binding.resource];
+            if (!is_shared(binding.resource) || last != pass) continue;
+            free_.push_back(binding.resource);
+            last = NEVER;  // a pass may read it under two names
+        }
+    }
+
+private:
+    /// What the host fills is filled before the first pass.
+    bool is_shared(uint32_t resource) const
+    {
+        return !resources_[resource].imported && resources_[resource].contents.empty();
+    }
+    static constexpr uint32_t NEVER = ~0u;
+    const std::vector<FrameGraph::ResourceData>& resources_;
+    std::vector<uint32_t> last_pass_;  // that uses a resource
+    std::vector<uint32_t> free_;
+};
+
 }  // namespace
 
 CompiledGraph FrameGraph::compile() const
 {
     const std::vector<bool> alive = living_passes(*this);
+    FreeMemory free_memory(*this, alive);
     CompiledGraph compiled;
     compiled.used.resize(resources_.size());
     std::vector<ResourceState>& states = compiled.final_states;
-    for (const ResourceData& resource : resources_) states.push_back(resource.state);
+    for (const ResourceData& resource : resources_) {
+        compiled.memory_of.push_back(uint32_t(states.size()));
+        states.push_back(resource.state);
+    }
+    const auto begin_use = [&](uint32_t resource) {
+        if (compiled.used[resource]) return;
+        compiled.used[resource] = true;
+        const std::optional<uint32_t> before = free_memory.take(resource);
+        if (!before) return;
+        compiled.memory_of[resource] = compiled.memory_of[*before];
+        states[resource] = states[*before];  // its first use, a write, waits for the last ones of the other
+    };
 
     for (uint32_t i = 0; i < passes_.size(); ++i) {
         const PassData& pass = passes_[i];
@@ -345,10 +399,11 @@ CompiledGraph FrameGraph::compile() const
         if (pass.kind == PassData::Kind::compute && glm::any(glm::equal(pass.threads, glm::uvec3(0))))
             fail(place(pass), " dispatches ", pass.threads.x, " x ", pass.threads.y, " x ", pass.threads.z,
                  " threads; expected at least one");
+        for (const Binding& binding : pass.bindings) begin_use(binding.resource);
         const std::optional<Barrier> barrier = barrier_before(pass, states);
         if (barrier) settle(*barrier, states);
         record_use(pass, states);
-        for (const Binding& binding : pass.bindings) compiled.used[binding.resource] = true;
+        free_memory.note_end_of(i, pass.bindings);
         compiled.steps.push_back({i, barrier});
     }
     return compiled;

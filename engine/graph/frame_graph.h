@@ -171,6 +171,9 @@ struct CompiledGraph {
     std::vector<Step> steps;
     std::vector<ResourceState> final_states;  ///< per resource
     std::vector<bool> used;                   ///< per resource: does a pass that is kept use it?
+    /// Per resource: whose memory it takes. Its own, or that of an equal resource of this frame which no later step
+    /// needs (that may have taken it from another: this names the first).
+    std::vector<uint32_t> memory_of;
 };
 
 class FrameGraph {
@@ -222,7 +225,7 @@ public:
         ResourceDesc desc;
         bool imported = false;
         uint32_t import_id = 0;
-        ResourceState state = UNKNOWN_STATE;
+        ResourceState state;  ///< before the frame; of a resource of the frame alone: nothing is in flight
         uint32_t version = 0;
         std::vector<uint32_t> writers;    ///< pass that made version i + 1
         std::vector<std::byte> contents;  ///< of an upload

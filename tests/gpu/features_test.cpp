@@ -114,7 +114,7 @@ const std::vector<Feature> FEATURES{
          s.options.probe->ball_opacity = 0.5;
      },
      {"surfaces", "raycast_surfaced", "mix"},
-     {"surfaces", "without the probe"}},
+     {"surfaces"}},  // and the picture without the probe, in the same memory
     {"saturation", [](Scenery& s) { s.session.render.saturation = 0.3; }, {"saturation"}},
     {"no leaps", [](Scenery& s) { s.session.render.skip_empty_space = false; }, {}},
     {"smooth borders", [](Scenery& s) { s.session.render.smooth_borders = true; }, {}},

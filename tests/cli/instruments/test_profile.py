@@ -152,7 +152,17 @@ class Profile(CliTest):
         self.assertLess(max(at_once), memory["transient_bytes"])  # some could share
         self.assertLessEqual(memory["transient_most_at_once"], memory["transient_packed"])
         self.assertLessEqual(memory["transient_packed"], memory["transient_bytes"])
-        self.assertAlmostEqual(memory["aliasing_saves"], 1 - memory["transient_packed"] / memory["transient_bytes"])
+        owners = [one for at, one in enumerate(memory["resources"]) if one["memory_of"] == at and not one["lasting"]]
+        self.assertEqual(memory["transient_taken"], sum(one["bytes"] for one in owners))
+        self.assertAlmostEqual(memory["sharing_saves"], 1 - memory["transient_taken"] / memory["transient_bytes"])
+        for at, one in enumerate(memory["resources"]):
+            owner = memory["resources"][one["memory_of"]]
+            self.assertEqual(owner["memory_of"], one["memory_of"])
+            self.assertTrue(one is owner or not one["lasting"])
+            self.assertEqual([owner[key] for key in keys[1:]], [one[key] for key in keys[1:]])
+            for other in memory["resources"][:at]:
+                if other["memory_of"] == one["memory_of"]:
+                    self.assertTrue(other["last_step"] < one["first_step"] or one["last_step"] < other["first_step"])
         for one in memory["resources"]:
             way = "outlives the frame, used from" if one["lasting"] else "from"
             title = f"<title>{one['name']}: {way} {one['first_pass']} to {one['last_pass']}</title>"
@@ -160,7 +170,7 @@ class Profile(CliTest):
 
         text = self.check("profile", session, "--frames", "1", "--budget-device", 300).stdout
         self.assertRegex(text, r"device memory: [0-9.]+ MiB, at most [0-9.]+ of a budget of 300\.0\n")
-        self.assertRegex(text, r"transient resources: [0-9.]+ KiB; if they shared memory [0-9.]+ KiB \([0-9]+ % less\)")
+        self.assertRegex(text, r"transient resources: [0-9.]+ KiB in [0-9.]+ KiB of memory \([0-9]+ % less\)")
         self.assertRegex(text, r"(?m)^color .* rgba32_float  +raycast  +\w")
 
     @unittest.skipUnless(shutil.which("dot"), "Graphviz is not installed")

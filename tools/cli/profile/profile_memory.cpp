@@ -1,4 +1,4 @@
-// The memory of a frame, resource by resource: how long each is needed, and what sharing it would save.
+// The memory of a frame, resource by resource: how long each is needed, and what sharing it saves.
 
 #include <algorithm>
 #include <numeric>
@@ -76,16 +76,23 @@ Json frame_memory_of(const FrameGraph& graph)
 {
     const CompiledGraph compiled = graph.compile();
     const auto pass_at = [&](size_t step) { return graph.passes()[compiled.steps[step].pass].name; };
+    const std::vector<Need> needs = needs_of(graph, compiled);
+    std::vector<size_t> place_of(graph.resources().size());  // in the list
+    for (size_t i = 0; i < needs.size(); ++i) place_of[needs[i].resource] = i;
     Json resources = Json::array();
     std::vector<Need> transients;
-    for (const Need& need : needs_of(graph, compiled)) {
+    uint64_t taken = 0;
+    for (const Need& need : needs) {
         const FrameGraph::ResourceData& data = graph.resources()[need.resource];
         const bool is_image = data.desc.kind == ResourceDesc::Kind::image;
+        const uint32_t memory_of = compiled.memory_of[need.resource];
+        if (!data.imported && memory_of == need.resource) taken += need.bytes;
         resources.push_back({{"name", data.name},
                              {"kind", is_image ? "image" : "buffer"},
                              {"format", is_image ? Json(name_of(data.desc.format)) : Json(nullptr)},
                              {"bytes", need.bytes},
                              {"lasting", data.imported},
+                             {"memory_of", place_of[memory_of]},
                              {"first_step", need.first_step},
                              {"last_step", need.last_step},
                              {"first_pass", pass_at(need.first_step)},
@@ -94,10 +101,13 @@ Json frame_memory_of(const FrameGraph& graph)
     }
     const uint64_t sum = std::accumulate(transients.begin(), transients.end(), uint64_t(0),
                                          [](uint64_t bytes, const Need& need) { return bytes + need.bytes; });
-    const uint64_t packed = packed_bytes(transients);
-    return {{"steps", compiled.steps.size()}, {"resources", resources},
-            {"transient_bytes", sum},         {"transient_most_at_once", most_at_once(transients)},
-            {"transient_packed", packed},     {"aliasing_saves", sum > 0 ? double(sum - packed) / double(sum) : 0.0}};
+    return {{"steps", compiled.steps.size()},
+            {"resources", resources},
+            {"transient_bytes", sum},
+            {"transient_taken", taken},
+            {"transient_most_at_once", most_at_once(transients)},
+            {"transient_packed", packed_bytes(transients)},
+            {"sharing_saves", sum > 0 ? double(sum - taken) / double(sum) : 0.0}};
 }
 
 }  // namespace shvr::cli

@@ -100,10 +100,11 @@ std::string memory_text(const Json& bytes, const Json& memory)
     };
     return sentence("device memory: ", of_budget(bytes["device"], bytes["peak_device"], memory["device_budget"]),
                     "\nhost memory: ", of_budget(bytes["host"], bytes["peak_host"], memory["host_budget"]), "\n\n",
-                    table_text(rows), "\ntransient resources: ", kibibytes("transient_bytes"),
-                    " KiB; if they shared memory ", kibibytes("transient_packed"), " KiB (", std::fixed,
-                    std::setprecision(0), 100.0 * memory["aliasing_saves"].get<double>(), " % less), and never below ",
-                    kibibytes("transient_most_at_once"), " KiB, which one step needs\n");
+                    table_text(rows), "\ntransient resources: ", kibibytes("transient_bytes"), " KiB in ",
+                    kibibytes("transient_taken"), " KiB of memory (", std::fixed, std::setprecision(0),
+                    100.0 * memory["sharing_saves"].get<double>(), " % less); packed as one block ",
+                    kibibytes("transient_packed"), ", and never below ", kibibytes("transient_most_at_once"),
+                    ", which one step needs\n");
 }
 
 }  // namespace
