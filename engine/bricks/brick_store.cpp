@@ -136,6 +136,7 @@ void BrickStore::renew(std::span<const BrickKey> keys)
 
 std::optional<std::string> BrickStore::failure_of(const BrickKey& key) const
 {
+    if (!has_failures_) return std::nullopt;
     const std::scoped_lock lock(mutex_);
     const auto found = failed_.find(key);
     return found == failed_.end() ? std::nullopt : std::optional(found->second);
@@ -199,6 +200,7 @@ void BrickStore::note_failure(const BrickKey& key, const std::string& message)
     const std::scoped_lock lock(mutex_);
     ++counts_.failures;
     failed_.emplace(key, message);
+    has_failures_ = true;
     // One broken chunk may affect several bricks.
     if (known_messages_.size() < MAX_MESSAGES && known_messages_.insert(message).second) messages_.push_back(message);
 }

@@ -5,6 +5,7 @@
 //
 // One thread makes all calls (want, take, get); the store owns the loader threads.
 
+#include <atomic>
 #include <condition_variable>
 #include <exception>
 #include <list>
@@ -86,6 +87,7 @@ private:
     std::unordered_set<BrickKey, BrickKeyHash> loading_;
     std::unordered_set<BrickKey, BrickKeyHash> outdated_;  ///< keys of `loading_` that must be read again
     std::unordered_map<BrickKey, std::string, BrickKeyHash> failed_;
+    std::atomic<bool> has_failures_ = false;  ///< so that nobody takes the mutex for each brick of a picture
     std::unordered_set<std::string> known_messages_;
     std::vector<std::string> messages_;
     Counts counts_;

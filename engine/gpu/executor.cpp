@@ -53,6 +53,13 @@ void record_barrier(VkCommandBuffer commands, const Barrier& barrier)
     vkCmdPipelineBarrier2(commands, &info);
 }
 
+/// What the host can write of a device's own memory may be 256 MiB in all, for every program.
+Placement placement_of(uint64_t bytes)
+{
+    constexpr uint64_t MOST = uint64_t{4} << 20;
+    return bytes <= MOST ? Placement::values : Placement::upload;
+}
+
 uint64_t aligned(uint64_t bytes, uint64_t alignment)
 {
     return (bytes + alignment - 1) / alignment * alignment;
@@ -124,6 +131,7 @@ struct Submission::Frame {
     std::vector<Storage*> read_backs;
     Storage* blocks = nullptr;
     Storage* counters = nullptr;
+    Storage* work_counters = nullptr;  // where kernels count, if they count much: copied to `counters` at the end
     std::unique_ptr<FrameObjects> objects;
     bool is_timed = false;
     uint64_t number = 0;                  // of its last submission; 0: none
@@ -169,7 +177,7 @@ struct Submission::Frame {
     Storage& take_resource(const FrameGraph::ResourceData& resource)
     {
         if (resource.contents.empty()) return take(resource.name, resource.desc, Placement::device);
-        Storage& storage = take(resource.name, resource.desc, Placement::upload);
+        Storage& storage = take(resource.name, resource.desc, placement_of(resource.contents.size()));
         std::ranges::copy(resource.contents, storage.mapped().begin());
         return storage;
     }
@@ -180,6 +188,7 @@ struct Submission::Frame {
     }
     Memory::Object& object(uint32_t resource) const { return executor.memory_.object(object_id(resource)); }
 
+    bool counts_work() const;
     void prepare();
     void write_descriptors(const PassData& pass, const Prepared& step, uint64_t& block_offset) const;
     void begin_chunk();
@@ -202,6 +211,17 @@ struct Submission::Frame {
     void wait() const;
     FrameResult collect();
 };
+
+/// Whether a kernel counts what each of its threads does, rather than what hardly ever happens. Then counters are in
+/// the device's memory, which kernels add to sooner; otherwise in the host's, which takes no pass to clear or copy.
+bool Submission::Frame::counts_work() const
+{
+    return std::ranges::any_of(compiled.steps, [this](const Step& step) {
+        return std::ranges::any_of(pass(step).constants, [](const auto& constant) {
+            return constant.first == "COUNT_WORK" && constant.second != 0;
+        });
+    });
+}
 
 void Submission::Frame::prepare()
 {
@@ -237,10 +257,14 @@ void Submission::Frame::prepare()
         for (const KernelInterface::Slot& slot : interface.slots) ++needs.descriptors[slot.type];
         ++needs.sets;
     }
-    if (block_bytes) blocks = &take("blocks", buffer_desc(block_bytes), Placement::upload);
+    if (block_bytes) blocks = &take("blocks", buffer_desc(block_bytes), placement_of(block_bytes));
     if (counter_bytes) {
-        counters = &take("counters", buffer_desc(counter_bytes), Placement::download, true);
-        std::memset(counters->mapped().data(), 0, counters->mapped().size());
+        const bool are_copied = counts_work();
+        counters = &take("counters", buffer_desc(counter_bytes), Placement::download, !are_copied);
+        if (are_copied)
+            work_counters = &take("work counters", counters->desc(), Placement::device);
+        else
+            std::memset(counters->mapped().data(), 0, counters->mapped().size());
     }
 
     if (executor.idle_objects_.empty()) {
@@ -280,7 +304,8 @@ void Submission::Frame::write_descriptors(const PassData& data, const Prepared& 
             block_offset +=
                 aligned(block->second.size(), executor.device_.traits().limits.minStorageBufferOffsetAlignment);
         } else {
-            buffers[i] = {executor.memory_.object(counters->import().id).buffer, step.counters_offset, COUNTER_BYTES};
+            const Storage& counted = work_counters ? *work_counters : *counters;
+            buffers[i] = {executor.memory_.object(counted.import().id).buffer, step.counters_offset, COUNTER_BYTES};
         }
         const bool is_buffer = slot.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
         writes.push_back({.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
@@ -345,8 +370,16 @@ void Submission::Frame::transition_new_images()
 void Submission::Frame::record()
 {
     const VkQueryPool queries = objects->queries();
+    const auto buffer_of = [this](const Storage& storage) {
+        return executor.memory_.object(storage.import().id).buffer;
+    };
     begin_chunk();
     transition_new_images();
+    if (work_counters) {
+        record_barrier(chunks.back(), {STAGE_COMPUTE | STAGE_TRANSFER, STAGE_TRANSFER, true});
+        vkCmdFillBuffer(chunks.back(), buffer_of(*work_counters), 0, VK_WHOLE_SIZE, 0);
+        record_barrier(chunks.back(), {STAGE_TRANSFER, STAGE_COMPUTE, true});
+    }
     for (size_t i = 0; i < compiled.steps.size(); ++i) {
         const Step& step = compiled.steps[i];
         if (options.serialize)
@@ -359,6 +392,11 @@ void Submission::Frame::record()
         record_pass(step, prepared[i]);
         if (is_timed)
             vkCmdWriteTimestamp2(chunks.back(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries, uint32_t(2 * i + 1));
+    }
+    if (work_counters) {
+        const VkBufferCopy all{0, 0, counters->desc().bytes};
+        record_barrier(chunks.back(), {STAGE_COMPUTE, STAGE_TRANSFER, true});
+        vkCmdCopyBuffer(chunks.back(), buffer_of(*work_counters), buffer_of(*counters), 1, &all);
     }
     record_barrier(chunks.back(), {STAGE_COMPUTE | STAGE_TRANSFER, STAGE_HOST, true});
     end_chunk();

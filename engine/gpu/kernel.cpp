@@ -94,17 +94,19 @@ Specialization specialize(const std::string& kernel, const KernelInterface& inte
 
 }  // namespace
 
-Kernel::Kernel(Device& device, const std::string& name, std::span<const uint32_t> spirv,
-               const KernelInterface& interface, const std::vector<std::pair<std::string, uint32_t>>& constants)
+Kernel::Kernel(Device& device, PipelineCache& cache, const KernelVariant& variant, std::span<const uint32_t> spirv,
+               const KernelInterface& interface)
     : device_(device), interface_(interface)
 {
+    const auto& [name, constants] = variant;
     const Specialization specialization = specialize(name, interface, constants);
     try {
         create_layouts();
-        create_pipeline(spirv, {.mapEntryCount = uint32_t(specialization.entries.size()),
-                                .pMapEntries = specialization.entries.data(),
-                                .dataSize = specialization.values.size() * sizeof(uint32_t),
-                                .pData = specialization.values.data()});
+        create_pipeline(cache, spirv,
+                        {.mapEntryCount = uint32_t(specialization.entries.size()),
+                         .pMapEntries = specialization.entries.data(),
+                         .dataSize = specialization.values.size() * sizeof(uint32_t),
+                         .pData = specialization.values.data()});
     } catch (...) {
         destroy();
         throw;
@@ -147,13 +149,20 @@ void Kernel::create_layouts()
     SHVR_VK(vkCreatePipelineLayout(device_.handle(), &layout_info, nullptr, &layout_));
 }
 
-void Kernel::create_pipeline(std::span<const uint32_t> spirv, const VkSpecializationInfo& specialization)
+void Kernel::create_pipeline(PipelineCache& cache, std::span<const uint32_t> spirv,
+                             const VkSpecializationInfo& specialization)
 {
     const VkShaderModuleCreateInfo module_info{
         .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = spirv.size_bytes(), .pCode = spirv.data()};
     VkShaderModule module = VK_NULL_HANDLE;
     SHVR_VK(vkCreateShaderModule(device_.handle(), &module_info, nullptr, &module));
+    VkPipelineCreationFeedback feedback{}, of_stage{};
+    const VkPipelineCreationFeedbackCreateInfo told{.sType = VK_STRUCTURE_TYPE_PIPELINE_CREATION_FEEDBACK_CREATE_INFO,
+                                                    .pPipelineCreationFeedback = &feedback,
+                                                    .pipelineStageCreationFeedbackCount = 1,
+                                                    .pPipelineStageCreationFeedbacks = &of_stage};
     const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+                                           .pNext = &told,
                                            .flags = VK_PIPELINE_CREATE_DISPATCH_BASE_BIT,  // tiles
                                            .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                                                      .stage = VK_SHADER_STAGE_COMPUTE_BIT,
@@ -161,9 +170,40 @@ void Kernel::create_pipeline(std::span<const uint32_t> spirv, const VkSpecializa
                                                      .pName = "main",
                                                      .pSpecializationInfo = &specialization},
                                            .layout = layout_};
-    const VkResult result = vkCreateComputePipelines(device_.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline_);
+    const VkResult result = vkCreateComputePipelines(device_.handle(), cache.handle(), 1, &info, nullptr, &pipeline_);
     vkDestroyShaderModule(device_.handle(), module, nullptr);
     check(result, "vkCreateComputePipelines");
+    cache.note_made((feedback.flags & VK_PIPELINE_CREATION_FEEDBACK_VALID_BIT) &&
+                    (feedback.flags & VK_PIPELINE_CREATION_FEEDBACK_APPLICATION_PIPELINE_CACHE_HIT_BIT));
+}
+
+Kernels::Kernels(Device& device) : device_(device), cache_(device)
+{
+    // A processor that draws has better things to do, and its driver compiles when a kernel first runs.
+    if (cache_.likely().empty() || device.traits().is_cpu) return;
+    worker_ = std::thread([this] { make_likely(); });
+}
+
+Kernels::~Kernels()
+{
+    ends_ = true;
+    if (worker_.joinable()) worker_.join();
+    std::set<KernelVariant> used;
+    for (const auto& [variant, made] : kernels_)
+        if (made.is_used) used.insert(variant);
+    cache_.save(used);
+}
+
+/// What fails here fails again, with words, once it is asked for.
+void Kernels::make_likely() noexcept
+{
+    for (const KernelVariant& variant : cache_.likely()) {
+        if (ends_) return;
+        try {
+            make(variant);
+        } catch (const std::exception&) {
+        }
+    }
 }
 
 const Kernels::Code& Kernels::code(const std::string& name)
@@ -178,18 +218,42 @@ const Kernels::Code& Kernels::code(const std::string& name)
     fail("there is no kernel '", name, "'; expected one of ", names_of(embedded_kernels()));
 }
 
+Kernels::Made& Kernels::make(const KernelVariant& variant)
+{
+    std::unique_lock lock(mutex_);
+    Made& made = kernels_[variant];
+    is_made_.wait(lock, [&] { return !made.is_in_work; });
+    if (made.kernel) return made;
+    const Code& source = code(variant.first);
+    made.is_in_work = true;
+    lock.unlock();
+    const auto is_done = [&] {
+        lock.lock();
+        made.is_in_work = false;
+        is_made_.notify_all();
+    };
+    std::unique_ptr<Kernel> kernel;
+    try {
+        kernel = std::make_unique<Kernel>(device_, cache_, variant, source.spirv, source.interface);
+    } catch (...) {
+        is_done();
+        throw;
+    }
+    is_done();
+    made.kernel = std::move(kernel);
+    return made;
+}
+
 const Kernel& Kernels::get(const std::string& name, const std::vector<std::pair<std::string, uint32_t>>& constants)
 {
-    std::unique_ptr<Kernel>& kernel = kernels_[{name, constants}];
-    if (!kernel) {
-        const Code& source = code(name);
-        kernel = std::make_unique<Kernel>(device_, name, source.spirv, source.interface, constants);
-    }
-    return *kernel;
+    Made& made = make({name, constants});
+    made.is_used = true;
+    return *made.kernel;
 }
 
 const KernelInterface& Kernels::interface(const std::string& name)
 {
+    const std::lock_guard lock(mutex_);
     return code(name).interface;
 }
 

@@ -4,12 +4,17 @@
 // declarations.
 
 #include <array>
+#include <atomic>
+#include <condition_variable>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "engine/gpu/device.h"
+#include "engine/gpu/pipeline_cache.h"
 #include "engine/graph/frame_graph.h"
 
 namespace shvr::gpu {
@@ -48,8 +53,8 @@ KernelInterface reflect(const std::string& kernel, std::span<const uint32_t> spi
 /// A compute pipeline with its layouts. Move-only.
 class Kernel {
 public:
-    Kernel(Device& device, const std::string& name, std::span<const uint32_t> spirv, const KernelInterface& interface,
-           const std::vector<std::pair<std::string, uint32_t>>& constants);
+    Kernel(Device& device, PipelineCache& cache, const KernelVariant& variant, std::span<const uint32_t> spirv,
+           const KernelInterface& interface);
     ~Kernel();
     Kernel(const Kernel&) = delete;
     Kernel& operator=(const Kernel&) = delete;
@@ -61,7 +66,8 @@ public:
 
 private:
     void create_layouts();
-    void create_pipeline(std::span<const uint32_t> spirv, const VkSpecializationInfo& specialization);
+    void create_pipeline(PipelineCache& cache, std::span<const uint32_t> spirv,
+                         const VkSpecializationInfo& specialization);
     void destroy() noexcept;
     Device& device_;
     const KernelInterface& interface_;
@@ -70,11 +76,16 @@ private:
     VkPipeline pipeline_ = VK_NULL_HANDLE;
 };
 
-/// All kernels of the program, created on first use.
+/// All kernels of the program, created on first use. On a GPU a thread of their own makes those that were used the last
+/// time (pipeline_cache.h), from the start on. One thread asks.
 class Kernels {
 public:
-    explicit Kernels(Device& device) : device_(device) {}
-    /// On failure, names the known kernels or the known constants.
+    explicit Kernels(Device& device);
+    ~Kernels();
+    Kernels(const Kernels&) = delete;
+    Kernels& operator=(const Kernels&) = delete;
+
+    /// On failure, names the known kernels or the known constants. Waits where that thread is at this kernel.
     const Kernel& get(const std::string& name, const std::vector<std::pair<std::string, uint32_t>>& constants);
     const KernelInterface& interface(const std::string& name);
 
@@ -83,10 +94,23 @@ private:
         std::span<const uint32_t> spirv;
         KernelInterface interface;
     };
+    struct Made {
+        std::unique_ptr<Kernel> kernel;
+        bool is_in_work = false;
+        bool is_used = false;  ///< by the one who asks
+    };
     const Code& code(const std::string& name);
+    Made& make(const KernelVariant& variant);
+    void make_likely() noexcept;
+
     Device& device_;
+    PipelineCache cache_;
+    std::mutex mutex_;  ///< of the next two
     std::map<std::string, Code> codes_;
-    std::map<std::pair<std::string, std::vector<std::pair<std::string, uint32_t>>>, std::unique_ptr<Kernel>> kernels_;
+    std::map<KernelVariant, Made> kernels_;
+    std::condition_variable is_made_;
+    std::atomic<bool> ends_ = false;
+    std::thread worker_;
 };
 
 /// Checks the bindings of a compute pass against what its kernel declares; fails with both lists.

@@ -46,6 +46,7 @@ std::vector<uint32_t> memory_types(const VkPhysicalDeviceMemoryProperties& prope
     const VkMemoryPropertyFlags mapped = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     VkMemoryPropertyFlags wish = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, must = 0;
     if (placement == Placement::upload) wish = must = mapped;
+    if (placement == Placement::values) wish = mapped | VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, must = mapped;
     if (placement == Placement::download) wish = mapped | VK_MEMORY_PROPERTY_HOST_CACHED_BIT, must = mapped;
     // Types of these properties are for special uses, and not all may be used at all.
     const VkMemoryPropertyFlags never = VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT | VK_MEMORY_PROPERTY_PROTECTED_BIT |

@@ -15,6 +15,7 @@ enum class Placement {
     device,    ///< where the device is fastest; counts against the device budget
     upload,    ///< mapped, written by the host; host budget
     download,  ///< mapped and cached, read by the host; host budget
+    values,    ///< as upload, in the device's own memory where the host can write there: what kernels read often
 };
 
 class MemoryBlock {

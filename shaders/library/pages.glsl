@@ -50,8 +50,10 @@ Place place_at(const RaycastParams params, vec3 position)
     return place;
 }
 
-// Reports to the host that a ray visited this place; visits decide which bricks are loaded.
+// Reports to the host that a ray visited this place; visits decide which bricks are loaded. Most rays come by where
+// others were before: they only read, since writes of one word wait for each other.
 void note_reached(const Place place)
 {
-    atomicOr(reached.bits[place.entry >> 5], 1u << (place.entry & 31u));
+    const uint bit = 1u << (place.entry & 31u);
+    if ((reached.bits[place.entry >> 5] & bit) == 0u) atomicOr(reached.bits[place.entry >> 5], bit);
 }

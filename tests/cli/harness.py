@@ -24,7 +24,8 @@ CONFIGURATION = tempfile.TemporaryDirectory(prefix="shvr-config-")
 # Any message of the Vulkan validation layer makes a command fail; of hazards between submissions, too.
 ENVIRONMENT = {"VK_LAYER_ENABLES": "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT",
                "VK_ADD_LAYER_PATH": str(Path(SHVR).resolve().parent / "layers"),
-               **os.environ, "SHVR_VALIDATION": "1", "LC_ALL": "C", "XDG_CONFIG_HOME": CONFIGURATION.name}
+               **os.environ, "SHVR_VALIDATION": "1", "LC_ALL": "C", "XDG_CONFIG_HOME": CONFIGURATION.name,
+               "XDG_CACHE_HOME": CONFIGURATION.name}
 
 
 def run(*arguments, environment=None):

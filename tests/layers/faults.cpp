@@ -46,6 +46,8 @@ using layers::table_of;
     X(vkCreateShaderModule)                                                                                            \
     X(vkCreateDescriptorSetLayout)                                                                                     \
     X(vkCreatePipelineLayout)                                                                                          \
+    X(vkCreatePipelineCache)                                                                                           \
+    X(vkGetPipelineCacheData)                                                                                          \
     X(vkCreateComputePipelines)                                                                                        \
     X(vkCreateGraphicsPipelines)                                                                                       \
     X(vkCreateRenderPass)                                                                                              \
@@ -88,6 +90,7 @@ using layers::table_of;
     X(vkDestroyDescriptorSetLayout, VkDescriptorSetLayout, vkCreateDescriptorSetLayout)                                \
     X(vkDestroyPipelineLayout, VkPipelineLayout, vkCreatePipelineLayout)                                               \
     X(vkDestroyPipeline, VkPipeline, vkCreateComputePipelines)                                                         \
+    X(vkDestroyPipelineCache, VkPipelineCache, vkCreatePipelineCache)                                                  \
     X(vkDestroyDescriptorPool, VkDescriptorPool, vkCreateDescriptorPool)                                               \
     X(vkDestroyCommandPool, VkCommandPool, vkCreateCommandPool)                                                        \
     X(vkDestroyQueryPool, VkQueryPool, vkCreateQueryPool)                                                              \

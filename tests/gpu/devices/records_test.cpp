@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <tuple>
 
 #include <unistd.h>
 
@@ -94,6 +95,20 @@ TEST_CASE("an integrated device takes memory of another heap where its own is fu
     std::vector<gpu::Storage> kept;
     for (int i = 0; i < 3; ++i) kept.push_back(device->memory().create("large", buffer_desc(6 * MIB)));
     CHECK(device->memory().device_bytes() >= 18 * MIB);
+}
+
+TEST_CASE("what kernels read often is in the device's own memory where the host can write there")
+{
+    // By the records' tables of types.
+    const std::tuple<const char*, uint32_t, uint32_t> expected[] = {
+        {"nvidia", 4, 2}, {"amd", 3, 2}, {"apu", 1, 1}, {"intel", 0, 0}, {"minimum", 1, 1}};
+    for (const auto& [record, values, upload] : expected) {
+        CAPTURE(std::string(record));
+        On device(record);
+        const VkPhysicalDeviceMemoryProperties& memory = device->device().memory_properties();
+        CHECK(gpu::memory_types(memory, ~0u, gpu::Placement::values).front() == values);
+        CHECK(gpu::memory_types(memory, ~0u, gpu::Placement::upload).front() == upload);
+    }
 }
 
 TEST_CASE("small buffers share allocations, of which a device may allow few")

@@ -3,6 +3,8 @@
 #include "engine/gpu/device_needs.h"
 
 #include <algorithm>
+#include <map>
+#include <span>
 
 #include <doctest/doctest.h>
 
@@ -13,6 +15,39 @@ using namespace shvr;
 using namespace shvr::gpu;
 
 namespace {
+
+/// What a group of the kernel shares, by its SPIR-V: variables of the storage class Workgroup.
+uint32_t shared_bytes(std::span<const uint32_t> spirv)
+{
+    enum : uint32_t { TYPE_INT = 21, TYPE_FLOAT = 22, TYPE_VECTOR = 23, TYPE_ARRAY = 28, TYPE_POINTER = 32 };
+    enum : uint32_t { CONSTANT = 43, SPEC_CONSTANT = 50, VARIABLE = 59, WORKGROUP = 4 };
+    std::map<uint32_t, uint32_t> bytes, values;
+    uint32_t sum = 0;
+    for (size_t at = 5; at < spirv.size(); at += spirv[at] >> 16) {
+        const uint32_t* const word = &spirv[at];
+        switch (word[0] & 0xffff) {
+            case TYPE_INT:
+            case TYPE_FLOAT: bytes[word[1]] = word[2] / 8; break;
+            case TYPE_VECTOR:  // of truth values, which are in no group, or of numbers
+                if (bytes.contains(word[2])) bytes[word[1]] = bytes[word[2]] * word[3];
+                break;
+            case TYPE_ARRAY:  // of other things, or where the length is not known: they are in no group
+                if (bytes.contains(word[2]) && values.contains(word[3]))
+                    bytes[word[1]] = bytes[word[2]] * values[word[3]];
+                break;
+            case TYPE_POINTER:
+                if (word[2] == WORKGROUP) bytes[word[1]] = bytes.at(word[3]);
+                break;
+            case CONSTANT:
+            case SPEC_CONSTANT: values[word[2]] = word[3]; break;
+            case VARIABLE:
+                if (word[3] == WORKGROUP) sum += bytes.at(word[1]);
+                break;
+            default: break;
+        }
+    }
+    return sum;
+}
 
 DeviceHas enough()
 {
@@ -34,7 +69,7 @@ DeviceHas enough()
 
 TEST_CASE("a device is asked for what the kernel that needs most of it needs")
 {
-    uint32_t images = 0, buffers = 0, sampled = 0, threads = 0, push = 0;
+    uint32_t images = 0, buffers = 0, sampled = 0, threads = 0, push = 0, shared = 0;
     for (const EmbeddedKernel& kernel : embedded_kernels()) {
         const KernelInterface found = reflect(kernel.name, {kernel.words, kernel.word_count});
         const auto count = [&](VkDescriptorType type) {
@@ -44,12 +79,14 @@ TEST_CASE("a device is asked for what the kernel that needs most of it needs")
         buffers = std::max(buffers, count(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER));
         sampled = std::max(sampled, count(VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER));
         push = std::max(push, found.push_bytes);
+        shared = std::max(shared, shared_bytes({kernel.words, kernel.word_count}));
         threads = std::max(threads, found.local_size[0] * found.local_size[1] * found.local_size[2]);
     }
     CHECK(images == MAX_STORAGE_IMAGES);
     CHECK(buffers == MAX_STORAGE_BUFFERS);
     CHECK(sampled == MAX_SAMPLED_IMAGES);
     CHECK(push <= MAX_PUSH_BYTES);
+    CHECK(shared == MAX_SHARED_BYTES);
     CHECK(threads <= MAX_GROUP_THREADS);
 }
 
@@ -68,7 +105,7 @@ TEST_CASE("a device that has less is refused by what it lacks")
     CHECK(why_too_limited(has) == "it allows 1048576 bytes in a buffer; expected at least 67108864");
     has = enough();
     has.limits.maxComputeSharedMemorySize = 4096;
-    CHECK(why_too_limited(has) == "it allows 4096 bytes that a group shares; expected at least 8192");
+    CHECK(why_too_limited(has) == "it allows 4096 bytes that a group shares; expected at least 10592");
     has = enough();
     has.r8_uint = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT;
     CHECK(why_too_limited(has) ==
