@@ -98,6 +98,10 @@ class Haptics(CliTest):
         felt.write_text(felt.read_text().replace("B_____H", "B" + varint(64**3 - 1)))
         result = self.check_json("haptics", "replay", felt)
         self.assertEqual((result["ticks"], result["relevance_made"], result["contact_ticks"]), (100, 1, 100))
+        self.assertEqual((result["relevance"], result["device_swaps"]), ("recorded", 0))
+        self.assertEqual(self.replay(felt, "--threshold", "20")["relevance"], "made")
+        self.assertEqual(self.replay(felt, "--device-model", "touch")["relevance"], "made")
+        self.assertEqual(self.replay(trace)["relevance"], "made")
         said = self.check("haptics", "replay", felt, "--threshold", "20", status=1).stderr
         self.assertIn("another threshold or device", said)
 
@@ -107,6 +111,8 @@ class Haptics(CliTest):
         self.check_refused("haptics", "replay", bad, "--volume", self.volume, says=["bad.trace:2", "at"])
         bad.write_text('{"shvr_stylus_trace":1,"unit":"mm"}\n{"at":[0,0,0]}\n')
         self.check_refused("haptics", "replay", bad, "--volume", self.volume, says=["unit", "mm", "um"])
+        bad.write_text('{"shvr_stylus_trace":3}\n{"at":[0,0,0]}\n')
+        self.check_refused("haptics", "replay", bad, "--volume", self.volume, says=["bad.trace", "cut off or changed"])
         self.check_refused("haptics", "replay", self.folder / "none", "--volume", self.volume, says=["none"])
         self.check_refused("haptics", "replay", bad, "--volume", self.volume, "--mode", "magic", status=2,
                            says=["--mode"])
