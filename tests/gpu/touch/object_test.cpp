@@ -60,7 +60,7 @@ TEST_CASE_FIXTURE(OnDevice, "bits after the ends of rows are no voxels, of what 
 {
     // Four rows of five voxels each; words hold ones after them.
     const VoxelBox box{Size3(0), Size3(5, 2, 2)}, beside{Size3(5, 0, 0), Size3(10, 2, 2)};
-    const RelevanceBits mask{.box = box, .words_per_row = 1, .words = {0xffffffe1u, 0u, 0u, 0xffffffe0u}, .level = 0};
+    const RelevanceBits mask{.box = box, .words_per_row = 1, .words = {0xfffffff1u, 0u, 0u, 0xffffffe0u}, .level = 0};
     const auto grown_from = [&](const RelevanceBits& seeds) {
         ObjectQuery query(renderer());
         const ObjectQuery::Growth growth{mask, seeds};
@@ -68,8 +68,8 @@ TEST_CASE_FIXTURE(OnDevice, "bits after the ends of rows are no voxels, of what 
         return query.answer().front().words;
     };
     const std::vector<uint32_t> nothing(4, 0u);
-    const RelevanceBits same{.box = box, .words_per_row = 1, .words = {1u, 0u, 0u, ~0u}, .level = 0};
-    CHECK(grown_from(same) == std::vector<uint32_t>{1u, 0u, 0u, 0u});
+    const RelevanceBits same{.box = box, .words_per_row = 1, .words = {0x11u, 0u, 0u, ~0u}, .level = 0};
+    CHECK(grown_from(same) == std::vector<uint32_t>{0x11u, 0u, 0u, 0u});
     // In a box that ends where the region begins only what is no voxel lies over it.
     const VoxelBox before{Size3(0), Size3(5, 2, 2)};
     const RelevanceBits shifted{.box = beside, .words_per_row = 1, .words = {1u, 1u, 1u, 1u}, .level = 0};
