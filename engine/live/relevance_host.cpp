@@ -46,12 +46,45 @@ RelevancePlace relevance_place(const VolumeSource& source, const glm::dvec3& poi
     return place;
 }
 
+namespace {
+
+/// Of the painted voxels in a box, and the unpainted ones where they can be felt.
+bool is_mostly_felt(const Mask& mask, const std::bitset<256>& groups, const VoxelBox& box)
+{
+    int64_t felt = 0, others = 0;
+    const Size3 first = box.lower / int64_t{BRICK_SIDE}, last = (box.upper - int64_t{1}) / int64_t{BRICK_SIDE};
+    const Size3 bricks = last - first + int64_t{1};
+    for (int64_t i = 0; i < bricks.x * bricks.y * bricks.z; ++i) {
+        const int64_t index = index_of(first + position_of(i, bricks), mask.brick_counts());
+        const VoxelBox of_brick = mask.box_of(index);
+        const VoxelBox part{glm::max(box.lower, of_brick.lower), glm::min(box.upper, of_brick.upper)};
+        const std::shared_ptr<const MaskBrick>& brick = mask.brick(index);
+        if (!brick) {  // nobody painted it
+            const Size3 size = part.size();
+            felt += groups[0] ? size.x * size.y * size.z : 0;
+            continue;
+        }
+        for (int64_t z = part.lower.z; z < part.upper.z; ++z)
+            for (int64_t y = part.lower.y; y < part.upper.y; ++y)
+                for (int64_t x = part.lower.x; x < part.upper.x; ++x) {
+                    const uint8_t group = (*brick)[index_in_brick({x, y, z})];
+                    felt += groups[group];
+                    others += !groups[group] && group != 0;
+                }
+    }
+    return felt > 0 && felt >= others;
+}
+
+}  // namespace
+
 void limit_to_groups(const Mask& mask, const std::bitset<256>& groups, RelevanceBits& bits)
 {
     const Size3 size = bits.box.size();
     const int64_t step = int64_t{1} << bits.level;
-    const auto group_at = [&](const Size3& voxel) {
-        return mask.at(glm::min(voxel * step + step / 2, mask.size() - int64_t{1}));
+    const auto is_felt = [&](const Size3& voxel) {
+        const Size3 lower = voxel * step, upper = glm::min(lower + step, mask.size());
+        if (step == 1) return groups[mask.at(glm::min(lower, mask.size() - int64_t{1}))];
+        return is_mostly_felt(mask, groups, {lower, upper});
     };
     for (int64_t z = 0; z < size.z; ++z)
         for (int64_t y = 0; y < size.y; ++y)
@@ -59,7 +92,7 @@ void limit_to_groups(const Mask& mask, const std::bitset<256>& groups, Relevance
                 uint32_t& word = bits.words[size_t(w + bits.words_per_row * (y + size.y * z))];
                 for (uint32_t left = word; left != 0; left &= left - 1) {
                     const int bit = std::countr_zero(left);
-                    if (!groups[group_at(bits.box.lower + Size3(32 * w + bit, y, z))]) word &= ~(1u << bit);
+                    if (!is_felt(bits.box.lower + Size3(32 * w + bit, y, z))) word &= ~(1u << bit);
                 }
             }
 }

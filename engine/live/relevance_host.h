@@ -21,8 +21,10 @@ RelevancePlace relevance_place(const VolumeSource& source, const glm::dvec3& poi
 /// Which voxels of a box of a level are at or above the threshold. `source` holds density offsets already.
 RelevanceBits relevance_on_host(const VolumeSource& source, int level, const VoxelBox& box, double threshold);
 
-/// Clears the bits of voxels in other groups than these; a voxel of a coarser level counts by the voxel of level 0 in
-/// its middle. `mask` is of the volume.
+/// Clears the bits of voxels in other groups than these. A voxel of a coarser level counts by what is painted of those
+/// that it covers: it stays where at least half of them, and at least one, is of these groups. Unpainted ones count
+/// only where group 0 is among these. So what is painted entirely feels the same limited or not, on any level. `mask`
+/// is of the volume.
 void limit_to_groups(const Mask& mask, const std::bitset<256>& groups, RelevanceBits& bits);
 
 }  // namespace shvr

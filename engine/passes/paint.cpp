@@ -34,12 +34,12 @@ Labelled region_bits(FrameGraph& graph, const VolumeBinding& volume, const Regio
             pass.write("parents", graph.create("region parents", buffer_desc(word_bytes(input.params) * 32)))};
 }
 
-Labelled region_merge(FrameGraph& graph, const RegionInput& input, const Labelled& region)
+Labelled region_merge(FrameGraph& graph, const gpu::RegionParams& params, const Labelled& region)
 {
     Pass pass = graph.compute("region_merge");
     pass.read("bits", region.bits);
-    pass.push(input.params);
-    pass.dispatch(words_of(input.params));
+    pass.push(params);
+    pass.dispatch(words_of(params));
     return {region.bits, pass.modify("parents", region.parents)};
 }
 
@@ -54,16 +54,48 @@ Resource region_mark(FrameGraph& graph, const RegionInput& input, const Labelled
     return pass.modify("marked", marked);
 }
 
-Resource region_select(FrameGraph& graph, const RegionInput& input, const Labelled& region, Resource marked, bool flood)
+Resource no_marks(FrameGraph& graph, const gpu::RegionParams& params)
+{
+    return graph.fill(graph.create("region marked", buffer_desc(word_bytes(params))), 0, "clear marks");
+}
+
+Labelled region_roots(FrameGraph& graph, const gpu::RegionParams& params, Resource mask)
+{
+    Pass pass = graph.compute("region_roots");
+    pass.read("mask", mask);
+    pass.push(params);
+    pass.dispatch(words_of(params));
+    return {pass.write("bits", graph.create("region bits", buffer_desc(word_bytes(params)))),
+            pass.write("parents", graph.create("region parents", buffer_desc(word_bytes(params) * 32)))};
+}
+
+Resource region_seeds(FrameGraph& graph, const gpu::RegionParams& params, const Labelled& region, const SeedBits& seeds)
+{
+    const Resource marked = no_marks(graph, params);
+    Pass pass = graph.compute("region_seeds");
+    pass.read("bits", region.bits);
+    pass.read("parents", region.parents);
+    pass.read("seeds", seeds.words);
+    pass.push(gpu::SeedParams{.size = params.size,
+                              .words_per_row = params.words_per_row,
+                              .to_seeds = seeds.from_region,
+                              .seed_size = seeds.size,
+                              .seed_words_per_row = seeds.words_per_row});
+    pass.dispatch(words_of(params));
+    return pass.modify("marked", marked);
+}
+
+Resource region_select(FrameGraph& graph, const gpu::RegionParams& params, const Labelled& region, Resource marked,
+                       uint32_t keep)
 {
     Pass pass = graph.compute("region_select");
     pass.read("bits", region.bits);
     pass.read("parents", region.parents);
     pass.read("marked", marked);
-    pass.constant("FLOOD", flood);
-    pass.push(input.params);
-    pass.dispatch(words_of(input.params));
-    return pass.write("selected", graph.create("region selected", buffer_desc(word_bytes(input.params))));
+    pass.constant("KEEP", keep);
+    pass.push(params);
+    pass.dispatch(words_of(params));
+    return pass.write("selected", graph.create("region selected", buffer_desc(word_bytes(params))));
 }
 
 }  // namespace
@@ -75,16 +107,21 @@ Resource select_fill(FrameGraph& graph, const VolumeBinding& volume, const Regio
 
 Resource select_flood(FrameGraph& graph, const VolumeBinding& volume, const RegionInput& input)
 {
-    const Labelled region = region_merge(graph, input, region_bits(graph, volume, input));
-    return region_select(graph, input, region, region.bits, true);  // a flood fill reads no marks
+    const Labelled region = region_merge(graph, input.params, region_bits(graph, volume, input));
+    return region_select(graph, input.params, region, region.bits, gpu::KEEP_SEED);  // a flood fill reads no marks
 }
 
 Resource select_speckles(FrameGraph& graph, const VolumeBinding& volume, const RegionInput& input)
 {
-    const Labelled region = region_merge(graph, input, region_bits(graph, volume, input));
-    const Resource clear =
-        graph.fill(graph.create("region marked", buffer_desc(word_bytes(input.params))), 0, "clear marks");
-    return region_select(graph, input, region, region_mark(graph, input, region, clear), false);
+    const Labelled region = region_merge(graph, input.params, region_bits(graph, volume, input));
+    return region_select(graph, input.params, region, region_mark(graph, input, region, no_marks(graph, input.params)),
+                         gpu::KEEP_UNMARKED);
+}
+
+Resource select_object(FrameGraph& graph, const gpu::RegionParams& params, Resource mask, const SeedBits& seeds)
+{
+    const Labelled region = region_merge(graph, params, region_roots(graph, params, mask));
+    return region_select(graph, params, region, region_seeds(graph, params, region, seeds), gpu::KEEP_MARKED);
 }
 
 }  // namespace shvr

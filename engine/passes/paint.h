@@ -23,4 +23,14 @@ Resource select_flood(FrameGraph& graph, const VolumeBinding& volume, const Regi
 /// The components without a voxel at the region's edge.
 Resource select_speckles(FrameGraph& graph, const VolumeBinding& volume, const RegionInput& input);
 
+/// Bits of a box of voxels, laid out as a region's, that need not lie in it.
+struct SeedBits {
+    Resource words;
+    glm::uvec3 size{0};  ///< voxels
+    uint32_t words_per_row = 0;
+    glm::ivec3 from_region{0};  ///< the region's lower corner less that of this box
+};
+/// Of `mask`, bits of a region of any level (`params`: size, words and connectivity), the components that hold a seed.
+Resource select_object(FrameGraph& graph, const gpu::RegionParams& params, Resource mask, const SeedBits& seeds);
+
 }  // namespace shvr

@@ -42,10 +42,16 @@ public:
     Player(const Trace& trace, const ReplayOptions& options) : trace_(trace)
     {
         if (!options.touch) return;
-        TouchModel model = *options.touch;
-        model.tick_s = 1.0 / trace.rate_hz;
-        model.jitter_s = std::min(model.jitter_s, 0.5 * model.tick_s);
-        touch_ = std::make_unique<ModelledTouch>(model);
+        model_ = *options.touch;
+        model_.tick_s = 1.0 / trace.rate_hz;
+        model_.jitter_s = std::min(model_.jitter_s, 0.5 * model_.tick_s);
+        touch_ = std::make_unique<ModelledTouch>(model_);
+    }
+    void swap()
+    {
+        if (!touch_) return;
+        work_before_j_ += touch_->work_j();
+        touch_ = std::make_unique<ModelledTouch>(model_);
     }
     DeviceCaps caps(size_t tick)
     {
@@ -68,12 +74,17 @@ public:
     {
         if (touch_) touch_->write(force.force_n, force.sequence);
     }
-    std::optional<double> work_j() const { return touch_ ? std::optional(touch_->work_j()) : std::nullopt; }
+    std::optional<double> work_j() const
+    {
+        return touch_ ? std::optional(work_before_j_ + touch_->work_j()) : std::nullopt;
+    }
 
 private:
     const Trace& trace_;
     size_t caps_ = 0;  ///< changes of limits so far
+    TouchModel model_;
     std::unique_ptr<ModelledTouch> touch_;
+    double work_before_j_ = 0.0;  ///< of devices before it
     glm::dvec3 wish_m_{0.0};
 };
 
@@ -113,6 +124,7 @@ public:
     explicit RecordedRelevance(const Trace& trace)
         : trace_(trace), now_(std::make_unique<RelevancePatch>()), next_(std::make_unique<RelevancePatch>())
     {}
+    void swap() { now_->sequence = 0; }
     const RelevancePatch& at(size_t tick)
     {
         for (; read_ < trace_.relevance.size() && trace_.relevance[read_].from_tick <= tick; ++read_) {
@@ -148,7 +160,7 @@ ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, cons
     const bool is_recorded = replays_relevance(trace, options);
     if (!is_recorded && !make_relevance) fail("the trace holds no relevance that fits; expected a volume");
     ForceMemory memory;
-    const auto growth = std::make_unique<GrowthMemory>();
+    auto growth = std::make_unique<GrowthMemory>();
     const uint64_t period_ns = 1'000'000'000 / trace.rate_hz;
     ReplayResult result;
     result.hash = FNV_BASIS;
@@ -157,12 +169,25 @@ ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, cons
     bool has_last = false;
     double squares = 0.0;
     auto settings = trace.settings.begin();
+    auto swap = trace.swaps.begin();
     DeviceState state;
     for (size_t i = 0; i < trace.ticks.size(); ++i) {
         const TraceTick& tick = trace.ticks[i];
         while (settings + 1 != trace.settings.end() && (settings + 1)->from_tick <= i) ++settings;
         const ForceSettings force_settings = chosen(*settings, options);
-        if (i > 0 && tick.now_ns > trace.ticks[i - 1].now_ns + 2 * period_ns) ++result.late;
+        const bool is_swapped = swap != trace.swaps.end() && *swap == i;
+        if (is_swapped) {
+            ++swap;
+            ++result.swaps;
+            player.swap();
+            recorded.swap();
+            memory = {};
+            growth = std::make_unique<GrowthMemory>();
+            state = {};
+            last_force = glm::dvec3(0.0);
+            has_last = false;
+        }
+        if (i > 0 && !is_swapped && tick.now_ns > trace.ticks[i - 1].now_ns + 2 * period_ns) ++result.late;
 
         const ReadResult read = player.read(tick, state);
         const glm::dvec3 probe = force_settings.workspace.to_point(state.position_m);
@@ -195,6 +220,7 @@ ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, cons
         result.objects = step_now.objects;
         if (keep_steps) result.steps.push_back(step_now);
     }
+    result.is_recorded = is_recorded;
     result.ticks = trace.ticks.size();
     result.patches = is_recorded ? recorded.read() : mirror.made();
     result.energy_j = player.work_j().value_or(result.energy_j);

@@ -32,7 +32,8 @@ struct ReplayResult {
     double energy_j = 0.0;        ///< work of the forces along the way of the hand: above 0, it was driven
     double proxy_rms = 0.0;       ///< distance of probe and proxy in contact, physical units
     uint64_t contact_ticks = 0, patches = 0;
-    uint32_t objects = 0;
+    uint32_t objects = 0, swaps = 0;    ///< of the last device; devices after the first
+    bool is_recorded = false;           ///< what was felt is the trace's; otherwise it was made
     uint64_t hash = 0;                  ///< FNV-1a of all forces' bits
     uint64_t told = 0, told_equal = 0;  ///< ticks whose force the trace holds, and those with the same bits
     std::vector<uint64_t> tick_ns;      ///< time that each step() took on the real clock

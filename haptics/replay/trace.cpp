@@ -1,24 +1,21 @@
 #include "haptics/replay/trace.h"
 
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <string_view>
 #include <utility>
 
-#include "engine/base/atomic_writer.h"
 #include "engine/base/file.h"
 #include "engine/base/json.h"
+#include "haptics/replay/trace_end.h"
 
 namespace shvr {
 namespace {
 
-constexpr int64_t VERSION_WITHOUT_RELEVANCE = 1, VERSION = 2;
 constexpr int32_t MAX_PLACE = 1 << 30;  ///< voxels
 constexpr int64_t MAX_TIME_NS = int64_t{1} << 62;
 constexpr double MAX_LENGTH = 1e12;
-constexpr std::string_view READS[] = {"fresh", "stale", "lost", "malformed"};  // by ReadResult
 constexpr const char* PLACE = "three numbers, or \"nan\", \"inf\", \"-inf\"";
 
 // ---- Reading ---------------------------------------------------------------------------------------------------------
@@ -124,7 +121,7 @@ TraceTick read_tick(const JsonNode& node, const TraceTick* before, uint64_t peri
     if (before) tick.state = before->state, tick.relevance_time_ns = before->relevance_time_ns;
     const uint64_t due_ns = before ? before->now_ns + period_ns : period_ns;
     tick.now_ns = uint64_t(node["now"].whole(int64_t(due_ns), before ? int64_t(before->now_ns) : 0, MAX_TIME_NS));
-    if (node["read"].exists()) tick.read = ReadResult(node["read"].choice(READS));
+    if (node["read"].exists()) tick.read = ReadResult(node["read"].choice(TRACE_READS));
     DeviceState& state = tick.state;
     const bool is_fresh = tick.read == ReadResult::fresh;
     state.time_ns = uint64_t(node["time"].whole(int64_t(is_fresh ? tick.now_ns : state.time_ns), 0, MAX_TIME_NS));
@@ -144,155 +141,29 @@ TraceTick read_tick(const JsonNode& node, const TraceTick* before, uint64_t peri
     return tick;
 }
 
-void read_head(const JsonNode& node, Trace& trace)
+/// Whether the file must have an end line.
+bool read_head(const JsonNode& node, Trace& trace)
 {
-    node.allow({"shvr_stylus_trace", "unit", "rate_hz", "caps"});
-    const JsonNode version = node.required("shvr_stylus_trace", "1 or 2, the version of the format");
-    trace.holds_relevance = version.is_number() && version.dump() == "2";
-    if (!trace.holds_relevance && (!version.is_number() || version.dump() != "1"))
-        version.refuse("1 or 2, the versions that this program reads");
+    node.allow({"shvr_stylus_trace", "holds_relevance", "unit", "rate_hz", "caps"});
+    const JsonNode version = node.required("shvr_stylus_trace", "1, 2 or 3, the version of the format");
+    const std::string number = version.is_number() ? version.dump() : "";
+    if (number != "1" && number != "2" && number != "3")
+        version.refuse("1, 2 or 3, the versions that this program reads");
+    const JsonNode holds = node["holds_relevance"];
+    if (holds.exists() && number != "3") holds.refuse_because("is of version 3; expected that version");
+    trace.holds_relevance = holds.flag(number != "1");
     if (node["unit"].exists()) trace.unit = node["unit"].any_text();
     trace.rate_hz = uint32_t(node["rate_hz"].whole(trace.rate_hz, 1, 100'000));
     if (node["caps"].exists()) read_caps(node["caps"], trace.caps);
-}
-
-// ---- Writing ---------------------------------------------------------------------------------------------------------
-
-struct Line {
-    std::string text = "{";
-    bool is_first = true;
-
-    void key(std::string_view name)
-    {
-        text += is_first ? "\"" : ",\"";
-        is_first = false;
-        text += name;
-        text += "\":";
-    }
-    void put(double value)
-    {
-        if (!std::isfinite(value)) {
-            text += std::isnan(value) ? "\"nan\"" : value > 0.0 ? "\"inf\"" : "\"-inf\"";
-            return;
-        }
-        char digits[40];
-        const auto end = std::to_chars(digits, digits + sizeof(digits), value).ptr;
-        text.append(digits, end);
-    }
-    void add(std::string_view name, double value) { key(name), put(value); }
-    void add(std::string_view name, uint64_t value) { key(name), text += std::to_string(value); }
-    void add(std::string_view name, uint32_t value) { add(name, uint64_t(value)); }
-    void add(std::string_view name, bool value) { key(name), text += value ? "true" : "false"; }
-    void add(std::string_view name, std::string_view value) { key(name), text += '"', text += value, text += '"'; }
-    void add(std::string_view name, std::initializer_list<double> values)
-    {
-        key(name);
-        char before = '[';
-        for (const double value : values) text += std::exchange(before, ','), put(value);
-        text += ']';
-    }
-    void add(std::string_view name, const glm::dvec3& v) { add(name, {v.x, v.y, v.z}); }
-    std::string end() { return text + "}"; }
-};
-
-std::string in_json(const std::string& text)
-{
-    std::string safe;
-    for (const char c : text)
-        if (c != '"' && c != '\\' && static_cast<unsigned char>(c) >= 32) safe += c;
-    return safe;
-}
-
-std::string line_of(const DeviceCaps& stated)
-{
-    Line caps;
-    caps.add("usable_lower_m", stated.usable_lower_m);
-    caps.add("usable_upper_m", stated.usable_upper_m);
-    caps.add("peak_force_n", stated.peak_force_n);
-    caps.add("continuous_force_n", stated.continuous_force_n);
-    caps.add("stiffness_limit", stated.stiffness_limit);
-    caps.add("latency_s", stated.latency_s);
-    caps.add("senses_rotation", stated.senses_rotation);
-    caps.add("outputs_force", stated.outputs_force);
-    caps.add("tells_force_sequence", stated.tells_force_sequence);
-    return caps.end();
-}
-
-std::string head_of(const Trace& trace)
-{
-    Line head;
-    head.add("shvr_stylus_trace", uint64_t(trace.holds_relevance ? VERSION : VERSION_WITHOUT_RELEVANCE));
-    head.add("unit", std::string_view(in_json(trace.unit)));
-    head.add("rate_hz", trace.rate_hz);
-    head.key("caps");
-    head.text += line_of(trace.caps);
-    return head.end();
-}
-
-std::string line_of(const TraceSettings& settings)
-{
-    const ForceSettings& force = settings.force;
-    const glm::dmat3& m = force.workspace.to_volume;
-    Line line;
-    line.add("assistance", force.assistance);
-    line.add("law", spelled(force.law));
-    line.add("mode", spelled(force.mode));
-    line.add("threshold", settings.threshold);
-    line.add("probe_radius", force.probe_radius);
-    line.add("stiffness", force.stiffness);
-    line.add("damping", force.damping);
-    line.add("to_volume", {m[0].x, m[0].y, m[0].z, m[1].x, m[1].y, m[1].z, m[2].x, m[2].y, m[2].z});
-    line.add("origin", force.workspace.origin);
-    line.add("reset", force.reset);
-    line.add("to_camera", force.to_camera);
-    line.add("surface_share", force.surface_share);
-    line.add("movement_scale", force.movement_scale);
-    line.add("strength", force.strength);
-    line.add("let_go", force.let_go);
-    line.add("relevance_settings", force.relevance_settings);
-    return "{\"settings\":" + line.end() + "}";
-}
-
-std::string line_of(const TraceRelevance& noted)
-{
-    const auto whole = [](const glm::ivec3& v) { return glm::dvec3(v); };
-    Line line;
-    line.add("sequence", noted.sequence);
-    line.add("origin", whole(noted.origin));
-    line.add("size", whole(noted.size));
-    line.add("words_per_row", uint32_t(noted.words_per_row));
-    line.add("spacing", noted.spacing);
-    line.add("volume_size", whole(noted.volume_size));
-    line.add("level", uint32_t(noted.level));
-    line.add("settings", noted.settings);
-    line.add("runs", std::string_view(noted.runs));
-    return "{\"relevance\":" + line.end() + "}";
-}
-
-std::string line_of(const TraceTick& tick, uint64_t relevance_time_before_ns)
-{
-    const DeviceState& state = tick.state;
-    const glm::dquat& q = state.rotation;
-    Line line;
-    line.add("now", tick.now_ns);
-    if (tick.read != ReadResult::fresh) line.add("read", READS[size_t(tick.read)]);
-    line.add("time", state.time_ns);
-    line.add("sequence", state.sequence);
-    line.add("force_sequence", state.force_sequence);
-    line.add("at", state.position_m);
-    line.add("turn", {q.w, q.x, q.y, q.z});
-    line.add("buttons", state.buttons);
-    line.add("jump", state.jump);
-    line.add("calibrated", state.calibrated);
-    if (tick.force_n) line.add("force", *tick.force_n);
-    if (tick.relevance_time_ns != relevance_time_before_ns) line.add("relevance_time", tick.relevance_time_ns);
-    return line.end();
+    return number == "3";
 }
 
 /// Reads lines after the head. Runs are read once, to be refused by their line.
 class LineReader {
 public:
     explicit LineReader(Trace& trace) : trace_(trace) {}
+    void read_first(const JsonNode& node) { has_end_ = read_head(node, trace_); }
+    bool has_end() const { return has_end_; }
     void read(const JsonNode& node)
     {
         if (const JsonNode chosen = node["settings"]; chosen.exists()) {
@@ -301,6 +172,11 @@ public:
         } else if (const JsonNode noted = node["relevance"]; noted.exists()) {
             node.allow({"relevance"});
             add_relevance(noted);
+        } else if (const JsonNode device = node["device"]; device.exists()) {
+            node.allow({"device"});
+            if (!device.is("swapped")) device.refuse("\"swapped\"");
+            if (!has_end_) node.refuse_because("is of version 3; expected that version in the head");
+            swap_device();
         } else if (const JsonNode caps = node["caps"]; caps.exists()) {
             node.allow({"caps"});
             TraceCaps later{trace_.later_caps.empty() ? trace_.caps : trace_.later_caps.back().caps,
@@ -317,10 +193,19 @@ private:
     {
         if (trace_.ticks.size() >= MAX_TRACE_TICKS)
             node.refuse_because(sentence("is a tick too many; expected at most ", MAX_TRACE_TICKS));
-        if (const JsonNode time = node["relevance_time"]; time.exists() && trace_.relevance.empty())
+        if (const JsonNode time = node["relevance_time"]; time.exists() && !knows_relevance_)
             time.refuse("a relevance before it");
+        const bool is_other = !trace_.swaps.empty() && trace_.swaps.back() == trace_.ticks.size();
         trace_.ticks.push_back(
             read_tick(node, trace_.ticks.empty() ? nullptr : &trace_.ticks.back(), 1'000'000'000 / trace_.rate_hz));
+        // What is not said of another device's relevance is that there is none.
+        if (is_other && !node["relevance_time"].exists()) trace_.ticks.back().relevance_time_ns = 0;
+    }
+    void swap_device()
+    {
+        trace_.swaps.push_back(trace_.ticks.size());
+        knows_relevance_ = false;
+        if (last_) last_->sequence = 0;
     }
     void add_settings(const JsonNode& chosen)
     {
@@ -332,40 +217,46 @@ private:
     }
     void add_relevance(const JsonNode& node)
     {
-        if (!trace_.holds_relevance) node.refuse_because("is of version 2; expected that version in the head");
+        if (!trace_.holds_relevance)
+            node.refuse_because("is of a trace that holds relevance; expected version 2 or 3, and \"holds_relevance\"");
         TraceRelevance noted = relevance_of(node);
         if (!last_) last_ = std::make_unique<RelevancePatch>(), next_ = std::make_unique<RelevancePatch>();
         if (noted.sequence <= last_->sequence) node["sequence"].refuse("a number above that of the relevance before");
         if (!read_relevance(noted, *last_, *next_)) node["runs"].refuse("runs that fill its words");
         last_.swap(next_);
         noted.from_tick = trace_.ticks.size();
+        knows_relevance_ = true;
         trace_.relevance.push_back(std::move(noted));
     }
 
     Trace& trace_;
+    bool has_end_ = false, knows_relevance_ = false;
     std::unique_ptr<RelevancePatch> last_, next_;
 };
 
 }  // namespace
 
-Trace parse_trace(const std::string& text, const std::string& origin)
+Trace parse_trace(const std::string& whole, const std::string& origin)
 {
     Trace trace;
     LineReader reader(trace);
+    std::string_view text = whole;
     size_t number = 0;
     bool has_head = false;
     for (size_t begin = 0; begin < text.size();) {
         const size_t end = std::min(text.find('\n', begin), text.size());
-        const std::string_view line(text.data() + begin, end - begin);
+        const std::string_view line = text.substr(begin, end - begin);
         begin = end + 1;
         ++number;
         if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
         const JsonDocument document(line, sentence(origin, ":", number));
-        if (has_head)
+        if (std::exchange(has_head, true)) {
             reader.read(document.root());
-        else
-            read_head(document.root(), trace);
-        has_head = true;
+            continue;
+        }
+        reader.read_first(document.root());
+        // Before what a damaged line says is told as a mistake in it.
+        if (reader.has_end()) text = without_trace_end(text, origin);
     }
     if (!has_head) fail(origin, " is empty; expected a line {\"shvr_stylus_trace\":1}");
     if (trace.ticks.empty()) fail(origin, " has no tick; expected lines such as {\"at\":[0.001,0,0]}");
@@ -377,34 +268,6 @@ Trace parse_trace(const std::string& text, const std::string& origin)
 Trace read_trace(const std::filesystem::path& file)
 {
     return parse_trace(read_text(file, MAX_TRACE_BYTES), file.string());
-}
-
-std::string text_of(const Trace& trace)
-{
-    std::string text = head_of(trace) + "\n";
-    auto settings = trace.settings.begin();
-    auto caps = trace.later_caps.begin();
-    auto relevance = trace.relevance.begin();
-    uint64_t relevance_time_ns = 0;
-    for (size_t tick = 0; tick < trace.ticks.size(); ++tick) {
-        for (; caps != trace.later_caps.end() && caps->from_tick <= tick; ++caps)
-            text += "{\"caps\":" + line_of(caps->caps) + "}\n";
-        for (; relevance != trace.relevance.end() && relevance->from_tick <= tick; ++relevance)
-            text += line_of(*relevance) + "\n";
-        for (; settings != trace.settings.end() && settings->from_tick <= tick; ++settings)
-            text += line_of(*settings) + "\n";
-        text +=
-            line_of(trace.ticks[tick], std::exchange(relevance_time_ns, trace.ticks[tick].relevance_time_ns)) + "\n";
-    }
-    return text;
-}
-
-void write_trace(const std::filesystem::path& file, const Trace& trace)
-{
-    const std::string text = text_of(trace);
-    AtomicWriter writer(file);
-    writer.append(std::as_bytes(std::span<const char>(text)));
-    writer.commit();
 }
 
 }  // namespace shvr

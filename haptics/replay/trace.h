@@ -1,12 +1,13 @@
 #pragma once
 // A stylus trace: what a device answered and what a person chose, tick by tick, as a file (README.md has the format).
-// What is read is what was written, bit for bit. Version 2; version 1, which holds no relevance, is read as well. Any
-// thread.
+// What is read is what was written, bit for bit. Version 3, which ends with a hash of itself; versions 1 and 2, which
+// do not, are read as well. Any thread.
 
 #include <filesystem>
 #include <iosfwd>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "haptics/force.h"
@@ -39,7 +40,10 @@ struct Trace {
     std::string unit;  ///< of physical lengths; empty: not known
     uint32_t rate_hz = 1000;
     DeviceCaps caps;
-    std::vector<TraceCaps> later_caps;    ///< by tick
+    std::vector<TraceCaps> later_caps;  ///< by tick
+    /// Ticks from which another device, or the same one opened anew, answers a servo that starts anew: it has no force,
+    /// no object, and feels nothing before the next relevance.
+    std::vector<size_t> swaps;
     std::vector<TraceSettings> settings;  ///< by tick; the first one holds from the start
     /// The ticks tell what the servo felt: `relevance`, by tick, and nothing before the first. Otherwise whoever
     /// replays them makes it.
@@ -48,6 +52,7 @@ struct Trace {
     std::vector<TraceTick> ticks;
 };
 
+inline constexpr std::string_view TRACE_READS[] = {"fresh", "stale", "lost", "malformed"};  ///< by ReadResult
 inline constexpr int64_t MAX_TRACE_BYTES = int64_t{1} << 30;
 inline constexpr size_t MAX_TRACE_TICKS = 4'000'000;  ///< more than an hour
 

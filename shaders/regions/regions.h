@@ -7,7 +7,10 @@
 //   region_merge   connects each run with the runs before it (union-find with atomic minimum; Komura 2015, Playne and
 //                  Hawick 2018): the root of a component is its lowest run, so the result does not depend on timing
 //   region_mark    speckle fill: marks the roots whose component holds an edge voxel of the region
-//   region_select  keeps the runs connected to the seed (flood fill), or those with an unmarked root (speckle fill)
+//   region_select  keeps the runs connected to the seed (flood fill), those with an unmarked root (speckle fill), or
+//                  those with a marked one (touch)
+//   region_roots   takes the place of region_bits where the bits are known (touch, also on coarser levels)
+//   region_seeds   takes the place of region_mark: marks the roots whose component holds a seed
 #ifndef SHVR_REGIONS_H
 #define SHVR_REGIONS_H
 #include "../bricks.h"
@@ -30,6 +33,20 @@ struct RegionParams {
     uvec3 brick_begin;    ///< the bricks that the region overlaps
     uvec3 brick_counts;
 };
+
+/// region.glsl needs `size` and `words_per_row`, as of RegionParams.
+struct SeedParams {
+    uvec3 size;  ///< voxels of the region
+    uint words_per_row;
+    ivec3 to_seeds;   ///< from a voxel of the region to the same one of the seeds' box
+    uvec3 seed_size;  ///< voxels
+    uint seed_words_per_row;
+};
+
+/// What region_select keeps.
+SHARED_CONST uint KEEP_UNMARKED = 0u;
+SHARED_CONST uint KEEP_SEED = 1u;
+SHARED_CONST uint KEEP_MARKED = 2u;
 
 SHARED_CONST uint NO_SEED = 0xffffffffu;
 

@@ -1,7 +1,9 @@
 """shvr haptics: the servo without hardware."""
+import csv
 import json
 import math
 import unittest
+from xml.etree import ElementTree
 
 from harness import CliTest
 
@@ -98,6 +100,10 @@ class Haptics(CliTest):
         felt.write_text(felt.read_text().replace("B_____H", "B" + varint(64**3 - 1)))
         result = self.check_json("haptics", "replay", felt)
         self.assertEqual((result["ticks"], result["relevance_made"], result["contact_ticks"]), (100, 1, 100))
+        self.assertEqual((result["relevance"], result["device_swaps"]), ("recorded", 0))
+        self.assertEqual(self.replay(felt, "--threshold", "20")["relevance"], "made")
+        self.assertEqual(self.replay(felt, "--device-model", "touch")["relevance"], "made")
+        self.assertEqual(self.replay(trace)["relevance"], "made")
         said = self.check("haptics", "replay", felt, "--threshold", "20", status=1).stderr
         self.assertIn("another threshold or device", said)
 
@@ -107,6 +113,8 @@ class Haptics(CliTest):
         self.check_refused("haptics", "replay", bad, "--volume", self.volume, says=["bad.trace:2", "at"])
         bad.write_text('{"shvr_stylus_trace":1,"unit":"mm"}\n{"at":[0,0,0]}\n')
         self.check_refused("haptics", "replay", bad, "--volume", self.volume, says=["unit", "mm", "um"])
+        bad.write_text('{"shvr_stylus_trace":3}\n{"at":[0,0,0]}\n')
+        self.check_refused("haptics", "replay", bad, "--volume", self.volume, says=["bad.trace", "cut off or changed"])
         self.check_refused("haptics", "replay", self.folder / "none", "--volume", self.volume, says=["none"])
         self.check_refused("haptics", "replay", bad, "--volume", self.volume, "--mode", "magic", status=2,
                            says=["--mode"])
@@ -128,6 +136,40 @@ class Haptics(CliTest):
         result = self.check_json("haptics", "bench", "--seconds", "0.2")
         self.assert_keys(result, [key for key in KEYS if key != "forces_hash"])
         self.assertEqual({case["side"] for case in result["cases"]}, {64, 128})
+
+    def test_the_sweep_is_a_table_and_a_picture_of_it(self):
+        table, picture = self.folder / "proxy.csv", self.folder / "proxy.svg"
+        result = self.check_json("haptics", "bench", "--sweep", table, "--plot", picture)
+        with table.open() as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual((result["rows"], len(rows)), (27, 27))
+        error = {(row["method"], int(row["radius_voxels"]), int(row["points"])): float(row["error_percent_of_radius"])
+                 for row in rows}
+        for radius, goal in [(6, 0.4), (12, 0.2), (24, 0.2)]:  # goal 3 of haptics/PROOFS.md
+            self.assertLess(error["exact", radius, 0], goal)
+            for few, many in [(300, 1000), (1000, 3000), (3000, 10000)]:
+                self.assertLess(error["even", radius, many], error["even", radius, few])
+            self.assertLess(error["even", radius, 3000], 0.6 * error["random", radius, 3000])
+            self.assertLess(error["exact", radius, 0], 0.2 * error["even", radius, 10000])
+
+        # Each row has its mark where its numbers are, in the axes; then the legend's six.
+        root = ElementTree.parse(picture).getroot()
+        tag = "{http://www.w3.org/2000/svg}"
+        marks = [{key: mark.get(key) for key in ("cx", "cy", "r", "fill")} for mark in root.iter(tag + "circle")]
+        self.assertEqual(len(marks), 27 + 6)
+        for row, mark in zip(rows, marks):
+            x = 70 + 420 * min(max(math.log10(float(row["microseconds"])) / 3, 0), 1)
+            y = 380 - 360 * (math.log10(float(row["error_percent_of_radius"])) + 3) / 4
+            self.assertAlmostEqual(float(mark["cx"]), x, delta=1)
+            self.assertAlmostEqual(float(mark["cy"]), y, delta=1.5)
+            self.assertAlmostEqual(float(mark["r"]), 2 + int(row["radius_voxels"]) / 6, delta=0.01)
+        self.assertEqual(len({mark["fill"] for mark in marks[:27]}), 3)
+        words = [text.text for text in root.iter(tag + "text")]
+        for word in ["microseconds a proxy", "RMS error, % of the radius", "exact", "even points", "24 voxels"]:
+            self.assertIn(word, words)
+        for count in ["300", "3000", "10000"]:
+            self.assertEqual(words.count(count), 2)  # both kinds of points
+        self.assertEqual(words.count("1000"), 3)  # and the axis
 
 
 if __name__ == "__main__":

@@ -615,6 +615,51 @@ def make_trace():
     seed("trace", "numbers.graphml", graph(node("n4294967295", 1), data(next_node=4294967296)))
 
 
+def stylus(version, *lines, end=True, **head):
+    """A stylus trace; version 3 gets its end line."""
+    lines = [{"shvr_stylus_trace": version, "unit": "mm", **head}, *lines]
+    text = "".join(json.dumps(line, separators=(",", ":")) + "\n" for line in lines)
+    if version < 3 or not end:
+        return text
+    value = 14695981039346656037
+    for byte in text.encode():
+        value = (value ^ byte) * 1099511628211 % 2**64
+    return text + f'{{"end":{{"lines":{len(lines)},"hash":"{value:016x}"}}}}\n'
+
+
+def make_stylus_trace():
+    chosen = {"settings": {"assistance": True, "mode": "proximity", "threshold": 100, "probe_radius": 4,
+                           "to_volume": [1000, 0, 0, 0, 1000, 0, 0, 0, 1000], "origin": [16, 8, 8]}}
+    caps = {"outputs_force": True, "peak_force_n": 3.3, "usable_lower_m": [-1, -1, -1], "usable_upper_m": [1, 1, 1]}
+    path = [{"at": [i * 0.0002, 0.001, 0]} for i in range(12)]
+
+    def felt(sequence, runs, size=(32, 16, 16), **more):
+        return {"relevance": {"sequence": sequence, "origin": [0, 0, 0], "size": size, "words_per_row": (size[0] + 31) // 32,
+                              "spacing": [1, 1, 1], "volume_size": [64, 64, 64], "runs": runs, **more}}
+
+    def dated(lines):
+        return [{**lines[0], "relevance_time": 1 << 60}, *lines[1:]]
+    # 32 x 16 x 16 bits: 4096 equal ones and as many that differ; 4096 is 0 + 32 (0 + 32 * 4).
+    half = "ggEggE"
+    seed("stylus_trace", "path", stylus(1, chosen, *path, caps=caps))
+    seed("stylus_trace", "answers", stylus(
+        1, {"settings": {"assistance": True, "law": "thesis", "strength": 0.5, "reset": 2}}, {"at": ["nan", 0, "-inf"]},
+        {"read": "stale"}, {"read": "malformed"}, {"read": "lost"}, {"buttons": 1, "jump": 3, "turn": [0.5, 0.5, 0.5, 0.5]},
+        {"now": 900000000, "time": 5, "sequence": 4294967295, "force": [0, 1e-300, 0]}, {"caps": {"peak_force_n": 0.1}},
+        {"at": [0.1, 0.1, 0.1], "calibrated": False}, rate_hz=500))
+    seed("stylus_trace", "felt", stylus(2, chosen, felt(1, half), *dated(path), felt(5, half, level=1), *path, caps=caps))
+    object_mode = {"settings": {"mode": "object", "let_go": False}}
+    seed("stylus_trace", "swapped", stylus(
+        3, chosen, object_mode, felt(7, half), *dated(path), {"device": "swapped"}, {"caps": {"latency_s": 0.01}},
+        felt(1, half), *dated(path), {"settings": {"mode": "surface"}}, *path, caps=caps))
+    seed("stylus_trace", "holds_none", stylus(3, chosen, *path, holds_relevance=False))
+    seed("stylus_trace", "no_end", stylus(3, chosen, *path, end=False))
+    seed("stylus_trace", "claims_runs", stylus(2, felt(1, half, size=(128, 128, 128)), {"at": [0, 0, 0]}))
+    seed("stylus_trace", "rows_too_long", stylus(2, felt(1, half, size=(128, 128, 128), words_per_row=64), {"at": [0, 0, 0]}))
+    seed("stylus_trace", "rows_too_short", stylus(2, felt(1, half, size=(128, 16, 16), words_per_row=1), {"at": [0, 0, 0]}))
+    seed("stylus_trace", "claims_rows", stylus(2, felt(1, half, size=(1 << 30, 1 << 30, 1 << 30)), {"at": [0, 0, 0]}))
+
+
 def make_png():
     for kind, depth in [(0, 1), (0, 8), (0, 16), (2, 8), (2, 16), (3, 4), (4, 8), (6, 8), (6, 16)]:
         seed("png", f"kind_{kind}_{depth}.png", png(kind, depth))
@@ -637,6 +682,7 @@ def main():
     make_states()
     make_text()
     make_trace()
+    make_stylus_trace()
     make_journals()
     make_png()
     files = [file for file in SEEDS.rglob("*") if file.is_file()]

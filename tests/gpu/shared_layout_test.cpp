@@ -212,8 +212,12 @@ TEST_CASE("members of shared structs lie where C++ puts them")
     check_members("leap_bound", "push",
                   {MEMBER(LeapBoundParams, cell_begin), MEMBER(LeapBoundParams, cell_end),
                    MEMBER(LeapBoundParams, changed_begin), MEMBER(LeapBoundParams, changed_end)});
-    for (const char* kernel : {"region_bits", "region_bits_filtered", "region_merge", "region_mark", "region_select"})
+    for (const char* kernel :
+         {"region_bits", "region_bits_filtered", "region_merge", "region_mark", "region_roots", "region_select"})
         check_members(kernel, "push", region_params());
+    check_members("region_seeds", "push",
+                  {MEMBER(SeedParams, size), MEMBER(SeedParams, words_per_row), MEMBER(SeedParams, to_seeds),
+                   MEMBER(SeedParams, seed_size), MEMBER(SeedParams, seed_words_per_row)});
     for (const char* kernel : {"region_bits", "region_bits_filtered", "region_mark"})
         check_members(kernel, "rows", {MEMBER(RowSpan, begin), MEMBER(RowSpan, end)});
 }

@@ -86,12 +86,14 @@ void run_replay(const ReplayCommandOptions& options)
     Json report = report_of(result, trace.unit);
     report["mode"] = spelled(how.mode.value_or(last.force.mode));
     report["law"] = spelled(how.law.value_or(last.force.law));
+    report["relevance"] = result.is_recorded ? "recorded" : "made";
+    report["device_swaps"] = result.swaps;
     report["device_model"] = options.model.empty() ? Json(nullptr) : Json(options.model);
     if (options.common.json) return print(report);
-    say(options.common,
-        sentence(result.ticks, " ticks, ", result.late, " late; largest force ", result.largest_force_n,
-                 " N; the hand gained ", 1e3 * result.energy_j, " mJ; proxy ", result.proxy_rms, " ", trace.unit,
-                 " from the probe, root mean square over ", result.contact_ticks, " ticks of contact"));
+    say(options.common, sentence(result.ticks, " ticks, ", result.late, " late; largest force ", result.largest_force_n,
+                                 " N; the hand gained ", 1e3 * result.energy_j, " mJ; proxy ", result.proxy_rms, " ",
+                                 trace.unit, " from the probe, root mean square over ", result.contact_ticks,
+                                 " ticks of contact; relevance ", result.is_recorded ? "recorded" : "made"));
     if (result.told > 0)
         say(options.common, sentence(result.told_equal, " of ", result.told, " forces equal those of the trace"));
 }

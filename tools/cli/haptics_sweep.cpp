@@ -180,8 +180,12 @@ std::string plot_of(const std::vector<Row>& rows)
     for (const Row& row : rows)
         svg << "<circle cx=\"" << x_of(row.microseconds) << "\" cy=\"" << y_of(row.error) << "\" r=\""
             << 2.0 + row.radius / 6.0 << "\" fill=\"" << color_of(row.method) << "\" fill-opacity=\"0.7\"/>\n";
+    // Marks of the same number of points lie together: one label for the three.
+    for (const Row& row : rows)
+        if (row.points > 0 && row.radius == RADII[std::size(RADII) - 1])
+            text(x_of(row.microseconds) + 9.0, y_of(row.error) - 6.0, "start", std::to_string(row.points));
     const std::pair<const char*, const char*> methods[] = {
-        {"exact", "exact"}, {"random", "random points"}, {"even", "even points"}};
+        {"exact", "exact"}, {"random", "points at random"}, {"even", "even points"}};
     double y = 60.0;
     for (const auto& [method, words] : methods) {
         svg << "<circle cx=\"510\" cy=\"" << y - 4.0 << "\" r=\"5\" fill=\"" << color_of(method) << "\"/>\n";

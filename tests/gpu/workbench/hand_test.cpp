@@ -409,6 +409,38 @@ TEST_CASE_FIXTURE(OnDevice,
     CHECK(replay_trace(late, {}, {}).told_equal < once.told);
 }
 
+TEST_CASE_FIXTURE(OnDevice,
+                  "a recording goes on while devices come instead of the mouse, and all of it replays bit for bit")
+{
+    TemporaryFolder folder;
+    Workbench bench(renderer(), {});
+    bench.open(write_tubes_session(folder.path), {});
+    bench.perform(Set{R"({"probe":{"guided":true,"touch":{"mode":"object"}}})"});
+    bench.perform(PlaceProbe{{21.0, 18.0, 16.0}});
+    bench.perform(of("record_stylus", bench));
+    const auto record_until = [&](double seconds) {
+        REQUIRE(turn_until(bench, [&] { return bench.model().hand->recorded_s.value_or(0.0) > seconds; }));
+    };
+    record_until(0.6);
+    bench.use_device(std::make_shared<SimulatedDevice>(MODELLED_HAND), "a hand");
+    record_until(1.2);
+    bench.use_device(std::make_shared<SimulatedDevice>(MOUSE_HAND), "another");
+    record_until(1.8);
+    bench.perform(of("record_stylus", bench));
+    const std::filesystem::path file = folder.path / "scan-stylus-1.trace";
+    REQUIRE(turn_until(bench, [&] { return std::filesystem::exists(file); }));
+    const Trace trace = read_trace(file);
+    REQUIRE(trace.swaps.size() == 2);
+    CHECK(trace.swaps[0] > 400);
+    CHECK(trace.swaps[1] > trace.swaps[0] + 400);
+    CHECK(trace.ticks.size() > trace.swaps[1] + 400);
+    CHECK(trace.later_caps.size() == 2);  // each has its own limits
+    const ReplayResult once = replay_trace(trace, {}, {});
+    CHECK(once.swaps == 2);
+    CHECK(once.told == trace.ticks.size());
+    CHECK(once.told_equal == once.told);
+}
+
 TEST_CASE_FIXTURE(OnDevice, "a recorded stylus is followed with the present guidance, and paints and traces")
 {
     TemporaryFolder folder;

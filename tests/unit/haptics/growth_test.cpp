@@ -226,3 +226,51 @@ TEST_CASE("off the object for a moment nothing else is touched; after that the v
     CHECK(is_set(memory->object(), 5, 44, 32));
     CHECK(!is_set(memory->object(), 5, 20, 32));
 }
+
+TEST_CASE("a new region keeps every part of the object that lies in it, though another object is nearer to the probe")
+{
+    // A bow whose middle lies outside the second region, which so holds its two ends apart; a rod between the ends.
+    const auto memory = std::make_unique<GrowthMemory>();
+    const auto patch = std::make_unique<RelevancePatch>();
+    const Rod one{.point = {32.0, 20.0, 32.0}, .radius = 2.0}, two{.point = {32.0, 40.0, 32.0}, .radius = 2.0},
+        between{.point = {32.0, 30.0, 32.0}, .radius = 2.0};
+    const auto is_relevant = [&](const glm::dvec3& p) {
+        const bool joins = p.x < 4.0 && p.y > 18.0 && p.y < 42.0 && std::abs(p.z - 32.0) < 2.0;
+        return one.holds(p) || two.holds(p) || joins || (p.x > 8.0 && between.holds(p));
+    };
+    const auto tick = [&](const glm::dvec3& centre) -> const RelevancePatch& {
+        const RelevancePatch& object = advance_object(*patch, centre, 6.0, *memory);
+        keep_contact(*patch, centre, 6.0, object.sequence != 0, 1, *memory);
+        return object;
+    };
+    fill_patch(*patch, {0, 0, 0}, glm::ivec3(64), glm::dvec3(1), is_relevant);
+    const glm::dvec3 at_one(40.0, 21.0, 32.0), at_between(40.0, 29.0, 32.0);
+    tick(at_one);
+    REQUIRE(tick(at_one).sequence == patch->sequence);
+    REQUIRE(is_set(memory->object(), 40, 40, 32));
+    REQUIRE(!is_set(memory->object(), 40, 30, 32));
+    fill_patch(*patch, {16, 0, 0}, glm::ivec3(64), glm::dvec3(1), is_relevant);
+    REQUIRE(tick(at_between).sequence == patch->sequence);
+    const RelevancePatch& kept = memory->object();
+    CHECK(is_set(kept, 60, 20, 32));  // what is new of it grows
+    CHECK(is_set(kept, 60, 40, 32));
+    CHECK(!is_set(kept, 24, 30, 32));
+    CHECK(memory->contacts == 1);
+}
+
+TEST_CASE("of several objects in the ball the one whose voxel is nearest to the probe is touched, on every side")
+{
+    const auto patch = std::make_unique<RelevancePatch>(), grown = std::make_unique<RelevancePatch>();
+    const auto list = std::make_unique<GrowthList>();
+    const Rod low{.point = {32.0, 28.0, 32.0}, .radius = 1.5}, high{.point = {32.0, 36.0, 32.0}, .radius = 1.5};
+    fill_patch(*patch, {0, 0, 0}, glm::ivec3(64), glm::dvec3(1),
+               [&](const glm::dvec3& p) { return low.holds(p) || high.holds(p); });
+    for (const double y : {29.5, 31.5, 32.5, 34.5}) {
+        CAPTURE(y);
+        begin_growth(*patch, *grown, *list);
+        REQUIRE(seed_nearest(*patch, {32.2, y, 31.8}, 8.0, *grown, *list));
+        grow(*patch, *grown, *list, ~0u);
+        CHECK(is_set(*grown, 5, 28, 32) == (y < 32.0));
+        CHECK(is_set(*grown, 5, 36, 32) == (y > 32.0));
+    }
+}

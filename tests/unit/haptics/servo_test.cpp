@@ -153,6 +153,37 @@ TEST_CASE("the counter of allocations does count")
     CHECK(*something == 1);
 }
 
+TEST_CASE(
+    "a device of 4 kHz is served four times as often, without a late tick, and comes to rest where one of 1 kHz does")
+{
+    glm::dvec3 rest[2], force[2];
+    for (const int i : {0, 1}) {
+        const uint32_t rate_hz = i == 0 ? 1000 : 4000;
+        Clock clock;
+        clock.ticks = 3 * rate_hz;
+        clock.deadlines_ns.reserve(clock.ticks);
+        HandModel hand = MODELLED_HAND;
+        hand.tick_s = 1.0 / rate_hz;
+        Servo servo(std::make_unique<SimulatedDevice>(hand), std::make_unique<VirtualPacing>(clock),
+                    {.rate_hz = rate_hz, .realtime = false});
+        servo.settings().publish(settings_beside_rod());
+        publish_rod(servo.relevance());
+        clock.run();
+        REQUIRE(servo.state().take());
+        const ServoState& state = servo.state().value();
+        CHECK(state.ticks == clock.ticks);
+        CHECK(state.late_ticks == 0);
+        CHECK(state.step.flags == 0);
+        CHECK(clock.deadlines_ns.back() - clock.deadlines_ns.front() == (clock.ticks - 1) * (1'000'000'000 / rate_hz));
+        rest[i] = state.device.position_m;
+        force[i] = state.step.force_n;
+        clock.may_end = true;
+    }
+    CHECK(glm::length(force[0]) > 0.02);
+    CHECK(glm::distance(force[0], force[1]) < 0.01 * glm::length(force[0]));
+    CHECK(glm::distance(rest[0], rest[1]) < 1e-6);
+}
+
 TEST_CASE("a lost device is commanded to zero within two ticks, and is felt again once it is back")
 {
     for (const bool write_fails_alone : {false, true}) {

@@ -94,7 +94,8 @@ TEST_CASE("what is no trace is refused in a sentence with its line")
 {
     CHECK(refusal("") == "t.trace is empty; expected a line {\"shvr_stylus_trace\":1}");
     CHECK(refusal(HEAD).starts_with("t.trace has no tick; expected"));
-    CHECK(refusal("{\"shvr_stylus_trace\":3}\n").find("t.trace:1: key shvr_stylus_trace is 3; expected 1 or 2") == 0);
+    CHECK(refusal("{\"shvr_stylus_trace\":4}\n").find("t.trace:1: key shvr_stylus_trace is 4; expected 1, 2 or 3") ==
+          0);
     for (const char* line : {"{\"at\":[0,0]}", "{\"at\":[0,0,\"far\"]}", "{\"speed\":1}", "{\"read\":\"gone\"}", "7",
                              "{\"settings\":{\"mode\":\"magic\"}}", "{\"settings\":{\"probe_radius\":0}}",
                              "{\"settings\":{\"to_volume\":[0,0,0,0,0,0,0,0,0]}}", "{\"now\":-1}", "{\"at\":"}) {
@@ -200,6 +201,64 @@ TEST_CASE("relevance that does not fit is refused by its line: runs too short, t
     CHECK(refusal(head + line("8BE", 1, "[32,200,1]") + tick).find("t.trace:2") == 0);
     CHECK(refusal(head + tick).find("expected a relevance before it") != std::string::npos);
     CHECK(refusal(HEAD + line("8BE") + tick).find("version 2") != std::string::npos);
+}
+
+TEST_CASE("a trace that was cut off or changed is refused in words, wherever that was")
+{
+    const std::string text = text_of(wandering(40));
+    REQUIRE(refusal(text) == "accepted");
+    CHECK(refusal(text + "\n \n") == "accepted");
+    const size_t end = text.rfind("{\"end\"");
+    REQUIRE(end != std::string::npos);
+    for (size_t size = 1; size + 2 < text.size(); size += 7) {  // what is left out last is the line break
+        CAPTURE(size);
+        const std::string said = refusal(text.substr(0, size));
+        CAPTURE(said);
+        CHECK(said.starts_with("t.trace"));
+        if (size > text.find('\n') + 1) CHECK(said.find("cut off or changed, copy it anew") != std::string::npos);
+    }
+    // A digit changed anywhere after the head.
+    for (size_t at = text.find('\n') + 1; at < end; ++at) {
+        if (text[at] < '0' || text[at] > '8' || at % 3 != 0) continue;
+        std::string changed = text;
+        ++changed[at];
+        CAPTURE(at);
+        CHECK(refusal(changed).find("something in it was changed") != std::string::npos);
+    }
+    // A line taken out, put in twice, and one after the end.
+    const size_t line = text.find("\n{\"now\"") + 1, next = text.find('\n', line) + 1;
+    CHECK(refusal(text.substr(0, line) + text.substr(next)).find("lines were lost or added") != std::string::npos);
+    CHECK(refusal(text.substr(0, next) + text.substr(line)).find("lines were lost or added") != std::string::npos);
+    CHECK(refusal(text + text.substr(line, next - line)).find("has no end line") != std::string::npos);
+}
+
+TEST_CASE("where the device was swapped a replay begins anew: no force, no object, nothing felt of before")
+{
+    Trace trace = wandering(3000);
+    const std::string never = text_of(trace);
+    trace.swaps.push_back(1500);
+    const Trace again = parse_trace(text_of(trace), "t");
+    REQUIRE(again.swaps == std::vector<size_t>{1500});
+    CHECK(text_of(again) == text_of(trace));
+    const ReplayResult whole = replay_trace(parse_trace(never, "t"), {}, make_tube, true);
+    const ReplayResult swapped = replay_trace(again, {}, make_tube, true);
+    CHECK(swapped.swaps == 1);
+    CHECK(whole.swaps == 0);
+    REQUIRE(glm::length(whole.steps[1500].force_n) > 0.02);
+    CHECK(glm::length(swapped.steps[1499].force_n) == glm::length(whole.steps[1499].force_n));
+    CHECK(glm::length(swapped.steps[1500].force_n) < 0.01 * glm::length(whole.steps[1500].force_n));  // engages anew
+    // What comes after is what a servo does that begins there.
+    Trace later = trace;
+    later.swaps.clear();
+    later.ticks.erase(later.ticks.begin(), later.ticks.begin() + 1500);
+    later.settings.erase(later.settings.begin());
+    later.settings.front().from_tick = 0;
+    const ReplayResult alone = replay_trace(later, {}, make_tube, true);
+    size_t same = 0;
+    for (size_t i = 0; i < 1500; ++i) same += alone.steps[i].force_n == swapped.steps[1500 + i].force_n;
+    CHECK(same == 1500);
+    const std::string second = "{\"device\":\"swapped\"}\n";
+    CHECK(refusal(HEAD + second + "{\"at\":[0,0,0]}\n").find("of version 3") != std::string::npos);
 }
 
 TEST_CASE("a replay gives the same forces again, bit for bit, and knows those that the trace holds")

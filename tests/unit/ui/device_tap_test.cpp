@@ -29,7 +29,7 @@ struct Grants {
 
 class GrantedPacing : public Pacing {
 public:
-    explicit GrantedPacing(Grants& grants) : grants_(grants) {}
+    explicit GrantedPacing(Grants& grants, uint64_t now_ns) : grants_(grants), now_ns_(now_ns) {}
     uint64_t now_ns() noexcept override { return now_ns_; }
     void wait_until(uint64_t deadline_ns) noexcept override
     {
@@ -41,16 +41,16 @@ public:
 
 private:
     Grants& grants_;
-    uint64_t now_ns_ = 1'000'000'000, tick_ = 0;
+    uint64_t now_ns_, tick_ = 0;
 };
 
 struct Bench {
     Grants grants;
     std::shared_ptr<SimulatedDevice> device = std::make_shared<SimulatedDevice>(MODELLED_HAND);
-    TappedServo tapped{device, std::make_unique<GrantedPacing>(grants), 1};
+    TappedServo tapped;
     TapOrder order;
 
-    Bench()
+    explicit Bench(uint64_t now_ns = 1'000'000'000) : tapped(device, std::make_unique<GrantedPacing>(grants, now_ns), 1)
     {
         order.settings.force = {.assistance = true, .probe_radius = 2.5};
         order.settings.force.workspace = {glm::dmat3(1000.0), glm::dvec3(8.0)};
@@ -124,6 +124,43 @@ TEST_CASE("a recording of a hand replays bit for bit, through changes of what wa
     CHECK(result.told == 3000);
     CHECK(result.told_equal == 3000);
     CHECK(result.largest_force_n > 0.05);
+}
+
+TEST_CASE("a recording goes on through a swap of the device, and replays bit for bit on both sides of it")
+{
+    StylusRecorder recorder("hand.trace", "mm", 1);
+    recorder.swap_device();  // the first device is none
+    for (const bool is_second : {false, true}) {
+        Bench bench(is_second ? 9'000'000'000 : 1'000'000'000);
+        if (is_second) recorder.swap_device();
+        bench.order.recording = 1;
+        bench.order.settings.force.mode = is_second ? HapticMode::proximity : HapticMode::object;
+        bench.publish_rod();
+        if (is_second) bench.run(20);  // a servo that was told nothing yet
+        bench.send();
+        for (int i = 0; i < 40; ++i) {
+            bench.device->wish().publish({.position_m = {1e-5 * i, 2e-6 * i, 0.0}, .buttons = 0, .jump = 0});
+            bench.run(50);
+            recorder.advance(*bench.tapped.link);
+        }
+        REQUIRE(recorder.end() == "");
+    }
+    const Trace trace = parse_trace(text_of(recorder.take()), "hand.trace");
+    CHECK(trace.swaps == std::vector<size_t>{2000});
+    REQUIRE(trace.relevance.size() == 2);
+    CHECK(trace.relevance[1].sequence == trace.relevance[0].sequence);  // it counts anew
+    const ReplayResult result = replay_trace(trace, {}, {});
+    CHECK(result.told == 4020);
+    CHECK(result.told_equal == 4020);
+    CHECK(result.swaps == 1);
+    CHECK(result.late == 0);
+    CHECK(result.largest_force_n > 0.03);
+    // Told of no swap, the same ticks give other forces.
+    Trace unmarked = trace;
+    unmarked.swaps.clear();
+    CHECK_THROWS_AS(parse_trace(text_of(unmarked), "t"), Error);  // numbers of relevance go back
+    unmarked.relevance.pop_back();
+    CHECK(replay_trace(unmarked, {}, {}).told_equal < 4020);
 }
 
 TEST_CASE("a recording that is not fetched ends with a sentence, and the servo goes on")

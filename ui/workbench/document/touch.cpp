@@ -52,6 +52,7 @@ void Touch::start(std::shared_ptr<HapticDevice> device)
     sent_.reset();
     state_ = {};
     tap_ = {};
+    if (recorder_) recorder_->swap_device();
     servo_ = std::make_unique<TappedServo>(std::move(device), real_pacing(), recorder_ ? recorder_->number() : 0);
     Servo& servo = servo_->servo;
     mirror_ = std::make_unique<RelevanceMirror>(
@@ -71,6 +72,7 @@ void Touch::start(std::shared_ptr<HapticDevice> device)
 void Touch::stop()
 {
     mirror_.reset();
+    if (recorder_ && servo_) recorder_->advance(*servo_->link);
     servo_.reset();
 }
 

@@ -33,6 +33,15 @@ void StylusRecorder::advance(TapLink& link)
     if (link.has_overrun()) end_ = "the window hung for seconds, and what happened then was not recorded";
 }
 
+void StylusRecorder::swap_device()
+{
+    if (trace_.ticks.empty()) return;
+    const size_t tick = trace_.ticks.size();
+    if (trace_.swaps.empty() || trace_.swaps.back() != tick) trace_.swaps.push_back(tick);
+    trace_.settings.emplace_back().from_tick = tick;  // as a servo has them until it is told others
+    relevance_ = 0;
+}
+
 /// Those that the servo skipped are kept, as those after them are told by them.
 void StylusRecorder::add_relevance(RelevanceLog& log)
 {
@@ -57,6 +66,9 @@ void StylusRecorder::add_caps()
 
 Trace StylusRecorder::take()
 {
+    const size_t ticks = trace_.ticks.size();  // after a swap to a device that never answered
+    std::erase_if(trace_.swaps, [&](size_t from) { return from >= ticks; });
+    std::erase_if(trace_.settings, [&](const TraceSettings& settings) { return settings.from_tick >= ticks; });
     if (trace_.ticks.empty()) fail("the recording is empty; expected a device that moves the probe");
     return std::move(trace_);
 }

@@ -13,6 +13,8 @@ class StylusRecorder {
 public:
     /// `unit`: of the volume's lengths. `number`: of the recording, above 0, as orders to the tap have it.
     StylusRecorder(std::filesystem::path path, std::string unit, uint32_t number);
+    /// From now on another device answers another servo, whose tap is fetched from; the former's was fetched before.
+    void swap_device();
     /// Fetches what is new.
     void advance(TapLink& link);
     const std::filesystem::path& path() const { return path_; }
