@@ -323,6 +323,8 @@ void Device::create_device(bool presents)
                                             .timelineSemaphore = VK_TRUE};
     VkPhysicalDeviceFeatures2 want{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &want12};
     want.features.shaderStorageImageExtendedFormats = VK_TRUE;
+    traits_.has_pipeline_statistics = has.features.pipelineStatisticsQuery == VK_TRUE;
+    want.features.pipelineStatisticsQuery = has.features.pipelineStatisticsQuery;
 
     const float priority = 1.0f;
     const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,

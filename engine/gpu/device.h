@@ -49,6 +49,7 @@ struct DeviceTraits {
     bool is_integrated = false;      ///< it shares the host's memory
     float nanoseconds_per_tick = 0;  ///< 0: no timestamps
     uint32_t timestamp_bits = 0;
+    bool has_pipeline_statistics = false;
     bool linear_r16 = false;   ///< R16_UNORM can be filtered by the sampler
     bool storage_r16 = false;  ///< R16_UNORM can be read with imageLoad
     /// The largest device-local heap, as reported; where the device is integrated, the largest heap.

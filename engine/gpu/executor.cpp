@@ -134,6 +134,9 @@ struct Submission::Frame {
     Storage* work_counters = nullptr;  // where kernels count, if they count much: copied to `counters` at the end
     std::unique_ptr<FrameObjects> objects;
     bool is_timed = false;
+    std::vector<size_t> counted_steps;  // per query of statistics
+    uint32_t statistics_room = 0;       // queries; 0: none is made
+    bool is_in_query = false;
     uint64_t number = 0;                  // of its last submission; 0: none
     std::vector<VkCommandBuffer> chunks;  // one submission each
     double chunk_ms = 0.0;                // estimated, of the last one so far
@@ -145,6 +148,7 @@ struct Submission::Frame {
         uint64_t counters_offset = 0;
         uint32_t dispatches = 0;
         uint32_t submissions = 0;
+        bool is_counted_in_part = false;
     };
     std::vector<Prepared> prepared;             // per step
     std::vector<Memory::Object*> transitioned;  // images that the first chunk takes out of the undefined layout
@@ -192,7 +196,9 @@ struct Submission::Frame {
     void prepare();
     void write_descriptors(const PassData& pass, const Prepared& step, uint64_t& block_offset) const;
     void begin_chunk();
-    void end_chunk() const;
+    void end_chunk();
+    void begin_statistics(Prepared& state);
+    void end_statistics();
     void make_room(double ms, Prepared& state);
     void record();
     void record_pass(const Step& step, Prepared& state);
@@ -239,6 +245,9 @@ void Submission::Frame::prepare()
     uint64_t block_bytes = 0, counter_bytes = 0;
     is_timed = options.timestamps && executor.device_.traits().timestamp_bits > 0;
     FrameObjects::Needs needs{.queries = is_timed ? uint32_t(compiled.steps.size()) * 2 : 0};
+    constexpr uint32_t QUERIES_OF_STEP = 64;
+    if (options.statistics && executor.device_.traits().has_pipeline_statistics)
+        statistics_room = needs.statistics = uint32_t(compiled.steps.size()) * QUERIES_OF_STEP;
     prepared.resize(compiled.steps.size());
     for (size_t i = 0; i < compiled.steps.size(); ++i) {
         const PassData& data = pass(compiled.steps[i]);
@@ -326,9 +335,29 @@ void Submission::Frame::begin_chunk()
     in_use = VK_NULL_HANDLE;
 }
 
-void Submission::Frame::end_chunk() const
+void Submission::Frame::end_chunk()
 {
+    end_statistics();
     SHVR_VK(vkEndCommandBuffer(chunks.back()));
+}
+
+/// A query is in one command buffer, so a pass has one in each submission.
+void Submission::Frame::begin_statistics(Prepared& state)
+{
+    if (statistics_room == 0 || is_in_query) return;
+    if (counted_steps.size() == statistics_room) {
+        state.is_counted_in_part = true;
+        return;
+    }
+    vkCmdBeginQuery(chunks.back(), objects->statistics(), uint32_t(counted_steps.size()), 0);
+    counted_steps.push_back(size_t(&state - prepared.data()));
+    is_in_query = true;
+}
+
+void Submission::Frame::end_statistics()
+{
+    if (std::exchange(is_in_query, false))
+        vkCmdEndQuery(chunks.back(), objects->statistics(), uint32_t(counted_steps.size()) - 1);
 }
 
 /// What is recorded next goes into another submission, if this one would take too long with it.
@@ -511,6 +540,7 @@ void Submission::Frame::record_dispatches(const PassData& data, Prepared& state)
             for (at.x = 0; at.x < groups.x; at.x += tile.x) {
                 const glm::uvec3 count = glm::min(tile, groups - at);
                 make_room(cost_ms(count), state);
+                begin_statistics(state);
                 ++state.dispatches;
                 const VkCommandBuffer commands = chunks.back();
                 executor.device_.begin_label(commands, data.name);
@@ -522,6 +552,7 @@ void Submission::Frame::record_dispatches(const PassData& data, Prepared& state)
                     vkCmdDispatchBase(commands, at.x, at.y, at.z, count.x, count.y, count.z);
                 executor.device_.end_label(commands);
             }
+    end_statistics();
     in_use = VK_NULL_HANDLE;
 }
 
@@ -609,6 +640,11 @@ FrameResult Submission::Frame::collect()
         SHVR_VK(vkGetQueryPoolResults(executor.device_.handle(), objects->queries(), 0, uint32_t(ticks.size()),
                                       ticks.size() * sizeof(uint64_t), ticks.data(), sizeof(uint64_t),
                                       VK_QUERY_RESULT_64_BIT));
+    std::vector<uint64_t> invocations(counted_steps.size());
+    if (!counted_steps.empty())
+        SHVR_VK(vkGetQueryPoolResults(executor.device_.handle(), objects->statistics(), 0, uint32_t(invocations.size()),
+                                      invocations.size() * sizeof(uint64_t), invocations.data(), sizeof(uint64_t),
+                                      VK_QUERY_RESULT_64_BIT));
     const uint64_t mask = traits.timestamp_bits >= 64 ? ~uint64_t(0) : (uint64_t(1) << traits.timestamp_bits) - 1;
     const auto milliseconds = [&](uint64_t from, uint64_t to) {
         return double((to - from) & mask) * double(traits.nanoseconds_per_tick) * 1e-6;
@@ -624,6 +660,8 @@ FrameResult Submission::Frame::collect()
             report.start_ms = milliseconds(ticks[0], ticks[2 * i]);
             report.gpu_ms = milliseconds(ticks[2 * i], ticks[2 * i + 1]);
         }
+        for (size_t query = 0; query < counted_steps.size() && !prepared[i].is_counted_in_part; ++query)
+            if (counted_steps[query] == i) report.invocations = report.invocations.value_or(0) + invocations[query];
         // Without timestamps a pass takes no longer than all of them, and those before, did on the host's clock.
         if (prepared[i].kernel)
             executor.costs_.learn(data.kernel, threads_of(data, *prepared[i].kernel),

@@ -35,6 +35,9 @@ struct PassReport {
     uint64_t bytes = 0;              ///< total size of the resources it binds: what it may touch
     std::string barrier;             ///< "compute -> transfer", empty if none
     std::vector<uint64_t> counters;  ///< empty where the kernel has none
+    /// Threads that ran, as the device counts them; null: it was not asked, cannot tell, or the pass is in too many
+    /// submissions.
+    std::optional<uint64_t> invocations;
 };
 
 struct FrameResult {
@@ -73,7 +76,8 @@ class Executor {
 public:
     struct Options {
         bool timestamps = true;
-        bool serialize = false;  ///< a full barrier between passes, for attributable times
+        bool statistics = false;  ///< whether invocations are counted
+        bool serialize = false;   ///< a full barrier between passes, for attributable times
     };
 
     Executor(Device& device, Memory& memory);

@@ -11,7 +11,8 @@ FrameObjects::~FrameObjects()
     const VkDevice device = device_.handle();
     vkDestroyFence(device, fence_, nullptr);
     vkDestroyCommandPool(device, pool_, nullptr);
-    vkDestroyQueryPool(device, queries_, nullptr);
+    vkDestroyQueryPool(device, queries_.pool, nullptr);
+    vkDestroyQueryPool(device, statistics_.pool, nullptr);
     vkDestroyDescriptorPool(device, descriptors_, nullptr);
 }
 
@@ -34,23 +35,29 @@ void FrameObjects::renew(const Needs& needs)
         device_.set_name(VK_OBJECT_TYPE_COMMAND_POOL, reinterpret_cast<uint64_t>(pool_), "frame");
     }
     begun_ = 0;
-    renew_queries(needs.queries);
+    renew_queries(queries_, VK_QUERY_TYPE_TIMESTAMP, needs.queries);
+    renew_queries(statistics_, VK_QUERY_TYPE_PIPELINE_STATISTICS, needs.statistics);
     renew_descriptors(needs);
 }
 
-void FrameObjects::renew_queries(uint32_t count)
+void FrameObjects::renew_queries(Queries& queries, VkQueryType type, uint32_t count)
 {
     constexpr uint32_t LEAST = 64;
-    if (count > query_count_) {
-        vkDestroyQueryPool(device_.handle(), std::exchange(queries_, VK_NULL_HANDLE), nullptr);
-        query_count_ = 0;
-        const VkQueryPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
-                                         .queryType = VK_QUERY_TYPE_TIMESTAMP,
-                                         .queryCount = std::bit_ceil(std::max(count, LEAST))};
-        SHVR_VK(vkCreateQueryPool(device_.handle(), &info, nullptr, &queries_));
-        query_count_ = info.queryCount;
+    if (count > queries.count) {
+        vkDestroyQueryPool(device_.handle(), std::exchange(queries.pool, VK_NULL_HANDLE), nullptr);
+        queries.count = 0;
+        const bool is_statistics = type == VK_QUERY_TYPE_PIPELINE_STATISTICS;
+        const VkQueryPoolCreateInfo info{
+            .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+            .queryType = type,
+            .queryCount = std::bit_ceil(std::max(count, LEAST)),
+            .pipelineStatistics = is_statistics ? VkQueryPipelineStatisticFlags(
+                                                      VK_QUERY_PIPELINE_STATISTIC_COMPUTE_SHADER_INVOCATIONS_BIT)
+                                                : 0};
+        SHVR_VK(vkCreateQueryPool(device_.handle(), &info, nullptr, &queries.pool));
+        queries.count = info.queryCount;
     }
-    if (count > 0) vkResetQueryPool(device_.handle(), queries_, 0, count);
+    if (count > 0) vkResetQueryPool(device_.handle(), queries.pool, 0, count);
 }
 
 void FrameObjects::renew_descriptors(const Needs& needs)

@@ -12,7 +12,8 @@ namespace shvr::gpu {
 class FrameObjects {
 public:
     struct Needs {
-        uint32_t queries = 0;
+        uint32_t queries = 0;     ///< of timestamps
+        uint32_t statistics = 0;  ///< queries of compute invocations
         uint32_t sets = 0;
         std::map<VkDescriptorType, uint32_t> descriptors;
     };
@@ -29,10 +30,15 @@ public:
     VkDescriptorSet allocate(VkDescriptorSetLayout layout);
 
     VkFence fence() const { return fence_; }
-    VkQueryPool queries() const { return queries_; }
+    VkQueryPool queries() const { return queries_.pool; }
+    VkQueryPool statistics() const { return statistics_.pool; }
 
 private:
-    void renew_queries(uint32_t count);
+    struct Queries {
+        VkQueryPool pool = VK_NULL_HANDLE;
+        uint32_t count = 0;
+    };
+    void renew_queries(Queries& queries, VkQueryType type, uint32_t count);
     void renew_descriptors(const Needs& needs);
 
     Device& device_;
@@ -40,8 +46,7 @@ private:
     VkCommandPool pool_ = VK_NULL_HANDLE;
     std::vector<VkCommandBuffer> commands_;
     size_t begun_ = 0;  ///< of the command buffers
-    VkQueryPool queries_ = VK_NULL_HANDLE;
-    uint32_t query_count_ = 0;
+    Queries queries_, statistics_;
     VkDescriptorPool descriptors_ = VK_NULL_HANDLE;
     Needs room_;  ///< in the descriptor pool
 };

@@ -21,6 +21,9 @@ void append(std::vector<gpu::PassReport>& sum, std::vector<gpu::PassReport> pass
         known->gpu_ms += pass.gpu_ms;
         known->dispatches += pass.dispatches;
         for (size_t i = 0; i < known->counters.size(); ++i) known->counters[i] += pass.counters[i];
+        known->invocations = known->invocations && pass.invocations
+                                 ? std::optional(*known->invocations + *pass.invocations)
+                                 : std::nullopt;
     }
 }
 
@@ -203,7 +206,9 @@ void PictureJob::renew_occlusion(const Progress& progress)
     while (std::optional<FrameGraph> slice = next_occlusion(scene(), look_, pane().shot.camera, MOST)) {
         tell(progress, 0.0);
         append(picture_.passes,
-               renderer_.executor().run(std::move(*slice), {.timestamps = options_.timestamps}).passes);
+               renderer_.executor()
+                   .run(std::move(*slice), {.timestamps = options_.timestamps, .statistics = options_.statistics})
+                   .passes);
     }
 }
 
@@ -255,8 +260,8 @@ std::vector<gpu::PassReport> PictureJob::draw(const PicturePart& part, WaitingRa
     const Resource color = graph.create("color", picture_desc(Format::rgba32_float, size));
     const Drawn drawn = shvr::draw(graph, scene(), look_, pane().shot, part, color, options_.count_work, waiting);
     const uint32_t pixels = graph.read_back(drawn.target);
-    gpu::FrameResult result =
-        renderer_.executor().run(graph, {.timestamps = options_.timestamps, .serialize = options_.serialize});
+    gpu::FrameResult result = renderer_.executor().run(
+        graph, {.timestamps = options_.timestamps, .statistics = options_.statistics, .serialize = options_.serialize});
     scene().volume().take_feedback(drawn.feedback, result);
     const std::byte* row = result.read_backs[pixels].data();
     const size_t row_bytes = size_t(size.x) * 4 * sizeof(float);

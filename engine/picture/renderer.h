@@ -24,6 +24,7 @@ struct RenderOptions {
     bool count_work = false;      ///< keep the exact work counters (a little slower)
     bool serialize = false;       ///< a full barrier between passes
     bool timestamps = true;
+    bool statistics = false;  ///< count invocations of kernels, where the device can
     /// Side in pixels of the parts that are drawn one at a time, at most: smaller where memory is short.
     uint32_t part_pixels = 1024;
     Progress progress{};

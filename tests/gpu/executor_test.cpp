@@ -257,6 +257,30 @@ TEST_CASE_FIXTURE(Fixture, "every pass has a time, in order, and the sum is with
     if (device.traits().is_cpu) CHECK(sum <= result.wall_ms * 1.05 + 0.3);  // passes of a GPU may overlap
 }
 
+TEST_CASE_FIXTURE(Fixture, "invocations are counted in all submissions of a pass, where they are asked for")
+{
+    if (!device.traits().has_pipeline_statistics) return;
+    const auto run = [&](bool statistics) {
+        const glm::uvec3 cells(256, 256, 24);
+        FrameGraph graph;
+        const Resource zero = graph.fill(graph.create("zero", buffer_desc(4)), 0);
+        const Resource source = graph.copy_to_image(zero, graph.create("source", image_desc(Format::r32_uint, cells)),
+                                                    {{0, glm::uvec3(0), glm::uvec3(1)}});
+        Pass pass = graph.compute("leap_distance");
+        pass.read("source", source);
+        pass.push(gpu::LeapDistanceParams{cells, glm::uvec3(0), cells, 0});
+        pass.dispatch(cells, glm::uvec3(128, 128, 1));
+        graph.keep(pass.write("leap", graph.create("leap", image_desc(Format::r32_uint, cells))));
+        return executor.run(graph, {.statistics = statistics}).passes;
+    };
+    const std::vector<gpu::PassReport> passes = run(true);
+    CHECK(passes[2].submissions > 20);  // it might be long
+    CHECK(passes[2].invocations == 256 * 256 * 24);
+    CHECK(!passes[0].invocations);  // a fill
+    CHECK(run(true)[2].invocations == 256 * 256 * 24);
+    CHECK(!run(false)[2].invocations);
+}
+
 TEST_CASE("a long pass is several submissions until it is known to be short")
 {
     setenv("VK_INSTANCE_LAYERS", "VK_LAYER_SHVR_speed", 1);  // nothing takes any time

@@ -106,7 +106,7 @@ const std::vector<Feature> FEATURES{
          s.session.render.background = {0.1, 0.2, 0.3, 0.5};
      },
      {}},
-    {"work counters", [](Scenery& s) { s.options.count_work = true; }, {}},
+    {"work counters", [](Scenery& s) { s.options.count_work = true; }, {}, {"work counters"}},
     {"pre-integration", [](Scenery& s) { s.session.render.preintegration = true; }, {}},
     {"translucent ball",
      [](Scenery& s) {

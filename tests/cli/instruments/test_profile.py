@@ -65,6 +65,16 @@ class Profile(CliTest):
         self.assertIn("<polyline", page)
         self.check_refused("profile", self.write_session(), "--html", self.folder / "a.txt", status=2, says=["--html"])
 
+    def test_invocations_are_the_threads_of_whole_groups(self):
+        session = self.write_session(render={"size": [100, 60]})
+        invocations = self.check_json("profile", session, "--frames", 1, "--warmup", 0)["invocations"]
+        threads = invocations["raycast"]
+        self.assertGreaterEqual(threads, 100 * 60)
+        self.assertLess(threads, 128 * 64)
+        self.assertEqual(threads % 32, 0)
+        text = self.check("profile", session, "--frames", 1).stdout
+        self.assertRegex(text, rf"invocations of raycast +{threads}\n")
+
     def test_counters_are_those_of_render(self):
         session = self.write_session()
         picture = self.check_json("render", session, "-o", self.folder / "a.png")

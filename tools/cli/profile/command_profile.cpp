@@ -74,7 +74,8 @@ Profile measure_frames(const ProfileCommandOptions& options, Opened& opened, Lon
     profile.device_budget = renderer.memory().device_budget();
     profile.host_budget = renderer.host_budget();
     // Counting costs time, so it gets its own frame.
-    profile.counted = renderer.render(opened.session, camera, {.probe = probe, .count_work = true}).passes;
+    profile.counted =
+        renderer.render(opened.session, camera, {.probe = probe, .count_work = true, .statistics = true}).passes;
     return profile;
 }
 

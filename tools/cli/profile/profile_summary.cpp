@@ -66,6 +66,15 @@ std::vector<double> sums_of(const std::vector<ProfiledFrame>& frames)
     return sums;
 }
 
+/// By kernel pass; null where the device does not tell.
+Json invocations_of(const std::vector<gpu::PassReport>& passes)
+{
+    Json invocations = Json::object();
+    for (const gpu::PassReport& pass : passes)
+        if (!pass.kernel.empty()) invocations[pass.name] = pass.invocations ? Json(*pass.invocations) : Json(nullptr);
+    return invocations;
+}
+
 std::string mebibytes_text(const Json& bytes)
 {
     return sentence(std::fixed, std::setprecision(1), bytes.get<double>() / double(1 << 20));
@@ -144,6 +153,7 @@ Json summary_of(const Profile& profile)
             {"frame_max_ms", or_null(wall, &Spread::maximum)},
             {"sum_median_ms", or_null(sum, &Spread::median)},
             {"counters", counters_of(profile.counted)},
+            {"invocations", invocations_of(profile.counted)},
             {"bytes", profile.bytes},
             {"memory", memory_summary(profile)},
             {"warnings", profile.warnings}};
@@ -191,6 +201,8 @@ std::string text_of(const Json& summary)
     for (const Json& pass : summary["first_frame"]) first.push_back({pass["name"], number_text(pass["gpu_ms"])});
     std::vector<std::vector<std::string>> work{{"work", "per frame"}};
     for (const auto& [name, value] : summary["counters"].items()) work.push_back({name, value.dump()});
+    for (const auto& [name, value] : summary["invocations"].items())
+        if (!value.is_null()) work.push_back({"invocations of " + name, value.dump()});
     return sentence(summary["device"].get<std::string>(), ", ", summary["driver"].get<std::string>(), ", ",
                     summary["size"][0], " x ", summary["size"][1], " pixels\n\n", table_text(rows), "\n",
                     table_text(first), "\n", table_text(work), "\n", memory_text(summary["bytes"], summary["memory"]));
