@@ -5,9 +5,13 @@
 //                                one had; "waited N", made by the thread that made the instance; "refused N", data of
 //                                caches that are not what the driver gave
 //   SHVR_CACHE_DRIVER=N          the driver says that this is its version
+//   SHVR_CACHE_PATIENT=1         samplers, which a program makes before it draws, are made once another thread has made
+//                                a pipeline, or after half a minute
 //
 // Any thread.
 
+#include <chrono>
+#include <condition_variable>
 #include <cstdlib>
 #include <fstream>
 #include <map>
@@ -34,6 +38,7 @@ struct Driver {
     std::map<VkShaderModule, uint64_t> modules;
     std::map<VkPipelineCache, std::set<uint64_t>> caches;
     uint64_t compiled = 0, cached = 0, waited = 0, refused = 0;
+    std::condition_variable is_made_elsewhere;
 };
 Driver& driver()
 {
@@ -123,7 +128,10 @@ struct Cache {
         for (uint32_t i = 0; i < count; ++i) {
             const bool was_there = cache && !driver().caches[cache].insert(sum_of(infos[i])).second;
             ++(was_there ? driver().cached : driver().compiled);
-            if (std::this_thread::get_id() == driver().first) ++driver().waited;
+            if (std::this_thread::get_id() == driver().first)
+                ++driver().waited;
+            else
+                driver().is_made_elsewhere.notify_all();
             for (const auto* next = static_cast<const VkBaseInStructure*>(infos[i].pNext); next; next = next->pNext)
                 if (next->sType == VK_STRUCTURE_TYPE_PIPELINE_CREATION_FEEDBACK_CREATE_INFO)
                     reinterpret_cast<const VkPipelineCreationFeedbackCreateInfo*>(next)
@@ -132,6 +140,17 @@ struct Cache {
                         (was_there ? VK_PIPELINE_CREATION_FEEDBACK_APPLICATION_PIPELINE_CACHE_HIT_BIT : 0);
         }
         return result;
+    }
+
+    static VKAPI_ATTR VkResult VKAPI_CALL create_sampler(VkDevice device, const VkSamplerCreateInfo* info,
+                                                         const VkAllocationCallbacks* allocator, VkSampler* sampler)
+    {
+        if (std::getenv("SHVR_CACHE_PATIENT")) {
+            std::unique_lock lock(driver().mutex);
+            driver().is_made_elsewhere.wait_for(lock, std::chrono::seconds(30),
+                                                [] { return driver().compiled + driver().cached > driver().waited; });
+        }
+        return Next::next<PFN_vkCreateSampler>(device, "vkCreateSampler")(device, info, allocator, sampler);
     }
 
     static VKAPI_ATTR void VKAPI_CALL properties2(VkPhysicalDevice physical, VkPhysicalDeviceProperties2* properties)
@@ -149,6 +168,7 @@ struct Cache {
         if (is("vkGetPipelineCacheData")) return reinterpret_cast<PFN_vkVoidFunction>(&data_of);
         if (is("vkCreateShaderModule")) return reinterpret_cast<PFN_vkVoidFunction>(&create_module);
         if (is("vkCreateComputePipelines")) return reinterpret_cast<PFN_vkVoidFunction>(&create_pipelines);
+        if (is("vkCreateSampler")) return reinterpret_cast<PFN_vkVoidFunction>(&create_sampler);
         if (is("vkGetPhysicalDeviceProperties2")) return reinterpret_cast<PFN_vkVoidFunction>(&properties2);
         return nullptr;
     }
