@@ -94,6 +94,7 @@ void Swapchain::record(const Frame& frame, const Target& target, const std::vect
 {
     constexpr VkPipelineStageFlags2 TRANSFER = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
     constexpr VkPipelineStageFlags2 WORK = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | TRANSFER;
+    constexpr VkAccessFlags2 WRITES = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT;
     const VkCommandBuffer commands = frame.commands;
     const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                          .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
@@ -104,11 +105,13 @@ void Swapchain::record(const Frame& frame, const Target& target, const std::vect
     const VkImageSubresourceRange whole{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
     vkCmdClearColorImage(commands, target.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &BACKDROP, 1, &whole);
     // The writes of the view's frames and the clear come before the copy of the layers.
-    memory_barrier(commands, WORK, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT, TRANSFER,
-                   VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
+    memory_barrier(commands, WORK, WRITES, TRANSFER, VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
     draw_layers(commands, target.image, layers, origin);
-    // The view's next frames must wait for the copy before they write: their graphs do not know this reader.
-    memory_barrier(commands, TRANSFER, 0, WORK, 0);
+    // The view's next frames must wait for the copy before they write: their graphs do not know this reader. What was
+    // written before becomes visible as well, at no cost here: validation (1.3.239) takes whatever it thought was in
+    // flight when an image was presented as in flight once more when that image is acquired, and told of reads after
+    // writes of frames that had long been waited for.
+    memory_barrier(commands, WORK, WRITES, WORK, WRITES | VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_TRANSFER_READ_BIT);
     image_barrier(commands, target.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                   VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, TRANSFER, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                   VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
@@ -199,9 +202,10 @@ bool Swapchain::prepare(Frame& frame)
 bool Swapchain::acquire(Frame& frame)
 {
     constexpr uint64_t PATIENCE_NS = 10'000'000;  // some drivers have no image yet just after they have made them
-    const VkResult status = vkGetFenceStatus(device_.handle(), frame.done);
-    check(status, "vkGetFenceStatus");
-    if (status == VK_NOT_READY) return false;
+    // Says what vkGetFenceStatus says, and tells validation that the frame was waited for.
+    const VkResult status = vkWaitForFences(device_.handle(), 1, &frame.done, VK_TRUE, 0);
+    check(status, "vkWaitForFences");
+    if (status == VK_TIMEOUT) return false;
     device_.note_done(frame.submission);
     uint32_t index = 0;
     const VkResult acquired =
