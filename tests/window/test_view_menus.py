@@ -5,7 +5,6 @@ added without being tried."""
 import unittest
 
 from seen import Seen, in_short, shortcut_rows
-from test_view import WINDOW
 from test_view_keys import FIRST, MAKES
 
 # Menus within menus, and what entries without a shortcut make: an action, or a dialog that is shown.
@@ -59,14 +58,9 @@ class Menus(Seen):
         return self.until(lambda: self.seen(window=f"##Menu_{len(path) - 1:02}"), f"menu {path}")
 
     def close_menus(self):
-        if not self.seen(window="##Menu_"):
+        if self.soon(lambda: not self.seen(window="##Menu_"), 0.3):   # what was chosen closed it
             return
-        self.do("mousemove", 300, WINDOW[1] - 5, pause_s=0.1)   # a menu within a menu opens again under the pointer
-        for _ in range(4):
-            if not self.seen(window="##Menu_"):
-                return
-            self.press("Escape")
-            self.soon(lambda: not self.seen(window="##Menu_"), 0.5)
+        self.press("Escape")   # all of them, wherever the pointer is
         self.see_no_more("", "##Menu_")
 
     def entries(self, path):
@@ -161,17 +155,17 @@ class Menus(Seen):
         self.press("Alt+1")
 
     def line(self):
-        """Three linked nodes in a row."""
+        """Three linked nodes in a row, where no others are; returns the middle one's place."""
         x, y = self.middle()
         self.close_menus()
         for at in (x - 20, x, x + 20):
-            self.do("mousemove", at, y, pause_s=0.2)
+            self.do("mousemove", at, y + 40, pause_s=0.2)
             self.prepare_at("add_node")
+        return x, y + 40
 
     def cut_a_line(self):
         """Three nodes in a row, of which the middle one is deleted."""
-        self.line()
-        self.do("mousemove", *self.middle(), pause_s=0.2)
+        self.do("mousemove", *self.line(), pause_s=0.2)
         for name in ("deselect", "select_nearest", "delete_selected"):
             self.prepare_at(name)
 
@@ -182,14 +176,37 @@ class Menus(Seen):
         self.what_follows(lambda: self.press(row["today"].split()[0]), row["action"], patience_s=2)
 
 
+class Opening(Seen):
+    def test_a_click_chooses_nothing_and_escape_closes_all(self):
+        """In a window that is hardly higher than its longest menu."""
+        self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
+        before = len(self.done())
+        for title, _ in MENUS:
+            self.click_on(title, "##MainMenuBar")
+            bar = self.see(title, "##MainMenuBar")["box"]
+            first = self.until(lambda: self.seen(window="##Menu_00"), f"menu {title}")[0]
+            self.assertGreater(first["box"][1], bar[3], f"{title} covers the pointer")
+            self.press("Escape")
+            self.see_no_more("", "##Menu_")
+        self.click_on("View", "##MainMenuBar")
+        self.do("mousemove", *self.middle_of(self.see("Turn the view", "##Menu_00")), pause_s=0)
+        self.see("Turn up", "##Menu_01")
+        self.press("Escape")       # with the pointer where it would open again
+        self.see_no_more("", "##Menu_")
+        self.assertEqual(self.done(before), [])
+        self.finish()
+
+
+MENUS = (("File", 12), ("Edit", 3), ("View", 48), ("Paint", 12), ("Trace", 20), ("Probe", 18), ("Tools", 6), ("Help", 3))
+
+
 def add_test(title, least):
     def test(self):
         self.assertGreaterEqual(self.check_menu(title), least, "entries are missing")
     setattr(Menus, f"test_{title.lower()}", test)
 
 
-for menu, least in (("File", 12), ("Edit", 3), ("View", 50), ("Paint", 12), ("Trace", 20), ("Probe", 18), ("Tools", 4),
-                    ("Help", 3)):
+for menu, least in MENUS:
     add_test(menu, least)
 
 if __name__ == "__main__":

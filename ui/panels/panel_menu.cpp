@@ -27,17 +27,6 @@ namespace {
 
 constexpr const char* AXES[] = {"x", "y", "z"};
 
-/// The menu item of a shortcut. Where it would do nothing now it is grey and says why.
-void item(const char* id, const Model& model, Actions& actions, bool is_checked = false)
-{
-    const Shortcut* const shortcut = shortcut_named(id);
-    SHVR_CHECK(shortcut, id);
-    const std::string why = why_not(model, *shortcut);
-    if (ImGui::MenuItem(shortcut->name, model.keymap.text_of(*shortcut).c_str(), is_checked, why.empty()))
-        actions.push_back(shortcut->action(model, 1.0));
-    if (!why.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", why.c_str());
-}
-
 /// The menu item of an action that has no key.
 void action_item(const char* name, const Action& action, const Model& model, Actions& actions)
 {
@@ -49,7 +38,7 @@ void action_item(const char* name, const Action& action, const Model& model, Act
 /// Keys that act while held are buttons here, since an item would close the menu at every step.
 void held_items(const char* group, const Model& model, Actions& actions)
 {
-    if (!ImGui::BeginMenu(group, model.is_open)) return;
+    if (!begin_menu(group, model.is_open)) return;
     ImGui::PushButtonRepeat(true);
     const float width = 11.0f * ImGui::GetFontSize();
     for (const Shortcut& shortcut : shortcuts()) {
@@ -66,35 +55,35 @@ void held_items(const char* group, const Model& model, Actions& actions)
 
 void file_menu(const Model& model, Actions& actions)
 {
-    if (!ImGui::BeginMenu("File")) return;
-    item("open", model, actions);
-    if (ImGui::BeginMenu("Open recent", !model.preferences.recent.empty())) {
+    if (!begin_menu("File")) return;
+    shortcut_item("open", model, actions);
+    if (begin_menu("Open recent", !model.preferences.recent.empty())) {
         for (const std::filesystem::path& path : model.preferences.recent)
             if (ImGui::MenuItem(path.c_str())) actions.push_back(Open{path});
         ImGui::EndMenu();
     }
     action_item("Open the example", OpenExample{}, model, actions);
-    item("save", model, actions);
+    shortcut_item("save", model, actions);
     if (ImGui::MenuItem("Save as...", nullptr, false, model.is_open && model.holder.empty())) ask_for_name(model);
     if (ImGui::MenuItem("Copy the session", nullptr, false, model.is_open)) actions.push_back(CopySession{});
     action_item("Revert to the last save", RevertOp{}, model, actions);
     ImGui::Separator();
     task_menu(model);
     ImGui::Separator();
-    item("screenshot", model, actions);
-    item("large_screenshot", model, actions);
+    shortcut_item("screenshot", model, actions);
+    shortcut_item("large_screenshot", model, actions);
     ImGui::Separator();
-    item("quit", model, actions);
+    shortcut_item("quit", model, actions);
     ImGui::EndMenu();
 }
 
 void edit_menu(const Model& model, Actions& actions)
 {
-    if (!ImGui::BeginMenu("Edit")) return;
-    item("undo", model, actions);
-    item("redo", model, actions);
+    if (!begin_menu("Edit")) return;
+    shortcut_item("undo", model, actions);
+    shortcut_item("redo", model, actions);
     ImGui::Separator();
-    item("preferences", model, actions, model.shows_preferences);
+    shortcut_item("preferences", model, actions, model.shows_preferences);
     ImGui::EndMenu();
 }
 
@@ -117,7 +106,7 @@ void cut_range(int axis, const Model& model, Actions& actions)
 
 void cut_menu(const Model& model, Actions& actions)
 {
-    if (!ImGui::BeginMenu("Cutting planes", model.is_open)) return;
+    if (!begin_menu("Cutting planes", model.is_open)) return;
     ImGui::TextDisabled("What is drawn, in voxels (drag)");
     for (int axis = 0; axis < 3; ++axis) cut_range(axis, model, actions);
     ImGui::Separator();
@@ -140,41 +129,41 @@ void panel_item(const PanelRow& row, const Model& model, Actions& actions)
 
 void panels_menu(const Model& model, Actions& actions)
 {
-    if (!ImGui::BeginMenu("Panels")) return;
+    if (!begin_menu("Panels")) return;
     for (const PanelRow& row : panel_rows()) panel_item(row, model, actions);
     ImGui::Separator();
-    item("side_panels", model, actions, model.preferences.layout.shows_side);
-    item("tool_bar", model, actions, model.preferences.layout.shows_tool_bar);
-    item("reset_layout", model, actions);
-    item("focus_panels", model, actions);
+    shortcut_item("side_panels", model, actions, model.preferences.layout.shows_side);
+    shortcut_item("tool_bar", model, actions, model.preferences.layout.shows_tool_bar);
+    shortcut_item("reset_layout", model, actions);
+    shortcut_item("focus_panels", model, actions);
     ImGui::EndMenu();
 }
 
 void view_menu(const Model& model, Actions& actions)
 {
-    if (!ImGui::BeginMenu("View")) return;
-    if (ImGui::BeginMenu("Look from", model.is_open)) {
+    if (!begin_menu("View")) return;
+    if (begin_menu("Look from", model.is_open)) {
         for (const std::string& camera : camera_names(model.session))
             if (ImGui::MenuItem(camera.c_str())) actions.push_back(LookFrom{camera});
         ImGui::EndMenu();
     }
     kept_views_menu(model, actions);
     const Arrangement arrangement = model.session.view.arrangement;
-    item("single_view", model, actions, arrangement == Arrangement::single);
-    item("stereo", model, actions, arrangement == Arrangement::stereo);
-    item("overview", model, actions, arrangement == Arrangement::overview);
-    item("slices", model, actions, arrangement == Arrangement::slices);
-    item("full_screen", model, actions, model.is_full_screen);
+    shortcut_item("single_view", model, actions, arrangement == Arrangement::single);
+    shortcut_item("stereo", model, actions, arrangement == Arrangement::stereo);
+    shortcut_item("overview", model, actions, arrangement == Arrangement::overview);
+    shortcut_item("slices", model, actions, arrangement == Arrangement::slices);
+    shortcut_item("full_screen", model, actions, model.is_full_screen);
     panels_menu(model, actions);
     ImGui::Separator();
-    item("fit_view", model, actions);
-    item("reset_view", model, actions);
-    item("look_at_selection", model, actions);
+    shortcut_item("fit_view", model, actions);
+    shortcut_item("reset_view", model, actions);
+    shortcut_item("look_at_selection", model, actions);
     sight_items(model, actions);
     ImGui::Separator();
-    item("volume", model, actions, model.session.view.volume);
-    item("meshes", model, actions, model.session.view.meshes);
-    item("cut_box", model, actions, model.session.view.cut_box);
+    shortcut_item("volume", model, actions, model.session.view.volume);
+    shortcut_item("meshes", model, actions, model.session.view.meshes);
+    shortcut_item("cut_box", model, actions, model.session.view.cut_box);
     ImGui::Separator();
     held_items("Turn the view", model, actions);
     held_items("Move the view", model, actions);
@@ -182,7 +171,7 @@ void view_menu(const Model& model, Actions& actions)
     Light light = model.session.light;
     if (ImGui::MenuItem("Shading", nullptr, &light.shaded, model.is_open))
         set(actions, model, [&](Session& s) { s.light = light; });
-    item("update_occlusion", model, actions);
+    shortcut_item("update_occlusion", model, actions);
     held_items("Distance blending", model, actions);
     cut_menu(model, actions);
     held_items("Clip planes", model, actions);
@@ -208,12 +197,12 @@ void brush_item(const BrushRow& row, const Model& model, Actions& actions)
 
 void paint_menu(const Model& model, Actions& actions)
 {
-    if (!ImGui::BeginMenu("Paint", model.is_open)) return;
+    if (!begin_menu("Paint", model.is_open)) return;
     for (const BrushRow& row : BRUSHES) brush_item(row, model, actions);
-    item("next_brush", model, actions);
+    shortcut_item("next_brush", model, actions);
     ImGui::Separator();
-    item("tool_paint", model, actions, model.tool() == Tool::paint);
-    item("tool_erase", model, actions, model.tool() == Tool::erase);
+    shortcut_item("tool_paint", model, actions, model.tool() == Tool::paint);
+    shortcut_item("tool_erase", model, actions, model.tool() == Tool::erase);
     ImGui::Separator();
     for (const uint8_t group : known_groups(model)) {
         const std::string label =
@@ -221,40 +210,40 @@ void paint_menu(const Model& model, Actions& actions)
         if (ImGui::MenuItem(label.c_str(), keys_of("group_", group, model).c_str(), model.brush().group == group))
             set(actions, model, [&](Session& s) { s.probe.brush.group = group; });
     }
-    item("eraser", model, actions, model.brush().group == 0);
-    item("next_group", model, actions);
-    item("previous_group", model, actions);
-    item("new_group", model, actions);
+    shortcut_item("eraser", model, actions, model.brush().group == 0);
+    shortcut_item("next_group", model, actions);
+    shortcut_item("previous_group", model, actions);
+    shortcut_item("new_group", model, actions);
     ImGui::Separator();
-    item("preview", model, actions, model.session.probe.preview);
+    shortcut_item("preview", model, actions, model.session.probe.preview);
     ImGui::EndMenu();
 }
 
 void trace_menu(const Model& model, Actions& actions)
 {
-    if (!ImGui::BeginMenu("Trace", model.is_open)) return;
+    if (!begin_menu("Trace", model.is_open)) return;
     const TraceSelection& selected = model.trace.selection();
-    item("tool_trace", model, actions, model.tool() == Tool::trace);
-    item("tool_select", model, actions, model.tool() == Tool::select);
-    item("next_tool", model, actions);
+    shortcut_item("tool_trace", model, actions, model.tool() == Tool::trace);
+    shortcut_item("tool_select", model, actions, model.tool() == Tool::select);
+    shortcut_item("next_tool", model, actions);
     ImGui::Separator();
-    item("add_node", model, actions);
-    item("select_nearest", model, actions);
-    item("select_segment", model, actions);
-    item("deselect", model, actions);
+    shortcut_item("add_node", model, actions);
+    shortcut_item("select_nearest", model, actions);
+    shortcut_item("select_segment", model, actions);
+    shortcut_item("deselect", model, actions);
     ImGui::Separator();
-    item("link_nearest", model, actions);
-    item("delete_selected", model, actions);
-    item("mend_cut", model, actions);
-    item("next_node", model, actions);
-    item("previous_node", model, actions);
-    item("measured_radius", model, actions, model.session.probe.measured_radius);
+    shortcut_item("link_nearest", model, actions);
+    shortcut_item("delete_selected", model, actions);
+    shortcut_item("mend_cut", model, actions);
+    shortcut_item("next_node", model, actions);
+    shortcut_item("previous_node", model, actions);
+    shortcut_item("measured_radius", model, actions, model.session.probe.measured_radius);
     ImGui::Separator();
-    item("larger_selected", model, actions);
-    item("smaller_selected", model, actions);
-    item("larger_nodes", model, actions);
-    item("smaller_nodes", model, actions);
-    if (ImGui::BeginMenu("Group of what is selected", !selected.empty())) {
+    shortcut_item("larger_selected", model, actions);
+    shortcut_item("smaller_selected", model, actions);
+    shortcut_item("larger_nodes", model, actions);
+    shortcut_item("smaller_nodes", model, actions);
+    if (begin_menu("Group of what is selected", !selected.empty())) {
         for (const uint8_t group : known_groups(model)) {
             const std::string label =
                 sentence(int(group), "  ", group_of(model.session.groups, group).name, "##", int(group));
@@ -268,58 +257,61 @@ void trace_menu(const Model& model, Actions& actions)
 
 void hand_menu(const Model& model, Actions& actions)
 {
-    if (!ImGui::BeginMenu("The hand")) return;
+    if (!begin_menu("The hand")) return;
     const FeelSettings& touch = model.session.probe.touch;
-    item("next_mode", model, actions);
-    item("let_go", model, actions, model.hand && model.hand->is_let_go);
-    item("stronger", model, actions);
-    item("weaker", model, actions);
+    shortcut_item("next_mode", model, actions);
+    shortcut_item("let_go", model, actions, model.hand && model.hand->is_let_go);
+    shortcut_item("stronger", model, actions);
+    shortcut_item("weaker", model, actions);
     ImGui::Separator();
-    item("at_proxy", model, actions, touch.at_proxy);
-    item("overlap_radius", model, actions, touch.overlap_radius);
-    item("to_nodes", model, actions, touch.to_nodes);
-    item("next_plane", model, actions);
+    shortcut_item("at_proxy", model, actions, touch.at_proxy);
+    shortcut_item("overlap_radius", model, actions, touch.overlap_radius);
+    shortcut_item("to_nodes", model, actions, touch.to_nodes);
+    shortcut_item("next_plane", model, actions);
     ImGui::Separator();
-    item("find_devices", model, actions);
-    item("record_stylus", model, actions, model.hand && model.hand->recorded_s);
+    shortcut_item("find_devices", model, actions);
+    shortcut_item("record_stylus", model, actions, model.hand && model.hand->recorded_s);
     ImGui::EndMenu();
 }
 
 void probe_menu(const Model& model, Actions& actions)
 {
-    if (!ImGui::BeginMenu("Probe", model.is_open)) return;
-    item("probe_onto", model, actions);
-    item("guide", model, actions, model.session.probe.guided);
-    item("next_guidance", model, actions);
+    if (!begin_menu("Probe", model.is_open)) return;
+    shortcut_item("probe_onto", model, actions);
+    shortcut_item("guide", model, actions, model.session.probe.guided);
+    shortcut_item("next_guidance", model, actions);
     hand_menu(model, actions);
-    item("shell", model, actions, model.session.probe.shell);
-    item("silhouette", model, actions, model.session.probe.silhouette);
-    item("arrow", model, actions, model.session.probe.arrow);
+    shortcut_item("shell", model, actions, model.session.probe.shell);
+    shortcut_item("silhouette", model, actions, model.session.probe.silhouette);
+    shortcut_item("arrow", model, actions, model.session.probe.arrow);
     ImGui::Separator();
-    item("larger_workspace", model, actions);
-    item("smaller_workspace", model, actions);
-    item("larger_probe", model, actions);
-    item("smaller_probe", model, actions);
+    shortcut_item("larger_workspace", model, actions);
+    shortcut_item("smaller_workspace", model, actions);
+    shortcut_item("larger_probe", model, actions);
+    shortcut_item("smaller_probe", model, actions);
     ImGui::EndMenu();
 }
 
 void tools_menu(const Model& model, Actions& actions)
 {
-    if (!ImGui::BeginMenu("Tools")) return;
-    item("tool_turn", model, actions, model.tool() == Tool::turn);
-    item("tool_measure", model, actions, model.tool() == Tool::measure);
-    item("palette", model, actions);
+    if (!begin_menu("Tools")) return;
+    shortcut_item("tool_turn", model, actions, model.tool() == Tool::turn);
+    shortcut_item("tool_measure", model, actions, model.tool() == Tool::measure);
+    shortcut_item("copy_measurements", model, actions);
+    shortcut_item("clear_measurements", model, actions);
     ImGui::Separator();
-    item("passes", model, actions, model.shows_passes);
+    shortcut_item("palette", model, actions);
+    ImGui::Separator();
+    shortcut_item("passes", model, actions, model.shows_passes);
     ImGui::EndMenu();
 }
 
 void help_menu(const Model& model, Actions& actions)
 {
-    if (!ImGui::BeginMenu("Help")) return;
-    item("help", model, actions, model.shows_help);
-    item("focus_menu", model, actions);
-    item("messages", model, actions, model.shows_messages);
+    if (!begin_menu("Help")) return;
+    shortcut_item("help", model, actions, model.shows_help);
+    shortcut_item("focus_menu", model, actions);
+    shortcut_item("messages", model, actions, model.shows_messages);
     ImGui::EndMenu();
 }
 
@@ -387,6 +379,16 @@ void said(const Model& model, const std::string& right, Actions& actions)
 
 }  // namespace
 
+void shortcut_item(const char* id, const Model& model, Actions& actions, bool is_checked)
+{
+    const Shortcut* const shortcut = shortcut_named(id);
+    SHVR_CHECK(shortcut, id);
+    const std::string why = why_not(model, *shortcut);
+    if (ImGui::MenuItem(shortcut->name, model.keymap.text_of(*shortcut).c_str(), is_checked, why.empty()))
+        actions.push_back(shortcut->action(model, 1.0));
+    if (!why.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", why.c_str());
+}
+
 void menu_bar(const Model& model, Actions& actions)
 {
     if (ImGui::BeginMainMenuBar()) {
@@ -398,6 +400,7 @@ void menu_bar(const Model& model, Actions& actions)
         probe_menu(model, actions);
         tools_menu(model, actions);
         help_menu(model, actions);
+        close_menus_by_escape();
         ImGui::EndMainMenuBar();
     }
     open_dialog(model, actions);

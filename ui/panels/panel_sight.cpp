@@ -3,26 +3,14 @@
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>
 
-#include "engine/base/error.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/action_rows.h"
-#include "ui/workbench/bindings/keymap.h"
 #include "ui/workbench/edit.h"
 
 namespace shvr::ui {
 
 namespace {
-
-void shortcut_item(const char* id, const Model& model, Actions& actions, bool is_checked = false)
-{
-    const Shortcut* const shortcut = shortcut_named(id);
-    SHVR_CHECK(shortcut, id);
-    const std::string why = why_not(model, *shortcut);
-    if (ImGui::MenuItem(shortcut->name, model.keymap.text_of(*shortcut).c_str(), is_checked, why.empty()))
-        actions.push_back(shortcut->action(model, 1.0));
-    if (!why.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", why.c_str());
-}
 
 /// Its menu: to go there, to call it something else, to remove it.
 void kept_view(const std::string& name, const Model& model, Actions& actions)
@@ -48,11 +36,11 @@ void kept_view(const std::string& name, const Model& model, Actions& actions)
 
 void kept_views_menu(const Model& model, Actions& actions)
 {
-    if (!ImGui::BeginMenu("Kept views", model.is_open)) return;
+    if (!begin_menu("Kept views", model.is_open)) return;
     shortcut_item("keep_view", model, actions);
     ImGui::Separator();
     for (const auto& [name, camera] : model.session.cameras) {
-        if (name == "window" || !ImGui::BeginMenu(name.c_str())) continue;
+        if (name == "window" || !begin_menu(name.c_str())) continue;
         kept_view(name, model, actions);
         ImGui::EndMenu();
     }
@@ -69,9 +57,6 @@ void sight_items(const Model& model, Actions& actions)
     shortcut_item("axes", model, actions, interaction.axes);
     shortcut_item("probe_label", model, actions, interaction.probe_label);
     shortcut_item("auto_contrast", model, actions);
-    ImGui::Separator();
-    shortcut_item("copy_measurements", model, actions);
-    shortcut_item("clear_measurements", model, actions);
 }
 
 void new_nodes(const Model& model, Actions& actions)

@@ -52,7 +52,9 @@ void help_window(const Model& model, Actions& actions);
 void palette_window(const Model& model, Actions& actions);
 void messages_window(const Model& model, Actions& actions);
 void menu_bar(const Model& model, Actions& actions);
-/// Items of the menu View: views that were kept, what turning goes about, what is drawn over pictures, distances.
+/// The menu item of a shortcut. Where it would do nothing now it is grey and says why.
+void shortcut_item(const char* id, const Model& model, Actions& actions, bool is_checked = false);
+/// Items of the menu View: views that were kept, what turning goes about, what is drawn over pictures.
 void kept_views_menu(const Model& model, Actions& actions);
 void sight_items(const Model& model, Actions& actions);
 /// In the section of tracing: how wide new nodes are.

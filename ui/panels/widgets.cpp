@@ -89,6 +89,23 @@ bool resets(const char* key, Actions& actions)
     return true;
 }
 
+bool begin_menu(const char* label, bool is_enabled)
+{
+    const float height = ImGui::GetMainViewport()->WorkSize.y - 2.0f * ImGui::GetStyle().DisplaySafeAreaPadding.y;
+    ImGui::SetNextWindowSizeConstraints({0.0f, 0.0f}, {FLT_MAX, std::max(height, ImGui::GetFontSize())});
+    const bool is_open = ImGui::BeginMenu(label, is_enabled);
+    if (!is_open) ImGui::GetCurrentContext()->NextWindowData.ClearFlags();  // they would be the next window's
+    return is_open;
+}
+
+void close_menus_by_escape()
+{
+    const ImGuiContext& context = *ImGui::GetCurrentContext();
+    const bool is_menu = !context.OpenPopupStack.empty() &&
+                         context.OpenPopupStack[0].OpenParentId == context.CurrentWindow->IDStack.back();
+    if (is_menu && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) ImGui::ClosePopupToLevel(0, true);
+}
+
 std::string shortened(const std::string& text, float width)
 {
     constexpr const char* DOTS = "...";

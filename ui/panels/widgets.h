@@ -40,6 +40,14 @@ bool is_double_clicked();
 /// sent as well.
 bool resets(const char* key, Actions& actions);
 
+/// ImGui::BeginMenu, no higher than the window below the menu bar: it scrolls instead of opening under the pointer,
+/// where the release of the click that opened it would choose an entry.
+bool begin_menu(const char* label, bool is_enabled = true);
+
+/// Within the main menu bar, after its menus: Escape closes all of them, since one within another would open again
+/// under the pointer.
+void close_menus_by_escape();
+
 /// The text, or as much of its beginning as fits that width, with three dots.
 std::string shortened(const std::string& text, float width);
 

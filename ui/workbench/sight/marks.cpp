@@ -212,7 +212,7 @@ private:
             const glm::dvec2 way(glm::dot(direction, axes_.right), -glm::dot(direction, axes_.up));
             if (glm::length(way) < 0.05) continue;
             line(middle, middle + length * way, AXES[axis]);
-            label(middle + (length + 8.0 * units_) * way, {0.5, 0.5}, std::string(1, "xyz"[axis]), AXES[axis]);
+            label(middle + (length + 8.0 * units_) * way, {0.5, 0.5}, std::string(1, "xyz"[axis]));
         }
     }
 
