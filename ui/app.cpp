@@ -101,10 +101,9 @@ void App::follow_workbench()
     }
     if (bench_->take_quit()) window_.close();
     window_.set_full_screen(bench_->shows_full_screen());
-    if (std::exchange(drew_cut_box_, bench_->shows_cut_box()) != bench_->shows_cut_box())
-        ui_until_s_ = std::max(ui_until_s_, window_.now_s() + AFTERGLOW_S);
+    if (std::exchange(drew_cut_box_, bench_->shows_cut_box()) != bench_->shows_cut_box()) keep_drawing(AFTERGLOW_S);
     if (std::exchange(drawn_messages_, bench_->messages().count()) != bench_->messages().count())
-        ui_until_s_ = std::max(ui_until_s_, window_.now_s() + AFTERGLOW_S);
+        keep_drawing(AFTERGLOW_S);
 }
 
 /// If frames keep failing the window is useless, so the program ends with the reason.
@@ -168,11 +167,19 @@ bool App::refuses_to_close(const std::string& why)
     return true;
 }
 
+/// For so long, and for as many frames as widgets need to find their sizes, however long a frame takes.
+void App::keep_drawing(double for_s)
+{
+    constexpr uint64_t SETTLING_FRAMES = 3;
+    ui_until_s_ = std::max(ui_until_s_, window_.now_s() + for_s);
+    ui_until_frame_ = window_.frames_presented() + SETTLING_FRAMES;
+}
+
 bool App::something_moves() const
 {
-    constexpr uint64_t FIRST_FRAMES = 3;  // windows find their sizes, however long a frame takes
-    if (window_.frames_presented() < FIRST_FRAMES) return true;
-    if (window_.now_s() < ui_until_s_ || report_.has_unanswered() || choosers_are_busy()) return true;
+    if (window_.frames_presented() < ui_until_frame_ || window_.now_s() < ui_until_s_ || report_.has_unanswered() ||
+        choosers_are_busy())
+        return true;
     if (!bench_->is_open()) return false;
     constexpr double STIR_VOXELS = 0.05;
     return bench_->is_stirring() || glm::distance(bench_->document().probe_voxel(), drawn_probe_voxel_) > STIR_VOXELS;
@@ -242,7 +249,7 @@ void App::handle_events(double timeout_s)
 {
     const std::vector<InputEvent> events = window_.wait_events(timeout_s);
     for (const InputEvent& event : events) {
-        ui_until_s_ = std::max(ui_until_s_, window_.now_s() + AFTERGLOW_S);
+        keep_drawing(AFTERGLOW_S);
         const auto* const key = std::get_if<KeyEvent>(&event.what);
         if (key || std::holds_alternative<ButtonEvent>(event.what)) report_.asked(event.time_s);
         if (key) {
@@ -254,7 +261,7 @@ void App::handle_events(double timeout_s)
         bench_->set_pointer(viewport_.pointer());
         apply_all();  // the next event may depend on it: the probe's position, the selection
     }
-    if (window_.has_clicks()) ui_until_s_ = std::max(ui_until_s_, window_.now_s() + AFTERGLOW_S);
+    if (window_.has_clicks()) keep_drawing(AFTERGLOW_S);
     viewport_.wait(window_.now_s(), actions_);
     apply_all();
     const double now = window_.now_s();

@@ -61,6 +61,7 @@ private:
     void draw_strokes() const;
     void write_screen_texts() const;
     Model model() const;
+    void keep_drawing(double for_s);
     bool something_moves() const;
     bool ui_has_mouse(const InputEvent& event) const;
     double next_reason_to_draw_s() const;
@@ -93,6 +94,7 @@ private:
     double next_frame_s_ = 0.0;
     std::optional<double> undrawable_since_s_;  ///< there has been no image to draw in since then, or the last was lost
     double ui_until_s_ = 1.0;                   ///< the interface is drawn at least until then
+    uint64_t ui_until_frame_ = 3;               ///< and until so many frames are presented
     double last_keys_s_ = 0.0;
     uint64_t drawn_revision_ = ~uint64_t(0);
     bool drew_cut_box_ = false;

@@ -54,7 +54,7 @@ void App::follow_appearance()
     appearance_ = wanted;
     set_style(appearance_);
     window_.renew_fonts();
-    ui_until_s_ = std::max(ui_until_s_, window_.now_s() + 0.5);  // panels find their places anew
+    keep_drawing(0.5);  // panels find their places anew
 }
 
 /// After panels or the menu were used by keyboard: otherwise what is framed there would take the next Space.

@@ -359,10 +359,12 @@ void said(const Model& model, const std::string& right, Actions& actions)
     const float width = std::max((unread.empty() ? end : unread_at - gap) - begin, 1.0f);
     ImGui::PushClipRect(at, {at.x + width, at.y + ImGui::GetFrameHeight()}, true);
     ImGui::PushStyleColor(ImGuiCol_Text, is_bad ? ImU32(ERROR_TEXT) : ImGui::GetColorU32(ImGuiCol_Text));
-    ImGui::TextUnformatted(shortened(sentence(is_bad ? "Error: " : "", model.status()), width).c_str());
+    const std::string whole = sentence(is_bad ? "Error: " : "", model.status());
+    const bool fits = ImGui::CalcTextSize(whole.c_str()).x <= width;
+    ImGui::TextUnformatted(fits ? whole.c_str() : shortened(without_folders(whole), width).c_str());
     ImGui::PopStyleColor();
     bool is_clicked = ImGui::IsItemClicked();
-    hint("A click shows all messages.");
+    hint(fits ? "A click shows all messages." : (whole + "\n\nA click shows all messages.").c_str());
     ImGui::PopClipRect();
     if (!unread.empty()) {
         ImGui::SetCursorPos({unread_at, top});

@@ -61,6 +61,18 @@ std::string text_of(const std::optional<Action>& action)
 
 }  // namespace
 
+TEST_CASE("Where there is no room, paths are cut down to their last names")
+{
+    CHECK(without_folders("Saved /scans/leaf/mask.smsk, /scans/leaf/trace.json and /scans/leaf/session.json") ==
+          "Saved .../mask.smsk, .../trace.json and .../session.json");
+    CHECK(without_folders("Opened /scans/a leaf/stem 2.nrrd") == "Opened .../stem 2.nrrd");
+    CHECK(without_folders("/scans/leaf/: there is no volume; try /scans") ==
+          ".../leaf/: there is no volume; try /scans");
+    CHECK(without_folders("3 / 4 of a um/px") == "3 / 4 of a um/px");
+    CHECK(without_folders("/") == "/");
+    CHECK(without_folders("").empty());
+}
+
 TEST_CASE("errors and warnings count as unread until the messages are looked at")
 {
     MessageLog log;
