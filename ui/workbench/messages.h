@@ -59,8 +59,8 @@ private:
     std::array<uint64_t, 3> unread_{};
 };
 
-/// With paths cut down to their last names, for where the whole has no room: "Saved .../leaf.json". A path begins a word,
-/// and ends before " and " or punctuation that a space follows, or with the text.
+/// With paths cut down to their last names, for where the whole has no room: "Saved .../leaf.json". A path begins a
+/// word, and ends before " and " or punctuation that a space follows, or with the text.
 std::string without_folders(const std::string& text);
 
 }  // namespace shvr::ui
