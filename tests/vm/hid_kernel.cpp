@@ -1,15 +1,11 @@
-// Device and host in one: a HID device of the kernel's uhid, in the reference layout, and SHVR's link through hidapi
-// and hidraw. Runs as root in the virtual machine of tools/test_in_vm; `hid_kernel PROFILE TICKS`. Prints figures, a
-// hash of all that was exchanged, and "N passed, N failed" at the end.
+// Device and host in one: HID devices of the kernel's uhid, an arm in the reference layout and a SpaceMouse, and SHVR's
+// link through hidapi and hidraw. Runs as root in the virtual machine of tools/test_in_vm; `hid_kernel PROFILE
+// MOUSE_PROFILE TICKS`. Prints figures, a hash of all that was exchanged, and "N passed, N failed" at the end.
 
-#include <fcntl.h>
-#include <linux/uhid.h>
-#include <poll.h>
-#include <unistd.h>
+#include <sched.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -21,6 +17,7 @@
 
 #include "haptics/hid/hid_device.h"
 #include "haptics/hid/hid_profile.h"
+#include "tests/vm/uhid_device.h"
 
 namespace {
 
@@ -41,49 +38,30 @@ constexpr uint8_t DESCRIPTOR[]{0x06, 0x00, 0xff, 0x09, 0x01, 0xa1, 0x01, 0x15, 0
                                0x08, 0x85, 0x01, 0x95, 0x20, 0x09, 0x01, 0x81, 0x02, 0x85, 0x02, 0x95, 0x10,
                                0x09, 0x02, 0x91, 0x02, 0x85, 0x03, 0x95, 0x10, 0x09, 0x03, 0xb1, 0x02, 0xc0};
 
+// Generic desktop, multi-axis controller: report 1, three places of 16 bits; 2, three turns; 3, two buttons and padding.
+constexpr uint8_t MOUSE_DESCRIPTOR[]{
+    0x05, 0x01, 0x09, 0x08, 0xa1, 0x01, 0xa1, 0x00, 0x85, 0x01, 0x16, 0xa2, 0xfe, 0x26, 0x5e, 0x01,  //
+    0x09, 0x30, 0x09, 0x31, 0x09, 0x32, 0x75, 0x10, 0x95, 0x03, 0x81, 0x06, 0xc0,                    //
+    0xa1, 0x00, 0x85, 0x02, 0x16, 0xa2, 0xfe, 0x26, 0x5e, 0x01, 0x09, 0x33, 0x09, 0x34, 0x09, 0x35,  //
+    0x75, 0x10, 0x95, 0x03, 0x81, 0x06, 0xc0,                                                        //
+    0xa1, 0x02, 0x85, 0x03, 0x05, 0x09, 0x19, 0x01, 0x29, 0x02, 0x15, 0x00, 0x25, 0x01, 0x75, 0x01,  //
+    0x95, 0x02, 0x81, 0x02, 0x95, 0x0e, 0x81, 0x01, 0xc0, 0xc0};
+
 int32_t place_um(uint32_t tick, uint32_t axis)
 {
     return int32_t((tick * (7 + 4 * axis) + 13 * axis) % 40'001) - 20'000;
 }
 
-/// The arm: its thread answers the kernel.
+/// The arm: a device of the reference layout.
 class Arm {
 public:
-    explicit Arm(uint16_t peak_mn) : peak_mn_(peak_mn), descriptor_(::open("/dev/uhid", O_RDWR | O_CLOEXEC))
-    {
-        uhid_event event{};
-        event.type = UHID_CREATE2;
-        uhid_create2_req& create = event.u.create2;
-        std::snprintf(reinterpret_cast<char*>(create.name), sizeof create.name, "SHVR virtual arm");
-        std::snprintf(reinterpret_cast<char*>(create.uniq), sizeof create.uniq, "VM-0001");
-        create.rd_size = sizeof DESCRIPTOR;
-        create.bus = 3;
-        create.vendor = 0x1209;
-        create.product = 0x0001;
-        std::memcpy(create.rd_data, DESCRIPTOR, sizeof DESCRIPTOR);
-        tell(event);
-        thread_ = std::thread(&Arm::run, this);
-    }
-    ~Arm()
-    {
-        is_running_ = false;
-        thread_.join();
-        uhid_event event{};
-        event.type = UHID_DESTROY;
-        tell(event);
-        ::close(descriptor_);
-    }
-    bool is_there() const { return descriptor_ >= 0; }
-
+    explicit Arm(uint16_t peak_mn)
+        : device_({"SHVR virtual arm", "VM-0001", 0x1209, 0x0001, DESCRIPTOR}, feature_report(peak_mn))
+    {}
+    bool is_there() const { return device_.is_there(); }
     void send(uint32_t tick)
     {
-        uhid_event event{};
-        event.type = UHID_INPUT2;
-        uint8_t* const bytes = event.u.input2.data;
-        event.u.input2.size = 33;
-        bytes[0] = 1;
-        bytes[1] = uint8_t(tick >> 8 & 1);
-        bytes[2] = 1;
+        std::array<uint8_t, 33> bytes{1, uint8_t(tick >> 8 & 1), 1};
         const auto put = [&](size_t at, uint32_t value, size_t count) {
             for (size_t i = 0; i < count; ++i) bytes[at + i] = uint8_t(value >> (8 * i));
         };
@@ -91,52 +69,22 @@ public:
         put(5, tick * 1000, 4);
         for (uint32_t axis = 0; axis < 3; ++axis) put(9 + 4 * axis, uint32_t(place_um(tick, axis)), 4);
         put(21, 0x7fff, 2);
-        tell(event);
+        device_.send(bytes);
     }
-    uint32_t outputs() const { return outputs_; }
-    /// The last output report.
-    std::array<uint8_t, 17> last() const
+    uint32_t outputs() const { return device_.outputs(); }
+    std::array<uint8_t, 17> last() const { return device_.last(); }
+
+private:
+    static std::vector<uint8_t> feature_report(uint16_t peak_mn)
     {
-        std::array<uint8_t, 17> bytes;
-        for (size_t i = 0; i < bytes.size(); ++i) bytes[i] = last_[i];
+        std::vector<uint8_t> bytes(17);
+        bytes[0] = 3;
+        bytes[1] = uint8_t(peak_mn);
+        bytes[2] = uint8_t(peak_mn >> 8);
         return bytes;
     }
 
-private:
-    void tell(const uhid_event& event)
-    {
-        if (::write(descriptor_, &event, sizeof event) != ssize_t(sizeof event)) std::printf("uhid refuses an event\n");
-    }
-    void run()
-    {
-        while (is_running_) {
-            pollfd each{descriptor_, POLLIN, 0};
-            if (::poll(&each, 1, 2) <= 0) continue;
-            uhid_event event{};
-            if (::read(descriptor_, &event, sizeof event) <= 0) continue;
-            if (event.type == UHID_OUTPUT) {
-                for (size_t i = 0; i < last_.size(); ++i) last_[i] = event.u.output.data[i];
-                ++outputs_;
-            }
-            if (event.type == UHID_GET_REPORT) {
-                uhid_event answer{};
-                answer.type = UHID_GET_REPORT_REPLY;
-                answer.u.get_report_reply.id = event.u.get_report.id;
-                answer.u.get_report_reply.size = 17;
-                answer.u.get_report_reply.data[0] = 3;
-                answer.u.get_report_reply.data[1] = uint8_t(peak_mn_);
-                answer.u.get_report_reply.data[2] = uint8_t(peak_mn_ >> 8);
-                tell(answer);
-            }
-        }
-    }
-
-    uint16_t peak_mn_;
-    int descriptor_;
-    std::atomic<bool> is_running_{true};
-    std::atomic<uint32_t> outputs_{0};
-    std::array<std::atomic<uint8_t>, 17> last_{};
-    std::thread thread_;
+    UhidDevice device_;
 };
 
 template <class Claim>
@@ -169,6 +117,10 @@ struct Figures {
 Figures run(Arm& arm, HapticDevice& device, uint32_t ticks)
 {
     Figures figures;
+    for (std::vector<double>* times : {&figures.input_us, &figures.round_us}) {
+        times->resize(ticks);  // pages that are touched for the first time would make ticks late
+        times->clear();
+    }
     DeviceState state;
     Clock::time_point due = Clock::now();
     for (uint32_t tick = 1; tick <= ticks; ++tick) {
@@ -206,13 +158,9 @@ void print(const char* what, std::vector<double>& us)
                 us.back());
 }
 
-}  // namespace
-
-int main(int count, char** arguments)
+void check_arm(const HidProfile& profile, uint32_t ticks)
 {
-    if (count != 3) return 2;
-    const std::vector<HidProfile> profiles{load_hid_profile(arguments[1])};
-    const uint32_t ticks = uint32_t(std::atoi(arguments[2]));
+    const std::vector<HidProfile> profiles{profile};
     auto arm = std::make_unique<Arm>(uint16_t(2000));
     check(arm->is_there(), "uhid opens");
     check(comes_true([&] { return !list_hid_devices(profiles).empty(); }), "the device is listed");
@@ -223,7 +171,7 @@ int main(int count, char** arguments)
 
     auto device = open_hid_device(profiles, true);
     check(device != nullptr, "it opens");
-    if (!device) return 1;
+    if (!device) return;
     check(device->caps().peak_force_n == 2.0 && device->caps().outputs_force, "its limits are asked for");
 
     Figures figures = run(*arm, *device, ticks);
@@ -231,6 +179,7 @@ int main(int count, char** arguments)
                 figures.lost_outputs, figures.late);
     print("report to servo", figures.input_us);
     print("report to force", figures.round_us);
+    check(figures.late == 0, "no tick is late");
     check(figures.lost_inputs == 0, "no report is lost");
     check(figures.lost_outputs == 0, "no force is lost");
 
@@ -258,6 +207,67 @@ int main(int count, char** arguments)
     check(comes_true([&] { return (arm->last()[1] & 1) == 0 && arm->last()[5] == 0; }),
           "closing switches the force off");
     std::printf("hash %016llx\n", static_cast<unsigned long long>(figures.hash));
+}
+
+/// Six axes of speed without motors, as by its profile: 60 mm/s at full deflection.
+void check_space_mouse(const HidProfile& profile)
+{
+    const std::vector<HidProfile> profiles{profile};
+    const UhidDevice::Identity identity{"SHVR virtual mouse", "VM-0002", 0x256f, 0xc635, MOUSE_DESCRIPTOR};
+    auto mouse = std::make_unique<UhidDevice>(identity, std::vector<uint8_t>{});
+    const auto is_listed = [&] {
+        return std::ranges::any_of(list_hid_devices(profiles), [&](const HidListing& found) {
+            return found.profile == profile.name && found.serial == "VM-0002" && found.usage_page == 1 &&
+                   found.usage == 8;
+        });
+    };
+    check(comes_true(is_listed), "the mouse is listed with its usage");
+    const auto device = open_hid_device(profiles, true);
+    check(device != nullptr, "the mouse opens");
+    if (!device) return;
+    check(device->caps().rate_control && !device->caps().outputs_force, "it states speeds and has no motors");
+
+    constexpr std::array<uint8_t, 7> RIGHT{1, 0x5e, 0x01}, TURNED{2, 0, 0, 0, 0, 0xa2, 0xfe}, STILL{1};
+    constexpr std::array<uint8_t, 3> PRESSED{3, 1, 0};
+    DeviceState state;
+    const auto reads = [&](const auto& report, const auto& claim) {
+        return comes_true([&] {
+            mouse->send(report);
+            return device->read(state) == ReadResult::fresh && claim();
+        });
+    };
+    check(reads(RIGHT, [&] { return state.rate == glm::dvec3(1.0, 0.0, 0.0); }), "it is pushed to the right");
+    const DeviceState before = state;
+    check(reads(RIGHT, [&] { return state.time_ns > before.time_ns + 100'000'000; }), "it goes on for 0.1 s");
+    const double passed_s = double(state.time_ns - before.time_ns) * 1e-9;
+    const glm::dvec3 way_m = state.position_m - before.position_m;
+    check(std::abs(way_m.x - 0.06 * passed_s) < 1e-4 * passed_s && way_m.y == 0.0 && way_m.z == 0.0,
+          "it moves at 60 mm/s");
+    check(reads(TURNED, [&] { return state.turn_rate == glm::dvec3(0.0, 1.0, 0.0); }), "it is turned about its z axis");
+    check(reads(PRESSED, [&] { return state.buttons == PAINT_BUTTON; }), "its first button paints");
+    check(reads(STILL, [&] { return state.rate == glm::dvec3(0.0); }), "it is let go");
+    check(reads(RIGHT, [&] { return state.rate.x == 1.0; }), "it is pushed again");
+    check(comes_true([&] { return device->read(state) == ReadResult::fresh && state.rate.x == 0.0; }),
+          "it rests where nothing is heard of it");
+
+    mouse.reset();
+    check(comes_true([&] { return device->read(state) == ReadResult::lost; }), "its unplugging is noticed");
+    mouse = std::make_unique<UhidDevice>(identity, std::vector<uint8_t>{});
+    check(comes_true([&] { return device->read(state) == ReadResult::fresh; }), "it is found again");
+    check(state.rate == glm::dvec3(0.0) && state.turn_rate == glm::dvec3(0.0), "and does not move on by itself");
+    check(reads(RIGHT, [&] { return state.rate.x == 1.0; }), "it is read again");
+}
+
+}  // namespace
+
+int main(int count, char** arguments)
+{
+    if (count != 4) return 2;
+    // As the servo runs.
+    const sched_param priority{.sched_priority = 40};
+    check(sched_setscheduler(0, SCHED_FIFO, &priority) == 0, "the host's thread is a real-time one");
+    check_arm(load_hid_profile(arguments[1]), uint32_t(std::atoi(arguments[3])));
+    check_space_mouse(load_hid_profile(arguments[2]));
     std::printf("%d passed, %d failed\n", passed, failed);
     return failed == 0 ? 0 : 1;
 }

@@ -19,7 +19,8 @@ void Workbench::step(int count, const char* done, const char* nothing, Way way)
         show_changes(*command);
         last = command->label;
     }
-    if (steps == 0) fail(document_->annotator.stroke_is_running() ? "A stroke is being painted" : nothing);
+    if (steps == 0 && document_->annotator.stroke_is_running()) fail("A stroke is being painted");
+    if (steps == 0) return say(nothing);
     say(steps == 1 ? sentence(done, ": ", last) : sentence(done, ": ", steps, " steps, the last: ", last));
 }
 
