@@ -16,6 +16,11 @@ SHARED_CONST uint LEAP_DISTANCE_SHIFT = 25u;
 /// Largest distance searched: a jump of 15 cells crosses 60 voxels.
 SHARED_CONST uint LEAP_LIMIT = 15u;
 
+/// So many codes past the range of its cell a sample may be, so that pictures with and without skipping are equal, bit
+/// for bit. Exact sampling is a few ulp off; a device's filter may round its result by a code.
+SHARED_CONST float GUARD_EXACT = 0.02f;
+SHARED_CONST float GUARD_FILTERED = 1.5f;
+
 /// Determines whether a cell is empty under the current transfer function.
 struct OccupancyParams {
     uvec3 cell_begin;  ///< the cells to compute
@@ -25,6 +30,7 @@ struct OccupancyParams {
     float table_upper;
     float table_scale;
     uint table_entries;
+    float guard;          ///< GUARD_EXACT or GUARD_FILTERED
     uint skipping;        ///< 0: every cell counts as occupied
     uint empty_distance;  ///< distance for cells that are not occupied
     uint paint_reach;     ///< voxels, 0 or 1: so far around a painted voxel its group may be seen

@@ -42,6 +42,7 @@ struct BrickLeapParams {
     float table_upper;
     float table_scale;
     uint table_entries;
+    float guard;
     uint skipping;
     uint paint_reach;
 };

@@ -38,4 +38,10 @@ std::string digits_of(double value);
 std::string digits_of(const glm::dvec3& value);  ///< separated by spaces
 std::string digits_of(const glm::i64vec3& value);
 
+/// "1 voxel", "2 voxels"
+inline std::string counted(int64_t count, const char* thing)
+{
+    return std::to_string(count) + ' ' + thing + (count == 1 ? "" : "s");
+}
+
 }  // namespace shvr

@@ -25,21 +25,33 @@ uint64_t DeviceMask::bytes_for(uint64_t painted_bricks)
     return bricks * MASK_BRICK_BYTES + 4 * std::bit_ceil(2 * painted_bricks + 16) * gpu::MASK_ENTRY;
 }
 
-glm::uvec3 DeviceMask::layout_of(uint64_t bricks) const
+/// The atlas for so many bricks; null where no image of the device holds them.
+std::optional<ResourceDesc> DeviceMask::desc_for(uint64_t bricks) const
 {
     const gpu::DeviceTraits& traits = memory_.device().traits();
-    return atlas_layout(bricks + 1, gpu::BRICK_SIZE, traits.limits.maxImageDimension3D, traits.is_cpu);
+    const uint32_t max_side = traits.limits.maxImageDimension3D;
+    const uint64_t slots = std::max(bricks, MASK_FEWEST_BRICKS) + 1;  // one stays unused
+    if (slots > max_atlas_slots(gpu::BRICK_SIZE, max_side)) return std::nullopt;
+    const ResourceDesc desc =
+        image_desc(Format::r8_uint, atlas_layout(slots, gpu::BRICK_SIZE, max_side, traits.is_cpu) * gpu::BRICK_SIZE);
+    return memory_.can_create(desc) ? std::optional(desc) : std::nullopt;
 }
 
-/// Room for `bricks`, and for half as many more where that leaves half of the memory, a sixteenth otherwise.
+/// Room for `bricks`, and for half as many more where that leaves half of the memory, a sixteenth otherwise, and none
+/// where the device's images hold no more.
 void DeviceMask::grow(uint64_t bricks)
 {
     atlas_.reset();
     const bool has_spare = (bricks + bricks / 2) * MASK_BRICK_BYTES <= memory_.device_bytes_left() / 2;
-    const glm::uvec3 slots =
-        layout_of(std::max<uint64_t>(bricks + bricks / (has_spare ? 2 : MASK_SPARE_SHARE), MASK_FEWEST_BRICKS));
-    atlas_ = memory_.create("mask", image_desc(Format::r8_uint, slots * gpu::BRICK_SIZE), gpu::Placement::device,
-                            "what is painted");
+    std::optional<ResourceDesc> desc = has_spare ? desc_for(bricks + bricks / 2) : std::nullopt;
+    if (!desc) desc = desc_for(bricks + bricks / MASK_SPARE_SHARE);
+    if (!desc) desc = desc_for(bricks);
+    if (!desc)
+        throw gpu::MemoryError(sentence("what is painted takes ", bricks,
+                                        " bricks of 32^3 voxels, and an image of this device holds fewer: it is kept "
+                                        "and saved, but not drawn; expected less, or another device (--device)"));
+    const glm::uvec3 slots = desc->texels / gpu::BRICK_SIZE;
+    atlas_ = memory_.create("mask", *desc, gpu::Placement::device, "what is painted");
     free_slots_.clear();
     slots_.clear();
     // The first corner is NO_SLOT. Slots are taken from the end of the list.
@@ -191,6 +203,8 @@ std::vector<uint32_t> DeviceMask::hashed_table(const Mask& mask) const
 
 void DeviceMask::submit(FrameGraph graph)
 {
+    constexpr size_t MOST_IN_FLIGHT = 4;  // each holds an upload
+    if (in_flight_.size() >= MOST_IN_FLIGHT) in_flight_.front().wait();
     std::erase_if(in_flight_, [](const gpu::Submission& submission) { return submission.done(); });
     in_flight_.push_back(executor_.submit(std::move(graph), {.timestamps = false}));
 }

@@ -41,7 +41,7 @@ private:
     void send_bricks(const Mask& mask, std::span<const int64_t> bricks);
     void send_table(const Mask& mask);
     void grow(uint64_t bricks);
-    glm::uvec3 layout_of(uint64_t bricks) const;
+    std::optional<ResourceDesc> desc_for(uint64_t bricks) const;
     void submit(FrameGraph graph);
     std::vector<uint32_t> dense_table(const Mask& mask) const;
     std::vector<uint32_t> hashed_table(const Mask& mask) const;

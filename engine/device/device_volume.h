@@ -153,7 +153,7 @@ public:
     virtual std::vector<Place> places() const = 0;
     virtual uint64_t places_revision() const = 0;
     /// Handles for kernels that work on a region of level 0.
-    virtual VolumeBinding atlas(FrameGraph& graph) const = 0;
+    virtual VolumeBinding atlas(FrameGraph& graph) = 0;
     /// The bricks that overlap a box of voxels; they keep their slots until the next call. Null if some are not on the
     /// device yet; these are loaded before all others. `wait`: reads them now, and fails if that is not possible.
     virtual std::optional<RegionBricks> region(const VoxelBox& voxels, bool wait) = 0;

@@ -11,8 +11,8 @@ bool shows_the_same(const LeapGridInput& a, const LeapGridInput& b)
 {
     const auto members = [](const LeapGridInput& look) {
         const gpu::OccupancyParams& p = look.params;
-        return std::tie(p.brick_counts, p.table_lower, p.table_upper, p.table_scale, p.table_entries, p.skipping,
-                        p.paint_reach, look.visible_intervals, look.visible_groups);
+        return std::tie(p.brick_counts, p.table_lower, p.table_upper, p.table_scale, p.table_entries, p.guard,
+                        p.skipping, p.paint_reach, look.visible_intervals, look.visible_groups);
     };
     return members(a) == members(b);
 }

@@ -430,6 +430,7 @@ void Occlusion::add_values(FrameGraph& graph, const VolumeBinding& volume, Occlu
     input.params.table_upper = look_->visibility.params.table_upper;
     input.params.table_scale = look_->visibility.params.table_scale;
     input.params.table_entries = look_->visibility.params.table_entries;
+    input.params.guard = look_->visibility.params.guard;
     input.params.rays = look_->rays;
     // For radii below a voxel there are no near taps; the tables need some stretch all the same.
     const double near_stretch = input.taps.taps.empty() ? 1.0 : input.taps.near_stretch;

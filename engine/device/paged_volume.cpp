@@ -251,8 +251,9 @@ gpu::BrickLeapJob PagedVolume::job_of(const BrickKey& key, uint32_t slot) const
             .mask_slot = is_painted(key)};
 }
 
-VolumeBinding PagedVolume::atlas(FrameGraph& graph) const
+VolumeBinding PagedVolume::atlas(FrameGraph& graph)
 {
+    atlas_.flush();
     return {.atlas = atlas_.import_codes(graph), .filtered = options_.filtered};
 }
 
@@ -260,6 +261,7 @@ VolumeBinding PagedVolume::prepare(FrameGraph& graph, const DeviceMask& mask, co
                                    bool feedback)
 {
     SHVR_CHECK(tree_ != nullptr, "nothing is looked at");
+    atlas_.flush();
     VolumeBinding volume{.atlas = atlas_.import_codes(graph),
                          .cell_ranges = atlas_.import_cell_ranges(graph),
                          .brick_counts = glm::uvec3(brick_counts(info().size)),

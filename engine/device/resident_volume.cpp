@@ -324,6 +324,7 @@ LeapGridInput ResidentVolume::leap_input(const std::optional<MaskBinding>& paint
                        .table_upper = visibility_.params.table_upper,
                        .table_scale = visibility_.params.table_scale,
                        .table_entries = visibility_.params.table_entries,
+                       .guard = visibility_.params.guard,
                        .skipping = visibility_.params.skipping,
                        .paint_reach = visibility_.params.paint_reach},
             .changed = {},

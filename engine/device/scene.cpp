@@ -368,7 +368,9 @@ std::vector<Scene::Changed> Scene::take_changed()
 
 Visibility Scene::visibility_of(const Look& look)
 {
-    return tables_.visibility_of(look, volume_->window());
+    Visibility visibility = tables_.visibility_of(look, volume_->window());
+    visibility.params.guard = filters(traits(), options_.sampling) ? gpu::GUARD_FILTERED : gpu::GUARD_EXACT;
+    return visibility;
 }
 
 double Scene::gradient_fade_codes(const Light& light) const

@@ -86,9 +86,9 @@ bool RegionQuery::ask(const PaintOp& op, std::vector<RegionAt> regions, Wait wai
     const VolumeBinding atlas = volume.atlas(graph);
     for (const RegionAt& at : regions) {
         const gpu::RegionParams params = region_params(at, op, threshold_code);
-        graph.read_back(add_brush(graph, atlas, op.brush, {params, *bricks, at.region.rows}), options_.name);
+        graph.read_back(add_brush(graph, atlas, op.brush, {params, *bricks, at.region.rows}), name_);
     }
-    frame_ = renderer_.executor().submit(std::move(graph), {.timestamps = options_.timestamps});
+    frame_ = renderer_.executor().submit(std::move(graph), {});
     regions_ = std::move(regions);
     return true;
 }

@@ -39,13 +39,8 @@ struct RegionAnswer {
 class RegionQuery {
 public:
     enum class Wait { no, for_bricks };
-    struct Options {
-        const char* name = "";    ///< of the read-backs, in profiles
-        bool timestamps = false;  ///< whether `gpu_ms` is measured
-    };
-
-    explicit RegionQuery(Renderer& renderer) : renderer_(renderer) {}
-    RegionQuery(Renderer& renderer, const Options& options) : renderer_(renderer), options_(options) {}
+    /// `name`: of the read-backs, in profiles.
+    explicit RegionQuery(Renderer& renderer, const char* name = "") : renderer_(renderer), name_(name) {}
 
     /// Queries which voxels of `regions` (at least one) `op` selects, by its brush, threshold and connectivity. Drops
     /// an earlier query. If bricks of the regions are not on the device yet, either reads them, or submits nothing and
@@ -63,7 +58,7 @@ public:
 
 private:
     Renderer& renderer_;
-    Options options_;
+    const char* name_;
     std::vector<RegionAt> regions_;
     gpu::Submission frame_;
     double gpu_ms_ = 0.0;

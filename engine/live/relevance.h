@@ -37,9 +37,7 @@ class Relevance {
 public:
     static constexpr int64_t SIDE = 64, LARGE_SIDE = 128;  ///< voxels
 
-    explicit Relevance(Renderer& renderer)
-        : renderer_(renderer), query_(renderer, {.name = "mirror relevance", .timestamps = true})
-    {}
+    explicit Relevance(Renderer& renderer) : renderer_(renderer), query_(renderer, "mirror relevance") {}
 
     /// Queries the cube around a point (voxels), clipped to the volume. Drops an answer not yet taken. Submits nothing
     /// while bricks of the cube are being loaded. Fails where the point is not finite.

@@ -269,15 +269,19 @@ bool View::submit_occlusion()
     const Sight& sight = *shown_sight_;
     if (sight.shot.is_slice) return false;
     if (!sight.look.light.occlusion.automatic && !occlusion_is_asked_for_) return false;
-    std::optional<FrameGraph> slice =
-        next_occlusion(scene(), sight.look, sight.shot.camera, {.bricks = bricks, .cell_bricks = 8 * bricks});
+    constexpr double CELL_BRICKS = 8.0;  // cost about what the values of one brick do
+    const Occlusion::Counts before = scene().occlusion().counts();
+    std::optional<FrameGraph> slice = next_occlusion(scene(), sight.look, sight.shot.camera,
+                                                     {.bricks = bricks, .cell_bricks = size_t(CELL_BRICKS) * bricks});
     if (!slice) {
         occlusion_is_asked_for_ = false;
         patch_is_dirty_ = patch_is_dirty_ || occlusion_was_renewed_;
         occlusion_was_renewed_ = false;
         return false;
     }
-    submit(std::move(*slice), {.purpose = Purpose::preparation, .pace = &occlusion_, .units = double(bricks)});
+    const Occlusion::Counts& after = scene().occlusion().counts();  // it may be less than was asked for
+    const double units = double(after.values - before.values) + double(after.cells - before.cells) / CELL_BRICKS;
+    submit(std::move(*slice), {.purpose = Purpose::preparation, .pace = &occlusion_, .units = units});
     return true;
 }
 

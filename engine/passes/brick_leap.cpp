@@ -19,7 +19,7 @@ bool Visibility::shows(double lower_code, double upper_code) const
     const double lower = double(params.table_lower), upper = double(params.table_upper);
     if (params.skipping == 0) return true;
     // One code more on each side than the kernels' guard: nothing visible may be excluded here.
-    const double from = lower_code - 1.0, to = upper_code + 1.0;
+    const double beside = 1.0 + double(params.guard), from = lower_code - beside, to = upper_code + beside;
     if (params.table_entries < 2 || to < lower || from > upper) return false;
     const double last = double(params.table_entries - 1);
     const auto interval = [&](double code) {
@@ -32,7 +32,7 @@ bool operator==(const Visibility& a, const Visibility& b)
 {
     const auto members = [](const Visibility& v) {
         return std::tie(v.params.table_lower, v.params.table_upper, v.params.table_scale, v.params.table_entries,
-                        v.params.skipping, v.params.paint_reach, v.visible_intervals, v.visible_groups);
+                        v.params.guard, v.params.skipping, v.params.paint_reach, v.visible_intervals, v.visible_groups);
     };
     return members(a) == members(b);
 }

@@ -217,9 +217,10 @@ uint64_t rays_cut_short(const std::vector<gpu::PassReport>& passes)
 
 std::string cut_short_sentence(uint64_t rays, const Look& look)
 {
-    return sentence(rays,
-                    " rays stop before their end, because they take more samples than the device draws; expected a ",
-                    "render.step_voxels above ", look.render.step_voxels, ", or a smaller box of the cutting planes");
+    return sentence(rays == 1 ? "1 ray stops before its end, because it takes"
+                              : sentence(rays, " rays stop before their end, because they take"),
+                    " more samples than the device draws; expected a render.step_voxels above ",
+                    look.render.step_voxels, ", or a smaller box of the cutting planes");
 }
 
 double look_at(Scene& scene, const Look& look, const Shot& shot, const PicturePart& part)

@@ -3,9 +3,7 @@
 bool transfer_function_shows(uint range)
 {
     const float lower = float(range & 0xffffu), upper = float(range >> 16);
-    // The ray caster's own rounding may move a sample a few ulp past the cell's range. The guard includes it, so that
-    // pictures with and without skipping are equal, bit for bit.
-    const float guard = 0.02;   // codes
+    const float guard = params.guard;   // leap.h
     if (params.table_entries < 2u || upper + guard < params.table_lower || lower - guard > params.table_upper)
         return false;
     const float last = float(params.table_entries - 1u);

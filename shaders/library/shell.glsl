@@ -6,6 +6,7 @@
 // The inside state of a ray is carried from cell to cell: a crossing lost to rounding at a border is found at the start
 // of the next cell, so there are neither holes nor duplicates. Every variable that outlives an iteration is carried
 // through the loop, since lanes that leave early keep no other.
+#include "voxel_code.glsl"
 
 // Reference lengths. A cell with a shorter piece of the ray counts as its neighbour; a thinner shell is ignored. Far
 // along a ray two ulps at least, so that every search goes on.
@@ -64,15 +65,40 @@ Cell cell_at(const RaycastParams params, const Ray ray, vec3 position)
     return cell;
 }
 
-Density density_in(const Cell cell, vec3 position)
+vec3 fraction_in(const Cell cell, vec3 position)
 {
-    const vec3 fraction = clamp(position / cell.scale - 0.5 - cell.corner, 0.0, 1.0);
-    return density_at(ivec3(cell.corner) + cell.to_atlas, fraction);
+    return clamp(position / cell.scale - 0.5 - cell.corner, 0.0, 1.0);
 }
 
-float above_threshold(const RaycastParams params, const Ray ray, const Cell cell, float s)
+// The codes at a cell's corners, x fastest: loaded once for the four values that a cubic needs. These are never a
+// sampler's, which rounds its weights, commonly to 8 bits: a cubic through such values turns where the field does not.
+struct Corners {
+    float v[8];
+};
+
+Corners corners_of(const Cell cell)
 {
-    return value_of(density_in(cell, position_at(params, ray, s))) - params.shell_code;
+    if (COUNT_WORK != 0u) density_reads += 8u;
+    const ivec3 lower = ivec3(cell.corner) + cell.to_atlas;
+    Corners corners;
+    for (int i = 0; i < 8; ++i)
+        corners.v[i] = code_at(lower + ivec3(i & 1, i >> 1 & 1, i >> 2));
+    return corners;
+}
+
+float plane_value(float a, float b, float c, float d, vec2 fraction)
+{
+    const float low = a + (b - a) * fraction.x;
+    const float high = c + (d - c) * fraction.x;
+    return low + (high - low) * fraction.y;
+}
+
+float above_threshold(const RaycastParams params, const Ray ray, const Cell cell, const Corners corners, float s)
+{
+    const vec3 f = fraction_in(cell, position_at(params, ray, s));
+    const float v[8] = corners.v;
+    const float low = plane_value(v[0], v[1], v[2], v[3], f.xy), high = plane_value(v[4], v[5], v[6], v[7], f.xy);
+    return low + (high - low) * f.z - params.shell_code;
 }
 
 float cubic(vec4 c, float u)
@@ -115,10 +141,11 @@ void search_shell(const RaycastParams params, const Ray ray, inout Shell shell)
         bool is_inside = false;
         float found = NO_SHELL;
         if (cell.is_there) {
-            const float g0 = above_threshold(params, ray, cell, shell.from);
-            const float g1 = above_threshold(params, ray, cell, shell.from + extent / 3.0);
-            const float g2 = above_threshold(params, ray, cell, shell.from + extent * (2.0 / 3.0));
-            const float g3 = above_threshold(params, ray, cell, to);
+            const Corners corners = corners_of(cell);
+            const float g0 = above_threshold(params, ray, cell, corners, shell.from);
+            const float g1 = above_threshold(params, ray, cell, corners, shell.from + extent / 3.0);
+            const float g2 = above_threshold(params, ray, cell, corners, shell.from + extent * (2.0 / 3.0));
+            const float g3 = above_threshold(params, ray, cell, corners, to);
             const vec4 c = vec4(g0, -5.5 * g0 + 9.0 * g1 - 4.5 * g2 + g3, 9.0 * g0 - 22.5 * g1 + 18.0 * g2 - 4.5 * g3,
                                 -4.5 * g0 + 13.5 * g1 - 13.5 * g2 + 4.5 * g3);
             const vec2 turns = turning_points(c);
@@ -179,7 +206,7 @@ Shell begin_shell(const RaycastParams params, const Ray ray, float begin, float 
     shell.waits = false;
     if (shell.from < 0.0 && start < shell.limit) {
         const Cell cell = cell_at(params, ray, position_at(params, ray, start + hair_at(start)));
-        shell.is_inside = cell.is_there && above_threshold(params, ray, cell, start) >= 0.0;
+        shell.is_inside = cell.is_there && above_threshold(params, ray, cell, corners_of(cell), start) >= 0.0;
         shell.waits = cell.is_missing;
         shell.from = cell.is_missing ? -1.0 : start;
     }
@@ -196,7 +223,8 @@ bool shell_waits(const RaycastParams params, const Shell shell, float s, vec4 su
 // Colour and opacity of a crossing in a cell, lit from both sides.
 vec4 shell_look(const RaycastParams params, const Ray ray, const Cell cell, vec3 position)
 {
-    const vec3 slope = gradient_of(density_in(cell, position)) * params.inverse_spacing;
+    const Density density = density_at(ivec3(cell.corner) + cell.to_atlas, fraction_in(cell, position));
+    const vec3 slope = gradient_of(density) * params.inverse_spacing;
     const vec3 along = ray.direction * params.spacing;
     const float square = dot(slope, slope);
     const vec3 normal = square > 0.0 ? slope * (inversesqrt(square) * (dot(slope, along) > 0.0 ? -1.0 : 1.0)) : -along;

@@ -36,6 +36,7 @@ struct OcclusionBakeParams {
     float table_upper;
     float table_scale;
     uint table_entries;
+    float guard;  ///< leap.h
     uint aprons[OCCLUSION_SIZES];
     uvec3 cell_counts;  ///< of the leap grid
     /// The nearest first; unused ones have a stretch of 0.

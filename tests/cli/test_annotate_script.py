@@ -33,7 +33,7 @@ class Script(CliTest):
         text = json.dumps(self.dab(1)) + "\n" + json.dumps({"op": "expect", "voxels_in_group": {"1": 1}}) + "\n"
         result = self.pipe(text)
         self.assertEqual((result.returncode, result.stdout), (0, ""), result.stderr)
-        self.assertIn("standard input: 2 commands, 1 voxels changed, 1 steps not saved", result.stderr)
+        self.assertIn("standard input: 2 commands, 1 voxel changed, 1 step not saved", result.stderr)
         wrong = self.pipe(text + '{"op":"pant"}\n')  # checked as a whole
         self.assertEqual(wrong.returncode, 1)
         self.assertIn("shvr: standard input:3: key op", wrong.stderr)
@@ -53,7 +53,7 @@ class Script(CliTest):
                 if not line.startswith("warning: ") and not PROGRESS.search(line)]
         self.assertEqual([line.split(": ", 1)[1] for line in said],
                          [f"saved {self.folder / 'paint.mask'}", f"saved {self.folder / 'paint.graphml'}",
-                          "3 commands, 1 voxels changed, 0 steps not saved"])
+                          "3 commands, 1 voxel changed, 0 steps not saved"])
         self.assertEqual(self.annotate([self.dab(2)], "--quiet").stderr, "")
         said = self.annotate(operations, "--verbose").stderr
         self.assertIn("script.jsonl:1: The stroke changed nothing: no voxel here is at or above the paint threshold, or "

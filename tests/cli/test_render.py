@@ -158,7 +158,7 @@ class Render(CliTest):
                        {"intensity": 255, "color": "#ffffff", "opacity": 1e-5}]})
         picture = self.folder / "a.png"
         render = ["render", session, "-o", picture, "--size", "1x1", "--camera", "left", "--set", "render.step_voxels=0.0001"]
-        self.check_refused(*render, says=["incomplete", "1 rays stop before their end", "render.step_voxels"])
+        self.check_refused(*render, says=["incomplete", "1 ray stops before its end", "render.step_voxels"])
         self.assertFalse(picture.exists())
         result = self.check_json(*render, "--allow-incomplete")
         self.assertIs(result["complete"], False)

@@ -76,11 +76,12 @@ Members surface_params()
 
 Members occupancy_params()
 {
-    return {MEMBER(OccupancyParams, cell_begin),     MEMBER(OccupancyParams, cell_end),
-            MEMBER(OccupancyParams, brick_counts),   MEMBER(OccupancyParams, table_lower),
-            MEMBER(OccupancyParams, table_upper),    MEMBER(OccupancyParams, table_scale),
-            MEMBER(OccupancyParams, table_entries),  MEMBER(OccupancyParams, skipping),
-            MEMBER(OccupancyParams, empty_distance), MEMBER(OccupancyParams, paint_reach)};
+    return {MEMBER(OccupancyParams, cell_begin),    MEMBER(OccupancyParams, cell_end),
+            MEMBER(OccupancyParams, brick_counts),  MEMBER(OccupancyParams, table_lower),
+            MEMBER(OccupancyParams, table_upper),   MEMBER(OccupancyParams, table_scale),
+            MEMBER(OccupancyParams, table_entries), MEMBER(OccupancyParams, guard),
+            MEMBER(OccupancyParams, skipping),      MEMBER(OccupancyParams, empty_distance),
+            MEMBER(OccupancyParams, paint_reach)};
 }
 
 Members region_params()
@@ -95,7 +96,8 @@ Members brick_leap_params()
 {
     return {MEMBER(BrickLeapParams, table_lower), MEMBER(BrickLeapParams, table_upper),
             MEMBER(BrickLeapParams, table_scale), MEMBER(BrickLeapParams, table_entries),
-            MEMBER(BrickLeapParams, skipping),    MEMBER(BrickLeapParams, paint_reach)};
+            MEMBER(BrickLeapParams, guard),       MEMBER(BrickLeapParams, skipping),
+            MEMBER(BrickLeapParams, paint_reach)};
 }
 
 Members brick_leap_jobs()
@@ -113,9 +115,9 @@ Members occlusion_bake_params()
             MEMBER(OcclusionBakeParams, reach),           MEMBER(OcclusionBakeParams, grow),
             MEMBER(OcclusionBakeParams, table_lower),     MEMBER(OcclusionBakeParams, table_upper),
             MEMBER(OcclusionBakeParams, table_scale),     MEMBER(OcclusionBakeParams, table_entries),
-            MEMBER(OcclusionBakeParams, aprons),          MEMBER(OcclusionBakeParams, cell_counts),
-            MEMBER(OcclusionBakeParams, near_taps),       MEMBER(OcclusionBakeParams, far_taps),
-            MEMBER(OcclusionBakeParams, far_exponents)};
+            MEMBER(OcclusionBakeParams, guard),           MEMBER(OcclusionBakeParams, aprons),
+            MEMBER(OcclusionBakeParams, cell_counts),     MEMBER(OcclusionBakeParams, near_taps),
+            MEMBER(OcclusionBakeParams, far_taps),        MEMBER(OcclusionBakeParams, far_exponents)};
 }
 
 Members occlusion_gather_params()

@@ -5,8 +5,8 @@
 //
 // What a driver may refuse is refused as a driver does: memory of a heap that is full, allocations beyond their number.
 // What a program must not ask for is refused with VK_ERROR_INITIALIZATION_FAILED and logged: images and buffers that
-// are too large, memory mapped that cannot be, timestamps that there are not. All memory types are the driver's first
-// one that a host can map. Any thread.
+// are too large, memory mapped that cannot be, timestamps that there are not. Kernels read beside images, so a device
+// without robustImageAccess is logged. All memory types are the driver's first one that a host can map. Any thread.
 
 #include <algorithm>
 #include <cstdio>
@@ -308,6 +308,9 @@ struct Limits {
     /// Without the extension that the driver may not have.
     static VkDeviceCreateInfo device_info(const VkDeviceCreateInfo& info)
     {
+        const auto* const asked = chained<VkPhysicalDeviceVulkan13Features>(
+            const_cast<void*>(info.pNext), VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
+        if (!asked || !asked->robustImageAccess) violated("reads beside images, as robustImageAccess is off");
         static thread_local std::vector<const char*> kept;
         kept.assign(info.ppEnabledExtensionNames, info.ppEnabledExtensionNames + info.enabledExtensionCount);
         std::erase_if(kept,

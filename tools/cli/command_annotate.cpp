@@ -4,6 +4,7 @@
 
 #include "engine/annotation/script/script.h"
 #include "engine/annotation/work/hold.h"
+#include "engine/base/text.h"
 #include "tools/cli/cli.h"
 #include "ui/workbench/workbench.h"
 
@@ -183,9 +184,9 @@ void run_annotate(const AnnotateCommandOptions& options)
     Json taken_from = Json::object();
     for (const auto& [group, voxels] : replay.taken_from) taken_from[std::to_string(group)] = voxels;
     if (!options.common.json)
-        say(options.common,
-            sentence(name, ": ", script.size(), script.size() == 1 ? " command, " : " commands, ",
-                     replay.voxels_changed, " voxels changed, ", kept, annotator.work().unsaved(), " steps not saved"));
+        say(options.common, sentence(name, ": ", counted(int64_t(script.size()), "command"), ", ",
+                                     counted(int64_t(replay.voxels_changed), "voxel"), " changed, ", kept,
+                                     counted(int64_t(annotator.work().unsaved()), "step"), " not saved"));
     else
         print({{"commands", script.size()},
                {"voxels_changed", replay.voxels_changed},

@@ -10,6 +10,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/base/image_metrics.h"
+#include "engine/device/device_mask.h"
 #include "engine/live/view.h"
 #include "tests/support/gpu.h"
 
@@ -49,6 +50,16 @@ private:
 
 constexpr VolumeStatistics BYTES{.minimum = 0.0, .maximum = 255.0};
 constexpr uint64_t MIB = uint64_t{1} << 20;
+
+/// A voxel is painted in each of so many bricks.
+Mask mask_of(size_t bricks)
+{
+    Mask mask({32 * 32, 32 * 32, 32});
+    for (size_t i = 0; i < bricks; ++i)
+        mask.apply({.brick = int64_t(i), .runs = {{.first = 5, .last = 5, .before = 0, .after = 3}}},
+                   Direction::forwards);
+    return mask;
+}
 
 }  // namespace
 
@@ -125,6 +136,22 @@ TEST_CASE("small buffers share allocations, of which a device may allow few")
     CHECK(device->memory().allocations_made() == made);
     kept.clear();
     CHECK(device->memory().allocations() - before <= 1);  // one is kept for the next small buffer
+}
+
+TEST_CASE("paint is drawn as long as it fits, though there is no room for more of it")
+{
+    On device("minimum");  // images of 256^3: 512 bricks, one of which stays unused
+    for (const size_t bricks : {size_t(340), size_t(400), size_t(511)}) {
+        CAPTURE(bricks);
+        const Mask mask = mask_of(bricks);
+        DeviceMask on_device(device->executor(), device->memory(), false);
+        on_device.update(mask, mask.painted_bricks());
+        for (const int64_t brick : mask.painted_bricks()) CHECK(on_device.slot_of(brick) != gpu::NO_SLOT);
+    }
+    const Mask mask = mask_of(512);
+    DeviceMask on_device(device->executor(), device->memory(), false);
+    CHECK_THROWS_AS(on_device.update(mask, mask.painted_bricks()), gpu::MemoryError);
+    CHECK(on_device.is_stale());
 }
 
 TEST_CASE("what is larger than the device allows is refused in words, and can be asked before")

@@ -104,7 +104,7 @@ TEST_CASE_FIXTURE(LongRays, "a ray that cannot be drawn to its end makes the pic
     CHECK_FALSE(picture.complete);
     REQUIRE(picture.warnings.size() == 1);
     CHECK(picture.warnings[0] ==
-          "1 rays stop before their end, because they take more samples than the device draws; expected a "
+          "1 ray stops before its end, because it takes more samples than the device draws; expected a "
           "render.step_voxels above 2e-06, or a smaller box of the cutting planes");
     const Picture whole = renderer().render(session_of(1e-3, 0.01, {1, 1}), camera);
     CHECK(whole.complete);

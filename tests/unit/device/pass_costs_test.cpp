@@ -22,6 +22,14 @@ TEST_CASE("a pass that never ran is taken for slow, one that did for what it too
     CHECK(costs.ms("raycast", TILE, true) == doctest::Approx(0.5));
 }
 
+TEST_CASE("a few threads tell how long one takes, not how many a device does at once")
+{
+    gpu::PassCosts costs;
+    costs.learn("raycast", 64, 0.1);
+    CHECK(costs.ms("raycast", 1920 * 1080, true) < gpu::MAX_SUBMISSION_MS);
+    CHECK(costs.ms("raycast", 4096, true) == doctest::Approx(0.1));
+}
+
 TEST_CASE("a pace is the slowest of the last eight graphs")
 {
     Pace pace(2.0);
