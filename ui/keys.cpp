@@ -1,6 +1,7 @@
 #include "ui/keys.h"
 
 #include <algorithm>
+#include <cctype>
 #include <functional>
 
 #include <GLFW/glfw3.h>
@@ -67,11 +68,16 @@ Chord chord_with(std::string key, int mods)
 std::vector<const Shortcut*> shortcuts_for(const KeyEvent& event, int mods, const Keymap& keymap)
 {
     std::vector<const Shortcut*> found;
-    for (const bool is_by_position : {false, true}) {
-        const std::string key = is_by_position ? name_at_place(event.key) : name_in_layout(event);
+    const auto add = [&](const std::string& key, bool is_by_position) {
         for (const Shortcut* shortcut : keymap.shortcuts_for(chord_with(key, mods)))
             if (shortcut->is_by_position == is_by_position) found.push_back(shortcut);
-    }
+    };
+    const std::string in_layout = name_in_layout(event), at_place = name_at_place(event.key);
+    add(in_layout, false);
+    add(at_place, true);
+    // What an American keyboard has there and this one perhaps nowhere without Shift: brackets under German umlauts.
+    const bool is_letter = in_layout.size() == 1 && std::isalnum(static_cast<unsigned char>(in_layout[0]));
+    if (found.empty() && !is_letter && in_layout != at_place) add(at_place, false);
     return found;
 }
 

@@ -77,6 +77,16 @@ void fields(Fields& f, ExportTask& task)
     f.path("metrics", task.metrics, {.meaning = "counts, lengths, angles, radii, topology: .csv", .standard = "none"});
 }
 
+std::vector<std::filesystem::path> replaced_files(const ExportTask& task)
+{
+    std::vector<std::filesystem::path> found;
+    for (const auto& path : {task.mask, task.offset, task.trace, task.mesh, task.metrics}) {
+        std::error_code ignored;
+        if (!path.empty() && std::filesystem::exists(path, ignored)) found.push_back(path);
+    }
+    return found;
+}
+
 AnnotationSnapshot::AnnotationSnapshot(const AnnotationView& view)
     : volume_(view.volume),
       mask_(view.mask),

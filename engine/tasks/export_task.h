@@ -35,6 +35,8 @@ struct ExportTask {
     OptionNames names = OptionNames::keys;  ///< in messages; not an option
 };
 void fields(Fields& f, ExportTask& task);
+/// Files that are there already, which the task would replace.
+std::vector<std::filesystem::path> replaced_files(const ExportTask& task);
 
 /// What is exported, which must stay as it is until `run` returns.
 struct AnnotationView {

@@ -165,7 +165,7 @@ void trace_list_panel(const Model& model, Actions& actions)
 {
     if (model.trace.nodes().empty()) {
         ImGui::TextWrapped(
-            "Nothing is traced yet. Choose the tool Trace, then N or the right mouse button adds nodes.");
+            "Nothing is traced yet. Choose the tool Trace: a click then adds a node, linked with the selected one.");
         return;
     }
     trace_lists.list.update(model.trace, trace_lists.order, trace_lists.is_descending);

@@ -205,7 +205,9 @@ void active_group(const Model& model, Actions& actions)
 /// What the buttons do now, as far as there is room; all of it when the mouse is over it.
 void mouse_words(const Model& model)
 {
-    const std::string words = mouse_in_words(model.tool());
+    const bool is_over_pane = model.pointer && model.pointer->pane < model.panes.size();
+    const std::string words =
+        mouse_in_words(model.tool(), is_over_pane ? model.panes[model.pointer->pane].pane.kind : Pane::Kind::main);
     ImGui::SameLine(0.0f, ImGui::GetFontSize());
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("Mouse  %s", words.c_str());

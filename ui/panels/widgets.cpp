@@ -134,7 +134,7 @@ bool covers(const glm::dvec2& at)
 
 void hint(const char* text)
 {
-    if (!ImGui::IsItemHovered()) return;
+    if (!ImGui::IsItemHovered() || ImGui::IsItemActive()) return;  // it would cover what is being dragged
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(24.0f * ImGui::GetFontSize());
     ImGui::TextUnformatted(text);

@@ -404,12 +404,14 @@ private:
     std::optional<std::filesystem::path> wanted_save_;
     double stroke_progress_s_ = 0.0;  ///< when the last of its bricks came
     uint64_t stroke_uploads_ = 0;
-    std::string unpainted_;            ///< why a part of the stroke before the save was not painted
-    std::string save_failure_;         ///< of the last save; empty: it went well
-    Work::Saved saved_;                ///< by the last save
-    bool has_tried_view_ = false;      ///< that alone is no reason to stay
-    bool is_leaving_ = false;          ///< that a save fails is a reason to stay
-    std::set<Jobs::Number> copies_;    ///< being written by a saver
+    std::string unpainted_;           ///< why a part of the stroke before the save was not painted
+    std::string save_failure_;        ///< of the last save; empty: it went well
+    Work::Saved saved_;               ///< by the last save
+    bool has_tried_view_ = false;     ///< that alone is no reason to stay
+    bool is_leaving_ = false;         ///< that a save fails is a reason to stay
+    std::set<Jobs::Number> copies_;   ///< being written by a saver
+    std::set<Jobs::Number> writers_;  ///< jobs that write what somebody asked for: leaving waits for them
+    bool told_of_writers_ = false;
     bool reopens_when_saved_ = false;  ///< with the spacing of the session
     std::vector<std::string> recovered_;
     std::unique_ptr<Candidate> candidate_;

@@ -44,21 +44,21 @@ void Workbench::act(const ExportTask& task)
     check(task);
     check(task, view);
     auto snapshot = std::make_shared<AnnotationSnapshot>(view);
-    jobs_.start("exporting", [this, task, snapshot](ProgressReporter& reporter) -> Jobs::Completion {
+    writers_.insert(jobs_.start("exporting", [this, task, snapshot](ProgressReporter& reporter) -> Jobs::Completion {
         ExportResult result = run(task, snapshot->view(), reporter);
         return [this, result = std::move(result)] {
             say("Exported " + joined(result.written, ", ") +
                     (result.left_out.empty() ? "" : "; " + joined(result.left_out, "; ")),
                 result.left_out.empty() ? Weight::done : Weight::warning);
         };
-    });
+    }));
 }
 
 /// The project is opened when it is there.
 void Workbench::act(const ImportTask& task)
 {
     check(task);
-    jobs_.start("importing " + short_name(task.volume), [this, task](ProgressReporter& reporter) -> Jobs::Completion {
+    const auto import = [this, task](ProgressReporter& reporter) -> Jobs::Completion {
         ImportTask wanted = task;
         wanted.program = "shvr view";
         const ImportResult result = run(wanted, reporter);
@@ -66,7 +66,8 @@ void Workbench::act(const ImportTask& task)
             for (const std::string& warning : warnings) say(warning, Weight::warning);
             act(Open{project});
         };
-    });
+    };
+    writers_.insert(jobs_.start("importing " + short_name(task.volume), import));
 }
 
 void Workbench::act(const LabelTask& task)
@@ -75,14 +76,15 @@ void Workbench::act(const LabelTask& task)
     const std::shared_ptr<const VolumeSource> source = document_->source;
     check(task, *source);
     const std::string name = document_->volume().name;
-    jobs_.start("labelling " + name, [this, task, source, name](ProgressReporter& reporter) -> Jobs::Completion {
+    const auto label = [this, task, source, name](ProgressReporter& reporter) -> Jobs::Completion {
         const Components::Counts counts = run(task, *source, name, reporter).counts;
         return [this, counts, task] {
             say(sentence(counts.found, " connected parts at or above ", task.threshold, ", the largest of ",
                          counts.largest_voxels, " voxels",
                          task.output.empty() ? "" : "; labels are in " + task.output.string()));
         };
-    });
+    };
+    writers_.insert(jobs_.start("labelling " + name, label));
 }
 
 void Workbench::act(const EvaluateTask& task)

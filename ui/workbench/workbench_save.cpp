@@ -36,6 +36,7 @@ void Workbench::follow_jobs()
         end_save(job);
     }
     for (const Jobs::Finished& job : jobs_.finish()) {
+        writers_.erase(job.number);
         if (opening_ && opening_number() == job.number) {
             if (job.was_cancelled)
                 cancel_opening();
@@ -184,6 +185,11 @@ void Workbench::end_save(const Jobs::Finished& job)
 
 Workbench::Leave Workbench::leave(std::string& why)
 {
+    if (!writers_.empty()) {
+        if (!std::exchange(told_of_writers_, true))
+            say("The window closes when what is being written is there; cancel that to close it at once");
+        return Leave::later;
+    }
     if (!document_) return savers_.is_idle() ? Leave::now : Leave::later;
     if (is_saving() || !savers_.is_idle()) {
         is_leaving_ = true;

@@ -247,7 +247,7 @@ void Workbench::act(const DragNode& action)
             fail("The trace cannot be edited while a stroke is being painted");
         if (!node) fail("No node is selected; select one to move it");
         document_->drags_node = true;
-        return say(sentence("Node ", *node, " follows the probe until the key is released"));
+        return say(sentence("Node ", *node, " follows the probe until the key or the button is released"));
     }
     if (document_->drags_node) this->trace(MoveOp{document_->tool_voxel()});
 }

@@ -177,6 +177,28 @@ TEST_CASE_FIXTURE(OnDevice, "leaving waits for the save, and for another one whe
     CHECK(disk.calls_of_this_thread() == 0);
 }
 
+TEST_CASE_FIXTURE(OnDevice, "leaving waits for what is being exported, or for its being cancelled")
+{
+    Desk desk(renderer());
+    desk.stroke(3);
+    desk.turn_until([&] { return desk.bench.model().jobs.empty() && !desk.bench.model().is_painting; });
+    std::string why;
+    for (const bool is_cancelled : {false, true}) {
+        CAPTURE(is_cancelled);
+        SlowDisk disk;
+        disk.stop_at("exported.mask");
+        desk.bench.perform(ExportTask{.mask = desk.path("exported.mask")});
+        desk.turn_until([&] { return disk.is_waited_for(); });
+        CHECK(desk.bench.leave(why) == Workbench::Leave::later);
+        CHECK(desk.said("The window closes when what is being written is there"));
+        if (is_cancelled) desk.bench.perform(CancelJob{desk.bench.model().jobs.at(0).number});
+        disk.go_on();
+        desk.turn_until([&] { return desk.bench.leave(why) == Workbench::Leave::now; });
+        CHECK((is_cancelled || std::filesystem::exists(desk.path("exported.mask"))));
+        CHECK(desk.said(is_cancelled ? "Cancelled: exporting" : "Exported "));
+    }
+}
+
 TEST_CASE_FIXTURE(OnDevice, "a save that is cancelled leaves the work unsaved, and nothing is lost")
 {
     Desk desk(renderer());

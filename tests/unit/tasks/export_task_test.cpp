@@ -1,5 +1,6 @@
 #include "engine/tasks/export_task.h"
 
+#include <fstream>
 #include <set>
 
 #include <doctest/doctest.h>
@@ -89,6 +90,15 @@ TEST_CASE("every option of an export is documented")
     }
     CHECK(names == std::set<std::string>{"mask", "labels", "ome_zarr", "offset", "trace", "break_loops", "mesh",
                                          "space", "metrics"});
+}
+
+TEST_CASE("what an export would replace can be asked before")
+{
+    const TemporaryFolder folder;
+    ExportTask task = task_in(folder.path);
+    CHECK(replaced_files(task).empty());
+    std::ofstream(task.trace) << "of another scan";
+    CHECK(replaced_files(task) == std::vector<std::filesystem::path>{task.trace});
 }
 
 TEST_CASE("names and folders are refused before anything is written, in the words of the caller")

@@ -197,6 +197,13 @@ TEST_CASE("letters are those of the person's keyboard, and steering keys stay at
     // AZERTY: the key at the place of W bears Z, that at the place of Q bears A.
     CHECK(only<Move>(actions_of(world, 'W', 0, false, "z")).heights.z > 0.0);
     CHECK(only<Move>(actions_of(world, 'Q', 0, false, "a")).heights.y < 0.0);
+    // Brackets need AltGr on both: what bears an umlaut, or a sign without a meaning, does what an American key does.
+    const auto factor_of = [&](int key, const char* sign) {
+        return only<ScaleProbe>(actions_of(world, key, 0, false, sign)).factor;
+    };
+    for (const char* sign : {"\u00fc", "^"}) CHECK(factor_of('[', sign) == factor_of('[', "["));
+    for (const char* sign : {"+", "$"}) CHECK(factor_of(']', sign) == factor_of(']', "]"));
+    CHECK(actions_of(world, 'Q', SHIFT | CONTROL | ALT, false, "a").empty());  // a letter is that letter
     // and digits need Shift there
     CHECK(after(world, '3').probe.brush.group == 3);
     CHECK(patched(world.session, only<Set>(actions_of(world, '3', 0, false, "\"")).patch).probe.brush.group == 3);
@@ -535,4 +542,8 @@ TEST_CASE("The bar tells what each tool's buttons do, and every tool has a key")
     }
     CHECK(mouse_in_words(Tool::paint) == "left: paint, right or middle: turn, wheel: zoom");
     CHECK(mouse_in_words(Tool::turn) == "left: turn, right: paint, middle: move, wheel: zoom");
+    CHECK(mouse_in_words(Tool::trace, Pane::Kind::slice) ==
+          "left: add, pick or drag a node, right: contrast, wheel: next slice");
+    CHECK(mouse_in_words(Tool::turn, Pane::Kind::slice).starts_with("left: move the cross"));
+    CHECK(mouse_in_words(Tool::turn, Pane::Kind::map).starts_with("left: turn"));
 }

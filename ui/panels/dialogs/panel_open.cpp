@@ -16,9 +16,11 @@ namespace shvr::ui {
 
 namespace {
 
-FileChooser opening({.title = "Open a volume, a session or a project",
-                     .verb = "Open",
-                     .note = "TIFF, DICOM, NIfTI, NRRD, MetaImage, OME-Zarr and raw; Tab completes a path."});
+FileChooser opening(
+    {.title = "Open a volume, a session or a project",
+     .verb = "Open",
+     .note =
+         "TIFF, DICOM, NIfTI, NRRD, MetaImage and OME-Zarr; bare voxels: Open with options. Tab completes a path."});
 FileChooser saving({.title = "Go on under another name",
                     .verb = "Save",
                     .note = "Session (.json); mask, trace and history are written beside it. The files so far stay.",
@@ -147,7 +149,10 @@ void start_page(const Model& model, Actions& actions)
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("a scan of your own, or drop it here");
-    hint("TIFF, DICOM, NIfTI, NRRD, MetaImage, OME-Zarr or raw; a folder of slices, a session or a project.");
+    hint(
+        "TIFF, DICOM, NIfTI, NRRD, MetaImage or OME-Zarr; a folder of slices, a session or a project. Bare voxels: "
+        "File, "
+        "Open with options.");
     if (ImGui::Button("Open the example", {12.0f * font, 0.0f})) actions.push_back(OpenExample{});
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();

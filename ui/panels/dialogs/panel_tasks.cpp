@@ -16,7 +16,21 @@ namespace shvr::ui {
 
 namespace {
 
-/// A dialog with the options of a task. They stay as they were left for the next time.
+/// "leaf.swc is there already and is replaced"; empty where nothing is.
+template <class Task>
+std::string replacement(const Task& task)
+{
+    std::string names;
+    int count = 0;
+    if constexpr (requires { replaced_files(task); })
+        for (const std::filesystem::path& path : replaced_files(task))
+            names += (count++ > 0 ? ", " : "") + path.filename().string();
+    return count == 0
+               ? ""
+               : names + (count == 1 ? " is there already and is replaced" : " are there already and are replaced");
+}
+
+/// A dialog with the options of a task. They stay as they were left for the next time with the same scan.
 template <class Task>
 struct TaskDialog {
     Task task;
@@ -29,7 +43,13 @@ struct TaskDialog {
         if (!ImGui::BeginPopupModal(Task::TITLE, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
         const bool has_chooser = draw_fields([&](Fields& f) { fields(f, task); });
         const std::string why = refusal(model);
-        ImGui::TextDisabled("%s", why.empty() ? " " : why.c_str());
+        if (const std::string replaced = why.empty() ? replacement(task) : ""; !replaced.empty()) {
+            ImGui::PushStyleColor(ImGuiCol_Text, WARNING);
+            ImGui::TextUnformatted(replaced.c_str());
+            ImGui::PopStyleColor();
+        } else {
+            ImGui::TextDisabled("%s", why.empty() ? " " : why.c_str());
+        }
         const ImVec2 button{6.0f * ImGui::GetFontSize(), 0.0f};
         ImGui::BeginDisabled(!why.empty());
         if (ImGui::Button(verb, button)) {
@@ -64,6 +84,17 @@ struct Dialogs {
 };
 Dialogs dialogs;
 
+/// What another scan was exported to would be replaced by what this one is.
+void forget_another_scan(const Model& model)
+{
+    static std::filesystem::path session;
+    if (session == model.session_path) return;
+    session = model.session_path;
+    dialogs.exporting.task = {};
+    dialogs.importing.task = {};
+    dialogs.labelling.task = {};
+}
+
 }  // namespace
 
 void ask_to_import(const std::filesystem::path& volume)
@@ -74,6 +105,7 @@ void ask_to_import(const std::filesystem::path& volume)
 
 void task_menu(const Model& model)
 {
+    forget_another_scan(model);
     load_menu(model);
     if (ImGui::MenuItem("Import as project...")) {
         dialogs.importing.is_asked_for = true;

@@ -23,7 +23,7 @@ constexpr PanelRow PANELS[] = {
     {.id = "occlusion", .title = "Ambient occlusion", .hint = "Soft shade in hollows.", .is_folded = true},
     {.id = "cuts", .title = "Cutting planes", .hint = "What of the volume is shown, in numbers.", .is_folded = true},
     {.id = "quality", .title = "Render quality", .hint = "Exactness against time.", .is_folded = true},
-    {.id = "aids", .title = "What is shown", .hint = "Volume, nodes, probe and background.", .is_folded = true},
+    {.id = "aids", .title = "What is shown", .hint = "Volume, nodes, probe, scale bar and axes.", .is_folded = true},
     {.id = "views", .title = "Views", .hint = "Panes, slices and how fast the picture follows.", .is_folded = true},
     {.id = "history", .title = "History", .hint = "All steps, to go back to any of them.", .is_folded = true},
 };

@@ -22,7 +22,9 @@ constexpr ToolRow TOOL_ROWS[] = {
      "The right button turns the volume.",
      "add, pick or drag a node", "turn"},
     {Tool::select, "Select", "tool_select",
-     "Click a node or an internode to select it. The right button turns the volume.", "select", "turn"},
+     "Click a node or an internode to select it, twice for its whole segment; click paint to take its group. The right "
+     "button turns the volume.",
+     "select", "turn"},
     {Tool::measure, "Measure", "tool_measure",
      "Click two points to measure the distance between them. The right button turns the volume.", "set a point",
      "turn"},
@@ -47,9 +49,13 @@ std::string sentence_of(Tool tool)
     return sentence(row_of(tool).name, " (", mouse_in_words(tool), ")");
 }
 
-std::string mouse_in_words(Tool tool)
+std::string mouse_in_words(Tool tool, Pane::Kind over)
 {
     const ToolRow& row = row_of(tool);
+    if (over == Pane::Kind::map) return "left: turn, Shift + left or middle: move, wheel: closer or farther";
+    if (over == Pane::Kind::slice && tool == Tool::turn)
+        return "left: move the cross, right: paint, Ctrl + left: contrast, wheel: next slice";
+    if (over == Pane::Kind::slice) return sentence("left: ", row.left, ", right: contrast, wheel: next slice");
     if (tool == Tool::turn) return sentence("left: ", row.left, ", right: ", row.right, ", middle: move, wheel: zoom");
     return sentence("left: ", row.left, ", right or middle: ", row.right, ", wheel: zoom");
 }

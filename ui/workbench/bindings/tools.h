@@ -22,7 +22,7 @@ const ToolRow& row_of(Tool tool);
 
 /// What is said when it is taken.
 std::string sentence_of(Tool tool);
-/// What the mouse does now, in one line: "left: paint, right or middle: turn, wheel: zoom".
-std::string mouse_in_words(Tool tool);
+/// What the mouse does over a pane of that kind, in one line: "left: paint, right or middle: turn, wheel: zoom".
+std::string mouse_in_words(Tool tool, Pane::Kind over = Pane::Kind::main);
 
 }  // namespace shvr::ui

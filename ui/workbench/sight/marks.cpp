@@ -150,8 +150,9 @@ private:
     void link()
     {
         const std::optional<uint32_t> selected = model_.trace.selection().node();
-        if (!selected || model_.is_painting || model_.drags_node || model_.tool() == Tool::measure) return;
-        if (model_.tool() == Tool::select || pane_.kind == Pane::Kind::map || pane_.shot.right_eye) return;
+        const bool adds_nodes = model_.tool() == Tool::trace || model_.tool() == Tool::turn;
+        if (!selected || !adds_nodes || model_.is_painting || model_.drags_node) return;
+        if (pane_.kind == Pane::Kind::map || pane_.shot.right_eye) return;
         const glm::dvec3 from = model_.trace.node(*selected).position, to = probe();
         const auto begin = pixel_of(from), end = pixel_of(to);
         if (!begin || !end || glm::distance(*begin, *end) < 8.0 * units_) return;
