@@ -278,17 +278,7 @@ TEST_CASE_FIXTURE(Fixture, "invocations are counted in all submissions of a pass
 {
     if (!device.traits().has_pipeline_statistics) return;
     const auto run = [&](bool statistics) {
-        const glm::uvec3 cells(256, 256, 24);
-        FrameGraph graph;
-        const Resource zero = graph.fill(graph.create("zero", buffer_desc(4)), 0);
-        const Resource source = graph.copy_to_image(zero, graph.create("source", image_desc(Format::r32_uint, cells)),
-                                                    {{0, glm::uvec3(0), glm::uvec3(1)}});
-        Pass pass = graph.compute("leap_distance");
-        pass.read("source", source);
-        pass.push(gpu::LeapDistanceParams{cells, glm::uvec3(0), cells, 0});
-        pass.dispatch(cells, glm::uvec3(128, 128, 1));
-        graph.keep(pass.write("leap", graph.create("leap", image_desc(Format::r32_uint, cells))));
-        return executor.run(graph, {.statistics = statistics}).passes;
+        return executor.run(distances_of({256, 256, 24}, true), {.statistics = statistics}).passes;
     };
     const std::vector<gpu::PassReport> passes = run(true);
     CHECK(passes[2].submissions > 20);  // it might be long

@@ -178,8 +178,8 @@ class Menus(Seen):
 
 class Opening(Seen):
     def test_a_click_chooses_nothing_and_escape_closes_all(self):
-        """In a window that is hardly higher than its longest menu."""
-        self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
+        """In a window that is lower than its longest menu."""
+        self.open_scan(self.write_ball(), "--size", "900x480", preferences={"hints_seen": 3})
         before = len(self.done())
         for title, _ in MENUS:
             self.click_on(title, "##MainMenuBar")
