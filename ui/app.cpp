@@ -20,6 +20,20 @@ constexpr double SHARPEN_S = 0.12;
 /// Widgets settle, hover and blink for that long after the last event.
 constexpr double AFTERGLOW_S = 0.3;
 
+/// What the command line leaves open is as the person's preferences say; what is wrong with them the workbench says.
+gpu::Budget budget_of(const AppOptions& options)
+{
+    gpu::Budget budget = options.budget;
+    const auto bytes = [](double mebibytes) { return uint64_t(mebibytes) << 20; };
+    try {
+        const Preferences preferences = load_preferences(options.preferences);
+        if (budget.device_bytes == 0) budget.device_bytes = bytes(preferences.budget_device_mib.value_or(0.0));
+        if (budget.host_bytes == 0) budget.host_bytes = bytes(preferences.budget_host_mib.value_or(0.0));
+    } catch (const Error&) {
+    }
+    return budget;
+}
+
 }  // namespace
 
 App::App(const AppOptions& options) : options_(options), window_("SHVR", options.window_size)
@@ -28,14 +42,15 @@ App::App(const AppOptions& options) : options_(options), window_("SHVR", options
     device.device = options.device;
     device.validation = options.validation;
     renderer_ = std::make_unique<Renderer>(
-        Renderer::Options{.device = device, .budget = options.budget, .threads = options.threads});
+        Renderer::Options{.device = device, .budget = budget_of(options), .threads = options.threads});
     appearance_.scale = window_.content_scale();
     set_style(appearance_);
     attach();
     WorkbenchOptions wanted{.allow_force = options.allow_force,
                             .preferences = options.preferences,
                             .now_s = [this] { return window_.now_s(); },
-                            .version = options.version};
+                            .version = options.version,
+                            .draw_texts = draw_texts};
     wanted.view.swap_red_blue = window_.swaps_red_and_blue();
     bench_ = std::make_unique<Workbench>(*renderer_, std::move(wanted));
     if (!options.log.empty()) {
@@ -80,6 +95,7 @@ void App::turn()
     bench_->set_pixels(bench_->is_open() ? viewport_.pixels() : glm::uvec2(0));
     bench_->set_hand_down(ImGui::IsAnyMouseDown());
     bench_->set_still(!something_moves());
+    bench_->set_units(appearance_.font_pixels * appearance_.scale / FONT_UNITS);
     bench_->advance();
     follow_workbench();
     report_.done(window_.frames_done(), window_.now_s());

@@ -20,8 +20,6 @@ ImU32 color_of(const glm::dvec3& linear, float alpha)
     return ImGui::GetColorU32(ImVec4(encoded(linear.r), encoded(linear.g), encoded(linear.b), alpha));
 }
 
-constexpr double FONT_UNITS = 14.0;  ///< size of the font where a unit is a pixel
-
 /// Words lie on a dark ground, so that they are read on any picture.
 template <class OnScreen>
 void draw_over(const Marks& marks, const OnScreen& on_screen, ImDrawList& list)

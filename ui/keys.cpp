@@ -86,7 +86,7 @@ double rate(const Shortcut& shortcut, int mods)
     return shortcut.is_slowed() && (mods & GLFW_MOD_SHIFT) ? SLOWED : 1.0;
 }
 
-/// The key that a person chose for a shortcut. Modifiers alone, and keys without a name, are waited on.
+/// The key that a person chose for a shortcut. Modifiers alone are waited on.
 void bind(const KeyEvent& event, const Model& model, Actions& actions)
 {
     const Shortcut* const shortcut = shortcut_named(model.awaits_key);
@@ -96,7 +96,7 @@ void bind(const KeyEvent& event, const Model& model, Actions& actions)
         actions.push_back(AwaitKey{});
     else if (event.key == GLFW_KEY_DELETE && event.mods == 0)
         actions.push_back(BindKeys{std::string(model.awaits_key), ""});
-    else if (!event.repeated && chord_of(text))
+    else if (!event.repeated && !key.empty())  // what is no key to bind is refused in words
         actions.push_back(BindKeys{std::string(model.awaits_key), text});
 }
 

@@ -5,6 +5,17 @@
 
 namespace shvr::ui {
 
+namespace {
+
+/// A day's work has millions of frames; the last ones are what is asked for.
+void note(std::vector<double>& all, double value)
+{
+    if (all.size() == 2 * RunReport::KEPT) all.erase(all.begin(), all.begin() + std::ptrdiff_t(RunReport::KEPT));
+    all.push_back(value);
+}
+
+}  // namespace
+
 void RunReport::opened(double time_s)
 {
     opened_s_ = time_s;
@@ -13,7 +24,7 @@ void RunReport::opened(double time_s)
 
 void RunReport::presented(const Frame& frame)
 {
-    if (was_moving_ && frame.moves) report_.interval_ms.push_back((frame.begun_s - last_begun_s_) * 1e3);
+    if (was_moving_ && frame.moves) note(report_.interval_ms, (frame.begun_s - last_begun_s_) * 1e3);
     was_moving_ = frame.moves;
     last_begun_s_ = frame.begun_s;
     ++report_.frames;
@@ -25,13 +36,13 @@ void RunReport::done(uint64_t number, double time_s)
     std::erase_if(presented_, [&](const Presented& presented) {
         const Frame& frame = presented.frame;
         if (frame.number > number) return false;
-        report_.frame_ms.push_back((time_s - frame.begun_s) * 1e3);
-        (frame.shows_sharp_picture ? report_.own_idle_ms : report_.own_busy_ms)
-            .push_back((time_s - frame.begun_s - frame.waited_s) * 1e3);
+        note(report_.frame_ms, (time_s - frame.begun_s) * 1e3);
+        note(frame.shows_sharp_picture ? report_.own_idle_ms : report_.own_busy_ms,
+             (time_s - frame.begun_s - frame.waited_s) * 1e3);
         const double since_open_ms = (time_s - opened_s_) * 1e3;
         if (frame.shows_picture && !report_.first_picture_ms) report_.first_picture_ms = since_open_ms;
         if (frame.shows_sharp_picture && !report_.sharp_picture_ms) report_.sharp_picture_ms = since_open_ms;
-        for (const double asked_s : presented.asked_s) report_.input_ms.push_back((time_s - asked_s) * 1e3);
+        for (const double asked_s : presented.asked_s) note(report_.input_ms, (time_s - asked_s) * 1e3);
         return true;
     });
 }

@@ -41,6 +41,9 @@ struct AppReport {
 
 class RunReport {
 public:
+    /// Of each kind of time at least so many are kept, and at most twice as many.
+    static constexpr size_t KEPT = 50'000;
+
     /// Another scan was opened: its first pictures are measured from here.
     void opened(double time_s);
     /// Reports a key or button; the next frame shows its effect.

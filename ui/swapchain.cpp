@@ -67,6 +67,19 @@ VkCompositeAlphaFlagBitsKHR alpha_of(const VkSurfaceCapabilitiesKHR& capabilitie
     return VK_COMPOSITE_ALPHA_POST_MULTIPLIED_BIT_KHR;
 }
 
+/// A picture that a newer one replaces before the screen has shown it: presenting never waits for the screen, as some
+/// drivers do. Where there is none of that, all are shown in turn.
+VkPresentModeKHR mode_of(VkPhysicalDevice physical, VkSurfaceKHR surface)
+{
+    const auto modes = gpu::enumerate<VkPresentModeKHR>([&](uint32_t* count, VkPresentModeKHR* items) {
+        vkGetPhysicalDeviceSurfacePresentModesKHR(physical, surface, count, items);
+    });
+    const bool has_mailbox = std::ranges::find(modes, VK_PRESENT_MODE_MAILBOX_KHR) != modes.end();
+    return has_mailbox ? VK_PRESENT_MODE_MAILBOX_KHR : VK_PRESENT_MODE_FIFO_KHR;
+}
+
+constexpr VkImageUsageFlags USAGE = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+
 }  // namespace
 
 /// The swapchain follows with the next frame.
@@ -198,6 +211,9 @@ void Swapchain::create_swapchain()
     VkSurfaceCapabilitiesKHR& capabilities = made_of_;
     check(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical(), surface_, &capabilities),
           "vkGetPhysicalDeviceSurfaceCapabilitiesKHR");
+    if ((capabilities.supportedUsageFlags & USAGE) != USAGE)
+        fail("device ", device_.traits().name,
+             " cannot copy pictures into this window; expected one that can, which --device chooses");
     extent_ = capabilities.currentExtent;
     if (extent_.width == ~0u) {  // the surface accepts any size
         const VkExtent2D &least = capabilities.minImageExtent, &most = capabilities.maxImageExtent;
@@ -208,21 +224,20 @@ void Swapchain::create_swapchain()
     uint32_t images = std::max(capabilities.minImageCount + 1, IMAGES);
     if (capabilities.maxImageCount > 0) images = std::min(images, capabilities.maxImageCount);
     const VkSwapchainKHR old = swapchain_;
-    const VkSwapchainCreateInfoKHR info{
-        .sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR,
-        .surface = surface_,
-        .minImageCount = images,
-        .imageFormat = format_.format,
-        .imageColorSpace = format_.colorSpace,
-        .imageExtent = extent_,
-        .imageArrayLayers = 1,
-        .imageUsage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-        .imageSharingMode = VK_SHARING_MODE_EXCLUSIVE,
-        .preTransform = capabilities.currentTransform,
-        .compositeAlpha = alpha_of(capabilities),
-        .presentMode = VK_PRESENT_MODE_FIFO_KHR,
-        .clipped = VK_TRUE,
-        .oldSwapchain = old};
+    const VkSwapchainCreateInfoKHR info{.sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR,
+                                        .surface = surface_,
+                                        .minImageCount = images,
+                                        .imageFormat = format_.format,
+                                        .imageColorSpace = format_.colorSpace,
+                                        .imageExtent = extent_,
+                                        .imageArrayLayers = 1,
+                                        .imageUsage = USAGE,
+                                        .imageSharingMode = VK_SHARING_MODE_EXCLUSIVE,
+                                        .preTransform = capabilities.currentTransform,
+                                        .compositeAlpha = alpha_of(capabilities),
+                                        .presentMode = mode_of(device_.physical(), surface_),
+                                        .clipped = VK_TRUE,
+                                        .oldSwapchain = old};
     swapchain_ = VK_NULL_HANDLE;
     const VkResult result = vkCreateSwapchainKHR(device_.handle(), &info, nullptr, &swapchain_);
     if (old) vkDestroySwapchainKHR(device_.handle(), old, nullptr);

@@ -110,7 +110,7 @@ void Viewport::press(const ButtonEvent& event, const When& when, const Model& mo
     } else if (event.button == GLFW_MOUSE_BUTTON_RIGHT) {
         gesture_ = is_slice ? Gesture::contrast : turning(model);
     } else if (event.button == GLFW_MOUSE_BUTTON_MIDDLE) {
-        gesture_ = is_map ? Gesture::move_in_map : turns || shift ? Gesture::move : turning(model);
+        gesture_ = is_map || is_slice ? Gesture::move_in_map : turns || shift ? Gesture::move : turning(model);
     } else if (event.button == GLFW_MOUSE_BUTTON_LEFT) {
         press_left(event, when, model, actions);
     }
@@ -124,7 +124,8 @@ void Viewport::press_left(const ButtonEvent& event, const When& when, const Mode
     pressed_s_ = when.latest_s;
     is_second_ = is_double(when.earliest_s, event.at);
     if (event.mods & GLFW_MOD_SHIFT) {
-        gesture_ = kind == Pane::Kind::map ? Gesture::move_in_map : Gesture::move;
+        const bool is_flat = kind == Pane::Kind::map || kind == Pane::Kind::slice;
+        gesture_ = is_flat ? Gesture::move_in_map : Gesture::move;
     } else if ((event.mods & GLFW_MOD_CONTROL) && kind == Pane::Kind::slice) {
         gesture_ = Gesture::contrast;
     } else if ((event.mods & GLFW_MOD_ALT) || kind == Pane::Kind::map) {
@@ -253,7 +254,8 @@ void Viewport::scroll(const ScrollEvent& event, const Model& model, Actions& act
     constexpr double HEIGHTS_PER_STEP = 0.05;
     pane_ = pane_at(event.at, model);
     const Pane::Kind kind = kind_of_pane(model);
-    if (kind == Pane::Kind::slice || (event.mods & GLFW_MOD_CONTROL))
+    const bool is_slice = kind == Pane::Kind::slice, has_control = event.mods & GLFW_MOD_CONTROL;
+    if (is_slice != has_control)  // in a slice Ctrl zooms, elsewhere it pushes
         actions.emplace_back(PushProbe{pane_, event.steps});
     else if (kind == Pane::Kind::map)
         actions.emplace_back(Move{{0.0, 0.0, HEIGHTS_PER_STEP * event.steps}});
@@ -273,7 +275,13 @@ void Viewport::handle(const InputEvent& event, const Model& model, bool ui_has_m
     } else if (const auto* scroll = std::get_if<ScrollEvent>(&event.what)) {
         if (!ui_has_mouse && contains(scroll->at)) this->scroll(*scroll, model, actions);
     } else if (const auto* drop = std::get_if<DropEvent>(&event.what)) {
-        for (const std::string& path : drop->paths) actions.emplace_back(TakeFile{path});
+        TakeFile taken;
+        for (const std::string& path : drop->paths)
+            if (taken.path.empty())
+                taken.path = path;
+            else
+                taken.beside += path + '\n';
+        if (!taken.path.empty()) actions.emplace_back(std::move(taken));
     }
 }
 

@@ -168,6 +168,9 @@ gpu::DeviceOptions Window::device_needs() const
     const char** names = glfwGetRequiredInstanceExtensions(&count);
     if (!names) fail("Vulkan cannot show pictures on this display (", glfw_error(), ")");
     options.instance_extensions.assign(names, names + count);
+    options.can_present = [](VkInstance instance, VkPhysicalDevice physical, uint32_t family) {
+        return glfwGetPhysicalDevicePresentationSupport(instance, physical, family) == GLFW_TRUE;
+    };
     return options;
 }
 

@@ -112,7 +112,10 @@ OcclusionBinding Occlusion::bring_up_to_date(FrameGraph& graph)
             images_are_new_ = images_are_new_ || were_new;
             mark(keys, [](Entry& entry) { entry.is_new = true; });
         });
-    occlusion_reset(graph, binding, slots, were_new);
+    if (were_new)
+        occlusion_begin(graph, binding);
+    else
+        occlusion_reset(graph, binding, slots);
     return binding;
 }
 
@@ -134,7 +137,8 @@ void Occlusion::look(const Look& look, const DeviceVolume& volume, const DeviceM
         create(volume.atlas_slots());
         volume_ = &volume;
     }
-    mask_ = &mask;
+    if (std::exchange(mask_, &mask) != &mask)
+        for (auto& [key, entry] : entries_) entry.is_seen.reset();
     const std::optional<Look> before = std::exchange(look_, look);
     if (!before) return;
     if (!same_function(*before, look) || before->radius != look.radius) return mark_all(true);
@@ -151,6 +155,7 @@ void Occlusion::mark_all(bool cells)
     for (auto& [key, entry] : entries_) {
         entry.needs_values = true;
         entry.needs_cells |= cells;
+        entry.is_seen.reset();
     }
 }
 
@@ -181,6 +186,9 @@ void Occlusion::changed(const VoxelBox& changed, int64_t apron)
         entry.needs_cells = entry.needs_cells || meet(brick, voxels);
         const auto reach = int64_t(std::ceil(look_->radius + std::ldexp(MARGIN_VOXELS, key.level)));
         entry.needs_values = entry.needs_values || meet(brick, {voxels.lower - reach, voxels.upper + reach});
+        // Coarse bricks are seen wherever there is paint, others where their neighbours have some.
+        const int64_t beside = int64_t{gpu::BRICK_SIZE} << key.level;
+        if (key.level > 0 || meet(brick, {voxels.lower - beside, voxels.upper + beside})) entry.is_seen.reset();
     }
 }
 
@@ -194,7 +202,9 @@ void Occlusion::sync()
     for (const DeviceVolume::Place& place : volume_->places()) {
         const auto known = entries_.find(place.key);
         if (known != entries_.end() && known->second.slot == place.slot) {
-            entries.insert(*known).first->second.range = place.range;
+            Entry& entry = entries.insert(*known).first->second;
+            if (entry.range != place.range || (look_ && look_->preintegrated)) entry.is_seen.reset();
+            entry.range = place.range;
             continue;
         }
         entries[place.key] = {.slot = place.slot, .range = place.range};
@@ -259,10 +269,12 @@ bool Occlusion::has_all_around(const BrickKey& key) const
     return !is_missing;
 }
 
-bool Occlusion::is_candidate(const BrickKey& key, const Entry& entry) const
+/// Asked of every brick in every turn: what costs least is asked first.
+bool Occlusion::is_candidate(const BrickKey& key, Entry& entry)
 {
+    if (!entry.needs_values && (!is_paged_ || entry.is_exact)) return false;
     if (!volume_->is_drawn(key) || !is_seen(key, entry)) return false;
-    return entry.needs_values || (is_paged_ && !entry.is_exact && has_all_around(key));
+    return entry.needs_values || has_all_around(key);
 }
 
 bool Occlusion::is_lit(const BrickKey& key)
@@ -271,13 +283,21 @@ bool Occlusion::is_lit(const BrickKey& key)
     sync();
     const auto found = entries_.find(key);
     if (found == entries_.end()) return false;
-    const Entry& entry = found->second;
+    Entry& entry = found->second;
     if (entry.is_exact && !entry.needs_values) return true;
     return has_all_around(key) && !is_seen(key, entry);
 }
 
+bool Occlusion::is_seen(const BrickKey& key, Entry& entry)
+{
+    if (entry.is_seen) return *entry.is_seen;
+    ++counts_.looks;
+    entry.is_seen = look_whether_seen(key, entry);
+    return *entry.is_seen;
+}
+
 /// A brick with nothing visible may still contain voxels beside painted ones, or beside what a step's ends show.
-bool Occlusion::is_seen(const BrickKey& key, const Entry& entry) const
+bool Occlusion::look_whether_seen(const BrickKey& key, const Entry& entry) const
 {
     if (look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 1)) return true;
     bool found = false;
@@ -293,31 +313,35 @@ bool Occlusion::is_due()
 {
     if (!look_) return false;
     sync();
-    return std::ranges::any_of(entries_, [&](const auto& it) { return is_candidate(it.first, it.second); });
+    return std::ranges::any_of(entries_, [&](auto& it) { return is_candidate(it.first, it.second); });
 }
 
-std::vector<BrickKey> Occlusion::nearest(const glm::dvec3& eye, size_t most) const
+/// Of one level: that of the nearest.
+std::vector<BrickKey> Occlusion::nearest(const glm::dvec3& eye, size_t most)
 {
     struct Candidate {
         double distance;
         BrickKey key;
     };
     std::vector<Candidate> candidates;
-    for (const auto& [key, entry] : entries_) {
+    for (auto& [key, entry] : entries_) {
         if (!is_candidate(key, entry)) continue;
         const glm::dvec3 centre = std::ldexp(double(gpu::BRICK_SIZE), key.level) * (glm::dvec3(key.brick) + 0.5);
         candidates.push_back({glm::length(centre - eye), key});
     }
+    if (candidates.empty()) return {};
     const auto is_nearer = [](const Candidate& a, const Candidate& b) {
         const auto order = [](const Candidate& c) {
             return std::tuple(c.distance, c.key.level, c.key.brick.z, c.key.brick.y, c.key.brick.x);
         };
         return order(a) < order(b);
     };
-    std::ranges::sort(candidates, is_nearer);
+    const int level = std::ranges::min_element(candidates, is_nearer)->key.level;
+    std::erase_if(candidates, [&](const Candidate& candidate) { return candidate.key.level != level; });
+    most = std::min(most, candidates.size());
+    std::ranges::partial_sort(candidates, candidates.begin() + std::ptrdiff_t(most), is_nearer);
     std::vector<BrickKey> keys;
-    for (const Candidate& candidate : candidates)
-        if (keys.size() < most && candidate.key.level == candidates.front().key.level) keys.push_back(candidate.key);
+    for (size_t i = 0; i < most; ++i) keys.push_back(candidates[i].key);
     return keys;
 }
 

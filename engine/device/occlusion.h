@@ -76,6 +76,7 @@ public:
     struct Counts {
         uint64_t cells = 0;   ///< bricks whose cells have been computed
         uint64_t values = 0;  ///< bricks whose values have been computed
+        uint64_t looks = 0;   ///< at the paint and the neighbours of a brick, whether it is seen
     };
     const Counts& counts() const { return counts_; }
 
@@ -84,8 +85,9 @@ private:
         uint32_t slot = 0;
         BrickTexels::Range range;
         bool needs_cells = true, needs_values = true;
-        bool is_new = true;     ///< its values have never been computed
-        bool is_exact = false;  ///< every brick that its values needed was there
+        bool is_new = true;             ///< its values have never been computed
+        bool is_exact = false;          ///< every brick that its values needed was there
+        std::optional<bool> is_seen{};  ///< not known since its range, look, paint or neighbours changed
     };
     using Entries = std::unordered_map<BrickKey, Entry, BrickKeyHash>;
 
@@ -98,10 +100,11 @@ private:
     double radius_of(int level) const;
     bool is_painted(const BrickKey& key, int reach) const;
     bool shows(const BrickKey& key, const Entry& entry) const;
-    bool is_seen(const BrickKey& key, const Entry& entry) const;
+    bool look_whether_seen(const BrickKey& key, const Entry& entry) const;
+    bool is_seen(const BrickKey& key, Entry& entry);
     bool has_all_around(const BrickKey& key) const;
-    bool is_candidate(const BrickKey& key, const Entry& entry) const;
-    std::vector<BrickKey> nearest(const glm::dvec3& eye, size_t most) const;
+    bool is_candidate(const BrickKey& key, Entry& entry);
+    std::vector<BrickKey> nearest(const glm::dvec3& eye, size_t most);
     uint32_t around(const BrickKey& key, std::vector<BrickKey>* keys) const;
     OcclusionCellsInput cells_input(int level, double stretch, const std::optional<MaskBinding>& mask) const;
     void add_cells(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& images,

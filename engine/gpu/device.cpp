@@ -61,28 +61,26 @@ bool device_extension_is_present(VkPhysicalDevice physical, const char* name)
     });
 }
 
-/// Hardware devices before software, discrete before integrated.
-int rank(VkPhysicalDeviceType type)
-{
-    switch (type) {
-        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return 0;
-        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return 1;
-        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return 2;
-        default: return 3;
-    }
-}
-
-std::optional<uint32_t> compute_family(VkPhysicalDevice physical)
+/// Of the families that compute, one that can do most: show pictures, where somebody asks, and draw them.
+struct Family {
+    uint32_t index = 0;
+    bool presents = false;
+};
+std::optional<Family> compute_family(VkInstance instance, VkPhysicalDevice physical, const DeviceOptions& options)
 {
     const auto families = enumerate<VkQueueFamilyProperties>([&](uint32_t* count, VkQueueFamilyProperties* items) {
         vkGetPhysicalDeviceQueueFamilyProperties(physical, count, items);
     });
-    // A family with graphics can also present, which the window needs; one queue serves everything.
-    const VkQueueFlags wanted[] = {VK_QUEUE_COMPUTE_BIT | VK_QUEUE_GRAPHICS_BIT, VK_QUEUE_COMPUTE_BIT};
-    for (VkQueueFlags flags : wanted)
-        for (uint32_t i = 0; i < families.size(); ++i)
-            if ((families[i].queueFlags & flags) == flags) return i;
-    return std::nullopt;
+    const auto worth = [&](uint32_t i) {
+        const bool presents = !options.can_present || options.can_present(instance, physical, i);
+        return std::pair(presents, (families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0);
+    };
+    std::optional<Family> best;
+    for (uint32_t i = 0; i < families.size(); ++i) {
+        if (!(families[i].queueFlags & VK_QUEUE_COMPUTE_BIT)) continue;
+        if (!best || worth(i) > worth(best->index)) best = Family{i, worth(i).first};
+    }
+    return best;
 }
 
 DeviceHas what_it_has(VkPhysicalDevice physical, const DeviceTraits& traits)
@@ -121,8 +119,7 @@ Device::Device(const DeviceOptions& options)
 {
     try {
         create_instance(options);
-        const char* wanted = std::getenv("SHVR_DEVICE");
-        choose_physical(!options.device.empty() ? options.device : wanted ? wanted : "");
+        choose_physical(options);
         create_device(!options.instance_extensions.empty());
     } catch (...) {
         destroy();
@@ -203,40 +200,26 @@ void Device::create_instance(const DeviceOptions& options)
     SHVR_VK(create(instance_, &messenger, nullptr, &messenger_));
 }
 
-void Device::choose_physical(const std::string& wanted)
+void Device::choose_physical(const DeviceOptions& options)
 {
     const auto devices = enumerate<VkPhysicalDevice>(
         [&](uint32_t* count, VkPhysicalDevice* items) { return vkEnumeratePhysicalDevices(instance_, count, items); });
-    struct Candidate {
-        VkPhysicalDevice physical;
-        VkPhysicalDeviceProperties properties;
-    };
-    std::vector<Candidate> candidates;
-    std::string names;
+    std::vector<DeviceRow> rows;
+    std::vector<std::optional<Family>> families;
     for (VkPhysicalDevice physical : devices) {
         VkPhysicalDeviceProperties properties;
         vkGetPhysicalDeviceProperties(physical, &properties);
-        names += sentence(names.empty() ? "" : ", ", candidates.size(), ": ", properties.deviceName);
-        candidates.push_back({physical, properties});
+        families.push_back(compute_family(instance_, physical, options));
+        rows.push_back({.name = properties.deviceName,
+                        .type = properties.deviceType,
+                        .has_1_3 = properties.apiVersion >= VK_API_VERSION_1_3,
+                        .computes = families.back().has_value(),
+                        .presents = families.back() && families.back()->presents});
     }
-    if (candidates.empty()) fail("no Vulkan device found; expected a GPU driver, or mesa-vulkan-drivers (lavapipe)");
-
-    const bool by_index = !wanted.empty() && wanted.find_first_not_of("0123456789") == std::string::npos;
-    const Candidate* best = nullptr;
-    for (size_t i = 0; i < candidates.size(); ++i) {
-        const Candidate& candidate = candidates[i];
-        if (by_index ? std::to_string(i) != wanted
-                     : std::string(candidate.properties.deviceName).find(wanted) == std::string::npos)
-            continue;
-        if (candidate.properties.apiVersion < VK_API_VERSION_1_3 || !compute_family(candidate.physical)) continue;
-        if (!best || rank(candidate.properties.deviceType) < rank(best->properties.deviceType)) best = &candidate;
-    }
-    if (!best)
-        fail(wanted.empty() ? "no device supports Vulkan 1.3 and compute"
-                            : "--device is '" + wanted + "', which no device with Vulkan 1.3 and compute matches",
-             "; found ", names);
-    physical_ = best->physical;
-    queue_family_ = *compute_family(physical_);
+    const char* const named = std::getenv("SHVR_DEVICE");
+    const size_t best = best_device(rows, !options.device.empty() ? options.device : named ? named : "");
+    physical_ = devices[best];
+    queue_family_ = families[best]->index;
     read_traits();
 }
 

@@ -5,6 +5,7 @@
 // One thread at a time may use a device. Validation messages may arrive on any thread and are collected under a lock.
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -39,6 +40,8 @@ struct DeviceOptions {
     std::string device;       ///< part of the device's name, or its index; empty: $SHVR_DEVICE, else the best
     bool validation = false;  ///< Khronos layer with synchronisation validation; fails where it is not installed
     std::vector<std::string> instance_extensions;  ///< those for a window's surface; if any, the device can present
+    /// Whether a queue of a family can show pictures in the window; null: nobody asks.
+    std::function<bool(VkInstance, VkPhysicalDevice, uint32_t family)> can_present{};
 };
 
 /// Device properties for the rest of the program.
@@ -112,7 +115,7 @@ public:
 
 private:
     void create_instance(const DeviceOptions& options);
-    void choose_physical(const std::string& wanted);
+    void choose_physical(const DeviceOptions& options);
     void read_traits();
     void create_device(bool presents);
     void destroy() noexcept;

@@ -34,4 +34,42 @@ std::optional<std::string> why_too_limited(const DeviceHas& has)
     return std::nullopt;
 }
 
+namespace {
+
+/// Hardware devices before software, discrete before integrated.
+int rank(VkPhysicalDeviceType type)
+{
+    switch (type) {
+        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return 0;
+        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return 1;
+        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return 2;
+        default: return 3;
+    }
+}
+
+}  // namespace
+
+size_t best_device(const std::vector<DeviceRow>& rows, const std::string& wanted)
+{
+    if (rows.empty()) fail("no Vulkan device found; expected a GPU driver, or mesa-vulkan-drivers (lavapipe)");
+    const bool by_index = !wanted.empty() && wanted.find_first_not_of("0123456789") == std::string::npos;
+    std::optional<size_t> best, unseen;
+    std::string names;
+    for (size_t i = 0; i < rows.size(); ++i) {
+        const DeviceRow& row = rows[i];
+        names += sentence(names.empty() ? "" : ", ", i, ": ", row.name);
+        const bool is_meant = by_index ? std::to_string(i) == wanted : row.name.find(wanted) != std::string::npos;
+        if (!is_meant || !row.has_1_3 || !row.computes) continue;
+        std::optional<size_t>& of_its_kind = row.presents ? best : unseen;
+        if (!of_its_kind || rank(row.type) < rank(rows[*of_its_kind].type)) of_its_kind = i;
+    }
+    if (best) return *best;
+    if (unseen)
+        fail("device ", rows[*unseen].name, " cannot show pictures in a window on this display",
+             "; --device chooses another; found ", names);
+    fail(wanted.empty() ? "no device supports Vulkan 1.3 and compute"
+                        : "--device is '" + wanted + "', which no device with Vulkan 1.3 and compute matches",
+         "; found ", names);
+}
+
 }  // namespace shvr::gpu

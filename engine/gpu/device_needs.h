@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <vulkan/vulkan.h>
 
@@ -25,5 +26,17 @@ struct DeviceHas {
 
 /// Why such a device cannot run the kernels, in words: what it has and what is expected; null: it can.
 std::optional<std::string> why_too_limited(const DeviceHas& has);
+
+/// One of the machine's devices.
+struct DeviceRow {
+    std::string name;
+    VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
+    bool has_1_3 = true;
+    bool computes = true;
+    bool presents = true;  ///< shows pictures in the window, where there is one
+};
+/// The index of the one to use: of those that can all this, hardware before software, discrete before integrated.
+/// `wanted`: part of a name, or an index; empty: any. Fails with what was found.
+size_t best_device(const std::vector<DeviceRow>& rows, const std::string& wanted);
 
 }  // namespace shvr::gpu

@@ -219,10 +219,14 @@ Pass FrameGraph::compute(const std::string& kernel, std::initializer_list<Varian
     return {*this, uint32_t(passes_.size() - 1)};
 }
 
-Resource FrameGraph::fill(Resource buffer, uint32_t value, const std::string& name, Location at)
+Resource FrameGraph::fill(Resource target, uint32_t value, const std::string& name, Location at)
 {
+    const ResourceDesc& desc = resources_[target.index].desc;
+    SHVR_CHECK(
+        desc.kind == ResourceDesc::Kind::buffer || desc.format == Format::r8_uint || desc.format == Format::r32_uint,
+        name);
     add(PassData::Kind::fill, name, at).fill_value = value;
-    return use(uint32_t(passes_.size() - 1), "target", buffer, false, true);
+    return use(uint32_t(passes_.size() - 1), "target", target, false, true);
 }
 
 Resource FrameGraph::copy_to_image(Resource buffer, Resource image, std::vector<ImageRegion> regions,

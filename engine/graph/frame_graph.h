@@ -199,7 +199,8 @@ public:
     /// variants: ...", in any order. Fails if one is unknown, missing or named twice.
     Pass compute(const std::string& kernel, std::initializer_list<VariantChoice> choices, const std::string& name = {},
                  Location at = Location::current());
-    [[nodiscard]] Resource fill(Resource buffer, uint32_t value, const std::string& name = "fill",
+    /// Every 4 bytes of a buffer, or every texel of an image of whole numbers.
+    [[nodiscard]] Resource fill(Resource target, uint32_t value, const std::string& name = "fill",
                                 Location at = Location::current());
     [[nodiscard]] Resource copy_to_image(Resource buffer, Resource image, std::vector<ImageRegion> regions,
                                          const std::string& name = "upload", Location at = Location::current());

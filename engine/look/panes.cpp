@@ -41,19 +41,34 @@ Pane map_pane(const std::string& side, const PixelBox& box, const VolumeInfo& vo
     return {.kind = Pane::Kind::map, .shot = camera, .box = box, .name = side};
 }
 
+/// The voxel that slices have in their middle.
+glm::dvec3 middle_of(const SliceSettings& slices, const VolumeInfo& volume, const glm::dvec3& probe_voxel)
+{
+    const glm::dvec3 size(volume.size);
+    if (!slices.center && slices.zoom <= 1.0) return 0.5 * size;
+    return glm::clamp(slices.center.value_or(probe_voxel), glm::dvec3(0.0), size);
+}
+
+/// The axis of the volume that lies along a direction.
+int axis_along(const glm::dvec3& direction)
+{
+    const glm::dvec3 size = glm::abs(direction);
+    return size.x > size.y ? (size.x > size.z ? 0 : 2) : size.y > size.z ? 1 : 2;
+}
+
 /// The plane through the probe perpendicular to `axis`, seen as the volume's sides are: z from the top, y from the
 /// front, x from the right.
-Pane slice_pane(int axis, const PixelBox& box, const VolumeInfo& volume, const glm::dvec3& probe_voxel, double zoom)
+Pane slice_pane(int axis, const PixelBox& box, const VolumeInfo& volume, const glm::dvec3& probe_voxel,
+                const SliceSettings& slices)
 {
     const char* const SIDE_BY_AXIS[] = {"right", "front", "top"};
-    Pane pane = map_pane(SIDE_BY_AXIS[axis], box, volume, SLICE_MARGIN / zoom);
+    Pane pane = map_pane(SIDE_BY_AXIS[axis], box, volume, SLICE_MARGIN / slices.zoom);
     Camera& camera = pane.shot.camera;
     const glm::dvec3 forward = glm::normalize(camera.target - camera.eye);
     const glm::dvec3 size(volume.size);
     const double voxel = std::clamp(probe_voxel[axis], 0.0, std::nextafter(size[axis], 0.0));
-    // When enlarged, the probe stays in the middle.
-    if (zoom > 1.0) {
-        const glm::dvec3 way = glm::clamp(probe_voxel, glm::dvec3(0.0), size) * volume.spacing - camera.target;
+    if (slices.center || slices.zoom > 1.0) {
+        const glm::dvec3 way = middle_of(slices, volume, probe_voxel) * volume.spacing - camera.target;
         camera.target += way;
         camera.eye += way;
     }
@@ -128,11 +143,66 @@ std::vector<Pane> panes_of(const ViewSettings& settings, const Camera& main, con
         panes.push_back(map_pane("front", quarter(0, 1), volume, MAP_MARGIN / settings.overview_zoom));
         panes.push_back(map_pane("right", quarter(1, 1), volume, MAP_MARGIN / settings.overview_zoom));
     } else {
-        panes.push_back(slice_pane(2, quarter(1, 0), volume, probe_voxel, settings.slices.zoom));
-        panes.push_back(slice_pane(1, quarter(0, 1), volume, probe_voxel, settings.slices.zoom));
-        panes.push_back(slice_pane(0, quarter(1, 1), volume, probe_voxel, settings.slices.zoom));
+        panes.push_back(slice_pane(2, quarter(1, 0), volume, probe_voxel, settings.slices));
+        panes.push_back(slice_pane(1, quarter(0, 1), volume, probe_voxel, settings.slices));
+        panes.push_back(slice_pane(0, quarter(1, 1), volume, probe_voxel, settings.slices));
     }
     return panes;
+}
+
+SliceSettings slices_zoomed(const SliceSettings& slices, const Pane& slice, const glm::dvec2& pixel, double factor,
+                            const VolumeInfo& volume, const glm::dvec3& probe_voxel)
+{
+    constexpr double MOST = 1e3;
+    SliceSettings zoomed = slices;
+    zoomed.zoom = std::clamp(slices.zoom * factor, 1.0, MOST);
+    zoomed.center.reset();
+    if (zoomed.zoom == 1.0) return zoomed;
+    const double share = slices.zoom / zoomed.zoom;
+    const glm::dvec3 held = unproject(slice.shot.camera, slice.pixels(), pixel, 0.0) / volume.spacing;
+    glm::dvec3 middle = middle_of(slices, volume, probe_voxel);
+    for (int axis = 0; axis < 3; ++axis)
+        if (axis != slice.axis) middle[axis] = held[axis] + share * (middle[axis] - held[axis]);
+    zoomed.center = glm::clamp(middle, glm::dvec3(0.0), glm::dvec3(volume.size));
+    return zoomed;
+}
+
+SliceSettings slices_moved(const SliceSettings& slices, const Pane& slice, const glm::dvec2& way,
+                           const VolumeInfo& volume, const glm::dvec3& probe_voxel)
+{
+    const CameraAxes axes = axes_of(slice.shot.camera);
+    const glm::dvec2 units = way * pixel_size(slice.shot.camera, slice.pixels(), 1.0);
+    const glm::dvec3 middle = middle_of(slices, volume, probe_voxel);
+    SliceSettings moved = slices;
+    moved.center = glm::clamp(middle - (axes.right * units.x - axes.up * units.y) / volume.spacing, glm::dvec3(0.0),
+                              glm::dvec3(volume.size));
+    return moved;
+}
+
+SliceSettings slices_following(const SliceSettings& slices, const std::vector<Pane>& panes, std::optional<size_t> held,
+                               const VolumeInfo& volume, const glm::dvec3& probe_voxel)
+{
+    const glm::dvec3 seen = glm::clamp(probe_voxel, glm::dvec3(0.0), glm::dvec3(volume.size)) * volume.spacing;
+    glm::bvec3 follows(false);
+    int held_axis = -1;  // across the slice under the mouse, along which it does not move
+    for (size_t i = 0; i < panes.size(); ++i) {
+        const Pane& pane = panes[i];
+        if (!pane.shot.is_slice) continue;
+        const CameraAxes axes = axes_of(pane.shot.camera);
+        const glm::dvec2 at = project(pane.shot.camera, pane.pixels(), seen)->pixel, end(pane.pixels());
+        const bool is_beside = at.x < 0.0 || at.x > end.x, is_above = at.y < 0.0 || at.y > end.y;
+        if (is_beside) follows[axis_along(axes.right)] = true;
+        if (is_above) follows[axis_along(axes.up)] = true;
+        if (held == i && !is_beside && !is_above) held_axis = pane.axis;
+    }
+    SliceSettings next = slices;
+    glm::dvec3 middle = middle_of(slices, volume, probe_voxel);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!follows[axis] || (held_axis >= 0 && axis != held_axis)) continue;
+        middle[axis] = seen[axis] / volume.spacing[axis];
+        next.center = middle;
+    }
+    return next;
 }
 
 }  // namespace shvr

@@ -46,6 +46,7 @@ struct SliceSettings {
     std::optional<double> black, white;  ///< intensities; default: the ends of the volume's range
     double paint_share = 0.5;            ///< share of a painted voxel's colour that comes from its group
     double zoom = 1.0;                   ///< of the slices; 1: the whole volume fits
+    std::optional<glm::dvec3> center;    ///< voxel in their middle; default: the volume's, or enlarged the probe
     bool operator==(const SliceSettings&) const = default;
 };
 
@@ -84,6 +85,18 @@ struct Pane {
 /// does not divide evenly. `probe_voxel`: the point that slices go through. A picture too small to divide has one pane.
 std::vector<Pane> panes_of(const ViewSettings& settings, const Camera& main, const glm::uvec2& pixels,
                            const VolumeInfo& volume, const glm::dvec3& probe_voxel);
+
+/// Slices closer by `factor` about what is at a pixel of one of them, which stays there. Not smaller than the whole
+/// volume, whose middle is then theirs.
+SliceSettings slices_zoomed(const SliceSettings& slices, const Pane& slice, const glm::dvec2& pixel, double factor,
+                            const VolumeInfo& volume, const glm::dvec3& probe_voxel);
+/// Slices moved so that one of them follows the mouse by `way` pixels.
+SliceSettings slices_moved(const SliceSettings& slices, const Pane& slice, const glm::dvec2& way,
+                           const VolumeInfo& volume, const glm::dvec3& probe_voxel);
+/// Slices moved along the axes along which the probe is out of sight of one of them. `held`: index of the pane under
+/// the mouse, which does not move as long as the probe is seen there.
+SliceSettings slices_following(const SliceSettings& slices, const std::vector<Pane>& panes, std::optional<size_t> held,
+                               const VolumeInfo& volume, const glm::dvec3& probe_voxel);
 
 /// The cameras of two eyes, left and right. Off-axis, both see a point at the target's depth at the same pixel, and
 /// there is no vertical parallax. With `toe_in`, and for orthographic cameras, which have no other parallax, the eyes

@@ -78,23 +78,20 @@ uint32_t occlusion_reach(double radius)
     return std::max(1u, uint32_t(std::ceil((radius + 4.0) / gpu::BRICK_SIZE)));
 }
 
-void occlusion_reset(FrameGraph& graph, OcclusionBinding& occlusion, std::span<const uint32_t> slots, bool with_empty)
+void occlusion_reset(FrameGraph& graph, OcclusionBinding& occlusion, std::span<const uint32_t> slots)
 {
+    if (slots.empty()) return;
     constexpr uint64_t BYTES = uint64_t{gpu::BRICK_TEXELS} * gpu::BRICK_TEXELS * gpu::BRICK_TEXELS;
-    const auto filled = [&](uint32_t value) {
-        return graph.fill(graph.create("occlusion start", buffer_desc(BYTES)), value, "start occlusion");
-    };
+    const Resource lit = graph.fill(graph.create("occlusion start", buffer_desc(BYTES)), ~0u, "start occlusion");
     std::vector<ImageRegion> regions;
     for (const uint32_t slot : slots) regions.push_back({0, gpu::slot_origin(slot), glm::uvec3(gpu::BRICK_TEXELS)});
-    if (!regions.empty())
-        occlusion.values =
-            graph.copy_to_image(filled(~0u), occlusion.values, std::move(regions), "reset occlusion values");
-    if (!with_empty) return;
-    const Resource zeros = filled(0);
-    for (uint32_t size = 0; size < gpu::OCCLUSION_SIZES; ++size)
-        occlusion.cells[size] = graph.copy_to_image(zeros, occlusion.cells[size],
-                                                    {{0, glm::uvec3(0), glm::uvec3(gpu::BRICK_SIZE >> (size + 1))}},
-                                                    "clear occlusion cells");
+    occlusion.values = graph.copy_to_image(lit, occlusion.values, std::move(regions), "reset occlusion values");
+}
+
+void occlusion_begin(FrameGraph& graph, OcclusionBinding& occlusion)
+{
+    occlusion.values = graph.fill(occlusion.values, 255, "begin occlusion values");
+    for (Resource& cells : occlusion.cells) cells = graph.fill(cells, 0, "clear occlusion cells");
 }
 
 namespace {

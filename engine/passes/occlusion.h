@@ -42,8 +42,10 @@ OcclusionTaps occlusion_taps(double radius, bool is_paged = false);
 /// How many bricks on each side of a brick its light comes from.
 uint32_t occlusion_reach(double radius);
 
-/// Sets `slots` to fully lit. `with_empty`: also makes slot 0, which stands for missing bricks, transparent.
-void occlusion_reset(FrameGraph& graph, OcclusionBinding& occlusion, std::span<const uint32_t> slots, bool with_empty);
+/// Sets `slots` to fully lit.
+void occlusion_reset(FrameGraph& graph, OcclusionBinding& occlusion, std::span<const uint32_t> slots);
+/// Sets new images to fully lit and transparent: slot 0, which stands for missing bricks, stays so.
+void occlusion_begin(FrameGraph& graph, OcclusionBinding& occlusion);
 
 struct OcclusionCellsInput {
     gpu::OcclusionCellsParams params;  ///< all but the mask

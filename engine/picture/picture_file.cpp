@@ -6,8 +6,9 @@
 namespace shvr {
 
 PictureFile::PictureFile(const std::filesystem::path& path, Renderer& renderer, const Session& session,
-                         const Camera& camera, const RenderOptions& options, const PictureTexts& texts)
+                         const Camera& camera, const RenderOptions& options, const PictureTexts& texts, Over over)
     : writer_(image_writer(path, session.render.size.x, session.render.size.y, texts)),
+      over_(std::move(over)),
       job_(renderer, session, camera, options, [this](ImageF rows) { write(std::move(rows)); })
 {}
 
@@ -19,7 +20,12 @@ bool PictureFile::is_writing() const
 void PictureFile::write(ImageF rows)
 {
     if (written_.valid()) written_.get();
-    written_ = std::async(std::launch::async, [this, rows = std::move(rows)] { writer_->add(rows); });
+    const uint32_t first_row = rows_;
+    rows_ += uint32_t(rows.height);
+    written_ = std::async(std::launch::async, [this, first_row, rows = std::move(rows)]() mutable {
+        if (over_) over_(rows, first_row);
+        writer_->add(rows);
+    });
 }
 
 void PictureFile::begin_commit()

@@ -4,6 +4,7 @@
 // whole; a picture that fails, or is abandoned, leaves the old file as it was. One thread, the renderer's.
 
 #include <filesystem>
+#include <functional>
 #include <future>
 #include <memory>
 
@@ -15,8 +16,10 @@ namespace shvr {
 class PictureFile {
 public:
     /// `path`: .png, or .pfm for linear light. `texts`: kept in a .png file. Fails where it cannot be written.
+    /// `over`: draws over rows of the picture from `first_row` on, on the other thread.
+    using Over = std::function<void(ImageF& rows, uint32_t first_row)>;
     PictureFile(const std::filesystem::path& path, Renderer& renderer, const Session& session, const Camera& camera,
-                const RenderOptions& options, const PictureTexts& texts = {});
+                const RenderOptions& options, const PictureTexts& texts = {}, Over over = {});
 
     bool is_drawn() const { return job_.is_done(); }
     /// The other thread is busy: a step that completes the next band would wait for it, and commit() would.
@@ -37,6 +40,8 @@ private:
     void write(ImageF rows);
 
     std::unique_ptr<ImageWriter> writer_;
+    Over over_;
+    uint32_t rows_ = 0;  ///< that were handed over
     bool is_committing_ = false;
     std::future<void> written_;  ///< what was handed to the other thread last; destroyed, it waits
     PictureJob job_;

@@ -40,7 +40,8 @@ struct InteractionSettings {
     // Lines and words that the window draws over its pictures
     bool scale_bar = true;
     bool axes = true;
-    bool probe_label = true;  ///< the probe's depth, and how much of it is relevant
+    bool probe_label = true;        ///< the probe's depth, and how much of it is relevant
+    bool screenshot_marks = false;  ///< screenshots have scale bar, axes and distances as the window shows them
     bool operator==(const InteractionSettings&) const = default;
 };
 
@@ -131,6 +132,7 @@ struct ProbeSettings {
     bool arrow = true;                         ///< towards it, where it is out of sight
     std::optional<double> node_radius_voxels;  ///< of new nodes, along x; default: for the volume
     bool measured_radius = false;              ///< new nodes are as wide as what they lie in, where that can be told
+    bool centered_nodes = true;                ///< clicked nodes go into the middle of what is seen, not onto its wall
     /// What painting gives voxels to: the active group, or 0.
     uint8_t painted_group() const { return tool == Tool::erase ? uint8_t(0) : brush.group; }
     bool operator==(const ProbeSettings&) const = default;

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "engine/look/session_color.h"
 #include "engine/session/session.h"
+#include "engine/session/session_keys.h"
 
 namespace shvr {
 namespace {
@@ -74,17 +76,29 @@ double automatic_node_radius(const VolumeInfo& info)
     return std::max(DIAGONAL_SHARE * glm::length(glm::dvec3(info.size) * info.spacing) / info.spacing.x, 1.0);
 }
 
+namespace {
+
+/// A session holds only a black that is below white: around the one value of a volume that has no other.
+ValueRange contrast_between(double black, double white)
+{
+    if (black < white) return {black, white};
+    const double half = std::max(0.5, 1e-6 * std::abs(black));
+    return {std::max(black - half, INTENSITY.lower), std::min(black + half, INTENSITY.upper)};
+}
+
+}  // namespace
+
 ValueRange automatic_contrast(const VolumeStatistics& statistics)
 {
     constexpr double DARK_SHARE = 0.005, BRIGHT_SHARE = 0.0035;
     const auto [lower, upper] = statistics.range();
     const std::vector<int64_t>& histogram = statistics.histogram;
-    if (!(lower < upper) || histogram.size() < 4) return {lower, upper};
+    if (!(lower < upper) || histogram.size() < 4) return contrast_between(lower, upper);
     const double bin = (upper - lower) / double(histogram.size());
     const size_t dark = quantile_split(histogram, 0, DARK_SHARE);  // the first at least holds something
     const size_t bright = quantile_split(histogram, 0, 1.0 - BRIGHT_SHARE);
     const double black = lower + bin * double(dark > 0 ? dark - 1 : 0), white = lower + bin * double(bright);
-    return {black, std::max(white, black + 2.0 * bin)};
+    return contrast_between(black, std::max(white, black + 2.0 * bin));
 }
 
 TissueRange tissue_range(const VolumeStatistics& statistics)

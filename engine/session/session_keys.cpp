@@ -344,6 +344,9 @@ void fields(Fields& f, ProbeSettings& probe)
               .standard = "in the window 1/500 of the volume's diagonal, at least 1; in scripts the probe's"});
     f.flag("measured_radius", probe.measured_radius,
            {"the window makes new nodes as wide as what they lie in, above the paint threshold"});
+    f.flag("centered_nodes", probe.centered_nodes,
+           {"nodes that are clicked in the window go into the middle of what is seen there, above the paint "
+            "threshold; false: onto its wall"});
     f.color("color", probe.color, {.meaning = "colour of its ball, silhouette and arrow", .standard = "its group's"});
     f.number("opacity", probe.opacity, SHARE, {"of its ball; 0: none is drawn"});
     f.flag("silhouette", probe.silhouette, {"its outline is drawn over whatever hides it"});

@@ -144,7 +144,11 @@ void fields(Fields& f, StereoSettings& stereo)
 void fields(Fields& f, SliceSettings& slices)
 {
     f.number("paint_share", slices.paint_share, SHARE, {"how much of a painted voxel's colour is its group's"});
-    f.number("zoom", slices.zoom, above_zero(1e-3, 1e3), {"of the slices, about the probe; 1: the whole volume fits"});
+    f.number("zoom", slices.zoom, above_zero(1e-3, 1e3), {"of the slices; 1: the whole volume fits"});
+    f.vector("center", slices.center, {-double(LARGEST_SIDE), 2.0 * double(LARGEST_SIDE)},
+             {.meaning = "what the slices have in their middle",
+              .unit = "voxels",
+              .standard = "the volume's, or of slices that are enlarged the probe"});
     const char* const standard = "the end of the volume's range";
     f.number(
         "black", slices.black, INTENSITY,
@@ -181,6 +185,8 @@ void fields(Fields& f, InteractionSettings& interaction)
     f.number("frames_per_second", interaction.frames_per_second, {1.0, 1000.0}, {"at most"});
     f.whole("screenshot_scale", interaction.screenshot_scale, 1, 32,
             {"of large screenshots: pixels for one of the window, along each axis"});
+    f.flag("screenshot_marks", interaction.screenshot_marks,
+           {"the window's screenshots have the scale bar, axes and distances that the window draws"});
     f.choice("pivot", interaction.pivot, {"what turning the view goes about"});
     f.flag("scale_bar", interaction.scale_bar, {"the window draws a length over each pane"});
     f.flag("axes", interaction.axes, {"the window draws the directions of x, y and z over each pane"});

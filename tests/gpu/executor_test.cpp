@@ -82,6 +82,22 @@ TEST_CASE_FIXTURE(Fixture, "bytes go to a buffer, through an image and back unch
     }
 }
 
+TEST_CASE_FIXTURE(Fixture,
+                  "a fill reaches all bytes of a buffer and every texel of an image, however large its bricks make it")
+{
+    gpu::Storage buffer = memory.create("buffer", buffer_desc(10 * 4));
+    gpu::Storage numbers = memory.create("numbers", image_desc(Format::r32_uint, {5, 7, 3}));
+    gpu::Storage bytes = memory.create("bytes", image_desc(Format::r8_uint, {34, 34, 68}));
+    FrameGraph graph;
+    const uint32_t in_buffer = graph.read_back(graph.fill(graph.import("buffer", buffer.import()), 7));
+    const uint32_t in_numbers = graph.read_back(graph.fill(graph.import("numbers", numbers.import()), 123456));
+    const uint32_t in_bytes = graph.read_back(graph.fill(graph.import("bytes", bytes.import()), 255));
+    const auto result = executor.run(graph);
+    CHECK(values_of<uint32_t>(result.read_backs[in_buffer]) == std::vector<uint32_t>(10, 7));
+    CHECK(values_of<uint32_t>(result.read_backs[in_numbers]) == std::vector<uint32_t>(5 * 7 * 3, 123456));
+    CHECK(values_of<uint8_t>(result.read_backs[in_bytes]) == std::vector<uint8_t>(34 * 34 * 68, 255));
+}
+
 TEST_CASE_FIXTURE(Fixture, "a dispatch split into tiles gives what one dispatch gives")
 {
     const glm::uvec3 cells(50, 41, 3);

@@ -60,7 +60,7 @@ const std::vector<Feature> FEATURES{
          s.session.light.occlusion = {.strength = 0.8, .radius = 4.0, .rays = 8};
      },
      {"raycast_occluded", "occlusion_cells", "occlusion_gather", "occlusion_bake", "clear occlusion scratch",
-      "reset occlusion values", "clear occlusion cells", "start occlusion"},
+      "begin occlusion values", "clear occlusion cells", "start occlusion"},
      {"occlusion cells", "occlusion scratch", "occlusion start", "occlusion values"}},
     {"distance blending", [](Scenery& s) { s.session.blend = {.size = 0.7, .color = RED}; }, {}},
     {"ball of the probe",

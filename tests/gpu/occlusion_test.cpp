@@ -259,6 +259,26 @@ TEST_CASE_FIXTURE(OnDevice, "a view that rests shows what a picture shows, and t
     }
 }
 
+TEST_CASE_FIXTURE(OnDevice, "asking what is due looks at a brick again only where something about it has changed")
+{
+    load(blobs({128, 96, 96}));
+    const Session session = occluded({{36000.0, RED, 0.0}, {42000.0, GREEN, 0.9}, {65535.0, BLUE, 1.0}}, 6.0, {64, 64});
+    static_cast<void>(draw(session, overview(volume())));
+    Occlusion& occlusion = renderer().scene().occlusion();
+    CHECK_FALSE(occlusion.is_due());
+    const uint64_t looks = occlusion.counts().looks;
+    CHECK(looks > 0);
+    for (int i = 0; i < 100; ++i) CHECK_FALSE(occlusion.is_due());
+    CHECK(occlusion.counts().looks == looks);
+    // Paint in one corner: its brick and those beside it, of 4 * 3 * 3.
+    Annotator annotator(renderer());
+    annotator.paint({.brush = Brush::fill, .group = 2, .radius_voxels = 3.0, .path = {{6, 6, 6}}});
+    CHECK(occlusion.is_due());
+    static_cast<void>(draw(session, overview(volume())));
+    CHECK_FALSE(occlusion.is_due());
+    CHECK(occlusion.counts().looks - looks <= 16);
+}
+
 TEST_CASE("where occlusion has no room the picture goes without, and says so once")
 {
     const std::shared_ptr<const VolumeSource> source = open_procedural({.kind = "tubes", .size = Size3(200)});

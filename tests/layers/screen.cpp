@@ -4,7 +4,8 @@
 //   SHVR_SCREEN_HIDDEN=FILE      while that file exists no image is free at all, as of a window that nobody sees
 //   SHVR_SCREEN_BLANK_US=N       microseconds between blanks, instead of 16700
 //   SHVR_SCREEN_LOG=FILE         at the end: "acquired N", "refused N" (for now, without waiting), "waited N" (calls
-//                                that did not return at once), "swapchains N"
+//                                that did not return at once), "swapchains N", "mailboxes N" (those of
+//                                them whose presenting waits for no blank)
 
 #include <atomic>
 #include <chrono>
@@ -26,7 +27,7 @@ constexpr size_t IMAGES = 2;
 struct State {
     std::mutex mutex;
     std::deque<Clock::time_point> shown;  ///< when each image that was presented gets to the screen; the last ones
-    uint64_t acquired = 0, refused = 0, waited = 0, swapchains = 0;
+    uint64_t acquired = 0, refused = 0, waited = 0, swapchains = 0, mailboxes = 0;
 };
 State& state()
 {
@@ -105,6 +106,7 @@ struct Screen {
         {
             const std::lock_guard lock(state().mutex);
             ++state().swapchains;
+            state().mailboxes += info->presentMode == VK_PRESENT_MODE_MAILBOX_KHR;
             state().shown.clear();
         }
         return Next::next<PFN_vkCreateSwapchainKHR>(device, "vkCreateSwapchainKHR")(device, info, allocator, swapchain);
@@ -125,7 +127,8 @@ struct Screen {
         if (!path) return;
         const State& known = state();
         std::ofstream(path) << "acquired " << known.acquired << "\nrefused " << known.refused << "\nwaited "
-                            << known.waited << "\nswapchains " << known.swapchains << '\n';
+                            << known.waited << "\nswapchains " << known.swapchains << "\nmailboxes " << known.mailboxes
+                            << '\n';
     }
     static VkDeviceCreateInfo device_info(const VkDeviceCreateInfo& info) { return info; }
 };

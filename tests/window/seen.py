@@ -120,6 +120,15 @@ class Seen(Window):
         found = self.until(lambda: self.seen(text, window), f"'{text}'")
         return [*found, *(seen for seen in found if seen["text"] == text)][-1]
 
+    def see_at_rest(self, text, window=None):
+        """The same once it stays where it is: a menu finds its place in its first frames."""
+        seen = self.see(text, window)
+        while True:
+            time.sleep(0.06)
+            before, seen = seen, self.see(text, window)
+            if seen["box"] == before["box"]:
+                return seen
+
     def see_no_more(self, text, window=None):
         self.until(lambda: not self.seen(text, window), f"screen without '{text}'")
 
@@ -135,7 +144,7 @@ class Seen(Window):
     def click_on(self, text, window=None, button=1):
         """With the mouse, where the words are; the pointer rests and the button is held for some frames, as by a
         hand."""
-        x, y = self.middle_of(self.see(text, window))
+        x, y = self.middle_of(self.see_at_rest(text, window))
         for step in (["mousemove", x - 2, y, "mousemove", x, y], ["mousedown", button], ["mouseup", button]):
             before = self.frame()["frame"]
             self.do(*step, pause_s=0)

@@ -49,6 +49,14 @@ class Window(CliTest):
             env={**ENVIRONMENT, "DISPLAY": self.display.name, **{k: str(v) for k, v in (environment or {}).items()}})
         self.addCleanup(self.program.kill)
 
+    def with_keys(self, **keys):
+        """The environment of a person who has given shortcuts those keys."""
+        folder = self.folder / "configuration" / "shvr"
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "preferences.json").write_text(json.dumps(
+            {"shvr_preferences": 1, "keys": {name: {"keys": chord} for name, chord in keys.items()}}))
+        return {"XDG_CONFIG_HOME": folder.parent}
+
     @staticmethod
     def with_size(arguments):
         return arguments if "--size" in arguments else [*arguments, "--size", f"{WINDOW[0]}x{WINDOW[1]}"]
@@ -131,7 +139,7 @@ class View(Window):
         self.stroke((x + 20, y + 5), (x - 30, y - 10))
         self.do("key", "ctrl+z", pause_s=0.5)
         self.do("key", "ctrl+s", pause_s=0.5)
-        self.do("key", "p")
+        self.do("key", "F12")
         photograph = self.folder / "session-view-1.png"
         self.wait_for_file(photograph)
         report = self.finish()
@@ -163,7 +171,7 @@ class View(Window):
                 self.do("key", "ctrl+s", pause_s=1)
                 before = json.loads(session.read_text())["probe"]["voxel"]
                 self.do("click", "--repeat", 3, "--delay", 60, 4, pause_s=1)
-            self.do("key", "p")
+            self.do("key", "F12")
             self.wait_for_file(self.folder / f"session-view-{number}.png")
         self.do("key", "ctrl+s", pause_s=0.5)
         report = self.finish()
@@ -182,7 +190,7 @@ class View(Window):
         self.start(session)
         self.wait_for_window("sphere.* - SHVR")
         x, y = self.middle()
-        self.do("mousemove", x, y, "key", "ctrl+p")
+        self.do("mousemove", x, y, "key", "shift+F12")
         photograph = self.folder / "session-view-1.png"
         self.wait_for_file(photograph)
         self.do("key", "ctrl+s", pause_s=0.5)
@@ -332,7 +340,8 @@ class View(Window):
 
     def test_what_was_set_survives_a_kill_and_is_undone_in_order_with_paint(self):
         session = self.write_ball()
-        self.start(session)
+        keys = self.with_keys(near_x_in="Y", near_y_in="U")
+        self.start(session, environment=keys)
         self.wait_for_window("sphere.* - SHVR")
         x, y = self.middle()
         self.put_probe(x, y)
@@ -344,7 +353,7 @@ class View(Window):
         self.program.communicate()
         self.assertNotIn("lower", json.loads(session.read_text()).get("cut", {}))
 
-        self.start(session)
+        self.start(session, environment=keys)
         self.wait_for_window("sphere.* - SHVR")
         self.do("key", "ctrl+z", pause_s=0.7)
         report = self.finish()

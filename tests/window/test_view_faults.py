@@ -46,7 +46,7 @@ class Faults(Window):
             time.sleep(1.5)
         self.paint_at(x + 20, y - 20, 7)
         self.do("key", "ctrl+s", pause_s=1)
-        self.do("key", "p")
+        self.do("key", "F12")
         photograph = self.folder / "session-view-1.png"
         self.wait_for_file(photograph)
         report = self.finish()
@@ -82,7 +82,7 @@ class Faults(Window):
             time.sleep(1)
         self.paint_at(x + 20, y - 20, 5)
         self.do("key", "ctrl+s", pause_s=1)
-        self.do("key", "p")
+        self.do("key", "F12")
         photograph = self.folder / "session-view-1.png"
         self.wait_for_file(photograph)
         report = self.finish()

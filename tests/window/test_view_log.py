@@ -13,7 +13,7 @@ class Log(Window):
         again.parent.mkdir()
         again.write_text(session.read_text())
         log = self.folder / "log.jsonl"
-        self.start(session, "--log", log)
+        self.start(session, "--log", log, environment=self.with_keys(near_y_in="U"))
         self.wait_for_window("sphere.* - SHVR")
         x, y = self.middle()
         self.put_probe(x, y)

@@ -14,7 +14,7 @@ SLIDERS = [
     ("aids", "Probe's opacity", "probe.opacity"),
     ("views", "In motion", "interaction.resolution"),
     ("touch", "Strength", "probe.touch.strength"),
-    ("touch", "Reach", "interaction.workspace_scale"),
+    ("touch", "Workspace", "interaction.workspace_scale"),
 ]
 PIXELS_LEFT_OF_THE_WORDS = 30   # still on the slider, and far from what ships
 
@@ -24,7 +24,7 @@ PIXELS_LEFT_OF_THE_WORDS = 30   # still on the slider, and far from what ships
 FIELDS = [
     ("probe", "Radius", "probe.radius_voxels", 0),
     ("probe", "Paint threshold", "probe.paint_threshold", 40),
-    ("touch", "Felt from", "probe.haptic_threshold", 40),
+    ("touch", "Haptic threshold", "probe.haptic_threshold", 40),
     ("groups", "0  unpainted", "unpainted.opacity", 0),
 ]
 

@@ -69,7 +69,7 @@ class Screen(Window):
         self.assertAlmostEqual(width, (SIDE_PANEL - 70) / 14, delta=0.3)
         self.do("key", "ctrl+b", pause_s=0.7)
         self.assertFalse(self.preferences()["layout"]["shows_side"])
-        self.do("key", "p")   # the picture is as wide as the window now
+        self.do("key", "F12")   # the picture is as wide as the window now
         photograph = self.folder / "session-view-1.png"
         self.wait_for_file(photograph)
         self.finish()
@@ -77,7 +77,7 @@ class Screen(Window):
 
         self.started(session)   # remembered
         self.do("key", "ctrl+b", pause_s=0.7)   # keys of one frame take the picture as it was
-        self.do("key", "p", pause_s=1)
+        self.do("key", "F12", pause_s=1)
         again = self.folder / "session-view-2.png"
         self.wait_for_file(again)
         self.finish()
@@ -87,7 +87,7 @@ class Screen(Window):
         self.prefer({"layout": {"side_width": 60}})
         session = self.write_ball()
         self.started(session)
-        self.do("key", "p")
+        self.do("key", "F12")
         photograph = self.folder / "session-view-1.png"
         self.wait_for_file(photograph)
         self.finish()

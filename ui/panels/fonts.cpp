@@ -19,7 +19,8 @@ constexpr const char* FONTS[] = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.tt
                                  "/usr/share/fonts/TTF/DejaVuSans.ttf",                // Arch
                                  "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf",
                                  "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"};
-/// What the one before has not, the next may have. Read only once a rare character is known_glyphs: they are large.
+/// What the one before has not, the next may have. Read only once a rare character is known:
+/// they are large.
 constexpr const char* FALLBACKS[] = {
     "/usr/share/fonts/truetype/droid/DroidSansFallbackFull.ttf",  // fonts-droid-fallback
     "/usr/share/fonts-droid-fallback/truetype/DroidSansFallback.ttf",
@@ -44,35 +45,93 @@ void fill_ranges()
     glyph_ranges.push_back(0);
 }
 
-bool add_font(const char* path, float pixels, bool is_merged)
+enum class For { screen, picture };
+
+bool add_font(ImFontAtlas& atlas, const char* path, float pixels, bool is_merged, For purpose)
 {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) return false;
     ImFontConfig config;
     config.MergeMode = is_merged;
-    if (is_merged) config.OversampleH = 1;
-    return ImGui::GetIO().Fonts->AddFontFromFileTTF(path, pixels, &config, glyph_ranges.data()) != nullptr;
+    if (is_merged || purpose == For::picture) config.OversampleH = 1;  // a pixel of the atlas is one of the picture
+    return atlas.AddFontFromFileTTF(path, pixels, &config, glyph_ranges.data()) != nullptr;
+}
+
+void fill(ImFontAtlas& atlas, double pixels, For purpose)
+{
+    const float size = float(std::max(1.0, std::round(pixels)));
+    const bool is_found =
+        std::ranges::any_of(FONTS, [&](const char* path) { return add_font(atlas, path, size, false, purpose); });
+    if (!is_found) {
+        ImFontConfig config;
+        config.SizePixels = size;
+        config.OversampleH = 1;
+        atlas.AddFontDefault(&config);
+    }
+    if (known_glyphs.has_rare())
+        for (const char* path : FALLBACKS) add_font(atlas, path, size, true, purpose);
+}
+
+/// The next character of UTF-8, and how many bytes it has; what is none is one byte.
+std::pair<ImWchar, size_t> next_character(std::string_view text)
+{
+    const auto byte = [&](size_t i) { return i < text.size() ? uint32_t(uint8_t(text[i])) : 0u; };
+    const uint32_t first = byte(0);
+    if (first < 0x80) return {ImWchar(first), 1};
+    if ((first & 0xe0) == 0xc0) return {ImWchar((first & 0x1f) << 6 | (byte(1) & 0x3f)), 2};
+    if ((first & 0xf0) == 0xe0) return {ImWchar((first & 0x0f) << 12 | (byte(1) & 0x3f) << 6 | (byte(2) & 0x3f)), 3};
+    return {ImWchar('?'), (first & 0xf8) == 0xf0 ? 4 : 1};
+}
+
+TextImage image_of(std::string_view text, const ImFont& font, const uint8_t* atlas, const glm::ivec2& atlas_pixels)
+{
+    const ImVec2 size = font.CalcTextSizeA(font.FontSize, FLT_MAX, 0.0f, text.data(), text.data() + text.size());
+    TextImage image{.pixels = {int(std::ceil(size.x)), int(std::ceil(font.FontSize))}, .coverage{}};
+    image.coverage.assign(size_t(image.pixels.x) * size_t(image.pixels.y), 0);
+    float pen = 0.0f;
+    for (size_t at = 0; at < text.size();) {
+        const auto [character, bytes] = next_character(text.substr(at));
+        at += bytes;
+        const ImFontGlyph* const glyph = font.FindGlyph(character);
+        if (!glyph) continue;
+        const glm::ivec2 from(std::lround(glyph->U0 * float(atlas_pixels.x)),
+                              std::lround(glyph->V0 * float(atlas_pixels.y)));
+        const glm::ivec2 to(std::lround(glyph->U1 * float(atlas_pixels.x)),
+                            std::lround(glyph->V1 * float(atlas_pixels.y)));
+        const glm::ivec2 corner(std::lround(pen + glyph->X0), std::lround(glyph->Y0));
+        for (int y = 0; y < to.y - from.y; ++y)
+            for (int x = 0; x < to.x - from.x; ++x) {
+                const glm::ivec2 pixel = corner + glm::ivec2(x, y);
+                if (pixel.x < 0 || pixel.y < 0 || pixel.x >= image.pixels.x || pixel.y >= image.pixels.y) continue;
+                uint8_t& covered = image.coverage[size_t(pixel.x) + size_t(image.pixels.x) * size_t(pixel.y)];
+                covered = std::max(covered, atlas[size_t(from.x + x) + size_t(atlas_pixels.x) * size_t(from.y + y)]);
+            }
+        pen += glyph->AdvanceX;
+    }
+    return image;
 }
 
 }  // namespace
 
-void load_fonts(double pixels);
-
 void load_fonts(double pixels)
 {
-    const float size = float(std::max(1.0, std::round(pixels)));
     ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
     atlas.Clear();
     fill_ranges();
-    const bool is_found = std::ranges::any_of(FONTS, [&](const char* path) { return add_font(path, size, false); });
-    if (!is_found) {
-        ImFontConfig config;
-        config.SizePixels = size;
-        atlas.AddFontDefault(&config);
-    }
-    if (known_glyphs.has_rare())
-        for (const char* path : FALLBACKS) add_font(path, size, true);
+    fill(atlas, pixels, For::screen);
     is_atlas_stale = false;
+}
+
+std::vector<TextImage> draw_texts(std::span<const std::string> texts, double pixels)
+{
+    ImFontAtlas atlas;
+    fill(atlas, pixels, For::picture);
+    uint8_t* coverage = nullptr;
+    glm::ivec2 size(0);
+    atlas.GetTexDataAsAlpha8(&coverage, &size.x, &size.y);
+    std::vector<TextImage> images;
+    for (const std::string& text : texts) images.push_back(image_of(text, *atlas.Fonts[0], coverage, size));
+    return images;
 }
 
 void want_glyphs(std::string_view text)

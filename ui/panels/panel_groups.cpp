@@ -146,8 +146,9 @@ bool name_cell(const GroupRow& row, const Model& model, GroupSettings& settings,
     ImGui::PushStyleColor(ImGuiCol_Header, ImGui::GetColorU32(ImGuiCol_SliderGrab, CHOSEN_ALPHA));
     const std::string label = group == 0 ? "0  unpainted" : label_of_group(model.session.groups, group);
     const std::string shown = shortened(label, ImGui::GetContentRegionAvail().x) + "###name";
-    if (ImGui::Selectable(shown.c_str(), group == model.brush().group))
+    if (ImGui::Selectable(shown.c_str(), group == model.brush().group, ImGuiSelectableFlags_AllowDoubleClick))
         set(actions, model, [&](Session& s) { s.probe.brush.group = group; });
+    if (group != 0 && is_double_clicked()) ImGui::OpenPopup("settings");
     ImGui::PopStyleColor(row.is_found ? 1 : 2);
     if (indent > 0.0f) ImGui::Unindent(indent);
     drag_and_drop(group, model, actions);
@@ -156,7 +157,8 @@ bool name_cell(const GroupRow& row, const Model& model, GroupSettings& settings,
                  .c_str());
         return false;
     }
-    hint((label + "\nClick: paint with this group. Drag: put it below another. Right click: rename it, and more.")
+    hint((label +
+          "\nClick: paint with this group. Double click: rename it. Drag: put it below another. Right click: more.")
              .c_str());
     return settings_popup(group, model, settings, actions);
 }
@@ -319,22 +321,37 @@ void group_table(const Model& model, Actions& actions)
     ImGui::EndTable();
 }
 
+/// For who has no right mouse button, or no mouse.
+void rename_button(const Model& model, Actions& actions)
+{
+    const uint8_t group = model.brush().group;
+    ImGui::BeginDisabled(group == 0);
+    if (ImGui::Button("Rename")) ImGui::OpenPopup("rename");
+    ImGui::EndDisabled();
+    hint("Gives the active group another name.");
+    if (!ImGui::BeginPopup("rename")) return;
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    std::string name = group_of(model.session.groups, group).name;
+    ImGui::SetNextItemWidth(14.0f * ImGui::GetFontSize());
+    if (ImGui::InputText("##name", &name)) set(actions, model, [&](Session& s) { s.groups[group].name = name; });
+    if (ImGui::IsItemDeactivatedAfterEdit()) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+}
+
 /// Search, new group, and which of two things are shown beside the name.
 void tools(const Model& model, Actions& actions)
 {
     const uint8_t next = free_group(model.session.groups, model.voxels_by_group, groups_state.in_trace);
-    ImGui::SetNextItemWidth(8.0f * ImGui::GetFontSize());
+    ImGui::SetNextItemWidth(6.0f * ImGui::GetFontSize());
     ImGui::InputTextWithHint("##search", "Search", &groups_state.search);
     hint("Part of a name, or a number.");
     ImGui::SameLine();
     ImGui::BeginDisabled(next == 0);
-    if (ImGui::Button("New group"))
-        set(actions, model, [&](Session& s) {
-            s.groups[next].name = group_of(s.groups, next).name;
-            s.probe.brush.group = next;
-        });
+    if (ImGui::Button("New group")) actions.emplace_back(NewGroup{});
     ImGui::EndDisabled();
     hint(next == 0 ? "All 255 groups are in use." : "A group that nothing uses yet, to paint and trace with.");
+    ImGui::SameLine();
+    rename_button(model, actions);
     ImGui::SameLine();
     ImGui::Checkbox("Sizes", &groups_state.shows_sizes);
     hint("Shows radii of nodes and internodes instead of numbers of voxels.");

@@ -27,10 +27,10 @@ struct Gesture {
 constexpr Gesture GESTURES[] = {
     {"Left button", "Use the tool of the tool bar: turn, paint, erase, trace, select or measure"},
     {"Alt + left drag", "Turn the volume with any tool"},
-    {"Shift + left or middle drag", "Move the volume"},
-    {"Middle drag", "Turn the volume; with the tool that turns, move it"},
+    {"Shift + left or middle drag", "Move the volume; in a slice, the slices"},
+    {"Middle drag", "Turn the volume; with the tool that turns, move it; in a slice, move the slices"},
     {"Wheel", "Zoom; in a slice, the next one"},
-    {"Ctrl + wheel", "Push the probe away or pull it closer"},
+    {"Ctrl + wheel", "Push the probe away or pull it closer; in a slice, zoom"},
     {"Mouse without buttons", "The probe follows: in its plane with the tool that turns, else on what you see"},
     {"Double click, with the tool that turns", "Put the probe onto what you see there"},
     {"Right drag", "Turn the volume; with the tool that turns, paint; in a slice, change the contrast"},

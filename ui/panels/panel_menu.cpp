@@ -27,12 +27,18 @@ namespace {
 
 constexpr const char* AXES[] = {"x", "y", "z"};
 
+/// Grey where something speaks against it, which its tooltip says.
+bool reasoned_item(const char* name, const std::string& why)
+{
+    const bool is_chosen = ImGui::MenuItem(name, nullptr, false, why.empty());
+    if (!why.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", why.c_str());
+    return is_chosen;
+}
+
 /// The menu item of an action that has no key.
 void action_item(const char* name, const Action& action, const Model& model, Actions& actions)
 {
-    const std::string why = why_not(model, action);
-    if (ImGui::MenuItem(name, nullptr, false, why.empty())) actions.push_back(action);
-    if (!why.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", why.c_str());
+    if (reasoned_item(name, why_not(model, action))) actions.push_back(action);
 }
 
 /// Keys that act while held are buttons here, since an item would close the menu at every step.
@@ -64,16 +70,19 @@ void file_menu(const Model& model, Actions& actions)
     }
     action_item("Open the example", OpenExample{}, model, actions);
     shortcut_item("save", model, actions);
-    if (ImGui::MenuItem("Save as...", nullptr, false, model.is_open && model.holder.empty())) ask_for_name(model);
-    if (ImGui::MenuItem("Copy the session", nullptr, false, model.is_open)) actions.push_back(CopySession{});
+    if (reasoned_item("Save as...", why_not(model, SaveAs{}))) ask_for_name(model);
+    action_item("Copy the session", CopySession{}, model, actions);
     action_item("Revert to the last save", RevertOp{}, model, actions);
     ImGui::Separator();
     task_menu(model);
     ImGui::Separator();
     shortcut_item("screenshot", model, actions);
     shortcut_item("large_screenshot", model, actions);
+    shortcut_item("screenshot_marks", model, actions, model.session.interaction.screenshot_marks);
     ImGui::Separator();
     shortcut_item("quit", model, actions);
+    shortcut_item("quit_unsaved", model, actions);
+    hint("Files stay as they were saved last. Undo brings back what was done since, when it is opened again.");
     ImGui::EndMenu();
 }
 
@@ -237,6 +246,7 @@ void trace_menu(const Model& model, Actions& actions)
     shortcut_item("mend_cut", model, actions);
     shortcut_item("next_node", model, actions);
     shortcut_item("previous_node", model, actions);
+    shortcut_item("centered_nodes", model, actions, model.session.probe.centered_nodes);
     shortcut_item("measured_radius", model, actions, model.session.probe.measured_radius);
     ImGui::Separator();
     shortcut_item("larger_selected", model, actions);

@@ -77,6 +77,22 @@ void keys_row(const Model& model, Actions& actions)
     if (ImGui::Button("Change single keys...")) actions.push_back(ShowHelp{true});
 }
 
+/// Or as much as fits, which is what ships.
+void budget_row(const char* label, const char* key, const std::optional<double>& mebibytes, uint64_t present_bytes,
+                const char* meaning, Actions& actions)
+{
+    ImGui::PushID(key);
+    bool is_automatic = !mebibytes;
+    row_label(label);
+    if (ImGui::Checkbox("as much as fits", &is_automatic))
+        prefer(actions, sentence('"', key, "\":",
+                                 is_automatic ? std::string("null")
+                                              : std::to_string(std::max<uint64_t>(present_bytes >> 20, 16))));
+    hint(meaning);
+    if (mebibytes) number_row("", key, *mebibytes, Preferences::MIN_BUDGET_MIB, 65536.0, "%.0f MiB", meaning, actions);
+    ImGui::PopID();
+}
+
 void buttons(Actions& actions)
 {
     row_label("Panels");
@@ -108,6 +124,10 @@ void preferences_window(const Model& model, Actions& actions)
             number_row("", "scale", *preferences.scale, Preferences::MIN_SCALE, Preferences::MAX_SCALE, "%.2f times",
                        "Size of everything but the picture.", actions);
         keys_row(model, actions);
+        budget_row("GPU memory", "budget_device_mib", preferences.budget_device_mib, model.device_budget,
+                   "Of the graphics device, for volumes, pictures and paint. From the next start on.", actions);
+        budget_row("Memory", "budget_host_mib", preferences.budget_host_mib, uint64_t{1} << 30,
+                   "Of the computer, for bricks on their way to the device. From the next start on.", actions);
         buttons(actions);
         ImGui::TextDisabled("Kept for all scans. A double click on a slider takes what ships.");
     }

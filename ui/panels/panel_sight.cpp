@@ -29,7 +29,9 @@ void kept_view(const std::string& name, const Model& model, Actions& actions)
         ImGui::CloseCurrentPopup();
     }
     ImGui::EndDisabled();
-    if (ImGui::MenuItem("Remove")) actions.push_back(ForgetCamera{name});
+    if (!begin_menu("Remove")) return;  // which cannot be undone
+    if (ImGui::MenuItem("Remove this view")) actions.push_back(ForgetCamera{name});
+    ImGui::EndMenu();
 }
 
 }  // namespace
@@ -76,6 +78,13 @@ void new_nodes(const Model& model, Actions& actions)
     hint(
         "As wide as what the node lies in: the largest ball that contains it, above the paint threshold. Where that "
         "cannot be told, the radius beside it is taken.");
+    bool is_centered = model.session.probe.centered_nodes;
+    label("");
+    if (ImGui::Checkbox("clicked into the middle", &is_centered))
+        set(actions, model, [&](Session& s) { s.probe.centered_nodes = is_centered; });
+    hint(
+        "Where you click a wall, the node goes into the middle of what lies behind it, above the paint threshold. "
+        "Otherwise it stays on the wall. In slices it is where you click.");
 }
 
 }  // namespace shvr::ui

@@ -2,8 +2,6 @@
 
 namespace shvr::ui {
 
-void load_fonts(double pixels);  // fonts.cpp
-
 namespace {
 
 Theme present_theme = Theme::dark;

@@ -1,11 +1,15 @@
 #pragma once
 // Colours, shapes and fonts of all panels. Main thread, between frames where nothing else is said.
 
+#include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include <imgui/imgui.h>
 
 #include "ui/workbench/appearance/theme.h"
+#include "ui/workbench/sight/figure.h"
 
 namespace shvr::ui {
 
@@ -19,6 +23,12 @@ struct Appearance {
 /// Sets the style and fills the font atlas anew. The back end uploads fonts when it is attached; later
 /// Window::renew_fonts does.
 void set_style(const Appearance& appearance);
+
+/// Fills the font atlas (fonts.cpp).
+void load_fonts(double pixels);
+
+/// Letters of those fonts for pictures in files (figure.h), of a height in pixels.
+std::vector<TextImage> draw_texts(std::span<const std::string> texts, double pixels);
 
 /// A text that people wrote: names, paths, messages. Its characters are in the fonts from the next frame on, as far as
 /// a font of this machine has them. Any time on the main thread; cheap.

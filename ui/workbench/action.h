@@ -29,12 +29,12 @@ struct Roll {
 struct Move {
     glm::dvec3 heights{0.0};
 };
-struct Zoom {
+struct Zoom {  ///< in a slice: all slices
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
     double factor = 1.0;
 };
-/// Moves the camera in the plane of a map, following the mouse.
+/// Moves the camera in the plane of a map, or the slices, following the mouse.
 struct DragInMap {
     size_t pane = 0;
     glm::dvec2 pixels{0.0};
@@ -78,7 +78,9 @@ struct PlaceClips {
 };
 struct ResetCuts {};
 /// Brings the volume, or what the cutting planes leave of it, into sight, from where one looks.
-struct FitView {};
+struct FitView {
+    size_t pane = 0;  ///< of a slice: all slices, instead of the camera
+};
 /// Back to the camera that the session opens with.
 struct ResetView {};
 /// Towards what is selected, at the distance there is.
@@ -90,6 +92,9 @@ struct UpdateOcclusion {};  ///< updates it where it does not update by itself
 struct Set {
     std::string patch;
 };
+
+/// The first group that nothing uses yet becomes one of the session's, and the active one.
+struct NewGroup {};
 
 /// What was set since the last step becomes one; it does by itself when the hand lets go.
 struct EndStep {};
@@ -128,9 +133,9 @@ struct ProbeAlong {
     glm::dvec2 pixel{0.0};
     bool jumps = false;
 };
-struct PushProbe {  ///< away from the viewer of a pane, in voxels
+struct PushProbe {  ///< away from the viewer of a pane, to the right and up, in voxels
     size_t pane = 0;
-    double voxels = 0.0;
+    double voxels = 0.0, right = 0.0, up = 0.0;
 };
 struct PlaceProbe {  ///< a stroke that is open goes there with it
     glm::dvec3 voxel{0.0};
@@ -156,7 +161,8 @@ struct NodeAt {
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
 };
-/// Selects the node or internode that is seen there; or else takes the group that is painted there.
+/// Selects the node or internode that is seen there; or else takes the group that is painted there; or else selects
+/// nothing.
 struct SelectAt {
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
@@ -203,9 +209,11 @@ struct LookAtFile {
     std::string settings{};      ///< as in Open
 };
 /// What was dropped onto the window: opens volumes, sessions, projects and pictures, and takes annotation and transfer
-/// functions into what is open, as steps that undo takes back. What a file is, its contents say.
+/// functions into what is open, as steps that undo takes back. What a file is, its contents say. Where one of several
+/// can be opened, the others are taken into that.
 struct TakeFile {
     std::filesystem::path path;
+    std::string beside{};  ///< those that were dropped with it, one a line
 };
 /// The volume's spacing was wrong: saves the work, and opens it with this one. Positions stay at their voxels.
 struct CorrectSpacing {
@@ -290,7 +298,9 @@ struct FocusOn {
 struct ShowFullScreen {
     bool on = true;
 };
-struct Quit {};
+struct Quit {
+    bool saves = true;  ///< false: the work goes back to what was saved last, as a step that undo takes back
+};
 
 // ---- The hand. Devices are those of haptics/devices; what is chosen is kept for all scans.
 struct LetGo {  ///< no force from the next tick on, until it is switched off again
@@ -322,8 +332,8 @@ using Action = std::variant<
     Orbit, Roll, Move, Zoom, DragInMap, LookFrom, KeepCamera, ForgetCamera, RenameCamera, PivotAt, GoTo, MoveCut,
     MoveClip, PlaceClips, ResetCuts, FitView, ResetView, LookAtSelection, UpdateOcclusion,
     // settings, the probe
-    Set, EndStep, AutoContrast, KeepPreset, RenamePreset, ForgetPreset, TakePreset, ProbeTo, ProbeOnto, ProbeAlong,
-    PushProbe, PlaceProbe, ScaleProbe,
+    Set, NewGroup, EndStep, AutoContrast, KeepPreset, RenamePreset, ForgetPreset, TakePreset, ProbeTo, ProbeOnto,
+    ProbeAlong, PushProbe, PlaceProbe, ScaleProbe,
     // painting and tracing
     Paint, PaintOp, DragNode, NodeOp, SelectOp, SelectSegmentOp, DeselectOp, LinkOp, MoveOp, DeleteOp, GroupOp,
     RadiusOp, NodeAt, SelectAt, StepNode, MendCut,

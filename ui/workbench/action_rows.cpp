@@ -21,8 +21,8 @@ constexpr ActionRow ROWS[] = {
     {"orbit", "Turn the view", LOOKING, "turns the camera about its target, to the right and up"},
     {"roll", "Roll the view", LOOKING, "turns the camera about its line of sight"},
     {"move_view", "Move the view", LOOKING, "moves the camera right, up and forward, in heights of the view"},
-    {"zoom", "Zoom", LOOKING, "brings what lies under a pixel of a pane nearer by a factor"},
-    {"drag_in_map", "Move the camera in a map", LOOKING, "moves the camera with the mouse in a map of the overview"},
+    {"zoom", "Zoom", LOOKING, "brings what lies under a pixel of a pane nearer by a factor; in a slice, all slices"},
+    {"drag_in_map", "Move the camera in a map", LOOKING, "moves the camera with the mouse in a map, or the slices"},
     {"look_from", "Look from", LOOKING, "takes a camera of the session, or a side of the volume"},
     {"keep_camera", "Keep this view", LOOKING, "keeps the present view in the session, under a name"},
     {"forget_camera", "Forget a view", LOOKING, "removes a camera of the session"},
@@ -33,11 +33,13 @@ constexpr ActionRow ROWS[] = {
     {"move_clip", "Move a clip plane", LOOKING, "moves the near or far plane by a share of the distance to the target"},
     {"place_clips", "Place the clip planes", LOOKING, "puts the near and the far plane at distances from the eye"},
     {"reset_cuts", "Remove all planes", LOOKING, "shows the whole volume"},
-    {"fit_view", "Fit", LOOKING, "brings the volume, or what is not cut away of it, into sight"},
+    {"fit_view", "Fit", LOOKING,
+     "brings the volume, or what is not cut away of it, into sight; in a slice, the slices"},
     {"reset_view", "Reset the view", LOOKING, "takes the camera that the session opens with"},
     {"look_at_selection", "Look at what is selected", LOOKING, "moves what is selected into the middle of the view"},
     {"update_occlusion", "Update ambient occlusion", LOOKING, "computes it anew where it is not automatic"},
     {"set", "Change settings", SETTINGS, "sets any keys of the session; null takes a key's default"},
+    {"new_group", "New group", SETTINGS, "makes the first group that nothing uses yet the active one"},
     {"end_step", "End the step", SETTINGS, "makes one step of what was set since the last; it comes by itself"},
     {"auto_contrast", "Contrast of the slices", SETTINGS, "sets black and white so that almost all lies between them"},
     {"keep_preset", "Keep the transfer function", SETTINGS, "keeps it under a name, for all scans"},
@@ -47,7 +49,7 @@ constexpr ActionRow ROWS[] = {
     {"probe_to", "Move the probe", PROBE, "the probe goes to a pixel of a pane, in its plane"},
     {"probe_onto", "Put the probe onto what is seen", PROBE, "the probe goes to the surface seen at a pixel of a pane"},
     {"probe_along", "Move the probe along what is seen", PROBE, "the probe follows what is seen, as a stroke does"},
-    {"push_probe", "Push the probe", PROBE, "the probe goes away from the viewer of a pane"},
+    {"push_probe", "Push the probe", PROBE, "the probe goes away from the viewer of a pane, to the right and up"},
     {"place_probe", "Place the probe", PROBE, "the probe goes to a voxel"},
     {"scale_probe", "Resize the probe", PROBE, "the probe and its brush grow by a factor"},
     {"paint_here", "Paint at the probe", PAINTING, "begins or ends a stroke at the probe; when tracing, adds a node"},
@@ -83,7 +85,8 @@ constexpr ActionRow ROWS[] = {
     {"screenshot", "Screenshot", WORK, "writes the picture as shown, or a larger one, beside the session"},
     {"open", "Open", WORK, "opens a volume, a session, a project folder or a picture"},
     {"look_at_file", "Look at a file", WORK, "reads what a file is, without its voxels, and what loading it takes"},
-    {"take_file", "Take a file", WORK, "opens a file, or takes its annotation or transfer function, by its contents"},
+    {"take_file", "Take a file", WORK,
+     "opens a file, or takes its annotation or transfer function, by its contents; of several into the one it opens"},
     {"correct_spacing", "Correct the spacing", WORK,
      "saves, and opens with another spacing; nodes stay at their voxels"},
     {"dismiss_notices", "Dismiss", WORK, "what was recovered or set aside at opening has been read"},
@@ -106,7 +109,7 @@ constexpr ActionRow ROWS[] = {
     {"show_preferences", "Preferences", WINDOW, "shows or hides theme, sizes and keys"},
     {"focus", "Use panels by keyboard", WINDOW, "gives the keyboard to the panels or to the menu"},
     {"full_screen", "Full screen", WINDOW, "the window takes the whole screen, or no longer"},
-    {"quit", "Quit", WINDOW, "saves the work and closes the window"},
+    {"quit", "Quit", WINDOW, "saves the work, or goes back to what was saved last, and closes the window"},
     {"let_go", "Let go", HAND, "no force at once, until it is switched off again"},
     {"grab_volume", "Take hold of the volume", HAND, "the volume moves and turns with the stylus until it is let go"},
     {"use_device", "Use a device", HAND, "takes a listed haptic device, or the first that can be used"},
@@ -153,6 +156,10 @@ void fields(Fields& f, Zoom& a)
     pane_field(f, a.pane);
     pixel_field(f, "pixel", a.pixel);
     f.number("factor", a.factor, FACTOR, {.is_required = true});
+}
+void fields(Fields& f, FitView& a)
+{
+    pane_field(f, a.pane);
 }
 void fields(Fields& f, DragInMap& a)
 {
@@ -294,7 +301,9 @@ void fields(Fields& f, ProbeOnto& a)
 void fields(Fields& f, PushProbe& a)
 {
     pane_field(f, a.pane);
-    f.number("voxels", a.voxels, VOXELS, {.is_required = true});
+    f.number("voxels", a.voxels, VOXELS, {"away"});
+    f.number("right", a.right, VOXELS, {});
+    f.number("up", a.up, VOXELS, {});
 }
 void fields(Fields& f, PlaceProbe& a)
 {
@@ -342,6 +351,7 @@ void fields(Fields& f, LookAtFile& a)
 void fields(Fields& f, TakeFile& a)
 {
     f.path("path", a.path, {.is_required = true});
+    f.text("beside", a.beside, {"what was dropped with it, one a line"});
 }
 void fields(Fields& f, CorrectSpacing& a)
 {
@@ -394,6 +404,10 @@ void fields(Fields& f, Resize& a)
 void fields(Fields& f, ShowFullScreen& a)
 {
     f.flag("on", a.on, {});
+}
+void fields(Fields& f, Quit& a)
+{
+    f.flag("saves", a.saves, {});
 }
 void fields(Fields& f, LetGo& a)
 {

@@ -72,6 +72,9 @@ void fields(Fields& f, Preferences& preferences)
     f.number("font_pixels", preferences.font_pixels,
              NumberRange{Preferences::MIN_FONT_PIXELS, Preferences::MAX_FONT_PIXELS}, {});
     f.number("scale", preferences.scale, NumberRange{Preferences::MIN_SCALE, Preferences::MAX_SCALE}, {});
+    const NumberRange budgets{Preferences::MIN_BUDGET_MIB, Preferences::MAX_BUDGET_MIB};
+    f.number("budget_device_mib", preferences.budget_device_mib, budgets, {});
+    f.number("budget_host_mib", preferences.budget_host_mib, budgets, {});
     f.section("layout", [&](Fields& inner) { fields(inner, preferences.layout); });
     f.section("device", [&](Fields& inner) {
         inner.text("name", preferences.device.name, {});

@@ -27,7 +27,8 @@ struct ChosenDevice {
 
 struct Preferences {
     static constexpr size_t MAX_RECENT = 12;
-    static constexpr double MIN_FONT_PIXELS = 9.0, MAX_FONT_PIXELS = 32.0, MIN_SCALE = 0.5, MAX_SCALE = 4.0;
+    static constexpr double MIN_FONT_PIXELS = 9.0, MAX_FONT_PIXELS = 32.0, MIN_SCALE = 0.5, MAX_SCALE = 4.0,
+                            MIN_BUDGET_MIB = 16.0, MAX_BUDGET_MIB = 1048576.0;
 
     KeySet key_set = KeySet::modern;
     Keymap::Changes keys;                       ///< in place of those of the set
@@ -35,6 +36,8 @@ struct Preferences {
     Theme theme = Theme::dark;
     double font_pixels = 14.0;    ///< at a scale of 1
     std::optional<double> scale;  ///< of everything; none: the screen's
+    /// Of the device's and of the host's memory, from the next start on; none: as much as fits.
+    std::optional<double> budget_device_mib, budget_host_mib;
     WindowLayout layout;
     ChosenDevice device;
     PuckMoves puck = PuckMoves::view;

@@ -121,9 +121,26 @@ void Workbench::act(const ShowFullScreen& action)
     is_full_screen_ = action.on;
 }
 
-void Workbench::act(const Quit&)
+void Workbench::act(const Quit& action)
 {
+    if (!action.saves) discard();
     quits_ = true;
+}
+
+/// Files stay as they are. The journal keeps what was done since: undo brings it back next time.
+void Workbench::discard()
+{
+    if (!document_ || document_->only_looks() || !document_->annotator.work().disputes().empty()) return;
+    finish_stroke();
+    record_settings();
+    const Command* done = nullptr;
+    try {
+        done = document_->annotator.revert();
+    } catch (const Error&) {  // what was never saved was nothing
+        while (const Command* const undone = document_->annotator.undo()) show_changes(*undone);
+    }
+    if (done) show_changes(*done);
+    discarded_steps_ = document_->annotator.history().undoable();
 }
 
 // ---- Turns ----------------------------------------------------------------------------------------------------------
@@ -203,6 +220,7 @@ void Workbench::follow_stroke()
 void Workbench::follow_look()
 {
     Document& document = *document_;
+    follow_slices();
     if (pixels_.x > 0 && pixels_.y > 0) {
         if (look_is_stale_)
             document.screen.look(document.session, document.camera, pixels_, document.probe_voxel());
@@ -217,14 +235,19 @@ void Workbench::follow_look()
     document.screen.advance();
 }
 
+void Workbench::drop_large_screenshot(const char* by)
+{
+    if (!screenshots_.has_large()) return;
+    screenshots_.drop_large();
+    say(sentence("The large screenshot was cancelled by ", by), Weight::warning);
+}
+
 void Workbench::follow_screenshots()
 {
-    if (screenshots_.has_large() && document_->annotator.stroke_is_running()) {
-        screenshots_.drop_large();  // paint would show in some of its parts only
-        say("The large screenshot was cancelled by painting", Weight::warning);
-    }
+    if (document_->annotator.stroke_is_running()) drop_large_screenshot("painting");  // only some parts would show it
     const Screenshots::Turn turn =
-        screenshots_.advance(document_->screen, screenshot_stem(), is_still_, texts_of_picture(pixels_, true));
+        screenshots_.advance(document_->screen, screenshot_stem(), is_still_, texts_of_picture(pixels_, true),
+                             [this] { return figure_of_picture(1); });
     if (!turn.said.empty()) say(turn.said);
     if (!turn.progress.empty()) messages_.amend(options_.now_s(), turn.progress);
 }

@@ -46,6 +46,7 @@ struct WorkbenchOptions {
     std::function<double()> now_s{};      ///< seconds of any clock; null: the system's
     std::string version{};                ///< of the program, for reports; empty: not told
     DeviceSource devices{};               ///< where haptic devices come from; without functions: this machine
+    TextDrawer draw_texts{};              ///< for pictures in files; null: these have no words
 };
 
 class Workbench {
@@ -87,6 +88,8 @@ public:
     std::string take_clipboard() { return std::exchange(clipboard_, {}); }
     /// While a hand is setting something no step of the history is made of it: one drag is one step.
     void set_hand_down(bool is_down) { is_hand_down_ = is_down; }
+    /// Pixels of one unit of the interface, for what is drawn over pictures.
+    void set_units(double units) { units_ = units; }
     /// Nothing else waits for the device: large screenshots may go on.
     void set_still(bool is_still) { is_still_ = is_still; }
     /// Does a turn of all that goes on beside the actions. Failures become messages, and that part is tried again a
@@ -177,6 +180,7 @@ private:
     void act(const LookAtSelection& action);
     void act(const UpdateOcclusion& action);
     void act(const Set& action);
+    void act(const NewGroup& action);
     void act(const EndStep& action);
     void act(const AutoContrast& action);
     void act(const KeepPreset& action);
@@ -287,10 +291,13 @@ private:
 
     void load_once_more();
     std::filesystem::path screenshot_stem() const;
+    void drop_large_screenshot(const char* by);
+    Figure figure_of_picture(uint32_t scale) const;
     Screenshots::Texts texts_of_picture(const glm::uvec2& pixels, bool shows_probe) const;
 
     // Jobs and saving (workbench_save.cpp)
     void follow_jobs();
+    void discard();
     void follow_save();
     void save_to(const std::filesystem::path& path);
     void begin_save(bool is_asked_for, Document::Parts parts = Document::Parts::all);
@@ -300,6 +307,8 @@ private:
     void start_copy(const std::filesystem::path& path, bool opens_it);
     void end_save(const Jobs::Finished& job);
     void take(FileContent content, const std::filesystem::path& path);
+    void take_together(std::vector<std::filesystem::path> paths);
+    void begin_open_with(const std::filesystem::path& path, std::vector<std::filesystem::path> taken_into_it);
     void take_annotation(Part part, const std::filesystem::path& path);
 
     // Own transfer functions
@@ -316,6 +325,8 @@ private:
     Pane pane(size_t index) const;
     void look_again() { look_is_stale_ = true; }
     void look_from(const Camera& camera);
+    void show_slices(SliceSettings slices);
+    void follow_slices();
     glm::dvec3 pivot() const;
     /// What is seen at a pixel of a pane, volume space; of a slice, the point of its plane. Null: nothing is.
     std::optional<glm::dvec3> seen_at(const Pane& pane, const glm::dvec2& pixel) const;
@@ -404,10 +415,12 @@ private:
     std::optional<std::filesystem::path> wanted_save_;
     double stroke_progress_s_ = 0.0;  ///< when the last of its bricks came
     uint64_t stroke_uploads_ = 0;
-    std::string unpainted_;           ///< why a part of the stroke before the save was not painted
-    std::string save_failure_;        ///< of the last save; empty: it went well
-    Work::Saved saved_;               ///< by the last save
-    bool has_tried_view_ = false;     ///< that alone is no reason to stay
+    std::string unpainted_;        ///< why a part of the stroke before the save was not painted
+    std::string save_failure_;     ///< of the last save; empty: it went well
+    Work::Saved saved_;            ///< by the last save
+    bool has_tried_view_ = false;  ///< that alone is no reason to stay
+    /// Steps that could be undone when the work was discarded: as long as nothing else is done, nothing is saved.
+    std::optional<size_t> discarded_steps_;
     bool is_leaving_ = false;         ///< that a save fails is a reason to stay
     std::set<Jobs::Number> copies_;   ///< being written by a saver
     std::set<Jobs::Number> writers_;  ///< jobs that write what somebody asked for: leaving waits for them
@@ -427,6 +440,7 @@ private:
     double read_again_s_ = 0.0;             ///< reading may take long: not before
 
     glm::uvec2 pixels_{0};
+    double units_ = 1.0;
     bool look_is_stale_ = true, camera_moved_ = false;
     bool is_hand_down_ = false, is_still_ = true;
     bool settings_to_record_ = false, was_set_in_this_turn_ = false;
@@ -442,6 +456,7 @@ private:
     std::optional<Grab> grab_;
     uint32_t buttons_ = 0;  ///< of a stylus, as they were in the last turn
     double buttons_at_s_ = 0.0;
+    glm::dvec3 followed_voxel_{0.0};    ///< the probe's place that the slices have followed
     glm::dvec3 stroke_end_voxel_{0.0};  ///< where an open stroke was extended to
     std::string journal_failure_;       ///< as last reported
     std::optional<int64_t> previewed_at_stroke_;

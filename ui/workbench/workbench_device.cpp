@@ -7,7 +7,7 @@ namespace shvr::ui {
 void Workbench::restart_device(const std::function<void()>& make_anew)
 {
     const bool was_painting = document_ && document_->annotator.stroke_is_running();
-    screenshots_.drop_large();
+    drop_large_screenshot("the loss of the device");
     if (document_) {
         document_->annotator.drop_strokes();
         document_->previewer.drop();

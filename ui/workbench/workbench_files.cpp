@@ -28,6 +28,13 @@ std::vector<std::string> lines_of(const std::string& text)
     return lines;
 }
 
+/// Otherwise it belongs to what is open.
+bool is_opened(FileContent content)
+{
+    return content == FileContent::volume || content == FileContent::session || content == FileContent::project ||
+           content == FileContent::picture;
+}
+
 }  // namespace
 
 void Workbench::act(const Open& action)
@@ -94,6 +101,9 @@ void Workbench::act(const LookAtFile& action)
 
 void Workbench::act(const TakeFile& action)
 {
+    std::vector<std::filesystem::path> paths{action.path};
+    for (const std::string& line : lines_of(action.beside)) paths.emplace_back(line);
+    if (paths.size() > 1) return take_together(std::move(paths));
     std::optional<VolumeInfo> volume;
     if (document_) volume = document_->volume();
     jobs_.start("looking at " + short_name(action.path), [this, path = action.path, volume](ProgressReporter&) {
@@ -105,11 +115,29 @@ void Workbench::act(const TakeFile& action)
     });
 }
 
+/// What is annotation of a scan that comes with it must not go into the one that is still open.
+void Workbench::take_together(std::vector<std::filesystem::path> paths)
+{
+    jobs_.start(sentence("looking at ", paths.size(), " files"), [this, paths](ProgressReporter&) {
+        std::vector<std::filesystem::path> opened, others;
+        for (const std::filesystem::path& path : paths) {
+            const WhatItIs found = what_is(path, nullptr);
+            (found.content && is_opened(*found.content) ? opened : others).push_back(path);
+        }
+        return Jobs::Completion([this, opened, others] {
+            if (opened.size() > 1)
+                fail(opened[0].string(), " and ", opened[1].string(),
+                     ": each can be opened; expected one scan, session or project at a time, alone or with its mask, "
+                     "offsets and trace; slices of one scan are opened as their folder");
+            if (opened.size() == 1) return begin_open_with(opened[0], others);
+            for (const std::filesystem::path& path : others) act(TakeFile{.path = path});
+        });
+    });
+}
+
 void Workbench::take(FileContent content, const std::filesystem::path& path)
 {
-    const bool is_for_document = content == FileContent::mask || content == FileContent::offsets ||
-                                 content == FileContent::trace || content == FileContent::transfer_function;
-    if (!is_for_document) return begin_open(path, {});
+    if (is_opened(content)) return begin_open(path, {});
     if (!document_) fail(path.string(), ": belongs to a volume; expected that to be open, to take it into");
     if (content == FileContent::mask) return take_annotation(Part::mask, path);
     if (content == FileContent::offsets) return take_annotation(Part::offsets, path);

@@ -71,7 +71,33 @@ void Workbench::act(const Move& action)
 
 void Workbench::act(const Zoom& action)
 {
-    look_from(zoomed(document_->camera, pane(action.pane).pixels(), action.pixel, action.factor));
+    const Pane seen = pane(action.pane);
+    if (!seen.shot.is_slice) return look_from(zoomed(document_->camera, seen.pixels(), action.pixel, action.factor));
+    show_slices(slices_zoomed(document_->session.view.slices, seen, action.pixel, action.factor, document_->volume(),
+                              document_->probe_voxel()));
+}
+
+/// Where they are looked at is kept as the camera is: it is no change of the work.
+void Workbench::show_slices(SliceSettings slices)
+{
+    document_->session.view.slices = slices;
+    look_again();
+    note_to_keep();
+}
+
+/// A probe that went out of their sight takes them along, wherever it was sent from.
+void Workbench::follow_slices()
+{
+    constexpr double STIR_VOXELS = 0.05;  // a stylus is never quite at rest, and slices may be moved away from it
+    Document& document = *document_;
+    const glm::dvec3 voxel = document.probe_voxel();
+    if (glm::distance(voxel, followed_voxel_) <= STIR_VOXELS) return;
+    followed_voxel_ = voxel;
+    if (document.session.view.arrangement != Arrangement::slices || pixels_.x == 0) return;
+    const std::vector<Pane> panes = panes_of(document.session.view, document.camera, pixels_, document.volume(), voxel);
+    const std::optional<size_t> held = pointer_ ? std::optional(pointer_->pane) : std::nullopt;
+    const SliceSettings next = slices_following(document.session.view.slices, panes, held, document.volume(), voxel);
+    if (next != document.session.view.slices) show_slices(next);
 }
 
 /// As camera and probe are now: the screen follows them once a turn, and several actions may come in one.
@@ -86,6 +112,9 @@ Pane Workbench::pane(size_t index) const
 void Workbench::act(const DragInMap& action)
 {
     const Pane map = pane(action.pane);
+    if (map.shot.is_slice)
+        return show_slices(slices_moved(document_->session.view.slices, map, action.pixels, document_->volume(),
+                                        document_->probe_voxel()));
     const CameraAxes axes = axes_of(map.shot.camera);
     const glm::dvec2 way = action.pixels * pixel_size(map.shot.camera, map.pixels(), 1.0);
     const glm::dvec3 moved = axes.right * way.x - axes.up * way.y;
@@ -199,14 +228,22 @@ void Workbench::act(const ResetCuts&)
     say("All cutting planes are removed");
 }
 
-void Workbench::act(const FitView&)
+void Workbench::act(const FitView& action)
 {
+    const bool has_panes = !document_->screen.parts().empty();
+    if (has_panes && pane(action.pane).shot.is_slice) {
+        SliceSettings whole = document_->session.view.slices;
+        whole.zoom = 1.0;
+        whole.center.reset();
+        show_slices(whole);
+        return say("The slices show the whole volume");
+    }
     const VolumeInfo& volume = document_->volume();
     const glm::dvec3 size(volume.size);
     const CutBox& cut = document_->session.cut;
     const glm::dvec3 lower = glm::clamp(cut.lower, glm::dvec3(0.0), size);
     const glm::dvec3 upper = glm::clamp(cut.upper, lower, size);
-    const glm::uvec2 pixels = document_->screen.parts().empty() ? pixels_ : pane(0).pixels();
+    const glm::uvec2 pixels = has_panes ? pane(0).pixels() : pixels_;
     look_from(fitted(document_->camera, pixels, lower * volume.spacing, upper * volume.spacing));
     const bool is_cut = lower != glm::dvec3(0.0) || upper != size;
     const bool is_clipped = document_->camera.near_distance > 0.0 || document_->camera.far_distance > 0.0;

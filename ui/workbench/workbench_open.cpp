@@ -71,7 +71,8 @@ struct Workbench::Opening {
     double begun_s = 0.0;
     Work::Opening how{.program = {}};
     bool saves_before = true;
-    bool comes_back = false;  ///< what was put away
+    bool comes_back = false;                             ///< what was put away
+    std::vector<std::filesystem::path> taken_into_it{};  ///< annotation that was dropped with it
 
     Jobs::Number number = 0;                       ///< of the job that reads, and of this afterwards
     std::shared_ptr<Document::Read> read{};        ///< null: it is being read
@@ -101,6 +102,9 @@ std::vector<Jobs::State> Workbench::job_states() const
                           .what = "drawing " + short_name(screenshots_.large_path()),
                           .fraction = screenshots_.progress()});
     for (Jobs::State& state : jobs_.states()) states.push_back(std::move(state));
+    // Read, and nobody has looked yet.
+    if (opening_ && std::ranges::find(states, opening_->number, &Jobs::State::number) == states.end())
+        states.push_back(state_of(*opening_));
     return states;
 }
 
@@ -118,6 +122,11 @@ Jobs::State Workbench::state_of(const Opening& opening) const
 void Workbench::begin_open(const std::filesystem::path& path, const std::vector<std::string>& settings)
 {
     start_opening({.path = path, .settings = settings});
+}
+
+void Workbench::begin_open_with(const std::filesystem::path& path, std::vector<std::filesystem::path> taken_into_it)
+{
+    start_opening({.path = path, .taken_into_it = std::move(taken_into_it)});
 }
 
 void Workbench::start_opening(Opening next)
@@ -247,7 +256,7 @@ void Workbench::begin_loading()
     Document::Read& read = *opening_->read;
     const Session& session = read.opened.session;
     const bool has_light = shows_occlusion(session.light);
-    screenshots_.drop_large();
+    drop_large_screenshot("opening another scan");
     if (!renderer_.fits_beside(*read.opened.source, session.render, has_light)) {
         if (document_) {
             document_->screen.clear();
@@ -297,12 +306,14 @@ void Workbench::finish_opening()
     ++openings_;
     read_voxel_.reset();
     settings_to_record_ = was_set_in_this_turn_ = has_tried_view_ = is_leaving_ = false;
+    discarded_steps_.reset();
     to_keep_since_s_.reset();
     session_before_hand_.reset();
     journal_failure_.clear();
     save_failure_.clear();
     welcome(opening->path, losses);
     if (opening->pictured) show_picture(*opening->pictured);
+    for (const std::filesystem::path& taken : opening->taken_into_it) act(TakeFile{.path = taken});
 }
 
 void Workbench::take(Document::Read read)
@@ -380,6 +391,7 @@ void Workbench::end_opening(std::exception_ptr failure)
         away_.reset();
         return say(sentence(why, "; ", path, " cannot be shown again either; it is saved"), Weight::error);
     }
+    if (!ended->taken_into_it.empty()) why += "; what was dropped with it is not taken either";
     if (document_) why += "; " + document_->session_path.string() + " stays open";
     open_failure_ = why;
     failed_path_ = ended->path;

@@ -98,9 +98,13 @@ void Workbench::act(const ProbeAlong& action)
 
 void Workbench::act(const PushProbe& action)
 {
-    const glm::dvec3 forward = axes_of(pane(action.pane).shot.camera).forward;
-    const double voxel = glm::length(forward * document_->volume().spacing);
-    move_probe(document_->touch.probe() + forward * (action.voxels * voxel), false);
+    const CameraAxes axes = axes_of(pane(action.pane).shot.camera);
+    const auto step = [&](const glm::dvec3& way, double voxels) {
+        return way * (voxels * glm::length(way * document_->volume().spacing));
+    };
+    move_probe(document_->touch.probe() + step(axes.forward, action.voxels) + step(axes.right, action.right) +
+                   step(axes.up, action.up),
+               false);
 }
 
 void Workbench::act(const PlaceProbe& action)

@@ -24,7 +24,7 @@ void Workbench::begin_reload()
 {
     const Session& session = document_->session;
     const bool has_light = shows_occlusion(session.light);
-    screenshots_.drop_large();
+    drop_large_screenshot("loading the volume anew");
     if (!renderer_.fits_beside(*document_->source, session.render, has_light)) {
         reload_.reset();
         drop_queries();

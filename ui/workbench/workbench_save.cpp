@@ -185,9 +185,9 @@ void Workbench::end_save(const Jobs::Finished& job)
 
 Workbench::Leave Workbench::leave(std::string& why)
 {
-    if (!writers_.empty()) {
+    if (!writers_.empty() || screenshots_.has_large()) {
         if (!std::exchange(told_of_writers_, true))
-            say("The window closes when what is being written is there; cancel that to close it at once");
+            say("It goes on when what is being written is there; cancel that to go on at once");
         return Leave::later;
     }
     if (!document_) return savers_.is_idle() ? Leave::now : Leave::later;
@@ -202,7 +202,8 @@ Workbench::Leave Workbench::leave(std::string& why)
     const bool asks = !document_->annotator.work().disputes().empty();
     const bool is_running = document_->annotator.stroke_is_running();
     try {
-        if (document_->only_looks()) return Leave::now;
+        const bool is_discarded = discarded_steps_ == document_->annotator.history().undoable();
+        if (document_->only_looks() || (is_discarded && !settings_to_record_)) return Leave::now;
         if (asks && !document_->has_settings_to_save()) return Leave::now;
         if (!asks && document_->is_saved() && !is_running) {
             if (!document_->has_view_to_keep() || std::exchange(has_tried_view_, true)) return Leave::now;

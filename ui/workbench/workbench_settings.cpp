@@ -7,6 +7,8 @@
 #include "engine/session/quality.h"
 #include "engine/session/session_patch.h"
 #include "ui/workbench/bindings/tools.h"
+#include "ui/workbench/edit.h"
+#include "ui/workbench/lists/group_steps.h"
 #include "ui/workbench/workbench.h"
 
 namespace shvr::ui {
@@ -106,7 +108,7 @@ std::string special_sentence(const Session& was, const Session& is)
     if (before.guidance != after.guidance)
         return after.guidance == Guidance::potential ? "Guidance: smooth"
                : after.guidance == Guidance::mean    ? "Guidance: mean of what is relevant"
-                                                     : "Guidance: as in the thesis, of 3000 points";
+                                                     : "Guidance: mean of 3000 random points";
     if (before.touch != after.touch) return sentence_about(before.touch, after.touch);
     if (before.shell != after.shell)
         return after.shell ? "Iso-surface around the probe on, at the paint threshold"
@@ -157,6 +159,16 @@ void Workbench::act(const Set& action)
     std::string said = special_sentence(since, document_->session);
     if (said.empty()) said = difference_in_words(since, document_->session);
     if (!said.empty()) say(std::move(said));
+}
+
+void Workbench::act(const NewGroup&)
+{
+    const uint8_t next = unused_group(model());
+    if (next == 0) fail("all 255 groups are in use; expected one that nothing is painted, traced or described with");
+    act(edited(document_->session, [&](Session& s) {
+        s.groups[next].name = group_of(s.groups, next).name;
+        s.probe.brush.group = next;
+    }));
 }
 
 void Workbench::act(const EndStep&)

@@ -78,6 +78,12 @@ bool lies_outside(const TraceGraph& trace, const VolumeInfo& volume)
            glm::any(glm::greaterThan(voxel, glm::dvec3(volume.size)));
 }
 
+/// From the eye to a point.
+glm::dvec3 sight_through(const Camera& camera, const glm::dvec3& point)
+{
+    return camera.projection == Camera::Projection::perspective ? point - camera.eye : axes_of(camera).forward;
+}
+
 }  // namespace
 
 /// New nodes are as wide as what they lie in, if that is wanted and can be told.
@@ -90,7 +96,8 @@ TraceOp Workbench::with_radius(TraceOp op) const
         if (const auto radius = radius_from_overlap(servo->step.relevant_share, document_->probe_radius()))
             node->radius_voxels = *radius / document_->volume().spacing.x;
     if (node && !node->radius_voxels && document_->session.probe.measured_radius)
-        node->radius_voxels = document_->measured_radius(node->at);
+        if (const auto ball = document_->ball_at(node->at))
+            node->radius_voxels = ball->radius / document_->volume().spacing.x;
     return op;
 }
 
@@ -152,13 +159,23 @@ void Workbench::act(const MendCut&)
     document_->cut_ends.reset();
 }
 
+/// On what is seen; or where that is wanted in the middle of what the line of sight enters there, in slices as it is.
 void Workbench::act(const NodeAt& action)
 {
-    const std::optional<glm::dvec3> point = seen_at(pane(action.pane), action.pixel);
+    const Pane seen = pane(action.pane);
+    const std::optional<glm::dvec3> point = seen_at(seen, action.pixel);
     if (!point) fail("nothing is seen there; expected a place for the node on what is seen");
-    const glm::dvec3 voxel = *point / document_->volume().spacing;
+    glm::dvec3 voxel = *point / document_->volume().spacing;
+    const bool goes_inside = document_->session.probe.centered_nodes && !seen.shot.is_slice;
+    const std::optional<LocalBall> ball =
+        goes_inside ? document_->ball_at(voxel, sight_through(seen.shot.camera, *point)) : std::nullopt;
+    if (ball) voxel = ball->middle;
     trace(NodeOp{.at = voxel, .radius_voxels = {}, .group = {}});
-    move_probe(*point, false);
+    if (goes_inside && !ball)
+        say(messages_.last() + "; on what is seen, for nothing there has a middle at the paint threshold " +
+                sentence(*document_->brush().threshold),
+            Weight::warning);
+    move_probe(voxel * document_->volume().spacing, false);
     log_instead({NodeOp{.at = voxel, .radius_voxels = {}, .group = {}}, PlaceProbe{voxel}});
 }
 
@@ -180,7 +197,10 @@ void Workbench::act(const SelectAt& action)
     const bool is_inside = glm::all(glm::greaterThanEqual(voxel, glm::dvec3(0.0))) &&
                            glm::all(glm::lessThan(voxel, glm::dvec3(document.volume().size)));
     const uint8_t group = is_inside ? document.annotator.document().mask.at(Size3(glm::floor(voxel))) : uint8_t(0);
-    if (group == 0) return;
+    if (group == 0) {
+        if (!trace.selection().empty()) this->trace(DeselectOp{});
+        return;
+    }
     if (group == document.brush().group) return say(sentence("Group ", int(group), " is the active group already"));
     act(edited(document.session, [&](Session& s) { s.probe.brush.group = group; }));
 }

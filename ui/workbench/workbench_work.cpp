@@ -69,9 +69,20 @@ void Workbench::act(const Screenshot& action)
     RenderOptions options;
     options.part_pixels = 96;  // bounds the delay when the user resumes
     screenshots_.take_large(screenshot_stem(), renderer_, session, document_->camera, options,
-                            texts_of_picture(session.render.size, false));
+                            texts_of_picture(session.render.size, false),
+                            figure_of_picture(session.interaction.screenshot_scale));
     say(sentence("A screenshot of ", session.render.size.x, " x ", session.render.size.y,
                  " pixels is made in the background"));
+}
+
+/// Of a picture so many times as large as the window; empty where none is wanted.
+Figure Workbench::figure_of_picture(uint32_t scale) const
+{
+    const Document& document = *document_;
+    if (!document.session.interaction.screenshot_marks) return {};
+    const std::vector<Pane> panes =
+        panes_of(document.session.view, document.camera, pixels_ * scale, document.volume(), document.probe_voxel());
+    return figure_of(model(), panes, units_ * scale, options_.draw_texts);
 }
 
 /// The session in a picture is of that size; a picture larger than the window shows no probe.

@@ -46,6 +46,8 @@ public:
         return nearest;
     }
     double finest() const { return 2.0 * step_; }
+    double step() const { return step_; }
+    bool contains(const glm::dvec3& point) const { return density(point) >= threshold_; }
 
 private:
     double density(const glm::dvec3& point) const { return density_at_(point / spacing_); }
@@ -68,8 +70,8 @@ private:
 
 }  // namespace
 
-std::optional<double> local_radius(const DensityAt& density_at, double threshold, const glm::dvec3& voxel,
-                                   const glm::dvec3& spacing, double most)
+std::optional<LocalBall> local_ball(const DensityAt& density_at, double threshold, const glm::dvec3& voxel,
+                                    const glm::dvec3& spacing, double most)
 {
     const Structure structure(density_at, threshold, spacing, most);
     const glm::dvec3 point = voxel * spacing;
@@ -100,7 +102,28 @@ std::optional<double> local_radius(const DensityAt& density_at, double threshold
             step *= 0.5;
         }
     }
-    return radius < most ? std::optional(radius) : std::nullopt;
+    return radius < most ? std::optional(LocalBall{center / spacing, radius}) : std::nullopt;
+}
+
+std::optional<LocalBall> ball_behind(const DensityAt& density_at, double threshold, const glm::dvec3& voxel,
+                                     const glm::dvec3& way, const glm::dvec3& spacing, double most)
+{
+    const Structure structure(density_at, threshold, spacing, most);
+    const glm::dvec3 from = voxel * spacing, direction = glm::normalize(way);
+    // What is seen is the steepest place of a wall, whose middle may lie a voxel before it. A grain of noise, thinner
+    // than a voxel, is nothing that one enters.
+    double begin = -2.0 * structure.finest();
+    while (begin <= most) {
+        while (begin <= most && !structure.contains(from + begin * direction)) begin += structure.step();
+        double end = begin;
+        while (end - begin <= 2.0 * most && structure.contains(from + end * direction)) end += structure.step();
+        if (end - begin > 2.0 * most) return std::nullopt;
+        const double middle = 0.5 * (begin + end - structure.step());
+        if (begin <= most && end - begin > structure.finest())
+            return local_ball(density_at, threshold, (from + middle * direction) / spacing, spacing, most);
+        begin = end + structure.step();
+    }
+    return std::nullopt;
 }
 
 double DensityBox::at(const glm::dvec3& voxel) const

@@ -44,10 +44,11 @@ struct Worked {
     Session session;
     std::shared_ptr<const VolumeSource> source = open_procedural({.kind = "tubes", .size = {96, 64, 64}, .seed = 3});
     Mask mask{source->info().size};
-    Renderer renderer{{.device = {"", false}, .budget = {256 * MIB, 0}, .threads = 1}};
+    Renderer renderer;
     View view{renderer, {}};
 
-    Worked(const glm::uvec2& pixels, Paging paging)
+    Worked(const glm::uvec2& pixels, Paging paging, uint64_t device_bytes = 256 * MIB)
+        : renderer({.device = {"", false}, .budget = {device_bytes, 0}, .threads = 1})
     {
         session.transfer_function = TransferFunction(
             {{90.0, glm::dvec3(0.8, 0.3, 0.1), 0.0}, {140.0, glm::dvec3(0.9, 0.7, 0.3), 0.3}, {255.0, WHITE, 0.6}});
@@ -137,6 +138,22 @@ TEST_CASE("turning and painting make nothing once all is there, and allocate lit
             CHECK(many[call] - few[call] < (is_memory ? 3 : 1) * (MANY - FEW));
         }
     }
+}
+
+TEST_CASE("the pictures of a 4K screen are few submissions where the device is fast, and its clock tells so")
+{
+    const Environment environment(std::map<const char*, std::string>{{"VK_INSTANCE_LAYERS", "VK_LAYER_SHVR_speed"}});
+    Worked worked({3840, 2160}, Paging::never, 2048 * MIB);
+    const auto submissions_of = [&](const char* side) {
+        const uint64_t before = worked.view.submissions();
+        worked.turn(side);
+        worked.settle();
+        return worked.view.submissions() - before;
+    };
+    CHECK(submissions_of("front") <= 96);  // while it is not known how fast it is
+    CHECK(submissions_of("left") <= 64);   // sketches and 510 tiles
+    worked.session.light.occlusion = {.strength = 0.8, .radius = 4.0, .rays = 8};
+    CHECK(submissions_of("top") <= 64);
 }
 
 TEST_CASE("sharp tiles of two graphs wait for each other's light nowhere")

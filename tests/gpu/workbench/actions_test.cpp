@@ -42,12 +42,17 @@ constexpr const char *NODE = R"({"op":"node","at":[10,12,14],"radius":2,"group":
                      *STROKE_5 =
                          R"({"op":"paint","brush":"fill","group":5,"threshold":90,"radius":4,"path":[[9,18,16]]})";
 
+constexpr const char *SLICES = R"({"op":"set","values":{"view":{"arrangement":"slices"}}})",
+                     *CLOSER = R"({"op":"zoom","pane":1,"pixel":[10,12],"factor":3})";
+
 const Row ROWS[] = {
     {R"({"op":"orbit","right_degrees":30,"up_degrees":-10})", "camera"},
     {R"({"op":"roll","degrees":15})", "camera"},
     {R"({"op":"move_view","heights":[0.1,0,0.2]})", "camera"},
     {R"({"op":"zoom","pixel":[10,12],"factor":1.5})", "camera"},
+    {R"({"op":"zoom","pane":1,"pixel":[10,12],"factor":3})", "view", {SLICES}},
     {R"({"op":"drag_in_map","pane":1,"pixels":[4,3]})", "camera", {OVERVIEW}},
+    {R"({"op":"drag_in_map","pane":1,"pixels":[4,3]})", "view", {SLICES}},
     {R"({"op":"look_from","camera":"top"})", "camera"},
     {R"({"op":"keep_camera","name":"node 3"})", "cameras, saved"},
     {R"({"op":"forget_camera","name":"node 3"})", "cameras, saved", {NEAR_3}},
@@ -59,6 +64,7 @@ const Row ROWS[] = {
     {R"({"op":"place_clips","near":12,"far":80})", "camera"},
     {R"({"op":"reset_cuts"})", "camera, cut, saved, undo", {CUT, R"({"op":"move_clip","share":0.5})"}},
     {R"({"op":"fit_view"})", "camera"},
+    {R"({"op":"fit_view","pane":1})", "view", {SLICES, CLOSER}},
     {R"({"op":"reset_view"})", "camera", {R"({"op":"orbit","right_degrees":30})"}},
     {R"({"op":"look_at_selection"})", "camera", {NODE, NEXT_NODE}},
     {R"({"op":"update_occlusion"})", "", {BY_HAND}},
@@ -78,6 +84,7 @@ const Row ROWS[] = {
     {R"({"op":"set","values":{"view":{"arrangement":"slices"}}})", "saved, view"},
     {R"({"op":"set","values":{"render":{"step_voxels":0.7}}})", "render, saved"},
     {R"({"op":"set","values":{"interaction":{"resolution":0.5}}})", "interaction, saved"},
+    {R"({"op":"new_group"})", "groups, saved, undo"},
     {R"({"op":"end_step"})", ""},
     {R"({"op":"auto_contrast"})", "saved, view", {DARK}},
     {R"({"op":"keep_preset","name":"vessels"})", "presets"},
@@ -148,6 +155,8 @@ const Row ROWS[] = {
     {R"({"op":"look_at_file","path":"FOLDER/tiny.nrrd"})", "candidate"},
     {R"({"op":"take_file","path":"FOLDER/tiny.nrrd"})",
      "camera, file preferences.json, open, place, probe, render, transfer_function, view"},
+    {R"({"op":"take_file","path":"FOLDER/look.json","beside":"FOLDER/line.txt"})",
+     "saved, trace, transfer_function, undo"},
     {R"({"op":"take_file","path":"FOLDER/look.json"})", "saved, transfer_function, undo"},
     {R"({"op":"take_file","path":"FOLDER/line.txt"})", "saved, trace, undo"},
     {R"({"op":"take_file","path":"FOLDER/other.mask"})", "saved, undo, voxels"},
@@ -170,6 +179,7 @@ const Row ROWS[] = {
     {R"({"op":"focus","what":"menu"})", ""},
     {R"({"op":"full_screen","on":true})", "full_screen"},
     {R"({"op":"quit"})", ""},
+    {R"({"op":"quit","saves":false})", "redo, selection, trace, undo", {NODE}, false},
     {R"({"op":"let_go","on":true})", "hand"},
     {R"({"op":"use_device"})", ""},
     {R"({"op":"find_devices"})", ""},

@@ -17,13 +17,26 @@ using namespace shvr::ui;
 
 namespace {
 
+/// Texts as blocks of so many letters.
+std::vector<TextImage> blocks(std::span<const std::string> texts, double pixels)
+{
+    std::vector<TextImage> images;
+    for (const std::string& text : texts) {
+        TextImage image{.pixels = {int(0.5 * pixels * double(text.size())), int(pixels)}, .coverage{}};
+        image.coverage.assign(size_t(image.pixels.x) * size_t(image.pixels.y), 255);
+        images.push_back(std::move(image));
+    }
+    return images;
+}
+
 struct Desk {
     TemporaryFolder folder;
     Workbench bench;
 
-    explicit Desk(Renderer& renderer) : bench(renderer, {.has_servo = false})
+    explicit Desk(Renderer& renderer, const glm::uvec2& pixels = {48, 40})
+        : bench(renderer, {.has_servo = false, .draw_texts = blocks})
     {
-        bench.set_pixels({48, 40});
+        bench.set_pixels(pixels);
         std::string scan = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 24 20 16\nencoding: raw\n\n";
         for (int voxel = 0; voxel < 24 * 20 * 16; ++voxel) scan += char(voxel * 11 % 251);
         folder.write("scan.nrrd", scan);
@@ -142,6 +155,44 @@ TEST_CASE_FIXTURE(OnDevice, "what is dropped is taken by its contents, whatever 
     CHECK(desk.bench.messages().all().back().weight == Weight::error);  // a session is one by its name, .json
 }
 
+TEST_CASE_FIXTURE(OnDevice, "annotation that is dropped with its scan goes into that, not into what is open")
+{
+    Desk desk(renderer());
+    desk.folder.write("other.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 24 20 16\nencoding: raw\n\n" +
+                                        std::string(24 * 20 * 16, '\7'));
+    desk.folder.write("other.mask", std::string(24 * 20 * 16, '\3'));
+    desk.folder.write("other.txt", "-v 10, 12, 14, 1, 2\n");
+    const auto drop = [&](const char* first, std::initializer_list<const char*> others) {
+        TakeFile taken{.path = desk.path(first)};
+        for (const char* other : others) taken.beside += desk.path(other) + "\n";
+        desk.bench.perform(taken);
+        settle(desk.bench);
+    };
+    for (const bool is_open_before : {false, true}) {
+        CAPTURE(is_open_before);
+        if (is_open_before) desk.open("scan.nrrd");
+        drop("other.mask", {"other.nrrd", "other.txt"});  // in whatever order they come
+        CHECK(desk.bench.document().session.volume_path.filename() == "other.nrrd");
+        CHECK(desk.bench.model().voxels_by_group[3] == 24 * 20 * 16);
+        CHECK(desk.bench.model().trace.nodes().size() == 1);
+        desk.bench.perform(UndoOp{1});
+        desk.bench.perform(UndoOp{1});
+    }
+    desk.open("scan.nrrd");
+    CHECK(desk.bench.model().voxels_by_group[3] == 0);
+    drop("other.nrrd", {"scan.nrrd", "other.mask"});
+    CHECK(desk.said("each can be opened; expected one scan, session or project at a time"));
+    CHECK(desk.bench.document().session.volume_path.filename() == "scan.nrrd");
+    CHECK(desk.bench.model().voxels_by_group[3] == 0);
+    drop("other.txt", {"other.mask"});  // both of what is open
+    CHECK(desk.bench.model().voxels_by_group[3] == 24 * 20 * 16);
+    CHECK(desk.bench.model().trace.nodes().size() == 1);
+    desk.folder.write("broken.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8\n\n");
+    desk.folder.write("gone.session.json", R"({"shvr_session": 1, "volume": {"path": "gone.nrrd"}})");
+    drop("gone.session.json", {"other.mask"});
+    CHECK(desk.said("what was dropped with it is not taken either"));
+}
+
 TEST_CASE_FIXTURE(OnDevice, "a corrected spacing is saved, nodes stay at their voxels, and it is there next time")
 {
     Desk desk(renderer());
@@ -181,6 +232,42 @@ TEST_CASE_FIXTURE(OnDevice, "what was recovered at opening stays to be seen unti
     CHECK(desk.bench.model().recovered.size() == 1);
     desk.bench.perform(DismissNotices{});
     CHECK(desk.bench.model().recovered.empty());
+}
+
+TEST_CASE_FIXTURE(OnDevice, "pictures have scale bar, axes and words where that is wanted, in the picture's size")
+{
+    Desk desk(renderer(), {200, 160});
+    desk.open("scan.nrrd");
+    desk.bench.perform(Set{R"({"interaction":{"screenshot_scale":3}})"});
+    std::vector<Image8> pictures;
+    for (const bool has_marks : {false, true})
+        for (const bool is_large : {false, true}) {
+            desk.bench.perform(
+                Set{sentence(R"({"interaction":{"screenshot_marks":)", has_marks ? "true" : "false", "}}")});
+            desk.bench.perform(Screenshot{is_large});
+            settle(desk.bench);
+            desk.bench.wait_for_screenshots();
+            settle(desk.bench);
+            pictures.push_back(
+                read_png(desk.path(sentence("scan.session-view-", pictures.size() + 1, ".png").c_str())));
+        }
+    REQUIRE(pictures[3].width == 600);
+    const auto covered = [&](size_t plain, size_t marked, double left, double right) {
+        const Image8 &a = pictures[plain], &b = pictures[marked];
+        size_t different = 0;
+        for (int y = 0; y < a.height; ++y)
+            for (int x = int(left * a.width); x < int(right * a.width); ++x) {
+                const size_t at = 4 * (size_t(x) + size_t(a.width) * size_t(y));
+                different += !std::equal(&a.rgba[at], &a.rgba[at] + 3, &b.rgba[at]);
+            }
+        return double(different);
+    };
+    for (const auto& [left, right] : {std::pair(0.0, 0.5), std::pair(0.5, 1.0)}) {  // axes, and the bar
+        const double small = covered(0, 2, left, right), large = covered(1, 3, left, right);
+        CHECK(small > 100.0);
+        CHECK(small < 8000.0);
+        CHECK(large / small == doctest::Approx(9.0).epsilon(0.15));
+    }
 }
 
 TEST_CASE_FIXTURE(OnDevice, "a picture of the window holds its session: it is rendered again bit for bit, and opened")

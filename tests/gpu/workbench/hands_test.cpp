@@ -167,6 +167,102 @@ TEST_CASE_FIXTURE(OnDevice, "nodes have a radius of their own, or that of what t
 }
 
 TEST_CASE_FIXTURE(OnDevice,
+                  "a clicked node goes into the middle of what is seen, or stays on its wall; in slices as clicked")
+{
+    Plates on(renderer());
+    on.perform(Set{R"({"probe":{"paint_threshold":105}})"});
+    on.perform(NodeAt{0, {32.0, 48.0}});  // the plate, from y = 8 to 12
+    REQUIRE(on.trace().nodes().size() == 1);
+    CHECK(std::abs(on.trace().node(0).position.y - 20.0) < 0.3);  // voxels of 2
+    CHECK(std::abs(on.trace().node(0).position.x - 32.0) < 4.0);
+    CHECK(glm::distance(on.bench.model().probe_voxel * 2.0, on.trace().node(0).position) < 1e-9);
+    on.perform(NodeAt{0, {80.0, 48.0}});  // the wall, which goes on to the end of the volume
+    CHECK(std::abs(on.trace().node(1).position.y - 72.0) < 2.0);
+    on.perform(Set{R"({"probe":{"paint_threshold":250}})"});
+    on.perform(NodeAt{0, {32.0, 48.0}});
+    CHECK(std::abs(on.trace().node(2).position.y - 16.0) < 2.0);
+    CHECK(on.bench.messages().last().find("nothing there has a middle at the paint threshold 250") !=
+          std::string::npos);
+    on.perform(Set{R"({"probe":{"paint_threshold":105,"centered_nodes":false}})"});
+    on.perform(NodeAt{0, {32.0, 48.0}});
+    CHECK(std::abs(on.trace().node(3).position.y - 16.0) < 2.0);
+    on.perform(Set{R"({"probe":{"centered_nodes":true},"view":{"arrangement":"slices"}})"});
+    const Pane across_z = on.bench.model().panes[1].pane;
+    const glm::dvec3 wanted(20.0, 17.0, on.bench.model().probe_voxel.z * 2.0);
+    on.perform(NodeAt{1, project(across_z.shot.camera, across_z.pixels(), wanted)->pixel});
+    CHECK(glm::distance(on.trace().node(4).position, wanted) < 0.01);
+}
+
+TEST_CASE_FIXTURE(OnDevice,
+                  "enlarged slices stay under a pointer that leads the probe, and follow a probe sent elsewhere")
+{
+    Plates on(renderer());
+    on.perform(Set{R"({"view":{"arrangement":"slices"}})"});
+    const auto center = [&] { return on.bench.model().session.view.slices.center; };
+    on.perform(PlaceProbe{{24.5, 24.5, 24.5}});
+    on.perform(SaveOp{});
+    on.perform(Zoom{1, {24.0, 24.0}, 6.0});
+    CHECK(on.bench.model().session.view.slices.zoom == 6.0);
+    CHECK(on.bench.model().is_saved);  // as a camera that was moved
+    const auto zoomed = center();
+    REQUIRE(zoomed.has_value());
+    for (const double x : {3.0, 20.0, 45.0}) {
+        on.bench.set_pointer(Pointer{1, {x, 24.0}});
+        on.perform(ProbeTo{1, {x, 24.0}});
+        CHECK(center()->x == zoomed->x);
+        CHECK(center()->y == zoomed->y);
+    }
+    on.bench.set_pointer(std::nullopt);
+    on.perform(PlaceProbe{{2.5, 44.5, 24.5}});
+    CHECK(center()->x == 2.5);
+    CHECK(center()->y == 44.5);
+    on.perform(DragInMap{1, {40.0, 0.0}});  // away from it: a hand may look elsewhere
+    const auto dragged = center();
+    CHECK(dragged->x < 2.5);
+    settle(on.bench);
+    CHECK(center() == dragged);
+    on.perform(FitView{1});
+    CHECK(!center());
+    CHECK(on.bench.model().session.view.slices.zoom == 1.0);
+    // What the slices show is kept as the camera is.
+    on.perform(Zoom{2, {24.0, 24.0}, 3.0});
+    on.perform(SaveOp{});
+    const auto kept = center();
+    on.bench.open(on.folder.path / "scan.json", {});
+    settle(on.bench);
+    CHECK(center() == kept);
+}
+
+TEST_CASE_FIXTURE(OnDevice, "the probe goes by single voxels, as the pane under the pointer is seen")
+{
+    Plates on(renderer());
+    on.perform(PlaceProbe{{24.5, 24.5, 24.5}});
+    const auto press = [&](const char* id) { on.perform(shortcut_named(id)->action(on.bench.model(), 1.0)); };
+    const auto is_at = [&](double x, double y, double z) {
+        CHECK(glm::distance(on.bench.model().probe_voxel, glm::dvec3(x, y, z)) < 1e-9);
+    };
+    press("probe_right");
+    is_at(25.5, 24.5, 24.5);
+    press("probe_up");
+    is_at(25.5, 24.5, 25.5);
+    press("probe_away");  // from the front
+    is_at(25.5, 25.5, 25.5);
+    on.perform(Set{R"({"view":{"arrangement":"slices"}})"});
+    const Pane across_z = on.bench.model().panes[1].pane;
+    const CameraAxes axes = axes_of(across_z.shot.camera);
+    on.bench.set_pointer(Pointer{1, {5.0, 5.0}});
+    glm::dvec3 at = on.bench.model().probe_voxel;
+    for (const auto& [id, way] : {std::pair{"probe_left", -axes.right},
+                                  {"probe_down", -axes.up},
+                                  {"probe_away", axes.forward},
+                                  {"probe_closer", -axes.forward}}) {
+        press(id);
+        at += way;
+        is_at(at.x, at.y, at.z);
+    }
+}
+
+TEST_CASE_FIXTURE(OnDevice,
                   "deleting a node between two says that the trace is cut, goes on from one end, and is mended")
 {
     Plates on(renderer());
@@ -216,6 +312,9 @@ TEST_CASE_FIXTURE(OnDevice, "a click takes the node that is seen, the group wher
     CHECK(on.trace().selection().node() == 0u);
     on.perform(DeselectOp{});
     on.perform(SelectAt{0, {60.0, 48.0}});
+    CHECK(on.trace().selection().empty());
+    on.perform(SelectOp{.near = {}, .number = 0, .within_voxels = {}});
+    on.perform(SelectAt{0, {8.0, 90.0}});  // where nothing is, nothing is selected
     CHECK(on.trace().selection().empty());
 
     on.perform(PlaceProbe{{40.0, 36.0, 24.0}});

@@ -125,3 +125,46 @@ TEST_CASE_FIXTURE(OnDevice, "a button of a device that cannot do what it is for 
     press(SECOND);  // held on: once
     press(0);
 }
+
+TEST_CASE_FIXTURE(OnDevice, "quitting without saving leaves the files as they are, and undo brings the rest back")
+{
+    TemporaryFolder folder;
+    const auto path = write_tubes_session(folder.path);
+    std::string saved;
+    {
+        Workbench bench(renderer(), {.has_servo = false});
+        bench.open(path, {});
+        bench.perform(NodeOp{.at = {10, 12, 14}, .radius_voxels = 2.0, .group = uint8_t{2}});
+        bench.perform(SaveOp{});
+        settle(bench);
+        saved = read_text(path, int64_t{1} << 20);
+        bench.perform(NodeOp{.at = {20, 12, 14}, .radius_voxels = 2.0, .group = uint8_t{2}});
+        bench.perform(Set{R"({"light":{"ambient":0.9},"view":{"arrangement":"slices"}})"});
+        settle(bench);
+        bench.perform(Quit{.saves = false});
+        CHECK(bench.take_quit());
+        std::string why;
+        Workbench::Leave leave = Workbench::Leave::later;
+        for (int turn = 0; turn < 1000 && leave == Workbench::Leave::later; ++turn) {
+            bench.advance();
+            leave = bench.leave(why);
+        }
+        CHECK(leave == Workbench::Leave::now);
+        bench.flush();
+    }
+    CHECK(read_text(path, int64_t{1} << 20) == saved);
+    Workbench again(renderer(), {.has_servo = false});
+    again.open(path, {});
+    CHECK(again.model().trace.nodes().size() == 1);
+    CHECK(again.model().session.light.ambient != 0.9);
+    again.perform(UndoOp{1});
+    CHECK(again.model().trace.nodes().size() == 2);
+    CHECK(again.model().session.light.ambient == 0.9);
+    // What is done after it was refused, or cancelled, is saved as ever.
+    again.perform(Quit{.saves = false});
+    again.perform(NodeOp{.at = {30, 12, 14}, .radius_voxels = 2.0, .group = uint8_t{2}});
+    std::string why;
+    CHECK(again.leave(why) == Workbench::Leave::later);
+    CHECK(again.is_saving());
+    settle(again);
+}

@@ -115,3 +115,28 @@ TEST_CASE("a device that has less is refused by what it lacks")
     CHECK(why_too_limited(has) ==
           "R32_UINT storage images cannot be read and written; expected a driver that can do so");
 }
+
+TEST_CASE("of several devices the best is taken that can show the window, and what is named if it can do all")
+{
+    constexpr auto DISCRETE = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU, INTEGRATED = VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU,
+                   SOFTWARE = VK_PHYSICAL_DEVICE_TYPE_CPU;
+    const std::vector<DeviceRow> rows{{.name = "lavapipe", .type = SOFTWARE},
+                                      {.name = "Slim 5", .type = INTEGRATED},
+                                      {.name = "Large 9", .type = DISCRETE, .presents = false},
+                                      {.name = "Old 1", .type = DISCRETE, .has_1_3 = false},
+                                      {.name = "Video 2", .type = DISCRETE, .computes = false}};
+    CHECK(best_device(rows, "") == 1);  // the display hangs on the integrated one
+    CHECK(best_device(rows, "lava") == 0);
+    CHECK(best_device(rows, "0") == 0);
+    std::vector<DeviceRow> without_window = rows;
+    without_window[2].presents = true;
+    CHECK(best_device(without_window, "") == 2);
+    CHECK_THROWS_WITH(best_device(rows, "Large"),
+                      "device Large 9 cannot show pictures in a window on this display; "
+                      "--device chooses another; found 0: lavapipe, 1: Slim 5, 2: Large 9, "
+                      "3: Old 1, 4: Video 2");
+    CHECK_THROWS_AS(best_device(rows, "Old"), Error);
+    CHECK_THROWS_AS(best_device(rows, "Video"), Error);
+    CHECK_THROWS_AS(best_device(rows, "7"), Error);
+    CHECK_THROWS_AS(best_device({}, ""), Error);
+}

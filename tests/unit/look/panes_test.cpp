@@ -134,6 +134,61 @@ TEST_CASE("a slice's plane goes through the probe, half-way between the clip pla
         }
 }
 
+TEST_CASE("slices zoom about what is under the mouse, follow it when they are dragged, and go along with the probe")
+{
+    const VolumeInfo volume = volume_of_size({400, 300, 500}, {0.5, 0.75, 2.0});
+    const glm::uvec2 pixels(401, 322);
+    const glm::dvec3 probe(150.0, 120.0, 200.0);
+    ViewSettings settings = arranged(Arrangement::slices);
+    const auto place = [&](size_t pane, const glm::dvec2& pixel, const glm::dvec3& at) {
+        const Pane seen = panes_of(settings, looking(), pixels, volume, at)[pane];
+        return unproject(seen.shot.camera, seen.pixels(), pixel, 0.0);
+    };
+    const auto beside = [](glm::dvec3 a, glm::dvec3 b, int axis) {
+        a[axis] = b[axis] = 0.0;
+        return glm::distance(a, b);
+    };
+    for (size_t pane = 1; pane < 4; ++pane) {
+        CAPTURE(pane);
+        settings.slices = {};
+        const glm::dvec2 at(104.0, 70.5);  // in the volume
+        const int axis = panes_of(settings, looking(), pixels, volume, probe)[pane].axis;
+        for (const double factor : {2.0, 3.0, 0.5}) {  // the first from slices that are not enlarged
+            const glm::dvec3 held = place(pane, at, probe);
+            const Pane seen = panes_of(settings, looking(), pixels, volume, probe)[pane];
+            settings.slices = slices_zoomed(settings.slices, seen, at, factor, volume, probe);
+            CHECK(beside(place(pane, at, probe), held, axis) < 1e-9);
+            // Another place of the probe moves no slice to the side.
+            CHECK(beside(place(pane, at, {10.0, 20.0, 30.0}), held, axis) < 1e-9);
+        }
+        CHECK(settings.slices.zoom == 3.0);
+        const glm::dvec3 grabbed = place(pane, at, probe);
+        const Pane seen = panes_of(settings, looking(), pixels, volume, probe)[pane];
+        settings.slices = slices_moved(settings.slices, seen, {12.0, -7.0}, volume, probe);
+        CHECK(beside(place(pane, at + glm::dvec2(12.0, -7.0), probe), grabbed, axis) < 1e-9);
+        const Pane moved = panes_of(settings, looking(), pixels, volume, probe)[pane];
+        CHECK(slices_zoomed(settings.slices, moved, at, 0.01, volume, probe) == SliceSettings{});  // the whole again
+    }
+
+    // A probe that is out of sight is brought into it, along the axes along which it is not seen.
+    settings.slices = {};
+    settings.slices.zoom = 8.0;
+    settings.slices.center = probe;
+    const auto followed = [&](const glm::dvec3& at, std::optional<size_t> held) {
+        return slices_following(settings.slices, panes_of(settings, looking(), pixels, volume, at), held, volume, at);
+    };
+    CHECK(followed(probe + 3.0, {}) == settings.slices);
+    const glm::dvec3 far(20.0, 121.0, 202.0);
+    CHECK(followed(far, {}).center == glm::dvec3(20.0, 120.0, 200.0));
+    // Where the mouse leads it in the slice across z, that stays; along z the others follow.
+    const Pane across_z = panes_of(settings, looking(), pixels, volume, probe)[1];
+    REQUIRE(across_z.axis == 2);
+    glm::dvec3 edge = unproject(across_z.shot.camera, across_z.pixels(), {1.0, 1.0}, 0.0) / volume.spacing;
+    edge.z = 480.0;
+    CHECK(followed(edge, 1).center == glm::dvec3(probe.x, probe.y, 480.0));
+    CHECK(followed({20.0, 20.0, 480.0}, 1).center == glm::dvec3(20.0, 20.0, 480.0));  // it is not seen there
+}
+
 TEST_CASE("a ball's silhouette is where rays touch it")
 {
     const Camera camera = looking();

@@ -35,6 +35,7 @@ std::vector<Action> samples()
             ResetCuts{},
             UpdateOcclusion{},
             Set{R"({"light":{"ambient":0.45}})"},
+            NewGroup{},
             EndStep{},
             AutoContrast{},
             ProbeTo{3, {1.5, 2.5}, true},

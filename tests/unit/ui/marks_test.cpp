@@ -80,7 +80,7 @@ TEST_CASE("A slice says which it is, shows the nodes that it passes through, and
 {
     Panes panes;
     const Marks marks = panes.over(panes.slice);
-    CHECK(Panes::says(marks, "z 51 of 100, 101 mm"));
+    CHECK(Panes::says(marks, "z 50 (0 to 99), 101 mm"));
     CHECK(ends_around(marks, {110.0, 150.0}, 4.0) >= 48);  // node 0; node 1 lies behind it
     Panes other;
     other.world.trace.apply(TraceNodeChange{0, TraceNode{{60.0, 100.0, 100.0}, 4.0, 1}, {}}, Direction::forwards);

@@ -52,9 +52,9 @@ TEST_CASE("A reading is the place, the value and the group, in one line")
 TEST_CASE("A slice is told by its number from 1 and the place of its middle")
 {
     const VolumeInfo info = scan({1.0, 1.0, 0.006}, "mm");
-    CHECK(slice_in_words(2, {0.0, 0.0, 213.7}, info) == "z 214 of 512, 1.281 mm");
-    CHECK(slice_in_words(1, {0.0, 900.0, 0.0}, info) == "y 256 of 256, 255.5 mm");
-    CHECK(slice_in_words(0, {-3.0, 0.0, 0.0}, scan(glm::dvec3(1.0), "voxel")) == "x 1 of 512");
+    CHECK(slice_in_words(2, {0.0, 0.0, 213.7}, info) == "z 213 (0 to 511), 1.281 mm");
+    CHECK(slice_in_words(1, {0.0, 900.0, 0.0}, info) == "y 255 (0 to 255), 255.5 mm");
+    CHECK(slice_in_words(0, {-3.0, 0.0, 0.0}, scan(glm::dvec3(1.0), "voxel")) == "x 0 (0 to 511)");
 }
 
 TEST_CASE("A scale bar is 1, 2 or 5 of a power of ten, in the unit that needs the fewest zeros")
@@ -143,6 +143,14 @@ TEST_CASE("Automatic contrast leaves out the darkest and the brightest few voxel
     CHECK(automatic_contrast(statistics).upper == doctest::Approx(510.0));
     statistics.histogram.clear();
     CHECK(automatic_contrast(statistics).upper == 2560.0);
+    // Of a scan that holds one value alone, too, the session can be read again.
+    for (const double value : {0.0, 7.0, -1e30, 3.4e38}) {
+        CAPTURE(value);
+        VolumeStatistics constant;
+        constant.minimum = constant.maximum = value;
+        CHECK(automatic_contrast(constant).lower < automatic_contrast(constant).upper);
+        CHECK(std::abs(automatic_contrast(constant).upper) <= 3.4e38);
+    }
 }
 
 TEST_CASE("New nodes are a five hundredth of the diagonal wide, at least a voxel")

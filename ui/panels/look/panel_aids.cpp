@@ -67,25 +67,12 @@ void probe_look(const Model& model, Actions& actions)
     if (!resets("probe.opacity", actions) && is_other) set(actions, model, [&](Session& s) { s.probe = probe; });
 }
 
-void workspace(const Model& model, Actions& actions)
-{
-    double scale = model.session.interaction.workspace_scale;
-    const bool is_other = slider("Workspace", scale, 0.05, 20.0, "%.2f times", ImGuiSliderFlags_Logarithmic);
-    if (!resets("interaction.workspace_scale", actions) && is_other)
-        set(actions, model, [&](Session& s) { s.interaction.workspace_scale = scale; });
-    explain(
-        model, "larger_workspace",
-        "How far the probe goes when the hand moves a haptic device. At 1 the device's whole reach is the height of "
-        "the view; below, the hand is steadier, above, it goes farther. The mouse is not changed.");
-}
-
 }  // namespace
 
 void aids_panel(const Model& model, Actions& actions)
 {
     shown(model, actions);
     probe_look(model, actions);
-    workspace(model, actions);
 }
 
 }  // namespace shvr::ui

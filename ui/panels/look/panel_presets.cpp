@@ -42,8 +42,15 @@ bool own_menu(const TransferPreset& preset, Actions& actions)
         ask_for_preset_name(preset.name);
         asks = true;
     }
-    if (ImGui::MenuItem("Keep the present curve under this name")) actions.push_back(KeepPreset{preset.name});
-    if (ImGui::MenuItem("Remove")) actions.push_back(ForgetPreset{preset.name});
+    if (ImGui::BeginMenu("Replace")) {
+        if (ImGui::MenuItem("Keep the present curve under this name instead"))
+            actions.push_back(KeepPreset{preset.name});
+        ImGui::EndMenu();
+    }
+    if (ImGui::BeginMenu("Remove")) {
+        if (ImGui::MenuItem("Remove it, for all scans")) actions.push_back(ForgetPreset{preset.name});
+        ImGui::EndMenu();
+    }
     ImGui::EndPopup();
     return asks;
 }

@@ -83,7 +83,7 @@ void budget(const Model& model)
     constexpr double MEBIBYTE = 1024.0 * 1024.0;
     ImGui::TextDisabled("GPU memory: %.0f of %.0f MiB", double(model.device_bytes) / MEBIBYTE,
                         double(model.device_budget) / MEBIBYTE);
-    hint("In use, and the most that is used. It is set when the program starts: shvr view --budget-device BYTES.");
+    hint("In use, and the most that is used. Preferences (menu Edit) set it, for the next start.");
 }
 
 }  // namespace

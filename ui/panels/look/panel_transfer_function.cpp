@@ -6,6 +6,7 @@
 #include <cfloat>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -152,12 +153,12 @@ void draw_density_offset(const CurveAxes& axes, const Model& model, ImDrawList& 
         const float head = (end >= begin ? -0.45f : 0.45f) * size;
         list.AddLine({begin, y}, {end, y}, PAINT_LINE, 1.6f * STROKE * size);
         list.AddTriangleFilled({end, y}, {end + head, y - 0.3f * size}, {end + head, y + 0.3f * size}, PAINT_LINE);
-        list.AddLine({end, y}, {end, axes.end.y}, IM_COL32(240, 184, 90, 110), STROKE * size);
+        list.AddLine({end, y}, {end, axes.end.y}, shade_of(ColorRole::chart_paint, 0.45f), STROKE * size);
     }
     const float width = ImGui::CalcTextSize(word).x;
     const float left = std::clamp(std::max(begin, end) + 0.3f * size, axes.begin.x, axes.end.x - width);
     list.AddRectFilled({left - 2.0f, y - 0.5f * size}, {left + width + 2.0f, y + 0.5f * size},
-                       IM_COL32(26, 26, 26, 190), 3.0f);
+                       shade_of(ColorRole::chart, 0.75f), 3.0f);
     list.AddText({left, y - 0.5f * size}, PAINT_LINE, word);
 }
 
@@ -172,7 +173,7 @@ void draw(const CurveAxes& axes, const Model& model, const WidgetState& state)
     draw_histogram(axes, state, list);
     draw_area(axes, model.session.transfer_function, list);
     list.PopClipRect();
-    draw_threshold(axes, model.haptic_threshold(), "feel", 1.0f, FELT_LINE, list);
+    draw_threshold(axes, model.haptic_threshold(), "haptic", 1.0f, FELT_LINE, list);
     draw_threshold(axes, model.paint_threshold(), "paint", 0.0f, PAINT_LINE, list);
     draw_density_offset(axes, model, list);
     draw_line(axes, curve.points(), list);
@@ -279,8 +280,36 @@ std::string digits(double value)
     return text;
 }
 
+/// Chooses, adds and removes points without the mouse, beside what is before on the line.
+void point_buttons(const Model& model, WidgetState& state, Actions& actions)
+{
+    TransferCurve curve(model.session.transfer_function);
+    const size_t count = curve.points().size();
+    const std::string place = sentence("Point ", state.selected + 1, " of ", count, " is selected. ");
+    const auto button = [&](const char* name, bool is_possible, const char* meaning) {
+        ImGui::SameLine();
+        ImGui::BeginDisabled(!is_possible);
+        const bool is_pressed = ImGui::Button(name);
+        ImGui::EndDisabled();
+        hint((place + meaning).c_str());
+        return is_pressed;
+    };
+    if (button("<##point", state.selected > 0, "Selects the one before.")) --state.selected;
+    if (button(">##point", state.selected + 1 < count, "Selects the next one.")) ++state.selected;
+    if (button("+##point", true, "Adds one half-way to the next; at the last, to the one before.")) {
+        const size_t right = std::min(state.selected + 1, count - 1);
+        const ControlPoint &a = curve.points()[right - 1], &b = curve.points()[right];
+        state.selected = curve.add(std::midpoint(a.intensity, b.intensity), std::midpoint(a.opacity, b.opacity));
+        send(curve, model, actions);
+    }
+    if (button("-##point", count > 2, "Removes it; two always stay.")) {
+        state.selected = curve.remove(state.selected);
+        send(curve, model, actions);
+    }
+}
+
 /// The line below the curve.
-void scale_and_help(WidgetState& state)
+void scale_and_help(const Model& model, WidgetState& state, Actions& actions)
 {
     ImGui::Checkbox("Logarithmic", &state.is_logarithmic);
     std::string bins =
@@ -290,6 +319,7 @@ void scale_and_help(WidgetState& state)
         bins += " The values in this volume are multiples of " + digits(state.bars.step) +
                 "; there are bars for these alone.";
     hint(bins.c_str());
+    point_buttons(model, state, actions);
     ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize("How to edit (?)").x);
     ImGui::TextDisabled("How to edit (?)");
     hint(
@@ -297,7 +327,8 @@ void scale_and_help(WidgetState& state)
         "that "
         "small opacities can be seen and dragged.\n\n"
         "Drag a point to move it. Double click on empty space adds one, right click on a point deletes it. The wheel "
-        "shifts all points, a tenth as far with Shift; Ctrl + drag does, too. The lines \"paint\" and \"feel\" are the "
+        "shifts all points, a tenth as far with Shift; Ctrl + drag does, too. The lines \"paint\" and \"haptic\" are "
+        "the "
         "thresholds; drag them as well, or double click them for what fits the volume.");
 }
 
@@ -370,7 +401,7 @@ void transfer_function_panel(const Model& model, Actions& actions)
     state.selected = std::min(state.selected, count - 1);
     const size_t edited = state.selected;  // an index into this frame's points
     curve(model, state, actions);
-    scale_and_help(state);
+    scale_and_help(model, state, actions);
     shading(model, actions);
     edit_point(model, edited, actions);
     unpainted(model, actions);

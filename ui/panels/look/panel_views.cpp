@@ -36,16 +36,16 @@ bool stereo_controls(StereoSettings& stereo, bool& is_reset, Actions& actions)
     return is_other;
 }
 
-/// Which slices are shown: the probe's place, one number for each axis, counted from 1.
+/// Which slices are shown: the probe's place, one number for each axis, counted as voxels are, from 0.
 void slice_sliders(const Model& model, Actions& actions)
 {
     for (int axis = 2; axis >= 0; --axis) {
-        const double last = double(model.volume.size[axis]);
-        double slice = std::clamp(std::floor(model.probe_voxel[axis]) + 1.0, 1.0, last);
+        const double last = double(model.volume.size[axis]) - 1.0;
+        double slice = std::clamp(std::floor(model.probe_voxel[axis]), 0.0, last);
         const char* const names[] = {"Slice x", "Slice y", "Slice z"};
-        if (!slider(names[axis], slice, 1.0, last, "%.0f")) continue;
+        if (!slider(names[axis], slice, 0.0, last, "%.0f")) continue;
         glm::dvec3 voxel = model.probe_voxel;
-        voxel[axis] = std::floor(slice + 0.5) - 0.5;
+        voxel[axis] = std::floor(slice + 0.5) + 0.5;
         actions.push_back(PlaceProbe{voxel});
     }
 }
@@ -77,7 +77,7 @@ bool slice_controls(SliceSettings& slices, const Model& model, bool& is_reset, A
     hint("How strongly painted voxels take their group's colour.");
     is_reset |= resets("view.slices.paint_share", actions);
     is_other |= slider("Enlarged", slices.zoom, 1.0, 50.0, "%.1f times", ImGuiSliderFlags_Logarithmic);
-    hint("Magnification of the slices around the probe.");
+    hint("Magnification of the slices. In a slice: Ctrl + wheel; Shift + drag moves them.");
     is_reset |= resets("view.slices.zoom", actions);
     return is_other;
 }

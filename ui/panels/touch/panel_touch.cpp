@@ -43,7 +43,7 @@ constexpr Choice3<TouchMode> MODES[] = {
 constexpr Choice3<Guidance> LAWS[] = {
     {Guidance::potential, "smooth", "Grows from nothing at the first touch, and never drives the hand by itself."},
     {Guidance::mean, "mean", "To the mean of what lies in the probe."},
-    {Guidance::thesis, "thesis", "The mean of 3000 points, as in the thesis: rougher. For comparing."}};
+    {Guidance::thesis, "3000 points", "To the mean of 3000 random points: rougher, as the first SHVR did it."}};
 constexpr Choice3<TouchPlane> PLANES[] = {{TouchPlane::none, "free", "The probe goes wherever the hand does."},
                                           {TouchPlane::x, "x", "It stays in its plane across x."},
                                           {TouchPlane::y, "y", "It stays in its plane across y."},
@@ -51,16 +51,15 @@ constexpr Choice3<TouchPlane> PLANES[] = {{TouchPlane::none, "free", "The probe 
 
 void threshold(const Model& model, Actions& actions)
 {
-    label("Felt from");
+    label("Haptic threshold");
     const auto [lower, upper] = model.statistics.range();
     double intensity = model.haptic_threshold();
     ImGui::SetNextItemWidth(-1.0f);
-    const bool is_other =
-        ImGui::SliderScalar("##felt", ImGuiDataType_Double, &intensity, &lower, &upper,
-                            is_float(model.volume.type) ? "%.4g" : "%.0f", ImGuiSliderFlags_AlwaysClamp);
+    const bool is_other = slider_scalar("##felt", ImGuiDataType_Double, &intensity, &lower, &upper,
+                                        is_float(model.volume.type) ? "%.4g" : "%.0f");
     if (!resets("probe.haptic_threshold", actions) && is_other)
         set(actions, model, [&](Session& s) { s.probe.haptic_threshold = intensity; });
-    hint("Voxels at or above this intensity are felt. The line \"feel\" in the transfer function.");
+    hint("Voxels at or above this intensity are felt. The line \"haptic\" in the transfer function.");
 }
 
 void strength(const Model& model, Actions& actions)
@@ -149,11 +148,15 @@ void tools(const Model& model, Actions& actions)
     if (const auto plane = radio(PLANES, model.session.probe.touch.plane))
         set(actions, model, [&](Session& s) { s.probe.touch.plane = *plane; });
     double scale = model.session.interaction.workspace_scale;
-    const bool is_moved =
-        slider("Reach", scale, 0.1, 10.0, "%.2f x", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    const bool is_moved = slider("Workspace", scale, MIN_WORKSPACE_SCALE, MAX_WORKSPACE_SCALE, "%.2f times",
+                                 ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     if (!resets("interaction.workspace_scale", actions) && is_moved)
         set(actions, model, [&](Session& s) { s.interaction.workspace_scale = scale; });
-    hint("How far the probe goes for a move of the device. At 1 its reach is the height of the view.");
+    hint(sentence("How far the probe goes when the hand moves a haptic device. At 1 the device's whole reach is the "
+                  "height of the view; below, the hand is steadier, above, it goes farther. ",
+                  name_with_key("larger_workspace", model.keymap), ", ",
+                  name_with_key("smaller_workspace", model.keymap), ".")
+             .c_str());
 }
 
 }  // namespace

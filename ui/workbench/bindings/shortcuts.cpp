@@ -52,6 +52,22 @@ Action at_pointer(const Model& model, double)
     return action;
 }
 
+/// In the pane under the pointer, or the first.
+template <class Kind>
+Action at_pane(const Model& model, double)
+{
+    Kind action;
+    if (model.pointer) action.pane = model.pointer->pane;
+    return action;
+}
+
+/// By a voxel, as seen in the pane under the pointer.
+template <int AWAY, int RIGHT, int UP>
+Action step_probe(const Model& model, double amount)
+{
+    return PushProbe{model.pointer ? model.pointer->pane : 0, AWAY * amount, RIGHT * amount, UP * amount};
+}
+
 /// The views that a person has kept, in the order of their names: not the one that the window keeps for itself.
 template <size_t NUMBER>
 Action look_from_kept(const Model& model, double)
@@ -255,11 +271,6 @@ Action neighbour_group(const Model& model, double)
     return edited(model.session, [&](Session& s) { s.probe.brush.group = next_group(model, DIRECTION); });
 }
 
-Action new_group(const Model& model, double)
-{
-    return edited(model.session, [&](Session& s) { s.probe.brush.group = unused_group(model); });
-}
-
 /// Closes what is in front; where nothing is, the mouse turns again.
 Action step_back(const Model& model, double amount)
 {
@@ -297,7 +308,9 @@ constexpr Shortcut both(const char* id, const char* group, const char* name, Mod
     return {id, group, name, mode, action, {keys, keys}, is_by_position};
 }
 
-// What goes outwards or back has Ctrl in the thesis; today Ctrl+C, Ctrl+V and Ctrl+Y mean something else.
+// In the thesis planes and blending have letters, and what goes outwards or back Ctrl with them. Today Ctrl+C, Ctrl+V
+// and Ctrl+Y mean something else, and nobody expects a letter that is typed by mistake to cut the volume: those have no
+// keys until a person gives them some.
 constexpr Shortcut SHORTCUTS[] = {
     {"undo", WORK_KEYS, "Undo", Mode::repeated, plain<UndoOp>, {"Ctrl+Z", "Ctrl+Z"}},
     {"redo", WORK_KEYS, "Redo", Mode::repeated, plain<RedoOp>, {"Ctrl+Y Ctrl+Shift+Z", "Ctrl+Shift+Z"}},
@@ -308,17 +321,22 @@ constexpr Shortcut SHORTCUTS[] = {
      [](const Model& model, double) -> Action { return AskOpen{!model.asks_what_to_open}; },
      {"Ctrl+O", "Ctrl+O"}},
     both("save", WORK_KEYS, "Save", Mode::tap, plain<SaveOp>, "Ctrl+S"),
-    both("screenshot", WORK_KEYS, "Screenshot", Mode::tap, plain<Screenshot>, "P"),
-    both(
-        "large_screenshot", WORK_KEYS, "Large screenshot", Mode::tap,
-        [](const Model&, double) -> Action { return Screenshot{true}; }, "Ctrl+P"),
+    {"screenshot", WORK_KEYS, "Screenshot", Mode::tap, plain<Screenshot>, {"F12", "P"}},
+    {"large_screenshot",
+     WORK_KEYS,
+     "Large screenshot",
+     Mode::tap,
+     [](const Model&, double) -> Action { return Screenshot{true}; },
+     {"Shift+F12", "Ctrl+P"}},
+    both("screenshot_marks", WORK_KEYS, "Scale bar, axes and distances in screenshots", Mode::tap,
+         toggle_drawn<&InteractionSettings::screenshot_marks>, ""),
     both("update_occlusion", WORK_KEYS, "Update ambient occlusion", Mode::tap, plain<UpdateOcclusion>, "F8"),
     {"help",
      WORK_KEYS,
      "Keys and mouse",
      Mode::tap,
      [](const Model& model, double) -> Action { return ShowHelp{!model.shows_help}; },
-     {"F1 F12", "F12"}},
+     {"F1", "F12"}},
     both(
         "messages", WORK_KEYS, "Messages", Mode::tap,
         [](const Model& model, double) -> Action { return ShowMessages{!model.shows_messages}; }, ""),
@@ -332,7 +350,10 @@ constexpr Shortcut SHORTCUTS[] = {
     both(
         "passes", WORK_KEYS, "GPU passes", Mode::tap,
         [](const Model& model, double) -> Action { return ShowPasses{!model.shows_passes}; }, ""),
-    both("quit", WORK_KEYS, "Quit", Mode::tap, plain<Quit>, "Ctrl+Q"),
+    both("quit", WORK_KEYS, "Save and quit", Mode::tap, plain<Quit>, "Ctrl+Q"),
+    both(
+        "quit_unsaved", WORK_KEYS, "Quit without saving", Mode::tap,
+        [](const Model&, double) -> Action { return Quit{false}; }, ""),
 
     both("slices", VIEWS_KEYS, "Slices", Mode::tap, arrange<Arrangement::slices>, "F6"),
     both("overview", VIEWS_KEYS, "Overview", Mode::tap, arrange<Arrangement::overview>, "F9"),
@@ -366,7 +387,7 @@ constexpr Shortcut SHORTCUTS[] = {
     both("auto_contrast", VIEWS_KEYS, "Automatic contrast of the slices", Mode::tap, plain<AutoContrast>, "B"),
     {"copy_measurements", VIEWS_KEYS, "Copy the distances", Mode::tap, plain<CopyMeasurements>, {"Ctrl+C", ""}},
     both("clear_measurements", VIEWS_KEYS, "Remove the distances", Mode::tap, plain<ClearMeasurements>, ""),
-    {"fit_view", VIEWS_KEYS, "Fit", Mode::tap, plain<FitView>, {"Home", "Ctrl+Home"}},
+    {"fit_view", VIEWS_KEYS, "Fit", Mode::tap, at_pane<FitView>, {"Home", "Ctrl+Home"}},
     both("reset_view", VIEWS_KEYS, "Reset the view", Mode::tap, plain<ResetView>, "Shift+Home"),
     both("look_at_selection", VIEWS_KEYS, "Look at what is selected", Mode::tap, plain<LookAtSelection>, "Alt+Home"),
     both("side_panels", VIEWS_KEYS, "Panels at the side", Mode::tap, toggle_shown<&WindowLayout::shows_side>, "Ctrl+B"),
@@ -403,7 +424,7 @@ constexpr Shortcut SHORTCUTS[] = {
     both("group_9", PAINTING_KEYS, "Group 9", Mode::tap, choose<9>, "9"),
     both("next_group", PAINTING_KEYS, "Next group", Mode::tap, neighbour_group<1>, "Alt+PageDown"),
     both("previous_group", PAINTING_KEYS, "Previous group", Mode::tap, neighbour_group<-1>, "Alt+PageUp"),
-    both("new_group", PAINTING_KEYS, "New group", Mode::tap, new_group, "Ctrl+G"),
+    both("new_group", PAINTING_KEYS, "New group", Mode::tap, plain<NewGroup>, "Ctrl+G"),
     both("next_brush", PAINTING_KEYS, "Next brush", Mode::tap, next_brush, "End"),
     both("larger_brush", PAINTING_KEYS, "Larger brush", Mode::hold, scale_probe<1>, "]"),
     both("smaller_brush", PAINTING_KEYS, "Smaller brush", Mode::hold, scale_probe<-1>, "["),
@@ -431,6 +452,8 @@ constexpr Shortcut SHORTCUTS[] = {
     both("mend_cut", TRACING_KEYS, "Mend the cut", Mode::tap, plain<MendCut>, "Shift+Delete"),
     both("measured_radius", TRACING_KEYS, "New nodes as wide as what they lie in", Mode::tap,
          toggle<&ProbeSettings::measured_radius>, ""),
+    both("centered_nodes", TRACING_KEYS, "Clicked nodes into the middle of what is seen", Mode::tap,
+         toggle<&ProbeSettings::centered_nodes>, ""),
     both("delete_selected", TRACING_KEYS, "Delete what is selected", Mode::tap, plain<DeleteOp>, "Delete"),
     both("larger_selected", TRACING_KEYS, "Larger selected nodes, or internodes of the group", Mode::step,
          scale_selected<1>, "="),
@@ -456,6 +479,13 @@ constexpr Shortcut SHORTCUTS[] = {
     both("next_guidance", PROBE_KEYS, "Next kind of guidance", Mode::tap, next_guidance, "Shift+Space"),
     {"arrow", PROBE_KEYS, "Arrow towards the probe", Mode::tap, toggle<&ProbeSettings::arrow>, {"Shift+F1", "F1"}},
     both("silhouette", PROBE_KEYS, "Silhouette of the probe", Mode::tap, toggle<&ProbeSettings::silhouette>, ""),
+    both("probe_left", PROBE_KEYS, "Probe a voxel to the left", Mode::repeated, step_probe<0, -1, 0>, "Left"),
+    both("probe_right", PROBE_KEYS, "Probe a voxel to the right", Mode::repeated, step_probe<0, 1, 0>, "Right"),
+    both("probe_up", PROBE_KEYS, "Probe a voxel up", Mode::repeated, step_probe<0, 0, 1>, "Up"),
+    both("probe_down", PROBE_KEYS, "Probe a voxel down", Mode::repeated, step_probe<0, 0, -1>, "Down"),
+    both("probe_away", PROBE_KEYS, "Probe a voxel away: the next slice", Mode::repeated, step_probe<1, 0, 0>, "Alt+Up"),
+    both("probe_closer", PROBE_KEYS, "Probe a voxel closer: the slice before", Mode::repeated, step_probe<-1, 0, 0>,
+         "Alt+Down"),
     both("larger_workspace", PROBE_KEYS, "Larger workspace", Mode::hold, scale_workspace<1>, "F7"),
     both("smaller_workspace", PROBE_KEYS, "Smaller workspace", Mode::hold, scale_workspace<-1>, "Ctrl+F7"),
     both("larger_probe", PROBE_KEYS, "Larger probe", Mode::hold, scale_probe<1>, "PageUp"),
@@ -475,38 +505,38 @@ constexpr Shortcut SHORTCUTS[] = {
     both("move_down", MOVE_KEYS, "Move down", Mode::hold, move<0, -1, 0>, "Q", true),
     both("move_up", MOVE_KEYS, "Move up", Mode::hold, move<0, 1, 0>, "E", true),
 
-    {"near_x_in", CUT_KEYS, "Near x cut inwards", Mode::hold, move_cut<0, Plane::lower, 1>, {"Y", "Y"}},
-    {"near_x_out", CUT_KEYS, "Near x cut outwards", Mode::hold, move_cut<0, Plane::lower, -1>, {"Alt+Y", "Ctrl+Y"}},
-    {"near_y_in", CUT_KEYS, "Near y cut inwards", Mode::hold, move_cut<1, Plane::lower, 1>, {"U", "U"}},
-    {"near_y_out", CUT_KEYS, "Near y cut outwards", Mode::hold, move_cut<1, Plane::lower, -1>, {"Alt+U", "Ctrl+U"}},
-    {"near_z_in", CUT_KEYS, "Near z cut inwards", Mode::hold, move_cut<2, Plane::lower, 1>, {"I", "I"}},
-    {"near_z_out", CUT_KEYS, "Near z cut outwards", Mode::hold, move_cut<2, Plane::lower, -1>, {"Alt+I", "Ctrl+I"}},
-    {"far_x_in", CUT_KEYS, "Far x cut inwards", Mode::hold, move_cut<0, Plane::upper, -1>, {"H", "H"}},
-    {"far_x_out", CUT_KEYS, "Far x cut outwards", Mode::hold, move_cut<0, Plane::upper, 1>, {"Alt+H", "Ctrl+H"}},
-    {"far_y_in", CUT_KEYS, "Far y cut inwards", Mode::hold, move_cut<1, Plane::upper, -1>, {"J", "J"}},
-    {"far_y_out", CUT_KEYS, "Far y cut outwards", Mode::hold, move_cut<1, Plane::upper, 1>, {"Alt+J", "Ctrl+J"}},
-    {"far_z_in", CUT_KEYS, "Far z cut inwards", Mode::hold, move_cut<2, Plane::upper, -1>, {"K", "K"}},
-    {"far_z_out", CUT_KEYS, "Far z cut outwards", Mode::hold, move_cut<2, Plane::upper, 1>, {"Alt+K", "Ctrl+K"}},
+    {"near_x_in", CUT_KEYS, "Near x cut inwards", Mode::hold, move_cut<0, Plane::lower, 1>, {"", "Y"}},
+    {"near_x_out", CUT_KEYS, "Near x cut outwards", Mode::hold, move_cut<0, Plane::lower, -1>, {"", "Ctrl+Y"}},
+    {"near_y_in", CUT_KEYS, "Near y cut inwards", Mode::hold, move_cut<1, Plane::lower, 1>, {"", "U"}},
+    {"near_y_out", CUT_KEYS, "Near y cut outwards", Mode::hold, move_cut<1, Plane::lower, -1>, {"", "Ctrl+U"}},
+    {"near_z_in", CUT_KEYS, "Near z cut inwards", Mode::hold, move_cut<2, Plane::lower, 1>, {"", "I"}},
+    {"near_z_out", CUT_KEYS, "Near z cut outwards", Mode::hold, move_cut<2, Plane::lower, -1>, {"", "Ctrl+I"}},
+    {"far_x_in", CUT_KEYS, "Far x cut inwards", Mode::hold, move_cut<0, Plane::upper, -1>, {"", "H"}},
+    {"far_x_out", CUT_KEYS, "Far x cut outwards", Mode::hold, move_cut<0, Plane::upper, 1>, {"", "Ctrl+H"}},
+    {"far_y_in", CUT_KEYS, "Far y cut inwards", Mode::hold, move_cut<1, Plane::upper, -1>, {"", "J"}},
+    {"far_y_out", CUT_KEYS, "Far y cut outwards", Mode::hold, move_cut<1, Plane::upper, 1>, {"", "Ctrl+J"}},
+    {"far_z_in", CUT_KEYS, "Far z cut inwards", Mode::hold, move_cut<2, Plane::upper, -1>, {"", "K"}},
+    {"far_z_out", CUT_KEYS, "Far z cut outwards", Mode::hold, move_cut<2, Plane::upper, 1>, {"", "Ctrl+K"}},
 
-    {"more_blending", BLEND_KEYS, "More distance blending", Mode::hold, blend<&DistanceBlend::size, 1>, {"T", "T"}},
+    {"more_blending", BLEND_KEYS, "More distance blending", Mode::hold, blend<&DistanceBlend::size, 1>, {"", "T"}},
     {"less_blending",
      BLEND_KEYS,
      "Less distance blending",
      Mode::hold,
      blend<&DistanceBlend::size, -1>,
-     {"Alt+T", "Ctrl+T"}},
-    {"later_blending", BLEND_KEYS, "Blending sets in later", Mode::hold, blend<&DistanceBlend::rate, 1>, {"R", "R"}},
+     {"", "Ctrl+T"}},
+    {"later_blending", BLEND_KEYS, "Blending sets in later", Mode::hold, blend<&DistanceBlend::rate, 1>, {"", "R"}},
     {"sooner_blending",
      BLEND_KEYS,
      "Blending sets in sooner",
      Mode::hold,
      blend<&DistanceBlend::rate, -1>,
-     {"Alt+R", "Ctrl+R"}},
+     {"", "Ctrl+R"}},
 
-    {"near_clip_away", CLIP_KEYS, "Near clip plane away", Mode::hold, move_clip<false, 1>, {"C", "C"}},
-    {"near_clip_closer", CLIP_KEYS, "Near clip plane closer", Mode::hold, move_clip<false, -1>, {"Alt+C", "Ctrl+C"}},
-    {"far_clip_closer", CLIP_KEYS, "Far clip plane closer", Mode::hold, move_clip<true, -1>, {"V", "V"}},
-    {"far_clip_away", CLIP_KEYS, "Far clip plane away", Mode::hold, move_clip<true, 1>, {"Alt+V", "Ctrl+V"}},
+    {"near_clip_away", CLIP_KEYS, "Near clip plane away", Mode::hold, move_clip<false, 1>, {"", "C"}},
+    {"near_clip_closer", CLIP_KEYS, "Near clip plane closer", Mode::hold, move_clip<false, -1>, {"", "Ctrl+C"}},
+    {"far_clip_closer", CLIP_KEYS, "Far clip plane closer", Mode::hold, move_clip<true, -1>, {"", "V"}},
+    {"far_clip_away", CLIP_KEYS, "Far clip plane away", Mode::hold, move_clip<true, 1>, {"", "Ctrl+V"}},
 
     {"next_mode", HAND_KEYS, "Next way of touching", Mode::tap, next_mode, {"Ctrl+Space", "Home"}},
     both("let_go", HAND_KEYS, "Let go: no force", Mode::tap, toggle_let_go, "Pause"),

@@ -22,7 +22,8 @@ constexpr ToolRow TOOL_ROWS[] = {
      "The right button turns the volume.",
      "add, pick or drag a node", "turn"},
     {Tool::select, "Select", "tool_select",
-     "Click a node or an internode to select it, twice for its whole segment; click paint to take its group. The right "
+     "Click a node or an internode to select it, twice for its whole segment; click paint to take its group, and "
+     "nothing to select nothing. The right "
      "button turns the volume.",
      "select", "turn"},
     {Tool::measure, "Measure", "tool_measure",
@@ -54,8 +55,9 @@ std::string mouse_in_words(Tool tool, Pane::Kind over)
     const ToolRow& row = row_of(tool);
     if (over == Pane::Kind::map) return "left: turn, Shift + left or middle: move, wheel: closer or farther";
     if (over == Pane::Kind::slice && tool == Tool::turn)
-        return "left: move the cross, right: paint, Ctrl + left: contrast, wheel: next slice";
-    if (over == Pane::Kind::slice) return sentence("left: ", row.left, ", right: contrast, wheel: next slice");
+        return "left: move the cross, right: paint, middle: move, wheel: next slice, Ctrl + wheel: zoom";
+    if (over == Pane::Kind::slice)
+        return sentence("left: ", row.left, ", right: contrast, middle: move, wheel: next slice, Ctrl + wheel: zoom");
     if (tool == Tool::turn) return sentence("left: ", row.left, ", right: ", row.right, ", middle: move, wheel: zoom");
     return sentence("left: ", row.left, ", right or middle: ", row.right, ", wheel: zoom");
 }

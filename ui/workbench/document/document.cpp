@@ -190,6 +190,12 @@ VoxelBox Document::voxels_around_probe() const
     return {Size3(lower), Size3(upper)};
 }
 
+Document::Place Document::place() const
+{
+    const SliceSettings& slices = session.view.slices;
+    return {camera, probe_voxel(), slices.zoom, slices.center};
+}
+
 Session Document::saved_session() const
 {
     Session saved = session;
@@ -210,6 +216,8 @@ Session Document::edits() const
     edits.cameras = session.cameras;
     edits.camera_name = session.camera_name;
     edits.probe.voxel.reset();
+    edits.view.slices.zoom = 1.0;
+    edits.view.slices.center.reset();
     return edits;
 }
 
@@ -223,8 +231,7 @@ void Document::note_saved()
 {
     saved_edits_ = edits();
     edits_are_saved_ = true;
-    saved_camera_ = camera;
-    saved_probe_voxel_ = probe_voxel();
+    saved_place_ = place();
 }
 
 bool Document::record_settings()
@@ -280,20 +287,27 @@ bool Document::is_cut() const
            !trace.internode_between(cut_ends->first, cut_ends->second);
 }
 
-std::optional<double> Document::measured_radius(const glm::dvec3& voxel) const
+std::optional<LocalBall> Document::ball_at(const glm::dvec3& voxel, const std::optional<glm::dvec3>& way) const
 {
-    constexpr double MOST_VOXELS =
-        24.0;  // along the finest axis; the box that is read is twice as far in each direction
     const VolumeInfo& info = volume();
     const double finest = std::min({info.spacing.x, info.spacing.y, info.spacing.z});
-    const glm::dvec3 size(info.size), reach = 2.0 * MOST_VOXELS * finest / info.spacing + 2.0;
+    const glm::dvec3 size(info.size), ahead = way ? glm::normalize(*way) : glm::dvec3(0.0);
     if (glm::any(glm::lessThan(voxel, glm::dvec3(0.0))) || glm::any(glm::greaterThan(voxel, size))) return {};
-    const VoxelBox box{Size3(glm::clamp(glm::floor(voxel - reach), glm::dvec3(0.0), size - 1.0)),
-                       Size3(glm::clamp(glm::ceil(voxel + reach), glm::dvec3(1.0), size))};
-    const DensityBox densities = densities_in(*source, annotator.document().density, box);
-    const auto radius = local_radius([&](const glm::dvec3& at) { return densities.at(at); }, *brush().threshold, voxel,
-                                     info.spacing, MOST_VOXELS * finest);
-    return radius ? std::optional(*radius / info.spacing.x) : std::nullopt;
+    // Most structures are thin, and few voxels have to be read for them.
+    for (const double most_voxels : {6.0, 12.0, 24.0}) {  // along the finest axis
+        const double most = most_voxels * finest;
+        // A middle is at most `most` from the voxel, or from one at most that far behind it, and looks that far.
+        const glm::dvec3 about = voxel + 0.5 * most * ahead / info.spacing;
+        const glm::dvec3 reach = (way ? 2.5 : 2.0) * most / info.spacing + 2.0;
+        const VoxelBox box{Size3(glm::clamp(glm::floor(about - reach), glm::dvec3(0.0), size - 1.0)),
+                           Size3(glm::clamp(glm::ceil(about + reach), glm::dvec3(1.0), size))};
+        const DensityBox densities = densities_in(*source, annotator.document().density, box);
+        const auto density_at = [&](const glm::dvec3& at) { return densities.at(at); };
+        const auto found = way ? ball_behind(density_at, *brush().threshold, voxel, *way, info.spacing, most)
+                               : local_ball(density_at, *brush().threshold, voxel, info.spacing, most);
+        if (found) return found;
+    }
+    return {};
 }
 
 TraceMarks Document::trace_marks() const

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/annotation/trace/local_radius.h"
 #include "engine/annotation/trace/trace_command.h"
 #include "engine/jobs/progress_reporter.h"
 #include "engine/live/previewer.h"
@@ -92,21 +93,30 @@ struct Document {
     TraceDefaults trace_defaults() const;
     /// The cut can still be mended: both of its ends exist, and nothing links them.
     bool is_cut() const;
-    /// How wide what lies at a place is, in voxels along x (local_radius.h); null where that cannot be told.
-    std::optional<double> measured_radius(const glm::dvec3& voxel) const;
+    /// The largest ball in what lies at a place, above the paint threshold; with `way`, in what a line of sight enters
+    /// there (local_radius.h). Null where that cannot be told. Reads 30^3 voxels, up to 124^3 where it is wide.
+    std::optional<LocalBall> ball_at(const glm::dvec3& voxel, const std::optional<glm::dvec3>& way = {}) const;
     /// The probe's ball, of at least one voxel of the volume.
     VoxelBox voxels_around_probe() const;
-    /// The session as it would be saved: with the current camera and the probe's position.
+    /// Where one looks and works, which is kept without a word and is no change of the work.
+    struct Place {
+        Camera camera;
+        glm::dvec3 probe_voxel{0.0};
+        double slices_zoom = 1.0;
+        std::optional<glm::dvec3> slices_center;
+        bool operator==(const Place&) const = default;
+    };
+    Place place() const;
+    /// The session as it would be saved: with that place.
     Session saved_session() const;
-    /// Closing would lose no work and no setting, except perhaps the camera and the probe's position.
+    /// Closing would lose no work and no setting, except perhaps the place.
     bool has_session_file() const { return session_text_.has_value(); }
     bool is_saved() const { return work_is_saved() && edits_are_saved(); }
     bool work_is_saved() const { return only_looks() || annotator.work().is_saved(); }
     /// Nothing can be painted or saved: another process writes the work.
     bool only_looks() const { return annotator.work().only_looks(); }
     bool is_script() const { return is_script_; }
-    /// Call after anything that may have changed the session, except the camera and the probe's position: clears the
-    /// cached answer of is_saved().
+    /// Call after anything that may have changed the session, except the place: clears the cached answer of is_saved().
     void note_edit() { edits_are_saved_.reset(); }
     /// Puts view, probe and the like into the journal, where there is one; no step of the history.
     void keep_settings();
@@ -123,8 +133,8 @@ struct Document {
     std::shared_ptr<Saving> begin_save(Parts parts = Parts::all);
     /// Returns what was written. After a save under another name the document has that.
     Work::Saved end_save(Saving& saving);
-    /// Only the camera and the probe's position changed, and the session has a file: saving them is worth no word. So
-    /// just looking at a volume creates no file.
+    /// Only the place changed, and the session has a file: saving it is worth no word. So just looking at a volume
+    /// creates no file.
     bool has_view_to_keep() const;
     /// Only settings that have a file are to be saved.
     bool has_settings_to_save() const { return !edits_are_saved() && overridden_.empty(); }
@@ -147,8 +157,7 @@ private:
     std::vector<std::string> overridden_;      ///< settings that are not in the file
     std::optional<std::string> session_text_;  ///< of the file, as this process last read or wrote it
     Session saved_edits_;                      ///< edits() of the session last read or written
-    Camera saved_camera_;
-    glm::dvec3 saved_probe_voxel_{0.0};
+    Place saved_place_;
     mutable std::optional<bool> edits_are_saved_;  ///< cached answer of edits_are_saved()
 };
 
@@ -176,8 +185,7 @@ private:
     std::string text_;                       ///< of the session
     std::optional<std::string> text_there_;  ///< as this process last read or wrote it
     Session edits_;
-    Camera camera_;
-    glm::dvec3 probe_voxel_{0.0};
+    Place place_;
     std::optional<Notice> notice_;
     bool has_session_ = false, is_written_ = false;
 };

@@ -72,8 +72,7 @@ std::shared_ptr<Document::Saving> Document::begin_save(Parts parts)
     saving->text_ = to_text(saved_session(), std::filesystem::absolute(session_path).parent_path());
     saving->text_there_ = session_text_;
     saving->edits_ = edits();
-    saving->camera_ = camera;
-    saving->probe_voxel_ = probe_voxel();
+    saving->place_ = place();
     return saving;
 }
 
@@ -120,15 +119,14 @@ Work::Saved Document::end_save(Saving& saving)
     if (!saving.is_written_ || saving.session_path_.empty()) return saved;
     saved_edits_ = saving.edits_;
     edits_are_saved_.reset();
-    saved_camera_ = saving.camera_;
-    saved_probe_voxel_ = saving.probe_voxel_;
+    saved_place_ = saving.place_;
     return saved;
 }
 
 bool Document::has_view_to_keep() const
 {
     if (only_looks() || !annotator.work().disputes().empty()) return false;
-    const bool is_kept = saved_camera_ == camera && saved_probe_voxel_ == probe_voxel();
+    const bool is_kept = saved_place_ == place();
     std::error_code ignored;
     return !is_kept && overridden_.empty() && is_saved() && std::filesystem::is_regular_file(session_path, ignored);
 }
@@ -158,8 +156,7 @@ std::shared_ptr<Document::Saving> Document::begin_save_as(const std::filesystem:
     saving->session_path_ = next;
     saving->text_ = to_text(moved, next.parent_path());
     saving->edits_ = renamed(edits(), next);
-    saving->camera_ = camera;
-    saving->probe_voxel_ = probe_voxel();
+    saving->place_ = place();
     return saving;
 }
 

@@ -17,15 +17,16 @@ std::filesystem::path Screenshots::free_path(const std::filesystem::path& stem) 
 }
 
 void Screenshots::take_large(const std::filesystem::path& stem, Renderer& renderer, const Session& session,
-                             const Camera& camera, const RenderOptions& options, const Texts& texts)
+                             const Camera& camera, const RenderOptions& options, const Texts& texts, Figure figure)
 {
     large_.reset();
     large_path_ = free_path(stem);
-    large_ = std::make_unique<PictureFile>(large_path_, renderer, session, camera, options, texts(large_path_));
+    const auto over = [figure = std::move(figure)](ImageF& rows, uint32_t first_row) { draw(figure, rows, first_row); };
+    large_ = std::make_unique<PictureFile>(large_path_, renderer, session, camera, options, texts(large_path_), over);
 }
 
 Screenshots::Turn Screenshots::advance(Screen& screen, const std::filesystem::path& stem, bool is_still,
-                                       const Texts& texts)
+                                       const Texts& texts, const std::function<Figure()>& figure)
 {
     if (is_writing()) {
         if (written_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
@@ -33,7 +34,7 @@ Screenshots::Turn Screenshots::advance(Screen& screen, const std::filesystem::pa
     }
     if (!screen.complete()) return {};
     if (std::exchange(is_wanted_, false)) {
-        write(screen.read_back(), stem, texts);
+        write(screen.read_back(), stem, texts, figure());
         return {};
     }
     return large_ && is_still ? advance_large() : Turn{};
@@ -56,17 +57,19 @@ Screenshots::Turn Screenshots::advance_large()
     return {.said = {}, .progress = sentence("Large screenshot: ", percent, " %")};
 }
 
-void Screenshots::write(Image8 image, const std::filesystem::path& stem, const Texts& texts)
+void Screenshots::write(Image8 image, const std::filesystem::path& stem, const Texts& texts, Figure figure)
 {
     const std::filesystem::path path = free_path(stem);
-    written_ = std::async(std::launch::async, [image = std::move(image), path, kept = texts(path)] {
-        try {
-            write_png(path, image, kept);
-            return "Screenshot: " + path.string();
-        } catch (const Error& error) {
-            return std::string(error.what());
-        }
-    });
+    written_ = std::async(std::launch::async,
+                          [image = std::move(image), figure = std::move(figure), path, kept = texts(path)]() mutable {
+                              try {
+                                  draw(figure, image);
+                                  write_png(path, image, kept);
+                                  return "Screenshot: " + path.string();
+                              } catch (const Error& error) {
+                                  return std::string(error.what());
+                              }
+                          });
 }
 
 void Screenshots::wait() const

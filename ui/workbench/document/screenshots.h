@@ -12,6 +12,7 @@
 
 #include "engine/live/screen.h"
 #include "engine/picture/picture_file.h"
+#include "ui/workbench/sight/figure.h"
 
 namespace shvr::ui {
 
@@ -21,9 +22,9 @@ public:
     void take() { is_wanted_ = true; }
     /// What a picture of that name keeps in its file.
     using Texts = std::function<PictureTexts(const std::filesystem::path& picture)>;
-    /// `stem` as for `advance`. Fails where the file cannot be written.
+    /// `stem` as for `advance`. `figure`: drawn over it. Fails where the file cannot be written.
     void take_large(const std::filesystem::path& stem, Renderer& renderer, const Session& session, const Camera& camera,
-                    const RenderOptions& options, const Texts& texts);
+                    const RenderOptions& options, const Texts& texts, Figure figure);
     /// Abandons a large picture, since its volume changes or goes away.
     void drop_large() { large_.reset(); }
     bool has_large() const { return large_ != nullptr; }
@@ -37,14 +38,15 @@ public:
         std::string progress;  ///< likewise, but replaced as it changes
     };
     /// Call every turn. `stem`: of the file, "scan" for scan-view-1.png. `is_still`: nothing else waits for the device.
-    /// Fails if a picture cannot be made; then it is abandoned.
-    Turn advance(Screen& screen, const std::filesystem::path& stem, bool is_still, const Texts& texts);
+    /// `figure`: makes what is drawn over a picture as shown. Fails if a picture cannot be made; then it is abandoned.
+    Turn advance(Screen& screen, const std::filesystem::path& stem, bool is_still, const Texts& texts,
+                 const std::function<Figure()>& figure);
     /// Waits until the last one is written.
     void wait() const;
 
 private:
     std::filesystem::path free_path(const std::filesystem::path& stem) const;
-    void write(Image8 image, const std::filesystem::path& stem, const Texts& texts);
+    void write(Image8 image, const std::filesystem::path& stem, const Texts& texts, Figure figure);
     Turn advance_large();
 
     bool is_wanted_ = false;

@@ -216,6 +216,8 @@ void Touch::ask()
         std::optional<RelevanceBits> bits = relevance_.take();
         if (!bits) return;
         relevance_gpu_ms_ = bits->gpu_ms;
+        constexpr size_t KEPT = 10'000;  // of a day's many
+        if (mirror_ms_.size() == 2 * KEPT) mirror_ms_.erase(mirror_ms_.begin(), mirror_ms_.begin() + KEPT);
         mirror_ms_.push_back(double(now_ns() - bits->asked_ns) * 1e-6);
         mirror_->offer(*asked_, std::move(*bits));
         asked_.reset();

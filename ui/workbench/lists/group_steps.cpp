@@ -48,7 +48,7 @@ uint8_t unused_group(const Model& model)
     const std::set<uint8_t> used = used_groups(model);
     for (int group = 1; group <= 255; ++group)
         if (!used.contains(uint8_t(group))) return uint8_t(group);
-    return 255;
+    return 0;
 }
 
 }  // namespace shvr::ui

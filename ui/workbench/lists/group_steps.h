@@ -11,7 +11,7 @@ namespace shvr::ui {
 std::vector<uint8_t> known_groups(const Model& model);
 /// Of those, the next one above the active group (direction 1) or below (-1), around the end.
 uint8_t next_group(const Model& model, int direction);
-/// The first that nothing is painted, traced or described with; the last of all where there is none.
+/// The first that nothing is painted, traced or described with; 0 where there is none.
 uint8_t unused_group(const Model& model);
 
 }  // namespace shvr::ui

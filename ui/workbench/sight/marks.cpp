@@ -19,11 +19,12 @@ constexpr double DASH = 6.0, GAP = 5.0;
 
 class Drawing {
 public:
-    Drawing(const Model& model, const Pane& pane, size_t index, double units)
+    Drawing(const Model& model, const Pane& pane, size_t index, double units, MarksFor purpose)
         : model_(model),
           pane_(pane),
           index_(index),
           units_(units),
+          is_for_screen_(purpose == MarksFor::screen),
           pixels_(pane.pixels()),
           axes_(axes_of(pane.shot.camera)),
           color_(group_of(model.session.groups, std::max(model.session.probe.painted_group(), uint8_t(1))).color)
@@ -35,15 +36,15 @@ public:
     {
         if (is_slice()) {
             trace_in_slice();
-            brush_ring();
+            if (is_for_screen_) brush_ring();
         }
-        link();
+        if (is_for_screen_) link();
         measurements();
-        pivot();
+        if (is_for_screen_) pivot();
         if (model_.session.interaction.axes) axes();
         if (model_.session.interaction.scale_bar) scale();
         title();
-        if (is_main() && model_.session.interaction.probe_label) probe_label();
+        if (is_for_screen_ && is_main() && model_.session.interaction.probe_label) probe_label();
         return std::move(marks_);
     }
 
@@ -184,7 +185,7 @@ private:
     {
         if (pane_.shot.right_eye) return;
         for (const Measurement& each : model_.measurements) measurement(each.from, each.to, false);
-        if (!model_.measuring_from) return;
+        if (!model_.measuring_from || !is_for_screen_) return;
         const bool leads = model_.tool() == Tool::measure && model_.measuring_to;
         measurement(*model_.measuring_from, leads ? *model_.measuring_to : *model_.measuring_from, true);
     }
@@ -241,12 +242,13 @@ private:
         const glm::dvec2 at(8.0 * units_, 6.0 * units_), next(0.0, 20.0 * units_);
         if (!is_slice()) return label(at, {0.0, 0.0}, pane_.name);
         label(at, {0.0, 0.0}, slice_in_words(pane_.axis, model_.probe_voxel, model_.volume));
+        if (!is_for_screen_) return;
         const bool is_here = model_.pointer && model_.pointer->pane == index_;
         if (is_here)
             label(at + next, {0.0, 0.0},
                   place_in_words(model_.reading.voxel, model_.volume) + ": " + value_in_words(model_.reading));
         else if (index_ == 1)
-            label(at + next, {0.0, 0.0}, "Ctrl + drag: contrast", glm::dvec3(0.5));
+            label(at + next, {0.0, 0.0}, "Ctrl + drag: contrast, Ctrl + wheel: zoom");
     }
 
     void probe_label()
@@ -283,6 +285,7 @@ private:
     const Pane& pane_;
     size_t index_;
     double units_;
+    bool is_for_screen_;
     glm::uvec2 pixels_;
     CameraAxes axes_;
     glm::dvec3 color_;
@@ -291,9 +294,9 @@ private:
 
 }  // namespace
 
-Marks marks_of(const Model& model, const Pane& pane, size_t index, double units)
+Marks marks_of(const Model& model, const Pane& pane, size_t index, double units, MarksFor purpose)
 {
-    return Drawing(model, pane, index, units).all();
+    return Drawing(model, pane, index, units, purpose).all();
 }
 
 }  // namespace shvr::ui

@@ -1,7 +1,7 @@
 #pragma once
 // Lines and words that the window draws over a pane: the brush's ring and the trace in slices, the link that a new node
-// would get, distances, a scale bar, directions of the axes, and what the pane shows. Pictures in files have none of
-// them. Pure; the main thread, while the model lives.
+// would get, distances, a scale bar, directions of the axes, and what the pane shows. Pictures in files have those that
+// are no help for the hand, where that is wanted (figure.h). Pure; the main thread, while the model lives.
 
 #include <string>
 #include <vector>
@@ -10,6 +10,9 @@
 #include "ui/workbench/model.h"
 
 namespace shvr::ui {
+
+/// Size of the font where a unit of the interface is a pixel.
+inline constexpr double FONT_UNITS = 14.0;
 
 struct Label {
     glm::dvec2 at{0.0};      ///< pixels of the pane
@@ -22,7 +25,10 @@ struct Marks {
     std::vector<Label> labels;
 };
 
+enum class MarksFor { screen, picture };
+
 /// `pane`: as it is shown; `index`: its number. `units`: pixels of one unit of the interface, 2 on a HiDPI screen.
-Marks marks_of(const Model& model, const Pane& pane, size_t index, double units = 1.0);
+Marks marks_of(const Model& model, const Pane& pane, size_t index, double units = 1.0,
+               MarksFor purpose = MarksFor::screen);
 
 }  // namespace shvr::ui

@@ -87,7 +87,7 @@ std::string slice_in_words(int axis, const glm::dvec3& voxel, const VolumeInfo& 
     const double last = double(volume.size[axis]) - 1.0;
     const double slice = std::clamp(std::floor(voxel[axis]), 0.0, std::max(last, 0.0));
     const double at = (slice + 0.5) * volume.spacing[axis];
-    std::string text = sentence("xyz"[axis], " ", int64_t(slice) + 1, " of ", volume.size[axis]);
+    std::string text = sentence("xyz"[axis], " ", int64_t(slice), " (0 to ", int64_t(last), ")");
     if (volume.unit != "voxel") text += ", " + length_in_words(at, volume.unit);
     return text;
 }

@@ -24,11 +24,18 @@ DensityBox tube(const glm::dvec3& along, double radius, const glm::dvec3& spacin
     return box;
 }
 
+/// How far the ball's middle is from the tube's axis.
+double beside_axis(const LocalBall& ball, const DensityBox& box, const glm::dvec3& along)
+{
+    const glm::dvec3 axis = glm::normalize(along), away = ball.middle - glm::dvec3(box.lower) - 24.0;
+    return glm::length(away - glm::dot(away, axis) * axis);
+}
+
 }  // namespace
 
 TEST_CASE("A tube's radius is measured from its density, beside its axis, too")
 {
-    double worst = 0.0;
+    double worst = 0.0, worst_middle = 0.0;
     for (const double radius : {2.0, 3.0, 5.0, 8.0})
         for (const glm::dvec3& along : {glm::dvec3(0, 0, 1), glm::dvec3(1, 1, 0), glm::dvec3(1, 2, 3)})
             for (const double beside : {0.0, 0.3, 0.6}) {
@@ -36,34 +43,66 @@ TEST_CASE("A tube's radius is measured from its density, beside its axis, too")
                 const glm::dvec3 across = glm::normalize(glm::cross(along, glm::dvec3(0.3, 1.0, -0.2)));
                 const glm::dvec3 voxel = glm::dvec3(box.lower) + 24.0 + beside * radius * across;
                 const auto found =
-                    local_radius([&](const glm::dvec3& at) { return box.at(at); }, 100.0, voxel, glm::dvec3(1.0), 20.0);
+                    local_ball([&](const glm::dvec3& at) { return box.at(at); }, 100.0, voxel, glm::dvec3(1.0), 20.0);
                 CAPTURE(radius);
                 CAPTURE(beside);
                 REQUIRE(found.has_value());
-                CHECK(std::abs(*found - radius) < 0.15);
-                worst = std::max(worst, std::abs(*found - radius));
+                CHECK(std::abs(found->radius - radius) < 0.15);
+                CHECK(beside_axis(*found, box, along) < 0.3);
+                worst = std::max(worst, std::abs(found->radius - radius));
+                worst_middle = std::max(worst_middle, beside_axis(*found, box, along));
             }
-    MESSAGE("largest error: ", worst, " voxels");
+    MESSAGE("largest errors: of the radius ", worst, ", of the middle ", worst_middle, " voxels");
 }
 
 TEST_CASE("A tube's radius is physical where voxels are not cubes")
 {
     const glm::dvec3 spacing(1.0, 1.0, 0.5);
     const DensityBox box = tube({1.0, 0.0, 0.0}, 4.0, spacing);
-    const auto found = local_radius([&](const glm::dvec3& at) { return box.at(at); }, 100.0,
-                                    glm::dvec3(box.lower) + 24.0, spacing, 10.0);
+    const auto found = local_ball([&](const glm::dvec3& at) { return box.at(at); }, 100.0, glm::dvec3(box.lower) + 24.0,
+                                  spacing, 10.0);
     REQUIRE(found.has_value());
-    CHECK(std::abs(*found - 4.0) < 0.15);
+    CHECK(std::abs(found->radius - 4.0) < 0.15);
 }
 
 TEST_CASE("No radius is measured outside a structure, nor in one that goes on")
 {
     const DensityBox box = tube({0.0, 0.0, 1.0}, 3.0, glm::dvec3(1.0));
     const auto density_at = [&](const glm::dvec3& at) { return box.at(at); };
-    CHECK(
-        !local_radius(density_at, 100.0, glm::dvec3(box.lower) + glm::dvec3(30.0, 24.0, 24.0), glm::dvec3(1.0), 20.0));
-    CHECK(!local_radius(density_at, 100.0, glm::dvec3(box.lower) + 24.0, glm::dvec3(1.0), 2.5));
-    CHECK(!local_radius([](const glm::dvec3&) { return 1.0; }, 0.5, {3.0, 4.0, 5.0}, glm::dvec3(1.0), 8.0));
+    CHECK(!local_ball(density_at, 100.0, glm::dvec3(box.lower) + glm::dvec3(30.0, 24.0, 24.0), glm::dvec3(1.0), 20.0));
+    CHECK(!local_ball(density_at, 100.0, glm::dvec3(box.lower) + 24.0, glm::dvec3(1.0), 2.5));
+    CHECK(!local_ball([](const glm::dvec3&) { return 1.0; }, 0.5, {3.0, 4.0, 5.0}, glm::dvec3(1.0), 8.0));
+}
+
+TEST_CASE("What is seen on a tube's wall, from any side, has its middle on the axis")
+{
+    double worst = 0.0;
+    for (const double radius : {2.0, 4.0, 8.0})
+        for (const glm::dvec3& along : {glm::dvec3(0, 0, 1), glm::dvec3(1, 2, 3)})
+            for (const double slant : {0.0, 0.6, 1.2})         // of the line of sight, along the tube
+                for (const double beside : {0.0, 0.5, 0.8}) {  // of the axis, in radii
+                    const DensityBox box = tube(along, radius, glm::dvec3(1.0));
+                    const auto density_at = [&](const glm::dvec3& at) { return box.at(at); };
+                    const glm::dvec3 axis = glm::normalize(along);
+                    const glm::dvec3 across = glm::normalize(glm::cross(axis, glm::dvec3(0.3, 1.0, -0.2)));
+                    const glm::dvec3 towards = glm::cross(axis, across);
+                    const double depth = std::sqrt(1.0 - beside * beside) * radius;
+                    const glm::dvec3 voxel = glm::dvec3(box.lower) + 24.0 + beside * radius * across - depth * towards;
+                    CAPTURE(radius);
+                    CAPTURE(slant);
+                    CAPTURE(beside);
+                    const auto found =
+                        ball_behind(density_at, 100.0, voxel, 3.0 * (towards + slant * axis), glm::dvec3(1.0), 20.0);
+                    REQUIRE(found.has_value());
+                    CHECK(beside_axis(*found, box, along) < 0.3);
+                    worst = std::max(worst, beside_axis(*found, box, along));
+                    // The other way there is nothing, but for the wall itself.
+                    CHECK(!ball_behind(density_at, 100.0, voxel - 4.0 * towards, -towards, glm::dvec3(1.0), 20.0));
+                }
+    MESSAGE("largest error: ", worst, " voxels");
+    const DensityBox wall = tube({0.0, 0.0, 1.0}, 40.0, glm::dvec3(1.0));
+    CHECK(!ball_behind([&](const glm::dvec3& at) { return wall.at(at); }, 100.0, glm::dvec3(wall.lower) + 24.0,
+                       {1.0, 0.0, 0.0}, glm::dvec3(1.0), 10.0));
 }
 
 TEST_CASE("A density box interpolates linearly between the middles of voxels, and holds its border")

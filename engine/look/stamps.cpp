@@ -1,0 +1,52 @@
+#include "engine/look/stamps.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace shvr {
+
+namespace {
+
+/// Calls with x, y and the share of each pixel inside the rows that the stamp covers.
+template <class Take>
+void for_each_covered(const Stamp& stamp, const PixelBox& pane, const PixelBox& rows, Take take)
+{
+    const glm::ivec2 origin = glm::ivec2(pane.begin) + stamp.begin;
+    const glm::ivec2 begin = glm::max(origin, glm::ivec2(rows.begin));
+    const glm::ivec2 end = glm::min(origin + stamp.pixels, glm::ivec2(rows.end));
+    for (int y = begin.y; y < end.y; ++y)
+        for (int x = begin.x; x < end.x; ++x) {
+            const glm::ivec2 at = glm::ivec2(x, y) - origin;
+            const uint8_t covered = stamp.coverage[size_t(at.x) + size_t(stamp.pixels.x) * size_t(at.y)];
+            if (covered > 0) take(size_t(x), size_t(y), covered / 255.0);
+        }
+}
+
+}  // namespace
+
+void draw_stamps(ImageF& image, std::span<const Stamp> stamps, const PixelBox& pane, uint32_t first_row)
+{
+    PixelBox rows = pane;
+    rows.begin.y = std::max(rows.begin.y, first_row);
+    rows.end.y = std::min(rows.end.y, first_row + uint32_t(image.height));
+    for (const Stamp& stamp : stamps)
+        for_each_covered(stamp, pane, rows, [&](size_t x, size_t y, double covered) {
+            float* const pixel = &image.rgba[4 * (x + size_t(image.width) * (y - first_row))];
+            for (int c = 0; c < 4; ++c)
+                pixel[c] = float(pixel[c] + covered * ((c < 3 ? stamp.color[c] : 1.0) - pixel[c]));
+        });
+}
+
+void draw_stamps(Image8& image, std::span<const Stamp> stamps, const PixelBox& pane)
+{
+    for (const Stamp& stamp : stamps)
+        for_each_covered(stamp, pane, pane, [&](size_t x, size_t y, double covered) {
+            uint8_t* const pixel = &image.rgba[4 * (x + size_t(image.width) * y)];
+            for (int c = 0; c < 3; ++c) {
+                const double light = glm::mix(srgb_decode(pixel[c] / 255.0), stamp.color[c], covered);
+                pixel[c] = uint8_t(std::lround(255.0 * srgb_encode(std::clamp(light, 0.0, 1.0))));
+            }
+        });
+}
+
+}  // namespace shvr

@@ -1,0 +1,27 @@
+#pragma once
+// Shapes of one colour over a picture: words whose letters somebody else has drawn, and what they stand on. Beside the
+// lines of overlay.h. Pure; any thread.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/base/image.h"
+#include "engine/look/camera_motion.h"
+
+namespace shvr {
+
+struct Stamp {
+    glm::ivec2 begin{0};            ///< its upper left pixel, in its pane; may lie outside
+    glm::ivec2 pixels{0};           ///< width and height
+    std::vector<uint8_t> coverage;  ///< rows from the top; 255: the pixel takes the colour
+    glm::dvec3 color{1.0};          ///< linear light
+};
+
+/// In order, over premultiplied light. `pane`: the pixels of the picture that stamps refer to; nothing is drawn
+/// outside. `image` holds all of the picture's rows from `first_row` on, or some of them.
+void draw_stamps(ImageF& image, std::span<const Stamp> stamps, const PixelBox& pane, uint32_t first_row = 0);
+/// The same on a screen's opaque pixels.
+void draw_stamps(Image8& image, std::span<const Stamp> stamps, const PixelBox& pane);
+
+}  // namespace shvr
