@@ -147,6 +147,7 @@ struct Submission::Frame {
         VkDescriptorSet set = VK_NULL_HANDLE;
         uint64_t counters_offset = 0;
         uint32_t dispatches = 0;
+        uint32_t tiles = 0;
         uint32_t submissions = 0;
         bool is_counted_in_part = false;
     };
@@ -566,6 +567,7 @@ void Submission::Frame::record_dispatches(const PassData& data, Prepared& state)
                     vkCmdDispatchBase(commands, at.x, at.y, at.z, count.x, count.y, count.z);
                 executor.device_.end_label(commands);
             }
+    state.tiles = tiled ? state.dispatches : 1;
     end_statistics();
     in_use = VK_NULL_HANDLE;
 }
@@ -668,6 +670,7 @@ FrameResult Submission::Frame::collect()
         const PassData& data = pass(compiled.steps[i]);
         PassReport report{.name = data.name, .kernel = data.kernel};
         report.dispatches = prepared[i].dispatches;
+        report.tiles = prepared[i].tiles;
         report.submissions = prepared[i].submissions;
         if (is_timed) {
             report.timed = true;

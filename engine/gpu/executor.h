@@ -31,6 +31,7 @@ struct PassReport {
     double gpu_ms = 0.0;    ///< 0 where the device has no timestamps, see `timed`
     bool timed = false;
     uint32_t dispatches = 0;
+    uint32_t tiles = 0;              ///< dispatches that its declaration asks for; more are for a device that was slow
     uint32_t submissions = 0;        ///< that hold parts of it
     uint64_t bytes = 0;              ///< total size of the resources it binds: what it may touch
     std::string barrier;             ///< "compute -> transfer", empty if none

@@ -20,6 +20,7 @@ void append(std::vector<gpu::PassReport>& sum, std::vector<gpu::PassReport> pass
         }
         known->gpu_ms += pass.gpu_ms;
         known->dispatches += pass.dispatches;
+        known->tiles += pass.tiles;
         for (size_t i = 0; i < known->counters.size(); ++i) known->counters[i] += pass.counters[i];
         known->invocations = known->invocations && pass.invocations
                                  ? std::optional(*known->invocations + *pass.invocations)

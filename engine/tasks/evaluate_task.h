@@ -8,7 +8,7 @@
 namespace shvr {
 
 struct EvaluateTask {
-    static constexpr const char* TITLE = "Compare with the truth";
+    static constexpr const char* TITLE = "Compare with a reference";
 
     std::filesystem::path truth_mask, mask, truth_trace, trace;
     std::filesystem::path volume;           ///< that all are of: size, spacing and unit where no file states them

@@ -175,8 +175,8 @@ private:
     int64_t read_ = read_so_far();
     int64_t touched_ = touched_so_far();
 };
-#ifdef __SANITIZE_ADDRESS__
-// AddressSanitizer does not soon reuse freed memory, and touches its shadow of each byte, too.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+// Sanitizers do not soon reuse freed memory, and touch their shadow of each byte, too.
 constexpr int64_t AT_ONCE_BYTES = 64 << 20;
 #else
 constexpr int64_t AT_ONCE_BYTES = 32 << 20;

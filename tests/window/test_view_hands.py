@@ -67,7 +67,7 @@ class Hands(Window):
         self.assertAlmostEqual(report["probe_voxel"][0], 32.0, delta=3.0)
 
     def test_nodes_are_clicked_dragged_and_linked(self):
-        _, x, y = self.begin("trace")
+        _, x, y = self.begin("trace", centered_nodes=False)
         for at in [(x - 60, y), (x, y - 60), (x + 60, y)]:
             self.click(*at)
         self.click(x - 60, y)   # selects the first again

@@ -18,7 +18,7 @@ FIRST = {
 }
 # What it makes, where the table cannot know: there it is pressed in a state in which nothing is left to be set.
 MAKES = {"step_back": "set probe.tool", "single_view": "set view.arrangement", "tool_turn": "set probe.tool",
-         "group_1": "set probe.group", "new_group": "set probe.group", "less_blending": "set blend.size",
+         "group_1": "set probe.group", "less_blending": "set blend.size",
          "stronger": "set probe.touch.strength"}
 # Whose answer is a sentence, always.
 REFUSED = {"regroup_0": "roup 0 is the eraser"}
@@ -46,7 +46,7 @@ class Keys(Seen):
                 if found is not None:
                     wrong.append(f"{row['id']}: {chord} made {found}; expected {self.makes(row)}")
         report = self.finish()
-        self.assertEqual(self.done()[-1], {"op": "quit"})
+        self.assertEqual(self.done()[-1], {"op": "quit", "saves": True})
         self.assertEqual(wrong, [], report["messages"][-30:])
         for sentence in REFUSED.values():
             self.assertIn(sentence, "\n".join(report["messages"]))

@@ -9,12 +9,12 @@ from test_view_keys import FIRST, MAKES
 
 # Menus within menus, and what entries without a shortcut make: an action, or a dialog that is shown.
 INNER = {"Open recent", "Look from", "Kept views", "Panels", "Turn the view", "Move the view", "Distance blending",
-         "Cutting planes", "Clip planes", "The hand", "Group of what is selected", "view 1"}
+         "Cutting planes", "Clip planes", "Touch", "Group of what is selected", "view 1", "Remove"}
 DIALOGS = {"Save as...", "Open with options...", "Correct the spacing...", "Import as project...", "Export...",
-           "Label connected parts...", "Compare with the truth..."}
+           "Label connected parts...", "Compare with a reference..."}
 EXPECTED = {
     "Copy the session": "copy_session", "Revert to the last save": "revert", "Shading": "set light.shaded",
-    "Show everything": "reset_cuts", "Go there": "look_from", "Remove": "forget_camera",
+    "Show everything": "reset_cuts", "Go there": "look_from", "Remove this view": "forget_camera",
 }
 BY_MENU = {"Look from": "look_from", "Panels": "prefer", "Group of what is selected": "group"}   # of all that is there
 # Entries that say something else than their action, since of their kind there is one for each group or brush.
@@ -22,7 +22,7 @@ IN_PAINT = {"set probe.group", "set probe.brush"}
 NO_ENTRIES = {"Cutting planes": ["What is drawn", "from ", "to ", "x", "y", "z"], "view 1": ["view 1", "Rename"]}
 # They need a pointer over the picture, or stay grey for what they say when pointed at.
 WITH_THE_POINTER = {"pivot_at_pointer"}
-AT_LAST = {"quit", "open_example"}
+AT_LAST = {"quit", "quit_unsaved", "open_example"}
 AGAIN = {"full_screen", "side_panels", "tool_bar", "volume", "meshes", "guide", "let_go"}
 ESCAPED = {"help", "preferences", "messages", "palette", "passes", "open", "focus_panels", "focus_menu"}
 
@@ -35,8 +35,11 @@ class Menus(Seen):
                                   light={"occlusion": {"strength": 0.3, "automatic": False}},
                                   interaction={"screenshot_scale": 1},
                                   probe={"radius_voxels": 3, "group": 3, "paint_threshold": 120})
-        self.open_scan(session, preferences={"hints_seen": 3, "recent": [{"path": str(session)}]})
-        self.rows = shortcut_rows()
+        # What others need first needs a key.
+        keys = {"more_blending": "T"}
+        self.open_scan(session, preferences={"hints_seen": 3, "recent": [{"path": str(session)}],
+                                             "keys": {name: {"keys": chord} for name, chord in keys.items()}})
+        self.rows = [{**row, "today": keys.get(row["id"], row["today"])} for row in shortcut_rows()]
         self.chords = {chord for row in self.rows for chord in row["today"].split()}
         self.names = {row["does"] for row in self.rows} | INNER | DIALOGS | set(EXPECTED) | {"Open the example"}
         self.do("mousemove", *self.middle())

@@ -30,6 +30,7 @@ def write_png(path, width, height, rows):
 
 
 class Photographs(Seen):
+    maxDiff = None
     size = (1000, 2300)   # at a scale of 1: high enough for most panels at once
 
     def start(self, *arguments, environment=None):
@@ -111,7 +112,7 @@ class Photographs(Seen):
             self.photograph(arrangement)
         self.press("F10")
         for entry in ("Save as...", "Open with options...", "Correct the spacing...", "Import as project...",
-                      "Export...", "Label connected parts...", "Compare with the truth..."):
+                      "Export...", "Label connected parts...", "Compare with a reference..."):
             self.click_on("File", "##MainMenuBar")
             self.click_on(entry, "##Menu_00")
             self.see("Cancel")

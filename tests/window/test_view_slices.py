@@ -89,6 +89,23 @@ class Slices(Seen):
         self.assertNotEqual(left[0]["intensity"], 100)   # the first is what was removed
         self.finish()
 
+    def test_a_window_comes_back_where_it_was_left(self):
+        self.scan({"hints_seen": 3, "keys": {"messages": {"keys": "Ctrl+M"}}})
+        self.press("Ctrl+M")
+        x, y = self.middle_of(self.see_at_rest("Messages", "Messages"))
+        self.do("mousemove", x, y, pause_s=0.2)
+        self.do("mousedown", 1, pause_s=0.2)
+        for step in range(1, 7):
+            self.do("mousemove", x - 4 * step, y + 6 * step, pause_s=0.05)
+        self.what_follows(lambda: self.do("mouseup", 1), "prefer")
+        kept = json.loads((self.configuration / "preferences.json").read_text())["layout"]["windows"]["messages"]
+        self.press("Ctrl+M")
+        self.see_no_more("Messages", "Messages")
+        self.press("Ctrl+M")
+        at = self.middle_of(self.see_at_rest("Messages", "Messages"))
+        self.assertLess(abs(at[0] - (x - 24)) + abs(at[1] - (y + 36)), 8, kept)
+        self.finish()
+
     @staticmethod
     def kept_points(session):
         return json.loads(session.read_text())["transfer_function"]["points"]

@@ -188,12 +188,9 @@ void help_window(const Model& model, Actions& actions)
 {
     static std::string text;
     bool is_open = model.shows_help;
-    const float font = ImGui::GetFontSize();
-    const ImGuiViewport& viewport = *ImGui::GetMainViewport();
-    const ImVec2 size{std::min(64.0f * font, viewport.WorkSize.x), std::min(54.0f * font, viewport.WorkSize.y)};
-    ImGui::SetNextWindowSize(size, ImGuiCond_Appearing);
-    ImGui::SetNextWindowPos(viewport.GetWorkCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
+    place_kept_window("help", {64.0, 54.0}, model);
     if (ImGui::Begin("Keys and mouse", &is_open, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
+        keep_window("help", model, actions);
         head(model, text, actions);
         if (ImGui::BeginTable("columns", 2, ImGuiTableFlags_ScrollY)) {
             ImGui::TableSetupColumn("left", ImGuiTableColumnFlags_WidthStretch, 0.42f);

@@ -267,7 +267,7 @@ void trace_menu(const Model& model, Actions& actions)
 
 void hand_menu(const Model& model, Actions& actions)
 {
-    if (!begin_menu("The hand")) return;
+    if (!begin_menu("Touch")) return;
     const FeelSettings& touch = model.session.probe.touch;
     shortcut_item("next_mode", model, actions);
     shortcut_item("let_go", model, actions, model.hand && model.hand->is_let_go);

@@ -76,12 +76,9 @@ void messages_window(const Model& model, Actions& actions)
 {
     static Shown shown = Shown::all;
     bool is_open = true;
-    const float font = ImGui::GetFontSize();
-    const ImGuiViewport& viewport = *ImGui::GetMainViewport();
-    ImGui::SetNextWindowSize({std::min(52.0f * font, viewport.WorkSize.x), std::min(22.0f * font, viewport.WorkSize.y)},
-                             ImGuiCond_Appearing);
-    ImGui::SetNextWindowPos(viewport.GetWorkCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
+    place_kept_window("messages", {52.0, 22.0}, model);
     if (ImGui::Begin("Messages", &is_open, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
+        keep_window("messages", model, actions);
         head(model, shown);
         list(model, shown);
     }

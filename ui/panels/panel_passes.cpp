@@ -173,10 +173,10 @@ void comparison(const Model& model, Actions& actions)
 
 void passes_window(const Model& model, Actions& actions)
 {
-    const float size = ImGui::GetFontSize();
-    ImGui::SetNextWindowSize({36.0f * size, 34.0f * size}, ImGuiCond_FirstUseEver);
+    place_kept_window("passes", {36.0, 34.0}, model);
     bool is_open = true;
-    if (ImGui::Begin("GPU passes", &is_open)) {
+    if (ImGui::Begin("GPU passes", &is_open, ImGuiWindowFlags_NoSavedSettings)) {
+        keep_window("passes", model, actions);
         if (model.screen) passes_state.log.note(ImGui::GetTime(), model.screen->pass_times());
         ImGui::TextDisabled("%.*s", int(model.gpu_name.size()), model.gpu_name.data());
         hint("The GPU in use.");

@@ -140,7 +140,7 @@ bool density(const Model& model, BrushSettings& brush)
     }
 
     label("Falls off");
-    if (ImGui::RadioButton("nowhere", brush.density->falloff == Falloff::flat)) {
+    if (ImGui::RadioButton("not at all", brush.density->falloff == Falloff::flat)) {
         brush.density->falloff = Falloff::flat;
         changed = true;
     }
@@ -169,9 +169,9 @@ void preview(const Model& model, Actions& actions)
 }
 
 /// Which voxels the brush leaves alone.
-bool heeding(BrushSettings& brush)
+bool spared(BrushSettings& brush)
 {
-    label("Heeds");
+    label("Paints");
     ImGui::BeginDisabled(!brush.paints_group || brush.group == 0);
     const bool changed = ImGui::Checkbox("only unpainted voxels", &brush.only_unpainted);
     ImGui::EndDisabled();
@@ -189,7 +189,7 @@ void painting(const Model& model, Actions& actions)
     ImGui::BeginDisabled(!row_of(brush.brush).is_connected);
     changed |= connectivity(brush);
     ImGui::EndDisabled();
-    changed |= heeding(brush);
+    changed |= spared(brush);
     changed |= density(model, brush);
     if (changed) set(actions, model, [&](Session& s) { s.probe.brush = brush; });
     preview(model, actions);

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <optional>
+#include <utility>
 
 #include <imgui/imgui.h>
 
@@ -221,6 +223,41 @@ void floating_panels(const Model& model, const ImVec2& window, Actions& actions)
 
 }  // namespace
 
+void place_kept_window(const char* id, const glm::dvec2& usual_size, const Model& model)
+{
+    const double font = ImGui::GetFontSize();
+    const ImGuiViewport& viewport = *ImGui::GetMainViewport();
+    const glm::dvec2 room(viewport.WorkSize.x, viewport.WorkSize.y);
+    const auto& windows = model.preferences.layout.windows;
+    const auto found = windows.find(id);
+    const WindowPlace kept = found == windows.end() ? WindowPlace{} : found->second;
+    const glm::dvec2 size = glm::min(font * kept.size.value_or(usual_size), room);
+    const glm::dvec2 middle = 0.5 * (room - size) / font;
+    const glm::dvec2 at = within_reach(font * kept.at.value_or(middle), size, room);
+    ImGui::SetNextWindowSize({float(size.x), float(size.y)}, ImGuiCond_Appearing);
+    ImGui::SetNextWindowPos({float(at.x), float(at.y)}, ImGuiCond_Appearing);
+}
+
+void keep_window(const char* id, const Model& model, Actions& actions)
+{
+    struct Place {
+        glm::dvec2 at{0.0}, size{0.0};
+        bool operator==(const Place&) const = default;
+    };
+    static std::map<std::string, Place> places;  // as they were last seen at rest
+    if (ImGui::IsAnyMouseDown()) return;
+    const double font = ImGui::GetFontSize();
+    const auto rounded = [&](const ImVec2& pixels) {
+        return glm::round(10.0 * glm::dvec2(pixels.x, pixels.y) / font) / 10.0;
+    };
+    const Place now{rounded(ImGui::GetWindowPos()), rounded(ImGui::GetWindowSize())};
+    const Place before = std::exchange(places[id], now);
+    const auto& windows = model.preferences.layout.windows;
+    const bool is_new = ImGui::IsWindowAppearing() || before == Place{} || before == now;
+    if (is_new || (windows.contains(id) && windows.at(id) == WindowPlace{now.at, now.size})) return;
+    actions.push_back(Prefer{patch_of_window(id, now.at, now.size)});
+}
+
 Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& actions)
 {
     const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
@@ -254,7 +291,7 @@ Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& action
     if (model.shows_palette) palette_window(model, actions);
     if (model.shows_messages) messages_window(model, actions);
     if (model.shows_passes) passes_window(model, actions);
-    jobs_window(model, {0.0f, size.y - bar}, actions);
+    jobs_window(model, {0.5f * (size.x - side), size.y - bar}, actions);
 
     const glm::vec2 begin(0.0f, top);
     const glm::vec2 end = glm::max(begin, size - glm::vec2(side, bar));

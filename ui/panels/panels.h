@@ -46,6 +46,10 @@ void history_panel(const Model& model, Actions& actions);
 float tool_bar_height();
 void tool_bar(const ImVec2& at, float width, const Model& model, Actions& actions);
 /// Until all are dismissed, at the upper edge of the picture.
+/// Before Begin: puts a window where it was left (layout.h), or into the middle, with the usual size in font sizes.
+void place_kept_window(const char* id, const glm::dvec2& usual_size, const Model& model);
+/// After Begin: keeps where it is, once the mouse is let go.
+void keep_window(const char* id, const Model& model, Actions& actions);
 void first_hints(const Model& model, const ImVec2& top_middle, Actions& actions);
 void preferences_window(const Model& model, Actions& actions);
 void help_window(const Model& model, Actions& actions);
@@ -76,7 +80,8 @@ void load_menu(const Model& model);
 void load_dialogs(const Model& model, Actions& actions);
 void task_dialogs(const Model& model, Actions& actions);
 /// What goes on beside the work, at the lower left of the graphics window.
-void jobs_window(const Model& model, const glm::vec2& lower_left, Actions& actions);
+/// Its lower edge is there, in the middle.
+void jobs_window(const Model& model, const glm::vec2& lower_middle, Actions& actions);
 /// What is there while nothing is open.
 void start_page(const Model& model, Actions& actions);
 void status_bar(const Model& model, const glm::uvec2& window, Actions& actions);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char *LOOKING = "Looking", *SETTINGS = "Settings", *PROBE = "Probe", *PAINTING = "Painting",
                      *TRACING = "Tracing", *MEASURING = "Measuring", *WORK = "Work", *WINDOW = "Window",
-                     *HAND = "The hand";
+                     *HAND = "Touch";
 
 constexpr ActionRow ROWS[] = {
     {"orbit", "Turn the view", LOOKING, "turns the camera about its target, to the right and up"},
@@ -80,7 +80,7 @@ constexpr ActionRow ROWS[] = {
     {"export", "Export", WORK, "writes annotation in forms of other programs, and measures"},
     {"import", "Import as project", WORK, "makes a project folder of a volume, and opens it"},
     {"label", "Label connected parts", WORK, "counts connected parts above a threshold, and writes their labels"},
-    {"evaluate", "Compare with the truth", WORK, "says how well an annotation agrees with another"},
+    {"evaluate", "Compare with a reference", WORK, "says how well an annotation agrees with another"},
     {"cancel_job", "Cancel", WORK, "ends a job that runs or waits"},
     {"screenshot", "Screenshot", WORK, "writes the picture as shown, or a larger one, beside the session"},
     {"open", "Open", WORK, "opens a volume, a session, a project folder or a picture"},

@@ -51,6 +51,12 @@ void fields(Fields& f, PanelLayout& panel)
     f.numbers("size", panel.size, sizes, {});
 }
 
+void fields(Fields& f, WindowPlace& window)
+{
+    f.numbers("at", window.at, NumberRange{-1e5, 1e5}, {});
+    f.numbers("size", window.size, NumberRange{1.0, 1e4}, {});
+}
+
 void fields(Fields& f, WindowLayout& layout)
 {
     std::vector<std::string> ids;
@@ -58,6 +64,12 @@ void fields(Fields& f, WindowLayout& layout)
     f.entries("panels", ids, "ID", [&](Fields& entry, const std::string& id) { fields(entry, layout.panels[id]); }, {});
     for (const auto& [id, panel] : layout.panels)
         f.check("panels." + id, panel_named(id) != nullptr, "the id of a panel, as \"groups\"");
+    ids.clear();
+    for (const auto& [id, window] : layout.windows) ids.push_back(id);
+    f.entries("windows", ids, "ID", [&](Fields& entry, const std::string& id) { fields(entry, layout.windows[id]); },
+              {});
+    for (const auto& [id, window] : layout.windows)
+        f.check("windows." + id, std::ranges::find(WINDOW_IDS, id) != std::end(WINDOW_IDS), "help, messages or passes");
     f.number("side_width", layout.side_width, NumberRange{MIN_SIDE_WIDTH, 1000.0}, {});
     f.flag("shows_side", layout.shows_side, {});
     f.flag("shows_tool_bar", layout.shows_tool_bar, {});
@@ -129,6 +141,12 @@ std::string patch_of_panel(const std::string& id, const PanelLayout& change)
     if (change.at) add("at", sentence('[', change.at->x, ',', change.at->y, ']'));
     if (change.size) add("size", sentence('[', change.size->x, ',', change.size->y, ']'));
     return sentence("{\"layout\":{\"panels\":{\"", id, "\":{", parts, "}}}}");
+}
+
+std::string patch_of_window(const std::string& id, const glm::dvec2& at, const glm::dvec2& size)
+{
+    return sentence("{\"layout\":{\"windows\":{\"", id, "\":{\"at\":[", at.x, ',', at.y, "],\"size\":[", size.x, ',',
+                    size.y, "]}}}}");
 }
 
 std::filesystem::path preferences_file()

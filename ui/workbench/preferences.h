@@ -56,6 +56,8 @@ Preferences load_preferences(const std::filesystem::path& file);
 Preferences patched(const Preferences& preferences, std::string_view patch);
 /// The patch that makes a change of a panel's place; `change` may set any of its parts.
 std::string patch_of_panel(const std::string& id, const PanelLayout& change);
+/// The patch that says where a window is (layout.h), in font sizes.
+std::string patch_of_window(const std::string& id, const glm::dvec2& at, const glm::dvec2& size);
 /// Makes the folder where it is missing.
 void save_preferences(const std::filesystem::path& file, const Preferences& preferences);
 

@@ -23,7 +23,7 @@ std::string sentence_about(const EvaluateResult& result)
     if (result.traces)
         add(result.traces->segments_found, " of ", result.traces->segments_total, " segments found, ",
             result.traces->topological_errors(), " topological errors");
-    return text.empty() ? "There was nothing to compare" : "Compared with the truth: " + text;
+    return text.empty() ? "There was nothing to compare" : "Compared with the reference: " + text;
 }
 
 }  // namespace
@@ -44,14 +44,19 @@ void Workbench::act(const ExportTask& task)
     check(task);
     check(task, view);
     auto snapshot = std::make_shared<AnnotationSnapshot>(view);
-    writers_.insert(jobs_.start("exporting", [this, task, snapshot](ProgressReporter& reporter) -> Jobs::Completion {
-        ExportResult result = run(task, snapshot->view(), reporter);
-        return [this, result = std::move(result)] {
-            say("Exported " + joined(result.written, ", ") +
-                    (result.left_out.empty() ? "" : "; " + joined(result.left_out, "; ")),
-                result.left_out.empty() ? Weight::done : Weight::warning);
-        };
-    }));
+    std::vector<std::string> names;
+    for (const std::filesystem::path& path : {task.mask, task.offset, task.trace, task.mesh, task.metrics})
+        if (!path.empty()) names.push_back(short_name(path));
+    if (task.labels) names.emplace_back("labels");
+    writers_.insert(jobs_.start("exporting " + joined(names, ", "),
+                                [this, task, snapshot](ProgressReporter& reporter) -> Jobs::Completion {
+                                    ExportResult result = run(task, snapshot->view(), reporter);
+                                    return [this, result = std::move(result)] {
+                                        say("Exported " + joined(result.written, ", ") +
+                                                (result.left_out.empty() ? "" : "; " + joined(result.left_out, "; ")),
+                                            result.left_out.empty() ? Weight::done : Weight::warning);
+                                    };
+                                }));
 }
 
 /// The project is opened when it is there.
@@ -90,7 +95,7 @@ void Workbench::act(const LabelTask& task)
 void Workbench::act(const EvaluateTask& task)
 {
     check(task);
-    jobs_.start("comparing with the truth", [this, task](ProgressReporter& reporter) -> Jobs::Completion {
+    jobs_.start("comparing with the reference", [this, task](ProgressReporter& reporter) -> Jobs::Completion {
         const EvaluateResult result = run(task, reporter);
         return [this, result] {
             for (const std::string& warning : result.warnings) say(warning, Weight::warning);

@@ -170,6 +170,14 @@ void Workbench::act(const NodeAt& action)
     const std::optional<LocalBall> ball =
         goes_inside ? document_->ball_at(voxel, sight_through(seen.shot.camera, *point)) : std::nullopt;
     if (ball) voxel = ball->middle;
+    const TraceGraph& there = document_->annotator.document().trace;
+    const glm::dvec3 place = voxel * document_->volume().spacing;
+    const double apart = 0.5 * glm::length(document_->volume().spacing);
+    if (const auto near = there.nearest_node(place, {});
+        ball && near && glm::distance(there.node(*near).position, place) < apart) {
+        trace(SelectOp{.near = {}, .number = near, .within_voxels = {}});
+        return say(sentence("Node ", *near, " lies in the middle of that already, and is selected"));
+    }
     trace(NodeOp{.at = voxel, .radius_voxels = {}, .group = {}});
     if (goes_inside && !ball)
         say(messages_.last() + "; on what is seen, for nothing there has a middle at the paint threshold " +

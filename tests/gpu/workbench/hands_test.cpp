@@ -176,6 +176,10 @@ TEST_CASE_FIXTURE(OnDevice,
     CHECK(std::abs(on.trace().node(0).position.y - 20.0) < 0.3);  // voxels of 2
     CHECK(std::abs(on.trace().node(0).position.x - 32.0) < 4.0);
     CHECK(glm::distance(on.bench.model().probe_voxel * 2.0, on.trace().node(0).position) < 1e-9);
+    on.perform(DeselectOp{});
+    on.perform(NodeAt{0, {32.0, 48.0}});  // once more
+    CHECK(on.trace().nodes().size() == 1);
+    CHECK(on.trace().selection().node() == 0u);
     on.perform(NodeAt{0, {80.0, 48.0}});  // the wall, which goes on to the end of the volume
     CHECK(std::abs(on.trace().node(1).position.y - 72.0) < 2.0);
     on.perform(Set{R"({"probe":{"paint_threshold":250}})"});

@@ -117,7 +117,7 @@ void task_menu(const Model& model)
         dialogs.labelling.is_asked_for = true;
         dialogs.labelling.task.threshold = model.paint_threshold();
     }
-    if (ImGui::MenuItem("Compare with the truth...")) dialogs.evaluating.is_asked_for = true;
+    if (ImGui::MenuItem("Compare with a reference...")) dialogs.evaluating.is_asked_for = true;
 }
 
 void task_dialogs(const Model& model, Actions& actions)
@@ -129,10 +129,10 @@ void task_dialogs(const Model& model, Actions& actions)
     dialogs.evaluating.draw(model, "Compare", actions);
 }
 
-void jobs_window(const Model& model, const glm::vec2& lower_left, Actions& actions)
+void jobs_window(const Model& model, const glm::vec2& lower_middle, Actions& actions)
 {
     if (model.jobs.empty()) return;
-    ImGui::SetNextWindowPos({lower_left.x + 8.0f, lower_left.y - 8.0f}, ImGuiCond_Always, {0.0f, 1.0f});
+    ImGui::SetNextWindowPos({lower_middle.x, lower_middle.y - 8.0f}, ImGuiCond_Always, {0.5f, 1.0f});
     ImGui::Begin("Jobs", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);

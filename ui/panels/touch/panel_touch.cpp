@@ -43,7 +43,7 @@ constexpr Choice3<TouchMode> MODES[] = {
 constexpr Choice3<Guidance> LAWS[] = {
     {Guidance::potential, "smooth", "Grows from nothing at the first touch, and never drives the hand by itself."},
     {Guidance::mean, "mean", "To the mean of what lies in the probe."},
-    {Guidance::thesis, "3000 points", "To the mean of 3000 random points: rougher, as the first SHVR did it."}};
+    {Guidance::thesis, "points", "To the mean of 3000 random points: rougher, as the first SHVR did it."}};
 constexpr Choice3<TouchPlane> PLANES[] = {{TouchPlane::none, "free", "The probe goes wherever the hand does."},
                                           {TouchPlane::x, "x", "It stays in its plane across x."},
                                           {TouchPlane::y, "y", "It stays in its plane across y."},

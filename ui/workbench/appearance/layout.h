@@ -43,12 +43,20 @@ struct PanelLayout {
     bool operator==(const PanelLayout&) const = default;
 };
 
+/// Where a window was left: help, messages and the like.
+struct WindowPlace {
+    std::optional<glm::dvec2> at, size;
+    bool operator==(const WindowPlace&) const = default;
+};
+inline constexpr const char* WINDOW_IDS[] = {"help", "messages", "passes"};
+
 inline constexpr double SIDE_WIDTH = 25.0, MIN_SIDE_WIDTH = 17.0;
 inline constexpr double MAX_SIDE_SHARE = 0.5;  ///< of the window
 inline constexpr glm::dvec2 FLOATING_SIZE{26.0, 30.0};
 
 struct WindowLayout {
-    std::map<std::string, PanelLayout> panels;  ///< by id
+    std::map<std::string, PanelLayout> panels;   ///< by id
+    std::map<std::string, WindowPlace> windows;  ///< by one of WINDOW_IDS
     std::optional<double> side_width;
     bool shows_side = true, shows_tool_bar = true;
 

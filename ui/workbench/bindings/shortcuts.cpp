@@ -299,7 +299,7 @@ using Mode = Shortcut::Mode;
 constexpr const char *WORK_KEYS = "Work", *VIEWS_KEYS = "Views", *TOOL_KEYS = "Tools", *PAINTING_KEYS = "Painting",
                      *TRACING_KEYS = "Tracing", *PROBE_KEYS = "Probe", *TURN_KEYS = "Turn the view",
                      *MOVE_KEYS = "Move the view", *CUT_KEYS = "Cutting planes", *CLIP_KEYS = "Clip planes",
-                     *BLEND_KEYS = "Distance blending", *HAND_KEYS = "The hand";
+                     *BLEND_KEYS = "Distance blending", *HAND_KEYS = "Touch";
 
 /// By one key in both sets.
 constexpr Shortcut both(const char* id, const char* group, const char* name, Mode mode,

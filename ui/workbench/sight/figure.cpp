@@ -7,7 +7,7 @@ namespace shvr::ui {
 
 namespace {
 
-constexpr uint8_t GROUND = 170;  ///< of 255: words lie on a dark ground, as in the window
+constexpr uint8_t GROUND = 236;  ///< of 255, in linear light: on white as dark as the window's
 constexpr glm::dvec3 GROUND_COLOR(0.007);
 
 Stamp ground_of(const Stamp& words, double units)

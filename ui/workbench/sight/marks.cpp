@@ -229,9 +229,10 @@ private:
         if (bar.pixels < 8.0 * units_) return;
         const glm::dvec2 end(double(pixels_.x) - 16.0 * units_, double(pixels_.y) - 14.0 * units_);
         const glm::dvec2 begin = end - glm::dvec2(bar.pixels, 0.0), tick(0.0, 4.0 * units_);
-        line(begin, end, LIGHT, 3.0);
-        line(begin - tick, begin + tick, LIGHT, 3.0);
-        line(end - tick, end + tick, LIGHT, 3.0);
+        const std::array bar_lines{std::pair(begin, end), std::pair(begin - tick, begin + tick),
+                                   std::pair(end - tick, end + tick)};
+        for (const auto& [from, to] : bar_lines) marks_.strokes.push_back({from, to, DARK, 7.0 * units_});
+        for (const auto& [from, to] : bar_lines) marks_.strokes.push_back({from, to, LIGHT, 3.0 * units_});
         label(end - 1.5 * tick, {1.0, 1.0}, bar.text + (is_perspective ? " in the middle's depth" : ""));
     }
 
