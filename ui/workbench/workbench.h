@@ -349,6 +349,7 @@ private:
     // Annotation
     void trace(const TraceOp& op);
     TraceOp with_radius(TraceOp op) const;
+    std::optional<uint32_t> node_in_voxel(const glm::dvec3& voxel) const;
     void select_segment();
     void note_cut(std::optional<std::pair<uint32_t, uint32_t>> ends);
     std::string keys_of(const char* shortcut) const;

@@ -159,6 +159,17 @@ void Workbench::act(const MendCut&)
     document_->cut_ends.reset();
 }
 
+/// The nearest node, if it is nearer than half a voxel's diagonal.
+std::optional<uint32_t> Workbench::node_in_voxel(const glm::dvec3& voxel) const
+{
+    const glm::dvec3& spacing = document_->volume().spacing;
+    const TraceGraph& trace = document_->annotator.document().trace;
+    const std::optional<uint32_t> nearest = trace.nearest_node(voxel * spacing);
+    const bool is_there =
+        nearest && glm::distance(trace.node(*nearest).position, voxel * spacing) < 0.5 * glm::length(spacing);
+    return is_there ? nearest : std::nullopt;
+}
+
 /// On what is seen; or where that is wanted in the middle of what the line of sight enters there, in slices as it is.
 void Workbench::act(const NodeAt& action)
 {
@@ -170,13 +181,11 @@ void Workbench::act(const NodeAt& action)
     const std::optional<LocalBall> ball =
         goes_inside ? document_->ball_at(voxel, sight_through(seen.shot.camera, *point)) : std::nullopt;
     if (ball) voxel = ball->middle;
-    const TraceGraph& there = document_->annotator.document().trace;
-    const glm::dvec3 place = voxel * document_->volume().spacing;
-    const double apart = 0.5 * glm::length(document_->volume().spacing);
-    if (const auto near = there.nearest_node(place, {});
-        ball && near && glm::distance(there.node(*near).position, place) < apart) {
-        trace(SelectOp{.near = {}, .number = near, .within_voxels = {}});
-        return say(sentence("Node ", *near, " lies in the middle of that already, and is selected"));
+    if (const auto there = ball ? node_in_voxel(voxel) : std::nullopt) {
+        const SelectOp selecting{.near = {}, .number = there, .within_voxels = {}};
+        trace(selecting);
+        say(sentence("Node ", *there, " lies in the middle of that already, and is selected"));
+        return log_instead({selecting});
     }
     trace(NodeOp{.at = voxel, .radius_voxels = {}, .group = {}});
     if (goes_inside && !ball)

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
+#include <mutex>
+#include <thread>
 #include <utility>
 
 #include <imgui/imgui.h>
@@ -31,19 +34,30 @@ std::vector<Place> places_of(const Model& model)
     return places(model.is_open ? model.session.volume_path : std::filesystem::path(), model.preferences.recent);
 }
 
-/// Which paths are gone is found out when the list changes, not in each frame: a network may be slow.
+/// Which paths are gone is found out when the list changes, beside the frames, and nobody waits for it, at the end
+/// either: a network that does not answer takes minutes.
 bool is_gone(const std::filesystem::path& path, const std::vector<std::filesystem::path>& recent)
 {
+    struct Search {
+        std::mutex mutex;
+        std::vector<std::filesystem::path> gone;
+    };
     static std::vector<std::filesystem::path> known;
-    static std::vector<std::filesystem::path> gone;
+    static auto search = std::make_shared<Search>();
     if (known != recent) {
         known = recent;
-        gone.clear();
-        std::error_code ignored;
-        for (const std::filesystem::path& each : recent)
-            if (!std::filesystem::exists(each, ignored) && !is_within_archive(each)) gone.push_back(each);
+        search = std::make_shared<Search>();
+        std::thread([search = search, recent] {
+            for (const std::filesystem::path& each : recent) {
+                std::error_code ignored;
+                if (std::filesystem::exists(each, ignored) || is_within_archive(each)) continue;
+                const std::scoped_lock lock(search->mutex);
+                search->gone.push_back(each);
+            }
+        }).detach();
     }
-    return std::ranges::find(gone, path) != gone.end();
+    const std::scoped_lock lock(search->mutex);
+    return std::ranges::find(search->gone, path) != search->gone.end();
 }
 
 /// What was opened last: the name, its folder, and a cross that takes it from the list where it is gone.
