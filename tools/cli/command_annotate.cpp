@@ -210,7 +210,7 @@ void run_actions(const AnnotateCommandOptions& options)
     Renderer renderer({.device = {options.common.device, validation && *validation == '1'},
                        .budget = {options.common.budget_device_mib << 20, options.common.budget_host_mib << 20},
                        .threads = options.common.threads});
-    ui::Workbench bench(renderer, {.has_servo = false});
+    ui::Workbench bench(renderer, {.has_servo = false, .slices_follow = false});
     static_cast<void>(work.begin("opening " + options.project));
     bench.open(options.project, options.common.settings);
     if (bench.document().only_looks())

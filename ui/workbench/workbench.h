@@ -46,7 +46,9 @@ struct WorkbenchOptions {
     std::function<double()> now_s{};      ///< seconds of any clock; null: the system's
     std::string version{};                ///< of the program, for reports; empty: not told
     DeviceSource devices{};               ///< where haptic devices come from; without functions: this machine
-    TextDrawer draw_texts{};              ///< for pictures in files; null: these have no words
+    /// Slices go after a probe that leaves their sight, which is logged; false: the log says where they went.
+    bool slices_follow = true;
+    TextDrawer draw_texts{};  ///< for pictures in files; null: these have no words
 };
 
 class Workbench {

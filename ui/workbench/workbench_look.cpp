@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/workbench/edit.h"
 #include "ui/workbench/trace_ops.h"
 #include "ui/workbench/workbench.h"
 
@@ -89,6 +90,7 @@ void Workbench::show_slices(SliceSettings slices)
 void Workbench::follow_slices()
 {
     constexpr double STIR_VOXELS = 0.05;  // a stylus is never quite at rest, and slices may be moved away from it
+    if (!options_.slices_follow) return;
     Document& document = *document_;
     const glm::dvec3 voxel = document.probe_voxel();
     if (glm::distance(voxel, followed_voxel_) <= STIR_VOXELS) return;
@@ -97,7 +99,10 @@ void Workbench::follow_slices()
     const std::vector<Pane> panes = panes_of(document.session.view, document.camera, pixels_, document.volume(), voxel);
     const std::optional<size_t> held = pointer_ ? std::optional(pointer_->pane) : std::nullopt;
     const SliceSettings next = slices_following(document.session.view.slices, panes, held, document.volume(), voxel);
-    if (next != document.session.view.slices) show_slices(next);
+    if (next == document.session.view.slices) return;
+    const Set following = edited(document.session, [&](Session& s) { s.view.slices = next; });
+    show_slices(next);
+    if (log_) log_(line_of(following));  // what pixels of slices mean from now on
 }
 
 /// As camera and probe are now: the screen follows them once a turn, and several actions may come in one.
