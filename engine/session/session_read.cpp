@@ -1,6 +1,7 @@
 // Reads session files.
 
 #include <algorithm>
+#include <climits>
 
 #include "engine/base/text.h"
 #include "engine/look/session_color.h"
@@ -115,6 +116,8 @@ public:
         if (!node) return;
         const std::string text = node.text("a path");
         if (has_controls(text)) node.refuse("a path");
+        static_assert(PATH_MAX == 4096);
+        if (text.size() >= PATH_MAX) node.refuse("a path of less than 4096 bytes");
         if (is_address(text)) node.refuse(NO_ADDRESS);
         value = std::filesystem::absolute(folder_ / text).lexically_normal();
     }

@@ -86,6 +86,13 @@ private:
         return element.value_at + element.length;
     }
 
+    /// GDCM would read a value.
+    int64_t after_delimiter(const Element& element) const
+    {
+        if (element.length != 0) refuse(element, "0, as of every end");
+        return element.value_at;
+    }
+
     uint32_t group_at(int64_t at) const
     {
         std::array<std::byte, 2> bytes{};
@@ -150,11 +157,11 @@ private:
     /// Walks elements up to `end`, or to the end of their item. Returns where the next one begins.
     int64_t walk_elements(int64_t at, int64_t end, const Encoding& encoding, int depth, bool ends_by_delimiter)
     {
-        constexpr int64_t SHORTEST = 8;
+        constexpr int64_t A_TAG = 4;  // GDCM takes what begins with one for an element, and asserts the rest of it
         while (at < end) {
-            if (depth == 0 && end - at < SHORTEST) return end;  // padding
+            if (depth == 0 && end - at < A_TAG) return end;  // padding
             const Element element = read_element(at, end, encoding);
-            if (element.tag == END_OF_ITEM && ends_by_delimiter) return element.value_at;
+            if (element.tag == END_OF_ITEM && ends_by_delimiter) return after_delimiter(element);
             if (element.tag >> 16 == 0xfffe) refuse(element, "an element outside sequences");
             at = walk_value(element, end, encoding, depth);
         }
@@ -197,7 +204,7 @@ private:
                  " levels deep; expected at most that many");
         while (at < end) {
             const Element item = read_element(at, end, encoding);
-            if (item.tag == END_OF_SEQUENCE && ends_by_delimiter) return item.value_at;
+            if (item.tag == END_OF_SEQUENCE && ends_by_delimiter) return after_delimiter(item);
             if (item.tag != ITEM) refuse(item, "an item of the sequence that contains it");
             if (item.length == UNDEFINED) {
                 if (are_fragments) refuse(item, "a fragment with a length");

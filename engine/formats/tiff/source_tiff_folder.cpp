@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file's name without its extension, split up: "Slice_007b" is "slice_#b" and 7.
+/// A file's name without its extension, split up: "Slice_007b" is "slice_/b" and 7. No name holds a slash.
 struct SliceName {
     std::string file;
     std::string pattern;
@@ -35,7 +35,7 @@ SliceName taken_apart(const fs::path& path)
         }
         const size_t begin = std::min(stem.find_first_not_of('0', at), stem.size());
         while (at < stem.size() && is_digit(stem[at])) ++at;
-        name.pattern += '#';
+        name.pattern += '/';
         name.numbers.push_back(stem.substr(std::min(begin, at), at - std::min(begin, at)));
     }
     return name;

@@ -9,7 +9,8 @@
 namespace shvr::fuzz {
 namespace {
 
-constexpr size_t LONGEST_SENTENCE = 1500;
+/// It may name a path, of PATH_MAX bytes at most.
+constexpr size_t LONGEST_SENTENCE = 1500 + 4096;
 
 }  // namespace
 
