@@ -1,6 +1,7 @@
 #include "engine/picture/picture_job.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -183,6 +184,7 @@ uint32_t PictureJob::part_side()
 /// Draws lines over the band and hands it on.
 void PictureJob::end_band()
 {
+    catch_up();
     for (const Pane& each : panes_)
         draw_strokes(band_, strokes_of(each, overlay_, scene().info()), each.box, band_begin_);
     take_rows_(std::exchange(band_, {}));
@@ -230,9 +232,14 @@ void PictureJob::step()
     SHVR_CHECK(!is_done());
     const PicturePart part = parts_.back();
     parts_.pop_back();
+    const bool is_paged = scene().volume().counts().has_value();
     try {
-        draw_completely(part);
+        is_paged ? draw_completely(part) : draw_ahead(part);
     } catch (const gpu::MemoryError& error) {
+        if (under_way_) {
+            catch_up();
+            return parts_.push_back(part);  // alone there may be room for it
+        }
         if (!has_given_way(part, error.what())) throw;
     }
     if (!parts_.empty()) return;
@@ -253,23 +260,63 @@ bool PictureJob::has_given_way(const PicturePart& part, const std::string& why)
     return true;
 }
 
-/// Draws a part with the bricks on the device; stores its pixels, and reports the visited bricks to the volume.
-std::vector<gpu::PassReport> PictureJob::draw(const PicturePart& part, WaitingRays* waiting)
+/// Begins to draw a part with the bricks on the device.
+PictureJob::UnderWay PictureJob::begin(const PicturePart& part, WaitingRays* waiting)
 {
     FrameGraph& graph = picture_.graph = FrameGraph();
-    const glm::uvec2 size = part.end - part.begin, origin = pane().box.begin + part.begin;
+    const glm::uvec2 size = part.end - part.begin;
     const Resource color = graph.create("color", picture_desc(Format::rgba32_float, size));
     const Drawn drawn = shvr::draw(graph, scene(), look_, pane().shot, part, color, options_.count_work, waiting);
     const uint32_t pixels = graph.read_back(drawn.target);
-    gpu::FrameResult result = renderer_.executor().run(
-        graph, {.timestamps = options_.timestamps, .statistics = options_.statistics, .serialize = options_.serialize});
-    scene().volume().take_feedback(drawn.feedback, result);
-    const std::byte* row = result.read_backs[pixels].data();
+    return {part, pane().box.begin + part.begin, pixels, drawn.feedback,
+            renderer_.executor().submit(graph, {.timestamps = options_.timestamps,
+                                                .statistics = options_.statistics,
+                                                .serialize = options_.serialize})};
+}
+
+/// Stores its pixels, and reports the visited bricks to the volume.
+std::vector<gpu::PassReport> PictureJob::take(UnderWay part)
+{
+    gpu::FrameResult result = part.submission.finish();
+    scene().volume().take_feedback(part.feedback, result);
+    const glm::uvec2 size = part.part.end - part.part.begin, origin = part.origin;
+    const std::byte* row = result.read_backs[part.pixels].data();
     const size_t row_bytes = size_t(size.x) * 4 * sizeof(float);
     for (uint32_t y = 0; y < size.y; ++y, row += row_bytes)
         std::memcpy(&band_.rgba[4 * (origin.x + size_t(size_.x) * (origin.y - band_begin_ + y))], row, row_bytes);
-    picture_.wall_ms += result.wall_ms;
+    // Where two are under way, the time that both took counts once.
+    const double now_ms =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    picture_.wall_ms += std::min(result.wall_ms, now_ms - last_taken_ms_.value_or(-HUGE_VAL));
+    last_taken_ms_ = now_ms;
     return std::move(result.passes);
+}
+
+std::vector<gpu::PassReport> PictureJob::draw(const PicturePart& part, WaitingRays* waiting)
+{
+    return take(begin(part, waiting));
+}
+
+/// One drawing makes a part complete; the part before it is taken once the device has this one.
+void PictureJob::draw_ahead(const PicturePart& part)
+{
+    look_at(scene(), look_, pane().shot, part);
+    const Progress progress = progress_of(part, 0);
+    tell(progress, 0.0);
+    renew_occlusion(progress);
+    UnderWay next = begin(part);
+    catch_up();
+    under_way_ = std::move(next);
+}
+
+/// Finishes the part that is under way, if there is one.
+void PictureJob::catch_up()
+{
+    if (!under_way_) return;
+    UnderWay last = std::move(*under_way_);
+    under_way_.reset();
+    const PicturePart part = last.part;
+    finish(part, take(std::move(last)));
 }
 
 /// Draws a part with all bricks that its rays visit, or splits it into quarters.

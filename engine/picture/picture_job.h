@@ -25,9 +25,10 @@ public:
     PictureJob& operator=(const PictureJob&) = delete;
 
     bool is_done() const { return parts_.empty() && band_end_ == size_.y; }
-    /// Draws the next part and waits for it, and for paged bricks: a part is drawn again until all bricks that its rays
-    /// visit are on the device. A part that needs more bricks than there is room for is split into quarters, or drawn
-    /// by rays that wait for them. Hands on the rows of a band that is done.
+    /// Draws the next part. Of a paged volume waits for it, and for bricks: a part is drawn again until all bricks that
+    /// its rays visit are on the device. A part that needs more bricks than there is room for is split into quarters,
+    /// or drawn by rays that wait for them. Where nothing is paged, waits for the part before, so that the device has
+    /// work while that one's pixels are taken. Hands on the rows of a band that is done.
     void step();
     /// The share of all pixels drawn so far.
     double progress() const { return double(drawn_pixels_) / double(uint64_t(size_.x) * size_.y); }
@@ -41,7 +42,19 @@ private:
     void begin_band();
     void end_band();
     uint32_t part_side();
+    /// A part that the device is drawing.
+    struct UnderWay {
+        PicturePart part;
+        glm::uvec2 origin;  ///< in the picture
+        uint32_t pixels;    ///< the read-back
+        DeviceVolume::Feedback feedback;
+        gpu::Submission submission;
+    };
+    UnderWay begin(const PicturePart& part, WaitingRays* waiting = nullptr);
+    std::vector<gpu::PassReport> take(UnderWay part);
     std::vector<gpu::PassReport> draw(const PicturePart& part, WaitingRays* waiting = nullptr);
+    void draw_ahead(const PicturePart& part);
+    void catch_up();
     void draw_completely(const PicturePart& part);
     bool has_given_way(const PicturePart& part, const std::string& why);
     void draw_waiting(const PicturePart& part);
@@ -65,7 +78,9 @@ private:
     uint32_t band_begin_ = 0, band_end_ = 0;  ///< rows of the picture
     ImageF band_;
     size_t pane_ = 0;
-    std::vector<PicturePart> parts_;  ///< of the pane within the band, still to be drawn, the next one last
+    std::vector<PicturePart> parts_;       ///< of the pane within the band, still to be drawn, the next one last
+    std::optional<UnderWay> under_way_;    ///< begun by draw_ahead
+    std::optional<double> last_taken_ms_;  ///< of a clock that does not go back
     Picture picture_;
     uint64_t drawn_pixels_ = 0;
     uint64_t rays_cut_short_ = 0;
