@@ -129,6 +129,8 @@ public:
     virtual Presence presence_of(const BrickKey& key) const = 0;
     /// Whether rays visited the brick, as far as is known.
     virtual bool is_drawn(const BrickKey& key) const = 0;
+    /// Another one whenever is_drawn() or presence_of() may say something else than before, but for places().
+    virtual uint64_t visits_revision() const = 0;
     /// Also requests the bricks around visited ones, as far away as `reach` gives for their level, because ambient
     /// light arrives from there. Empty: none.
     virtual void want_around(const std::vector<int>& reach) = 0;

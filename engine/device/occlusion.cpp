@@ -25,10 +25,14 @@ uint64_t slice_bytes(uint32_t bricks)
     return bytes;
 }
 
-/// How many bricks are renewed at once: what they take meanwhile is at most a sixteenth of the budget.
-uint32_t slice_for(uint64_t device_budget)
+/// How many bricks are renewed at once: what they take meanwhile is at most a sixteenth of the budget. A few keep a CPU
+/// busy, and stay in its caches.
+uint32_t slice_for(const gpu::DeviceTraits& traits, uint64_t device_budget)
 {
-    return uint32_t(std::clamp<uint64_t>(device_budget / 16 / slice_bytes(1), 1, gpu::OCCLUSION_SLICE));
+    const uint64_t most = traits.is_cpu ? gpu::OCCLUSION_COLUMN : gpu::OCCLUSION_SLICE;
+    const uint32_t column = traits.limits.maxImageDimension3D / occlusion_near_desc(1, true).texels.z;
+    const uint64_t room = column < gpu::OCCLUSION_COLUMN ? std::max(column, 1u) : most;
+    return uint32_t(std::clamp<uint64_t>(device_budget / 16 / slice_bytes(1), 1, std::min(room, most)));
 }
 
 template <class Visit>
@@ -71,15 +75,14 @@ uint64_t Occlusion::slot_bytes()
     return bytes;
 }
 
-uint64_t Occlusion::scratch_bytes(uint64_t device_budget)
+uint64_t Occlusion::scratch_bytes(const gpu::DeviceTraits& traits, uint64_t device_budget)
 {
-    return slice_bytes(slice_for(device_budget));
+    return slice_bytes(slice_for(traits, device_budget));
 }
 
 void Occlusion::create(const glm::uvec3& slots)
 {
-    const uint32_t most = memory_.device().traits().limits.maxImageDimension3D / occlusion_near_desc(1, true).texels.z;
-    slice_ = std::max(std::min(slice_for(memory_.device_budget()), most), 1u);
+    slice_ = slice_for(memory_.device().traits(), memory_.device_budget());
     const auto create_image = [&](const char* name, const ResourceDesc& desc) {
         return memory_.create(name, desc, gpu::Placement::device, "ambient occlusion");
     };
@@ -123,6 +126,7 @@ OcclusionBinding Occlusion::bring_up_to_date(FrameGraph& graph)
 template <class Set>
 void Occlusion::mark(const std::vector<BrickKey>& keys, const Set& set)
 {
+    ++changes_;
     for (const BrickKey& key : keys)
         if (const auto found = entries_.find(key); found != entries_.end()) set(found->second);
 }
@@ -139,6 +143,7 @@ void Occlusion::look(const Look& look, const DeviceVolume& volume, const DeviceM
     }
     if (std::exchange(mask_, &mask) != &mask)
         for (auto& [key, entry] : entries_) entry.is_seen.reset();
+    ++changes_;
     const std::optional<Look> before = std::exchange(look_, look);
     if (!before) return;
     if (!same_function(*before, look) || before->radius != look.radius) return mark_all(true);
@@ -179,6 +184,7 @@ void Occlusion::mark_cut(const CutBox& before, const CutBox& after)
 void Occlusion::changed(const VoxelBox& changed, int64_t apron)
 {
     if (!look_) return;
+    ++changes_;
     for (auto& [key, entry] : entries_) {
         // A coarse voxel has the paint of its centre, which may lie in a neighbour of the finer brick.
         const VoxelBox brick = voxels_of(key, volume_->info().size);
@@ -197,6 +203,7 @@ void Occlusion::sync()
 {
     if (revision_ == volume_->places_revision()) return;
     revision_ = volume_->places_revision();
+    ++changes_;
     Entries entries;
     std::vector<BrickKey> arrived;
     for (const DeviceVolume::Place& place : volume_->places()) {
@@ -269,9 +276,10 @@ bool Occlusion::has_all_around(const BrickKey& key) const
     return !is_missing;
 }
 
-/// Asked of every brick in every turn: what costs least is asked first.
+/// Asked of every brick where something has changed: what costs least is asked first.
 bool Occlusion::is_candidate(const BrickKey& key, Entry& entry)
 {
+    ++counts_.walks;
     if (!entry.needs_values && (!is_paged_ || entry.is_exact)) return false;
     if (!volume_->is_drawn(key) || !is_seen(key, entry)) return false;
     return entry.needs_values || has_all_around(key);
@@ -313,23 +321,31 @@ bool Occlusion::is_due()
 {
     if (!look_) return false;
     sync();
-    return std::ranges::any_of(entries_, [&](auto& it) { return is_candidate(it.first, it.second); });
+    if (nothing_due_ == cause()) return false;
+    if (std::ranges::any_of(entries_, [&](auto& it) { return is_candidate(it.first, it.second); })) return true;
+    nothing_due_ = cause();
+    return false;
 }
 
-/// Of one level: that of the nearest.
-std::vector<BrickKey> Occlusion::nearest(const glm::dvec3& eye, size_t most)
+/// All of one level: that of the nearest.
+void Occlusion::fill_queue(const glm::dvec3& eye)
 {
-    struct Candidate {
-        double distance;
-        BrickKey key;
-    };
+    /// The next slices need no walk over all bricks.
+    constexpr size_t MOST = size_t{4} * gpu::OCCLUSION_SLICE;
+    queued_ = cause();
+    queued_eye_ = eye;
+    queue_.clear();
+    if (nothing_due_ == queued_) return;
     std::vector<Candidate> candidates;
     for (auto& [key, entry] : entries_) {
         if (!is_candidate(key, entry)) continue;
         const glm::dvec3 centre = std::ldexp(double(gpu::BRICK_SIZE), key.level) * (glm::dvec3(key.brick) + 0.5);
         candidates.push_back({glm::length(centre - eye), key});
     }
-    if (candidates.empty()) return {};
+    if (candidates.empty()) {
+        nothing_due_ = queued_;
+        return;
+    }
     const auto is_nearer = [](const Candidate& a, const Candidate& b) {
         const auto order = [](const Candidate& c) {
             return std::tuple(c.distance, c.key.level, c.key.brick.z, c.key.brick.y, c.key.brick.x);
@@ -338,10 +354,24 @@ std::vector<BrickKey> Occlusion::nearest(const glm::dvec3& eye, size_t most)
     };
     const int level = std::ranges::min_element(candidates, is_nearer)->key.level;
     std::erase_if(candidates, [&](const Candidate& candidate) { return candidate.key.level != level; });
-    most = std::min(most, candidates.size());
+    const size_t most = std::min(MOST, candidates.size());
     std::ranges::partial_sort(candidates, candidates.begin() + std::ptrdiff_t(most), is_nearer);
+    candidates.resize(most);
+    queue_.assign(candidates.rbegin(), candidates.rend());
+}
+
+/// They stay in the queue until they are no longer due.
+std::vector<BrickKey> Occlusion::nearest(const glm::dvec3& eye, size_t most)
+{
+    const auto is_done = [&](const Candidate& candidate) {
+        const auto found = entries_.find(candidate.key);
+        return found == entries_.end() || !is_candidate(found->first, found->second);
+    };
+    while (!queue_.empty() && is_done(queue_.back())) queue_.pop_back();
+    if (queue_.empty() || queued_ != cause() || queued_eye_ != eye) fill_queue(eye);
     std::vector<BrickKey> keys;
-    for (size_t i = 0; i < most; ++i) keys.push_back(candidates[i].key);
+    for (auto each = queue_.rbegin(); each != queue_.rend() && keys.size() < most; ++each)
+        if (!is_done(*each)) keys.push_back(each->key);
     return keys;
 }
 

@@ -52,7 +52,7 @@ public:
 
     /// Device memory for each slot of the atlas, and besides, under that budget.
     static uint64_t slot_bytes();
-    static uint64_t scratch_bytes(uint64_t device_budget);
+    static uint64_t scratch_bytes(const gpu::DeviceTraits& traits, uint64_t device_budget);
 
     bool exists_for(const DeviceVolume& volume) const { return volume_ == &volume; }
     bool has_memory() const { return bool(values_); }
@@ -77,6 +77,7 @@ public:
         uint64_t cells = 0;   ///< bricks whose cells have been computed
         uint64_t values = 0;  ///< bricks whose values have been computed
         uint64_t looks = 0;   ///< at the paint and the neighbours of a brick, whether it is seen
+        uint64_t walks = 0;   ///< bricks asked whether they are due
     };
     const Counts& counts() const { return counts_; }
 
@@ -104,6 +105,7 @@ private:
     bool is_seen(const BrickKey& key, Entry& entry);
     bool has_all_around(const BrickKey& key) const;
     bool is_candidate(const BrickKey& key, Entry& entry);
+    void fill_queue(const glm::dvec3& eye);
     std::vector<BrickKey> nearest(const glm::dvec3& eye, size_t most);
     uint32_t around(const BrickKey& key, std::vector<BrickKey>* keys) const;
     OcclusionCellsInput cells_input(int level, double stretch, const std::optional<MaskBinding>& mask) const;
@@ -126,6 +128,22 @@ private:
     Entries entries_;
     uint64_t revision_ = 0;  ///< of the volume's places()
     Counts counts_;
+
+    /// What is due depends on, beside what is done.
+    struct Cause {
+        uint64_t visits = 0;   ///< DeviceVolume::visits_revision
+        uint64_t changes = 0;  ///< changes_
+        bool operator==(const Cause&) const = default;
+    };
+    Cause cause() const { return {volume_->visits_revision(), changes_}; }
+    struct Candidate {
+        double distance;
+        BrickKey key;
+    };
+    uint64_t changes_ = 1;            ///< counts what makes entries due
+    Cause nothing_due_{}, queued_{};  ///< for which nothing was due; for which the queue was filled
+    glm::dvec3 queued_eye_{0.0};
+    std::vector<Candidate> queue_;  ///< the nearest that are due, of one level, the nearest last
 };
 
 }  // namespace shvr

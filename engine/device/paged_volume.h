@@ -82,6 +82,7 @@ public:
     glm::uvec3 atlas_slots() const override { return atlas_.slots(); }
     std::vector<Place> places() const override;
     uint64_t places_revision() const override { return places_revision_; }
+    uint64_t visits_revision() const override { return reached_revision_; }
     VolumeBinding atlas(FrameGraph& graph) override;
     std::optional<RegionBricks> region(const VoxelBox& voxels, bool wait) override;
     std::optional<Counts> counts() const override;

@@ -217,6 +217,7 @@ void PagedVolume::take_bricks(std::vector<VoxelBox>& changed)
             region_.contains(finished.key) || std::ranges::find(coarse_, finished.key) != coarse_.end();
         if (!finished.texels) {
             directory_is_stale_ = true;
+            ++reached_revision_;
             continue;
         }
         if (!place(finished.key, *finished.texels, for_region)) {

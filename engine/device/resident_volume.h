@@ -67,6 +67,7 @@ public:
     glm::uvec3 atlas_slots() const override { return atlas_slots_; }
     std::vector<Place> places() const override;
     uint64_t places_revision() const override { return places_revision_; }
+    uint64_t visits_revision() const override { return 1; }
     VolumeBinding atlas(FrameGraph& graph) override { return import(graph); }
     std::optional<RegionBricks> region(const VoxelBox& voxels, bool wait) override;
     std::optional<Counts> counts() const override { return std::nullopt; }

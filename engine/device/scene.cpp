@@ -24,8 +24,8 @@ constexpr uint64_t MIN_PICTURE_BYTES = uint64_t{4} << 20;
 constexpr uint64_t PAGED_FIFTHS = 3;
 /// With ambient occlusion, which then takes half as much as the bricks.
 constexpr uint64_t PAGED_FIFTHS_WITH_OCCLUSION = 2;
-/// More than any view on a common screen needs: 27 000 bricks.
-constexpr uint64_t MAX_ATLAS_BYTES = uint64_t{2} << 30;
+/// On a CPU, whose memory files and programs share: 27 000 bricks, more than a view on a common screen needs.
+constexpr uint64_t MAX_ATLAS_BYTES_OF_CPU = uint64_t{2} << 30;
 /// Of the host's budget, a quarter is for paged bricks; half is for mapped memory, a quarter for coarser levels.
 constexpr uint64_t HOST_SHARES = 4;
 /// As many bricks as a view may have leaves (page_tree.h).
@@ -53,7 +53,7 @@ uint64_t bytes_for_pictures(const gpu::Memory& memory)
 /// Device memory that ambient occlusion takes besides what it takes for each brick.
 uint64_t scratch_bytes(const gpu::Memory& memory, const Scene::Options& options)
 {
-    return options.with_occlusion ? Occlusion::scratch_bytes(memory.device_budget()) : 0;
+    return options.with_occlusion ? Occlusion::scratch_bytes(memory.traits(), memory.device_budget()) : 0;
 }
 
 /// With ambient occlusion a brick takes less than twice as much.
@@ -92,22 +92,24 @@ uint64_t atlas_bytes(const gpu::Memory& memory, const VolumeInfo& info, bool wit
     const uint64_t budget = memory.device_budget(), left = memory.device_bytes_left();
     const uint64_t of_slot = BrickAtlas::slot_bytes();
     const uint64_t with_light = of_slot + (with_occlusion ? Occlusion::slot_bytes() : 0);
-    const auto scratch = [&](uint64_t of_budget) { return with_occlusion ? Occlusion::scratch_bytes(of_budget) : 0; };
+    const auto scratch = [&](uint64_t of_budget) {
+        return with_occlusion ? Occlusion::scratch_bytes(memory.traits(), of_budget) : 0;
+    };
     const uint64_t beside = bytes_for_pictures(memory) + reserved_bytes + scratch(budget);
     const uint64_t room = left - std::min(left, beside);
     // Layouts of images round up.
     const uint64_t fewest = std::min(PagedVolume::MIN_SLOTS + 8, uint64_t(2 * finest_bricks(info) + 1)) * with_light;
+    const uint64_t rest = budget - left + reserved_bytes + fewest;  // about half of the budget at least
     if (room < fewest)
         throw gpu::BudgetError(
             sentence(info.name, ": a picture needs ", gpu::mebibytes(beside + fewest), " of device memory",
                      reserved_bytes > 0 ? sentence(", ", gpu::mebibytes(reserved_bytes), " of them for paint and trace")
                                         : std::string(),
                      ", and ", gpu::mebibytes(left), " of the budget of ", gpu::mebibytes(budget),
-                     " are left; expected at least --budget-device ",
-                     budget_for(budget - left + reserved_bytes + scratch(UINT64_MAX) + fewest)));
+                     " are left; expected at least --budget-device ", budget_for(rest + scratch(2 * rest))));
     const uint64_t fifths = with_occlusion ? PAGED_FIFTHS_WITH_OCCLUSION : PAGED_FIFTHS;
-    return std::min(
-        {MAX_ATLAS_BYTES, std::max(left / 5 * fifths, fewest / with_light * of_slot), room / with_light * of_slot});
+    return std::min({Scene::most_atlas_bytes(memory.traits()),
+                     std::max(left / 5 * fifths, fewest / with_light * of_slot), room / with_light * of_slot});
 }
 
 /// Device memory for a trace, an upper bound.
@@ -146,7 +148,7 @@ void Scene::load(uint64_t reserved_bytes)
     const bool is_paged = pages(memory_, *source_, options_, reserved_bytes) || !load_resident(window, filtered);
     mask_.emplace(executor_, memory_, is_paged);
     if (!is_paged) return;
-    const PagedVolume::Options paged{
+    PagedVolume::Options paged{
         .filtered = filtered,
         .threads = options_.threads,
         .host_bytes = options_.host_bytes / HOST_SHARES,
@@ -154,7 +156,17 @@ void Scene::load(uint64_t reserved_bytes)
         .in_slices = options_.in_slices};
     source_ = with_levels(std::move(source_), options_.host_bytes, options_.progress);
     offsets_ = std::make_shared<OffsetSource>(source_);
-    volume_ = std::make_unique<PagedVolume>(executor_, memory_, offsets_, window, paged);
+    for (;;) try {
+            volume_ = std::make_unique<PagedVolume>(executor_, memory_, offsets_, window, paged);
+            return;
+        } catch (const gpu::BudgetError&) {
+            throw;
+        } catch (const gpu::MemoryError&) {  // the driver has less than it says, or less in one piece
+            constexpr uint64_t LEAST = uint64_t{16} << 20;
+            if (paged.device_bytes / 2 < LEAST) throw;
+            paged.device_bytes /= 2;
+            memory_.free_idle();
+        }
 }
 
 /// False: the driver has less memory than it says, or other programs have it, and bricks can be paged instead.
@@ -202,7 +214,13 @@ uint64_t Scene::bytes_to_show(const Document& document)
 
 uint64_t Scene::atlas_share(uint64_t device_budget, bool with_occlusion)
 {
-    return std::min(MAX_ATLAS_BYTES, device_budget / 5 * (with_occlusion ? PAGED_FIFTHS_WITH_OCCLUSION : PAGED_FIFTHS));
+    return device_budget / 5 * (with_occlusion ? PAGED_FIFTHS_WITH_OCCLUSION : PAGED_FIFTHS);
+}
+
+uint64_t Scene::most_atlas_bytes(const gpu::DeviceTraits& traits)
+{
+    const uint64_t slots = traits.max_volume_bytes / BrickTexels::CODE_BYTES;
+    return std::min(traits.is_cpu ? MAX_ATLAS_BYTES_OF_CPU : UINT64_MAX, slots * BrickAtlas::slot_bytes());
 }
 
 /// Some devices have images of 256 texels a side, or allocations of 2 GiB.
@@ -220,18 +238,18 @@ bool Scene::pages_alone(const gpu::Memory& memory, const VolumeSource& source, c
 
 bool Scene::fits_now(gpu::Memory& memory, const VolumeSource& source, const Options& options)
 {
-    static_cast<void>(filters(memory.device().traits(), options.sampling));
+    static_cast<void>(filters(memory.traits(), options.sampling));
     return !pages(memory, source, options) && fits_resident(memory, source, options, 0);
 }
 
 void Scene::check_sizes(gpu::Memory& memory, const VolumeSource& source, const Options& options)
 {
-    static_cast<void>(filters(memory.device().traits(), options.sampling));
+    static_cast<void>(filters(memory.traits(), options.sampling));
     const uint64_t left = memory.device_bytes_left(), bytes = ResidentVolume::bytes_for(source.info());
     if (pages(memory, source, options)) {
         const uint64_t atlas = atlas_bytes(memory, source.info(), options.with_occlusion, 0);
         const int levels = planned_levels(source, options.host_bytes);
-        PagedVolume::check_room(memory.device().traits(), source.info(), levels, atlas);
+        PagedVolume::check_room(memory.traits(), source.info(), levels, atlas);
     } else if (!can_be_resident(memory, source, options)) {
         fail(source.info().name, ": render.paging is never, and an image of device ", memory.traits().name,
              " cannot hold all of its bricks; expected render.paging automatic");

@@ -47,8 +47,9 @@ public:
     double loaded() const { return volume_->loaded(); }
     /// Device memory that showing a document takes, an upper bound.
     static uint64_t bytes_to_show(const Document& document);
-    /// The most that the atlas of paged bricks takes of a budget.
+    /// The most that the atlas of paged bricks takes of a budget; and of a device.
     static uint64_t atlas_share(uint64_t device_budget, bool with_occlusion);
+    static uint64_t most_atlas_bytes(const gpu::DeviceTraits& traits);
     /// Whether an image of the device could hold all bricks of the source, however much memory is free.
     static bool can_be_resident(const gpu::Memory& memory, const VolumeSource& source, const Options& options);
     /// Whether such a scene would be paged, even if nothing else were on the device.

@@ -25,7 +25,7 @@ std::string size_text(uint64_t bytes)
 }  // namespace
 
 SceneEstimate estimate_scene(const VolumeSource& source, Paging paging, bool with_occlusion, uint64_t device_budget,
-                             uint64_t host_budget, bool can_be_resident)
+                             uint64_t host_budget, bool can_be_resident, uint64_t most_atlas_bytes)
 {
     SceneEstimate estimate{.device_budget = device_budget, .host_budget = host_budget};
     const uint64_t all = ResidentVolume::bytes_for(source.info()) * (with_occlusion ? 2 : 1);
@@ -41,7 +41,8 @@ SceneEstimate estimate_scene(const VolumeSource& source, Paging paging, bool wit
         return estimate;
     }
     // Levels take a third more together; the atlas takes no more than its share.
-    estimate.device_bytes = std::min(all / 3 * 4, Scene::atlas_share(device_budget, with_occlusion));
+    estimate.device_bytes =
+        std::min({all / 3 * 4, Scene::atlas_share(device_budget, with_occlusion), most_atlas_bytes});
     const uint64_t levels = bytes_of_levels(source);
     estimate.makes_levels = levels > 0;
     estimate.host_bytes = std::min(all, host_budget / 4) + levels;

@@ -30,16 +30,28 @@ const double TURN = std::numbers::pi * (3.0 - std::sqrt(5.0));
 
 }  // namespace
 
+namespace {
+
+/// Of so many jobs in an image, gpu::scratch_place.
+glm::uvec3 scratch_places(uint32_t jobs)
+{
+    const uint32_t columns = (jobs + gpu::OCCLUSION_COLUMN - 1) / gpu::OCCLUSION_COLUMN;
+    const uint32_t rows = (columns + gpu::OCCLUSION_COLUMNS_A_ROW - 1) / gpu::OCCLUSION_COLUMNS_A_ROW;
+    return {std::min(columns, gpu::OCCLUSION_COLUMNS_A_ROW), rows, std::min(jobs, gpu::OCCLUSION_COLUMN)};
+}
+
+}  // namespace
+
 ResourceDesc occlusion_near_desc(uint32_t jobs, bool is_paged)
 {
     const uint32_t side = is_paged ? gpu::OCCLUSION_NEAR_SIDE_PAGED : gpu::OCCLUSION_NEAR_SIDE;
-    return image_desc(Format::r32_uint, {side, side, side * jobs});
+    return image_desc(Format::r32_uint, side * scratch_places(jobs));
 }
 
 ResourceDesc occlusion_around_desc(uint32_t size, uint32_t jobs)
 {
     const uint32_t side = (gpu::BRICK_SIZE >> (size + 1)) + 2 * MAX_APRON;
-    return image_desc(Format::r32_uint, {side, side, side * jobs});
+    return image_desc(Format::r32_uint, side * scratch_places(jobs));
 }
 
 OcclusionTaps occlusion_taps(double radius, bool is_paged)
@@ -124,7 +136,8 @@ void gather(FrameGraph& graph, const VolumeBinding& volume, const OcclusionBindi
     const ResourceDesc of_one = occlusion_near_desc(1, volume.pages.has_value());
     const Resource zeros = graph.fill(graph.create("occlusion start", buffer_desc(of_one.bytes)), 0, "start occlusion");
     std::vector<ImageRegion> regions;
-    for (uint32_t i = 0; i < jobs.size(); ++i) regions.push_back({0, {0, 0, of_one.texels.z * i}, of_one.texels});
+    for (uint32_t i = 0; i < jobs.size(); ++i)
+        regions.push_back({0, of_one.texels * gpu::scratch_place(i), of_one.texels});
     scratch.near = graph.copy_to_image(zeros, scratch.near, std::move(regions), "clear occlusion scratch");
     Pass pass = graph.compute(
         "occlusion_gather",

@@ -94,7 +94,8 @@ SceneEstimate Renderer::estimate(const VolumeSource& source, const RenderSetting
     if (!on_device_) throw DeviceLost("the graphics device was lost and could not be started again");
     const gpu::Memory& memory = on_device_->memory;
     return estimate_scene(source, settings.paging, with_occlusion, memory.device_budget(), host_budget_,
-                          Scene::can_be_resident(memory, source, scene_options(settings, with_occlusion)));
+                          Scene::can_be_resident(memory, source, scene_options(settings, with_occlusion)),
+                          Scene::most_atlas_bytes(memory.traits()));
 }
 
 Scene& Renderer::scene() const

@@ -38,8 +38,11 @@
 SHARED_BEGIN
 
 SHARED_CONST uint OCCLUSION_SIZES = 2u;  // of cells: 2 << size voxels a side
-/// Bricks whose values can be computed at once: the scratch images hold as many, stacked along z.
-SHARED_CONST uint OCCLUSION_SLICE = 16u;
+/// Bricks whose values can be computed at once: enough to keep a GPU busy.
+SHARED_CONST uint OCCLUSION_SLICE = 256u;
+/// The scratch images hold them in columns along z, these in rows along x.
+SHARED_CONST uint OCCLUSION_COLUMN = 16u;
+SHARED_CONST uint OCCLUSION_COLUMNS_A_ROW = 4u;
 SHARED_CONST uint OCCLUSION_NEAR_APRON = 4u;  // voxels
 SHARED_CONST uint OCCLUSION_NEAR_SIDE = 40u;  // BRICK_SIZE + 2 OCCLUSION_NEAR_APRON
 /// Likewise for paged bricks, whose rays begin in their aprons as well.
@@ -95,6 +98,13 @@ SHARED_FUNCTION float near_opacity(uint packed, uint octant)
 {
     const float greatest = float(packed & 255u);
     return greatest * greatest * float(packed >> (8u + 3u * octant) & 7u) * (1.0f / (7.0f * 65025.0f));
+}
+
+/// Where the scratch images hold a job, in bricks.
+SHARED_FUNCTION uvec3 scratch_place(uint job)
+{
+    const uint column = job / OCCLUSION_COLUMN;
+    return uvec3(column % OCCLUSION_COLUMNS_A_ROW, column / OCCLUSION_COLUMNS_A_ROW, job % OCCLUSION_COLUMN);
 }
 
 /// Converts values to the share of ambient light: 1 - strength (1 - value^curve), which maps 1 to 1.

@@ -184,12 +184,12 @@ struct Block {
 Block block_of(ivec3 voxel)
 {
     const ivec3 first = voxel & ~3;
-    const int job = int(gl_WorkGroupID.x);
+    const ivec3 job = ivec3(scratch_place(gl_WorkGroupID.x));
     const int side_2 = int((BRICK_SIZE >> 1u) + 2u * params.aprons[0]);
     const int side_4 = int((BRICK_SIZE >> 2u) + 2u * params.aprons[1]);
-    return Block(first + (int(NEAR_APRON) - NEAR_AHEAD) + ivec3(0, 0, int(NEAR_SIDE) * job),
-                 (first >> 1) + (int(params.aprons[0]) - CELLS_AHEAD / 2) + ivec3(0, 0, side_2 * job),
-                 (first >> 2) + (int(params.aprons[1]) - CELLS_AHEAD / 4) + ivec3(0, 0, side_4 * job));
+    return Block(first + (int(NEAR_APRON) - NEAR_AHEAD) + int(NEAR_SIDE) * job,
+                 (first >> 1) + (int(params.aprons[0]) - CELLS_AHEAD / 2) + side_2 * job,
+                 (first >> 2) + (int(params.aprons[1]) - CELLS_AHEAD / 4) + side_4 * job);
 }
 
 // Opacity of half a voxel over the stretch of a near tap.

@@ -100,7 +100,7 @@ void copy_cells(const OcclusionGatherParams params, const OcclusionJob job, uint
     const int shift = int(size) + 1, apron = int(params.aprons[size]);
     const uint side = (BRICK_SIZE >> shift) + 2u * params.aprons[size];
     const float inverse_side = 1.0 / float(side);
-    const ivec3 behind = ivec3(0, 0, side * gl_WorkGroupID.x);
+    const ivec3 behind = ivec3(side * scratch_place(gl_WorkGroupID.x));
     for (uint i = 64u * gl_WorkGroupID.z + gl_LocalInvocationIndex; i < min(side * side * side, end);
          i += 64u * OCCLUSION_SPLIT) {
         // Exact for these numbers; integer divisions are slow.
@@ -139,7 +139,7 @@ void main()
     }
     barrier();
     const ivec3 in_cell = place(lane, CELL_SIZE);
-    const ivec3 behind = ivec3(0, 0, gl_WorkGroupID.x);   // the images hold jobs stacked along z
+    const ivec3 behind = ivec3(scratch_place(gl_WorkGroupID.x));
     const uint end = cell_count;
     for (uint i = 0u; i < end; ++i) {
         const ivec3 texel = int(CELL_SIZE) * place(cells[i], CELLS_A_SIDE) + in_cell;

@@ -12,17 +12,32 @@ layout(binding = 1, scalar) coherent buffer Parents { uint of[]; } parents;
 #include "forest.glsl"
 #include "region.glsl"
 
+// As find_root, and halves the way for whoever comes next: chains stay short, however a component winds. Other threads
+// link roots meanwhile: a parent that is read too old is an ancestor all the same, since parents only ever get lower,
+// and what decides is the atomic in `unite`.
+uint find_root_halving(uint run)
+{
+    uint parent = parents.of[run];
+    while (parent != run) {
+        const uint above = parents.of[parent];
+        if (above != parent) atomicMin(parents.of[run], above);
+        run = parent;
+        parent = above;
+    }
+    return run;
+}
+
 // Links the higher root below the lower one; tries again if another thread has moved a root meanwhile.
 void unite(uint a, uint b)
 {
-    a = find_root(a);
-    b = find_root(b);
+    a = find_root_halving(a);
+    b = find_root_halving(b);
     while (a != b) {
         const uint high = max(a, b), low = min(a, b);
         const uint before = atomicMin(parents.of[high], low);
         if (before == high) return;
-        a = find_root(before);
-        b = find_root(low);
+        a = find_root_halving(before);
+        b = find_root_halving(low);
     }
 }
 
