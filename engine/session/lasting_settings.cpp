@@ -21,6 +21,7 @@ void set_lasting_settings(Session& session, const SettingValues& values)
     if (has("light")) session.light = read.light;
     if (has("blend")) session.blend = read.blend;
     if (has("cut")) session.cut = read.cut;
+    if (has("measurements")) session.measurements = read.measurements;
 }
 
 SettingValues normalized_settings(const SettingValues& values)

@@ -1,6 +1,6 @@
 #pragma once
-// What of a session is a person's work and undone like paint: the transfer function, groups, light, blending and cuts.
-// Cameras, panes and the probe are not (kept_settings.h). Any thread.
+// What of a session is a person's work and undone like paint: the transfer function, groups, light, blending, cuts
+// and measured distances. Cameras, panes and the probe are not (kept_settings.h). Any thread.
 
 #include "engine/annotation/settings.h"
 #include "engine/session/session.h"

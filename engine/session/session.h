@@ -141,6 +141,14 @@ struct ProbeSettings {
 /// Of one file.
 inline constexpr size_t MAX_SESSION_SURFACES = 100'000;
 
+/// A distance between two points that a person measured, in voxels: it follows a spacing that is corrected.
+struct Measurement {
+    glm::dvec3 from{0.0}, to{0.0};
+    bool operator==(const Measurement&) const = default;
+};
+/// Each step of the history holds all of them, before and after.
+inline constexpr size_t MAX_MEASUREMENTS = 1000;
+
 struct Session {
     std::filesystem::path volume_path;  ///< absolute, or empty where `procedural` is set
     std::optional<ProceduralSpec> procedural;
@@ -161,6 +169,7 @@ struct Session {
     ViewSettings view;
     InteractionSettings interaction;
     CutBox cut;
+    std::vector<Measurement> measurements;  ///< at most MAX_MEASUREMENTS
     ProbeSettings probe;
     std::vector<SurfaceLook> surfaces;  ///< opaque balls and rods; at most MAX_SESSION_SURFACES in a file
     std::filesystem::path mask_path;    ///< absolute; empty: none; the file need not exist yet

@@ -414,10 +414,27 @@ void look_fields(Fields& f, Session& session)
 
 }  // namespace
 
+void fields(Fields& f, Measurement& measurement)
+{
+    const char* const ALLOWED = "`[x, y, z]`, in voxels; 0.5 is the middle of the first";
+    f.vector("from", measurement.from, COORDINATE, {.meaning = "one end", .allowed = ALLOWED, .is_required = true});
+    f.vector("to", measurement.to, COORDINATE, {.meaning = "the other end", .allowed = ALLOWED, .is_required = true});
+}
+
+namespace {
+
+const About MEASUREMENTS{.meaning = "distances that were measured; pictures do not show them",
+                         .allowed = "array of at most 1000",
+                         .standard = "none"};
+static_assert(MAX_MEASUREMENTS == 1000);
+
+}  // namespace
+
 void lasting_fields(Fields& f, Session& session)
 {
     look_fields(f, session);
     f.section("cut", session.cut);
+    f.list("measurements", session.measurements, MAX_MEASUREMENTS, MEASUREMENTS);
 }
 
 namespace {
@@ -457,6 +474,10 @@ void fields(Fields& f, Session& session)
     f.section("view", session.view);
     f.section("interaction", session.interaction);
     f.section("cut", session.cut);
+    if (f.has("measurements", !session.measurements.empty()))
+        f.list("measurements", session.measurements, MAX_MEASUREMENTS, MEASUREMENTS);
+    else
+        f.mention("measurements", MEASUREMENTS);
     f.section("probe", session.probe);
     const About surfaces{.meaning = "opaque balls and rods that rays stop at, whatever is cut away of the volume",
                          .allowed = "array of at most 100000",

@@ -27,6 +27,7 @@ void fields(Fields& f, SurfaceLook& surface);
 void fields(Fields& f, FeelSettings& touch);
 void fields(Fields& f, ProbeSettings& probe);
 void fields(Fields& f, CutBox& cut);
+void fields(Fields& f, Measurement& measurement);
 void fields(Fields& f, InteractionSettings& interaction);
 void fields(Fields& f, ControlPoint& point);
 void fields(Fields& f, Unpainted& unpainted);

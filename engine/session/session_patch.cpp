@@ -85,6 +85,7 @@ Session patched(const Session& session, std::string_view patch)
     changed.light = read.light;
     changed.blend = read.blend;
     changed.cut = read.cut;
+    changed.measurements = read.measurements;
     changed.render = read.render;
     changed.view = read.view;
     changed.interaction = read.interaction;

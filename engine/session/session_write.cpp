@@ -143,6 +143,8 @@ std::string difference_of(std::string name, const std::string& before, const std
 {
     std::ranges::replace(name, '_', ' ');
     if (before.empty() || after.empty()) return name;
+    if (name == "measurements")
+        return sentence(name, ": ", OrderedJson::parse(before).size(), " to ", OrderedJson::parse(after).size());
     const OrderedJson was = OrderedJson::parse(before).flatten(), is = OrderedJson::parse(after).flatten();
     std::vector<std::string> paths;
     for (const OrderedJson& leaves : {was, is})

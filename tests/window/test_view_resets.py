@@ -5,7 +5,7 @@ import unittest
 from seen import Seen
 from test_view_photographs import PANELS
 
-# Panel (its key in the preferences), words beside the slider, its key in the session.
+# Panel (its key in the preferences), words before the slider, its key in the session.
 SLIDERS = [
     ("transfer_function", "Volume", "unpainted.opacity"),
     ("light", "Ambient", "light.ambient"),
@@ -16,11 +16,11 @@ SLIDERS = [
     ("touch", "Strength", "probe.touch.strength"),
     ("touch", "Workspace", "interaction.workspace_scale"),
 ]
-PIXELS_LEFT_OF_THE_WORDS = 30   # still on the slider, and far from what ships
+PIXELS_LEFT_OF_THE_NUMBER = 40   # still on the slider, and far from what ships
 
 
-# The same with words at the left, and the number after them: (panel, words, key, pixels left of the number's ink); 0: on
-# the number, of fields that a click alone does not change.
+# Other fields: (panel, words, key, pixels left of the number's ink); 0: on the number, of fields that a click alone does
+# not change.
 FIELDS = [
     ("probe", "Radius", "probe.radius_voxels", 0),
     ("probe", "Paint threshold", "probe.paint_threshold", 40),
@@ -30,11 +30,14 @@ FIELDS = [
 
 
 class Resets(Seen):
-    def number(self, label):
+    def number_of(self, label):
         """What stands on the slider whose words these are."""
-        left, top, _, _ = self.words_of(label)["box"]
-        on_row = [seen for seen in self.seen() if abs(seen["box"][1] - top) < 4 and seen["box"][2] < left]
-        return max(on_row, key=lambda seen: seen["box"][2])["text"]
+        _, top, right, _ = self.words_of(label)["box"]
+        on_row = [seen for seen in self.seen() if abs(seen["box"][1] - top) < 4 and seen["box"][0] > right]
+        return min(on_row, key=lambda seen: seen["box"][0])
+
+    def number(self, label):
+        return self.number_of(label)["text"]
 
     def words_of(self, label):
         return next(seen for seen in self.seen(label) if seen["text"] == label)
@@ -55,8 +58,8 @@ class Resets(Seen):
         self.open_scan(self.write_ball(), preferences={"layout": {"panels": folds}, "hints_seen": 3})
         self.until(lambda: self.seen(label), f"slider {label}", 10)
         ships = self.number(label)
-        x0, y0, _, y1 = self.words_of(label)["box"]
-        self.do("mousemove", x0 - PIXELS_LEFT_OF_THE_WORDS, (y0 + y1) / 2, pause_s=0.3)
+        x0, y0, _, y1 = self.number_of(label)["box"]
+        self.do("mousemove", x0 - PIXELS_LEFT_OF_THE_NUMBER, (y0 + y1) / 2, pause_s=0.3)
         self.do("click", "--repeat", 2, "--delay", delay_ms, 1, pause_s=0)
         self.until(lambda: None in self.values(key), f"reset of {key}; set were {self.values(key)}", 5)
         self.assertEqual(len(self.values(key)), 2, "one value by the first click, one reset by the second")

@@ -17,8 +17,8 @@ constexpr ImGuiWindowFlags BANNER = ImGuiWindowFlags_NoDecoration | ImGuiWindowF
                                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
                                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
 
-/// What was recovered or set aside, until it is dismissed.
-void recovered_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions)
+/// What was recovered or set aside, until it is dismissed. Returns its height.
+float recovered_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions)
 {
     ImGui::SetNextWindowPos({begin.x, begin.y});
     ImGui::SetNextWindowSize({std::max(width, 1.0f), 0.0f});
@@ -29,9 +29,11 @@ void recovered_banner(const Model& model, const glm::vec2& begin, float width, A
     ImGui::PushTextWrapPos(0.0f);
     for (const std::string& text : model.recovered) ImGui::TextUnformatted(text.c_str());
     ImGui::PopTextWrapPos();
+    const float height = ImGui::GetWindowHeight();
     ImGui::End();
     ImGui::PopStyleVar();
     ImGui::PopStyleColor();
+    return height;
 }
 
 /// In the upper left corner of the graphics window, as wide as it needs to be. Returns its height.
@@ -78,12 +80,13 @@ void question_of_belief(const Model& model, Actions& actions)
 
 }  // namespace
 
-void notices(const Model& model, const glm::vec2& begin, float width, Actions& actions)
+float notices(const Model& model, const glm::vec2& begin, float width, Actions& actions)
 {
     float top = begin.y;
     if (!model.holder.empty()) top += read_only_banner(model, begin, width, actions);
-    if (!model.recovered.empty()) recovered_banner(model, {begin.x, top}, width, actions);
+    if (!model.recovered.empty()) top += recovered_banner(model, {begin.x, top}, width, actions);
     question_of_belief(model, actions);
+    return top - begin.y;
 }
 
 }  // namespace shvr::ui

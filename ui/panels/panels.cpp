@@ -283,7 +283,7 @@ Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& action
     else
         start_page(model, actions);
     status_bar(model, window, actions);
-    notices(model, {0.0f, top}, size.x - side, actions);
+    const float banners = std::min(notices(model, {0.0f, top}, size.x - side, actions), 0.5f * height);
     const bool has_notice = !model.holder.empty() || !model.recovered.empty();  // which come first, at the same place
     if (model.is_open && !has_notice) first_hints(model, {0.5f * (size.x - side), top}, actions);
     if (model.shows_help) help_window(model, actions);
@@ -293,7 +293,7 @@ Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& action
     if (model.shows_passes) passes_window(model, actions);
     jobs_window(model, {0.5f * (size.x - side), size.y - bar}, actions);
 
-    const glm::vec2 begin(0.0f, top);
+    const glm::vec2 begin(0.0f, model.is_open ? top + banners : top);
     const glm::vec2 end = glm::max(begin, size - glm::vec2(side, bar));
     const auto in_pixels = [&](const glm::vec2& at) {
         return glm::min(glm::uvec2(glm::round(at * pixels_per_unit)), window);

@@ -79,13 +79,13 @@ void ask_to_import(const std::filesystem::path& volume);
 void load_menu(const Model& model);
 void load_dialogs(const Model& model, Actions& actions);
 void task_dialogs(const Model& model, Actions& actions);
-/// What goes on beside the work, at the lower left of the graphics window.
-/// Its lower edge is there, in the middle.
+/// What goes on beside the work; its lower edge is there, in the middle.
 void jobs_window(const Model& model, const glm::vec2& lower_middle, Actions& actions);
 /// What is there while nothing is open.
 void start_page(const Model& model, Actions& actions);
 void status_bar(const Model& model, const glm::uvec2& window, Actions& actions);
 /// That this window only looks, at the upper edge of the graphics window; and the question which files to believe.
-void notices(const Model& model, const glm::vec2& begin, float width, Actions& actions);
+/// Returns the height that they take.
+float notices(const Model& model, const glm::vec2& begin, float width, Actions& actions);
 
 }  // namespace shvr::ui

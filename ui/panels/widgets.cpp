@@ -32,24 +32,26 @@ void label(const char* text)
     text_label(text);
 }
 
+void row(const char* text)
+{
+    label(text);
+    ImGui::SetNextItemWidth(-FLT_MIN);
+}
+
 bool slider(const char* label, double& value, double lower, double upper, const char* format, ImGuiSliderFlags flags)
 {
-    ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
-    return slider_scalar(label, ImGuiDataType_Double, &value, &lower, &upper, format, flags);
+    row(label);
+    return slider_scalar(sentence("##", label).c_str(), ImGuiDataType_Double, &value, &lower, &upper, format, flags);
 }
 
 /// The number stands on the frame's own colour, before the handle, which shows above and below it.
-bool slider_scalar(const char* label, ImGuiDataType type, void* value, const void* lower, const void* upper,
+bool slider_scalar(const char* id, ImGuiDataType type, void* value, const void* lower, const void* upper,
                    const char* format, ImGuiSliderFlags flags)
 {
-    const std::string hidden = label[0] == '#' ? std::string(label) : sentence("##", label);
-    const float width = ImGui::CalcItemWidth();
-    const ImGuiID id = ImGui::GetID(hidden.c_str());
-    const bool is_typed = ImGui::TempInputIsActive(id);
+    const bool is_typed = ImGui::TempInputIsActive(ImGui::GetID(id));
     if (!is_typed) ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32_BLACK_TRANS);
-    ImGui::SetNextItemWidth(width);
     const bool is_changed =
-        ImGui::SliderScalar(hidden.c_str(), type, value, lower, upper, format, ImGuiSliderFlags_AlwaysClamp | flags);
+        ImGui::SliderScalar(id, type, value, lower, upper, format, ImGuiSliderFlags_AlwaysClamp | flags);
     if (!is_typed) ImGui::PopStyleColor();
     const ImVec2 begin = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
     const ImGuiStyle& style = ImGui::GetStyle();
@@ -68,9 +70,6 @@ bool slider_scalar(const char* label, ImGuiDataType type, void* value, const voi
         list.AddText(at, ImGui::GetColorU32(ImGuiCol_Text), text.data());
         list.PopClipRect();
     }
-    if (label[0] != '#')
-        list.AddText({end.x + style.ItemInnerSpacing.x, begin.y + style.FramePadding.y},
-                     ImGui::GetColorU32(ImGuiCol_Text), label);
     return is_changed;
 }
 

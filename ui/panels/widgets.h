@@ -23,13 +23,15 @@ void hint(const char* text);
 /// Labels form one column at the left, with their text or framed widget beside them.
 void text_label(const char* text);
 void label(const char* text);
+/// A label; the widget after it takes the rest of the row.
+void row(const char* text);
 
-/// A slider as wide as the panel, for a value within its limits.
+/// A row with a slider, for a value within its limits.
 bool slider(const char* label, double& value, double lower, double upper, const char* format,
             ImGuiSliderFlags flags = 0);
 
-/// ImGui::SliderScalar with its number readable wherever the handle is. `label` may be hidden ("##value").
-bool slider_scalar(const char* label, ImGuiDataType type, void* value, const void* lower, const void* upper,
+/// ImGui::SliderScalar with its number readable wherever the handle is, and without a label: "##value".
+bool slider_scalar(const char* id, ImGuiDataType type, void* value, const void* lower, const void* upper,
                    const char* format, ImGuiSliderFlags flags = 0);
 
 /// Whether the widget drawn last was double-clicked; it lets go of the mouse then, and would else follow it.

@@ -305,7 +305,7 @@ Model Workbench::model() const
             .pointer = pointer_,
             .reading = reading_,
             .picked_pivot = document.picked_pivot,
-            .measurements = document.measurements,
+            .measurements = document.session.measurements,
             .measuring_from = document.measuring_from,
             .measuring_to = document.measuring_from ? std::optional(voxel_to_read()) : std::nullopt,
             .trace = document.annotator.document().trace,

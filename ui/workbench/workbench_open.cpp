@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <exception>
 #include <thread>
 #include <utility>
@@ -437,7 +438,11 @@ void Workbench::load_once_more()
 
 std::filesystem::path Workbench::screenshot_stem() const
 {
-    return std::filesystem::path(document_->session_path).replace_extension();
+    const std::filesystem::path stem = std::filesystem::path(document_->session_path).replace_extension();
+    // The example lies among the settings, in a folder that is hidden, where nobody looks for pictures.
+    const bool is_example = stem.parent_path() == options_.preferences.parent_path() / "example";
+    const char* const home = std::getenv("HOME");
+    return is_example && home && *home ? std::filesystem::path(home) / stem.filename() : stem;
 }
 
 }  // namespace shvr::ui

@@ -188,7 +188,8 @@ void Workbench::take_session(Session session)
         throw;
     }
     note_edit();
-    before.probe = after.probe;  // which is drawn by itself
+    before.probe = after.probe;  // which is drawn by itself, as distances are
+    before.measurements = after.measurements;
     if (before != after) look_again();
 }
 
@@ -207,6 +208,7 @@ void Workbench::settings_changed(const Session& before)
     if (before.probe.tool != after.probe.tool) {
         if (document.annotator.stroke_is_open()) document.annotator.end_stroke();
         if (document.drags_node) act(DragNode{false});
+        document.measuring_from.reset();
     }
 }
 

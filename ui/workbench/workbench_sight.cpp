@@ -106,28 +106,37 @@ void Workbench::act(const MeasureAt& action)
         document.measuring_from = voxel;
         return say("One end of the distance; click the other");
     }
-    document.measurements.push_back({*document.measuring_from, voxel});
+    Session after = document.session;
+    if (after.measurements.size() == MAX_MEASUREMENTS)
+        fail(MAX_MEASUREMENTS, " distances are measured, and no more are kept; expected them to be copied and removed");
+    after.measurements.push_back({*document.measuring_from, voxel});
     document.measuring_from.reset();
-    const double length = length_of(document.measurements.back(), document.volume().spacing);
+    take_session(std::move(after));
+    const std::vector<Measurement>& all = document.session.measurements;
+    const double length = length_of(all.back(), document.volume().spacing);
     const std::string copy = keys_of("copy_measurements"), clear = keys_of("clear_measurements");
-    say(sentence("Distance ", document.measurements.size(), ": ", length_in_words(length, document.volume().unit),
+    say(sentence("Distance ", all.size(), ": ", length_in_words(length, document.volume().unit),
                  copy.empty() ? "" : "; " + copy + " copies", clear.empty() ? "" : ", " + clear + " removes"));
 }
 
 void Workbench::act(const ClearMeasurements&)
 {
-    if (document_->measurements.empty() && !document_->measuring_from) return;  // Escape means other things, too
-    document_->measurements.clear();
-    document_->measuring_from.reset();
-    say("Distances are removed");
+    Session after = document_->session;
+    const bool is_one_begun = std::exchange(document_->measuring_from, {}).has_value();
+    if (after.measurements.empty()) {
+        if (is_one_begun) say("Its first end is forgotten");
+        return;
+    }
+    after.measurements.clear();
+    take_session(std::move(after));
+    say("Distances are removed; undo brings them back");
 }
 
 void Workbench::act(const CopyMeasurements&)
 {
-    clipboard_ = table_of(document_->measurements, document_->volume());
-    say(sentence(document_->measurements.size(),
-                 document_->measurements.size() == 1 ? " distance is" : " distances are",
-                 " on the clipboard, as a table"));
+    const std::vector<Measurement>& all = document_->session.measurements;
+    clipboard_ = table_of(all, document_->volume());
+    say(sentence(all.size(), all.size() == 1 ? " distance is" : " distances are", " on the clipboard, as a table"));
 }
 
 }  // namespace shvr::ui

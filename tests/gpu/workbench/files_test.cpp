@@ -200,6 +200,7 @@ TEST_CASE_FIXTURE(OnDevice, "a corrected spacing is saved, nodes stay at their v
     desk.bench.perform(NodeOp{.at = {10, 12, 14}, .radius_voxels = 2.0, .group = uint8_t{2}});
     const glm::dvec3 eye = desk.bench.model().camera.eye;
     desk.bench.perform(KeepCamera{"mine"});
+    desk.bench.perform(Set{R"({"measurements":[{"from":[1,2,3],"to":[5,2,3]}]})"});
     desk.bench.perform(CorrectSpacing{{0.5, 0.5, 2.0}, "um"});
     settle(desk.bench);
     for (const bool is_again : {false, true}) {
@@ -212,6 +213,8 @@ TEST_CASE_FIXTURE(OnDevice, "a corrected spacing is saved, nodes stay at their v
         CHECK(glm::distance(desk.bench.model().camera.eye, eye * glm::dvec3(0.5, 0.5, 2.0)) < 1e-9);
         const auto kept = std::get<Camera>(desk.bench.model().session.cameras.at("mine"));
         CHECK(glm::distance(kept.eye, eye * glm::dvec3(0.5, 0.5, 2.0)) < 1e-9);
+        REQUIRE(desk.bench.model().measurements.size() == 1);
+        CHECK(desk.bench.model().measurements[0] == Measurement{{1, 2, 3}, {5, 2, 3}});
     }
 }
 

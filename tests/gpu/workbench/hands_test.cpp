@@ -347,7 +347,35 @@ TEST_CASE_FIXTURE(OnDevice, "distances are measured on what is seen, in physical
     CHECK(!on.bench.model().is_painting);
     on.perform(ClearMeasurements{});
     CHECK(on.bench.model().measurements.empty());
-    CHECK(on.bench.model().undoable == 0);  // no part of the work
+    on.perform(MeasureAt{0, {60.0, 48.0}});
+    on.perform(Set{R"({"probe":{"tool":"paint"}})"});
+    CHECK(!on.bench.model().measuring_from);
+}
+
+TEST_CASE_FIXTURE(OnDevice,
+                  "distances are work: a step each, undone in order, saved, and where they were when one returns")
+{
+    Plates on(renderer());
+    on.perform(MeasureAt{0, {60.0, 48.0}});
+    CHECK(on.bench.model().undoable == 0);
+    on.perform(MeasureAt{0, {80.0, 48.0}});
+    on.perform(EndStep{});
+    on.perform(MeasureAt{0, {60.0, 48.0}});
+    on.perform(MeasureAt{0, {60.0, 40.0}});
+    on.perform(EndStep{});
+    CHECK(on.bench.model().undoable == 2);
+    const std::vector<Measurement> two = on.bench.model().session.measurements;
+    REQUIRE(two.size() == 2);
+    on.perform(ClearMeasurements{});
+    on.perform(EndStep{});
+    CHECK(on.bench.model().measurements.empty());
+    on.perform(UndoOp{});
+    CHECK(on.bench.messages().last().find("measurements: 2 to 0") != std::string::npos);
+    CHECK(on.bench.model().session.measurements == two);
+    on.perform(UndoOp{});
+    CHECK(on.bench.model().measurements.size() == 1);
+    on.perform(RedoOp{});
+    CHECK(on.bench.model().session.measurements == two);
 }
 
 TEST_CASE_FIXTURE(OnDevice, "what is under the probe is read: value, offset, group, depth, and how full the probe is")

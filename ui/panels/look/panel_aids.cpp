@@ -48,7 +48,8 @@ void probe_look(const Model& model, Actions& actions)
     is_other |= flag(model, "Arrow", probe.arrow, "arrow", "Points to the probe where it is out of sight.");
     const uint8_t group = probe.brush.group;
     glm::dvec3 color = probe.color.value_or(group == 0 ? glm::dvec3(0.5) : group_of(model.session.groups, group).color);
-    if (color_field("Probe's colour", color)) {
+    label("Probe's colour");
+    if (color_field("##probe's colour", color)) {
         probe.color = color;
         is_other = true;
     }

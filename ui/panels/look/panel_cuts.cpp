@@ -93,10 +93,11 @@ void cutting_planes(const Model& model, Actions& actions)
 /// A distance from the eye; 0 is no plane.
 bool clip(const char* name, double& distance, double reach, const char* none, const char* format, const char* help)
 {
-    ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
+    row(name);
     const double least = 0.0, most = 100.0 * reach;
-    const bool is_other = ImGui::DragScalar(name, ImGuiDataType_Double, &distance, float(reach / 300.0), &least, &most,
-                                            distance > 0.0 ? format : none, ImGuiSliderFlags_AlwaysClamp);
+    const bool is_other =
+        ImGui::DragScalar(sentence("##", name).c_str(), ImGuiDataType_Double, &distance, float(reach / 300.0), &least,
+                          &most, distance > 0.0 ? format : none, ImGuiSliderFlags_AlwaysClamp);
     hint(help);
     return is_other;
 }

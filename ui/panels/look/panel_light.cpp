@@ -26,7 +26,8 @@ bool explained_slider(const char* label, double& value, double maximum, const ch
 void background(const Model& model, Actions& actions)
 {
     glm::dvec3 color(model.session.render.background);
-    if (color_field("Background", color))
+    label("Background");
+    if (color_field("##background", color))
         set(actions, model, [&](Session& s) { s.render.background = glm::dvec4(color, s.render.background.a); });
     hint("Colour behind everything. Dark behind thin, bright structures shows more of them.");
     const auto shortcut = [&](const char* name, double value) {
@@ -144,7 +145,8 @@ void blend_controls(const Model& model, Actions& actions)
         "View, Distance blending.");
     is_reset |= resets("blend.rate", actions);
     glm::dvec3 color = blend.color.value_or(glm::dvec3(model.session.render.background));
-    if (color_field("Blend colour", color)) {
+    label("Blend colour");
+    if (color_field("##blend colour", color)) {
         blend.color = color;
         changed = true;
     }

@@ -24,9 +24,9 @@ void occlusion_panel(const Model& model, Actions& actions)
     hint("Exponent of the light that arrives: above 1, half-dark places get darker.");
     is_reset |= resets("light.occlusion.curve", actions);
     const uint32_t fewest = 4, most = 256;
-    ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
+    row("Rays");
     is_other |=
-        slider_scalar("Rays", ImGuiDataType_U32, &settings.rays, &fewest, &most, "%u", ImGuiSliderFlags_Logarithmic);
+        slider_scalar("##rays", ImGuiDataType_U32, &settings.rays, &fewest, &most, "%u", ImGuiSliderFlags_Logarithmic);
     hint("Directions tested for each voxel: more are smoother and take longer.");
     is_reset |= resets("light.occlusion.rays", actions);
     is_other |= ImGui::Checkbox("Full sphere", &settings.full_sphere);

@@ -20,8 +20,8 @@ constexpr double MAX_PREINTEGRATED_STEP = 1.0;
 void choices(const Model& model, Actions& actions)
 {
     const std::optional<Quality> present = quality_of(model.session.render);
-    ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
-    if (!ImGui::BeginCombo("Quality", present ? present->name : "your own")) {
+    row("Quality");
+    if (!ImGui::BeginCombo("##quality", present ? present->name : "your own")) {
         hint(present ? present->note : "Settings that are none of the four: draft, interactive, good, reference.");
         return;
     }
@@ -36,8 +36,8 @@ void choices(const Model& model, Actions& actions)
 bool sampling(RenderSettings& render)
 {
     int chosen = int(render.sampling);
-    ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
-    const bool is_other = ImGui::Combo("Sampling", &chosen, "as the device does well\0exact\0by the texture unit\0");
+    row("Sampling");
+    const bool is_other = ImGui::Combo("##sampling", &chosen, "as the device does well\0exact\0by the texture unit\0");
     hint(
         "How voxels are interpolated. Texture units are fast on GPUs and round positions to 1/256 of a voxel. A change "
         "loads the volume again.");
@@ -48,8 +48,8 @@ bool sampling(RenderSettings& render)
 bool paging(RenderSettings& render)
 {
     int chosen = int(render.paging);
-    ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
-    const bool is_other = ImGui::Combo("Paging", &chosen, "where it is needed\0always\0never\0");
+    row("Paging");
+    const bool is_other = ImGui::Combo("##paging", &chosen, "where it is needed\0always\0never\0");
     hint(
         "Whether parts of the volume come and go in the device's memory as they are seen. Never: a volume that does "
         "not "
@@ -103,7 +103,9 @@ void quality_panel(const Model& model, Actions& actions)
     ImGui::EndDisabled();
     hint("No peak or edge of the transfer function is missed between two samples, however narrow (pre-integration).");
     is_other |= ImGui::Checkbox("Smooth borders of groups", &render.smooth_borders);
-    hint("Painted groups end between voxels instead of in steps. What is painted stays the same, and slices show it.");
+    hint(
+        "Painted groups end between voxels instead of in steps. What is painted stays the same, and slices show it. "
+        "It takes about half as long again where much is painted.");
     if (is_other && !is_reset) set(actions, model, [&](Session& s) { s.render = render; });
     budget(model);
 }

@@ -332,23 +332,6 @@ void scale_and_help(const Model& model, WidgetState& state, Actions& actions)
         "thresholds; drag them as well, or double click them for what fits the volume.");
 }
 
-void shading(const Model& model, Actions& actions)
-{
-    Light light = model.session.light;
-    if (ImGui::Checkbox("Shading", &light.shaded)) set(actions, model, [&](Session& s) { s.light = light; });
-    hint("Light on the volume's surfaces. Without it, colours are as chosen above.");
-    const RenderSettings& render = model.session.render;
-    bool sees_peaks = render.preintegration;
-    ImGui::SameLine();
-    ImGui::BeginDisabled(render.step_voxels > 1.0);
-    if (ImGui::Checkbox("Narrow peaks", &sees_peaks))
-        set(actions, model, [&](Session& s) { s.render.preintegration = sees_peaks; });
-    ImGui::EndDisabled();
-    hint(
-        "No peak or edge of the curve is missed, however narrow (pre-integration). Slower; smooth curves do not need "
-        "it.");
-}
-
 /// The whole curve at once.
 void unpainted(const Model& model, Actions& actions)
 {
@@ -373,15 +356,16 @@ void edit_point(const Model& model, size_t index, Actions& actions)
     const double most = held.held_between_neighbors(index, DBL_MAX);
     const double clear = 0.0, solid = 1.0;
     const char* format = is_float(model.volume.type) ? "%.5g" : "%.1f";
-    ImGui::PushItemWidth(-5.5f * ImGui::GetFontSize());
-    bool changed = ImGui::DragScalar("Intensity", ImGuiDataType_Double, &point.intensity, std::max(speed, 1e-6f),
+    row("Intensity");
+    bool changed = ImGui::DragScalar("##intensity", ImGuiDataType_Double, &point.intensity, std::max(speed, 1e-6f),
                                      &least, &most, format, ImGuiSliderFlags_AlwaysClamp);
     hint("Of the selected point, in the file's units. Drag sideways, or Ctrl + click to type.");
-    changed |= ImGui::DragScalar("Opacity", ImGuiDataType_Double, &point.opacity, 0.002f, &clear, &solid, "%.4f",
+    row("Opacity");
+    changed |= ImGui::DragScalar("##opacity", ImGuiDataType_Double, &point.opacity, 0.002f, &clear, &solid, "%.4f",
                                  ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
     hint("Of one voxel: 0 clear, 1 solid.");
-    changed |= color_field("Colour", point.color, ImGuiColorEditFlags_None);
-    ImGui::PopItemWidth();
+    row("Colour");
+    changed |= color_field("##colour", point.color, ImGuiColorEditFlags_None);
     if (changed) send(std::move(points), model, actions);
 }
 
@@ -402,7 +386,6 @@ void transfer_function_panel(const Model& model, Actions& actions)
     const size_t edited = state.selected;  // an index into this frame's points
     curve(model, state, actions);
     scale_and_help(model, state, actions);
-    shading(model, actions);
     edit_point(model, edited, actions);
     unpainted(model, actions);
     if (function.draws_nothing()) ImGui::TextDisabled("Nothing is visible: no opacity is above 0.");

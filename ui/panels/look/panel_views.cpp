@@ -16,8 +16,8 @@ namespace {
 
 bool choice(const char* label, int& chosen, const char* names)
 {
-    ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
-    return ImGui::Combo(label, &chosen, names);
+    row(label);
+    return ImGui::Combo(sentence("##", label).c_str(), &chosen, names);
 }
 
 bool stereo_controls(StereoSettings& stereo, bool& is_reset, Actions& actions)
@@ -95,8 +95,8 @@ void interaction_controls(const Model& model, Actions& actions)
     is_reset |= resets("interaction.frames_per_second", actions);
     int scale = int(interaction.screenshot_scale);
     const int smallest = 1, largest = 16;
-    ImGui::SetNextItemWidth(-8.0f * ImGui::GetFontSize());
-    is_other |= slider_scalar("Screenshot", ImGuiDataType_S32, &scale, &smallest, &largest, "%d times");
+    row("Screenshot");
+    is_other |= slider_scalar("##screenshot", ImGuiDataType_S32, &scale, &smallest, &largest, "%d times");
     hint(("Size of large screenshots" + key_in_brackets("large_screenshot", model.keymap) + ", relative to the window.")
              .c_str());
     is_reset |= resets("interaction.screenshot_scale", actions);

@@ -280,8 +280,6 @@ Action step_back(const Model& model, double amount)
     if (model.shows_messages) return ShowMessages{false};
     if (model.shows_passes) return ShowPasses{false};
     if (model.is_full_screen) return ShowFullScreen{false};
-    // What was measured stays: nothing brings it back.
-    if (model.measuring_from && model.measurements.empty()) return ClearMeasurements{};
     return take<Tool::turn>(model, amount);
 }
 

@@ -61,7 +61,6 @@ struct Document {
     bool drags_node = false;            ///< the selected node follows the probe
 
     // What is kept while it is open, and is no part of the work
-    std::vector<Measurement> measurements;                  ///< voxels
     std::optional<glm::dvec3> measuring_from;               ///< the first end of one that has no second yet
     std::optional<glm::dvec3> picked_pivot;                 ///< volume space
     std::optional<std::pair<uint32_t, uint32_t>> cut_ends;  ///< nodes between which the last deletion cut the trace

@@ -1,5 +1,5 @@
 #pragma once
-// What is under the probe and under the pointer, and what was measured: plain data of the model. Any thread.
+// What is under the probe and under the pointer: plain data of the model. Any thread.
 
 #include <optional>
 
@@ -25,12 +25,6 @@ struct Reading {
     double depth = 0.0;
     /// Of the probe's ball: the share of its voxels at or above the threshold; null: not known.
     std::optional<double> relevant_share;
-};
-
-/// A distance between two points, in voxels: it follows a spacing that is corrected.
-struct Measurement {
-    glm::dvec3 from{0.0}, to{0.0};
-    bool operator==(const Measurement&) const = default;
 };
 
 }  // namespace shvr::ui

@@ -6,6 +6,7 @@
 
 #include "engine/look/camera.h"
 #include "engine/look/settings.h"
+#include "engine/session/session.h"
 #include "ui/workbench/sight/sight.h"
 
 namespace shvr::ui {

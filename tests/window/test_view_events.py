@@ -1,0 +1,66 @@
+"""Density painting, the ball that the light is dragged on, and a window that goes away and comes back, by real events."""
+import json
+import unittest
+
+from seen import Seen
+from test_view_photographs import PANELS
+
+
+class Events(Seen):
+    def open_with(self, panel, **keys):
+        folds = {name: {"folded": name != panel} for name in PANELS}
+        self.session = self.write_ball(**keys)
+        self.open_scan(self.session, preferences={"layout": {"panels": folds}, "hints_seen": 3})
+
+    def test_density_is_painted_undone_and_saved(self):
+        # What is at the threshold is not visible yet.
+        self.open_with("probe", probe={"radius_voxels": 5, "group": 3, "paint_threshold": 60})
+        self.click_on("raises intensities")
+        self.until(lambda: any(action.get("values", {}).get("probe", {}).get("density") for action in self.done()),
+                   "density painting")
+        x, y = self.middle()
+        self.put_probe(x, y)
+        for way in (0, 16):
+            self.stroke((x + way, y), (x + way + 12, y + 4))
+        self.until(lambda: self.frame()["sharp"], "sharp picture")
+        self.press("Ctrl+z")
+        self.press("Ctrl+s")
+        offsets = self.folder / "paint.offset"
+        self.until(offsets.exists, "saved offsets")
+        report = self.finish()
+        self.assertEqual(sorted(report["voxels_in_group"]), ["3"])  # which it paints as well
+        self.assertEqual((report["undoable"], report["redoable"]), (1, 1))
+        again = self.check_json("annotate", self.session, "--script", self.write_script("s.jsonl", [{"op": "undo"}]))
+        self.assertEqual(again["commands"], 1)
+
+    def test_the_light_is_dragged_on_its_ball_and_put_back_by_a_double_click(self):
+        self.open_with("light")
+        left, top, _, bottom = self.see_at_rest("Light from")["box"]
+        height = bottom - top
+        x, y = left - 3 * height, top + 2 * height
+        self.do("mousemove", x, y, "sleep", 0.1, "mousedown", 1, "sleep", 0.1, "mousemove", x - 8, y + 6, "sleep", 0.1,
+                "mouseup", 1)
+        directions = [action["values"]["light"]["direction"] for action in self.done() if "light" in
+                      action.get("values", {})]
+        self.assertTrue(directions and directions[-1] is not None, self.done())
+        self.do("click", "--repeat", 2, "--delay", 60, 1)
+        self.until(lambda: {"op": "set", "values": {"light": {"direction": None}}} in self.done(), "light put back")
+        self.finish()
+
+    def test_a_window_that_is_unmapped_works_on_and_is_drawn_when_it_is_back(self):
+        self.open_with("probe")
+        x, y = self.middle()
+        self.put_probe(x, y)
+        window = self.display.do("search", "--name", "sphere.* - SHVR").split()[0]
+        for _ in range(3):
+            self.do("windowunmap", window, pause_s=0.4)
+            self.do("windowmap", window, pause_s=0.4)
+        before = self.frame()["frame"]
+        self.stroke((x, y), (x + 12, y + 4))
+        self.until(lambda: self.frame()["frame"] > before and self.frame()["sharp"], "frame after the window is back")
+        report = self.finish()
+        self.assertEqual(sorted(report["voxels_in_group"]), ["3"])
+
+
+if __name__ == "__main__":
+    unittest.main()
