@@ -99,7 +99,7 @@ uint64_t atlas_bytes(const gpu::Memory& memory, const VolumeInfo& info, bool wit
     const uint64_t room = left - std::min(left, beside);
     // Layouts of images round up.
     const uint64_t fewest = std::min(PagedVolume::MIN_SLOTS + 8, uint64_t(2 * finest_bricks(info) + 1)) * with_light;
-    const uint64_t rest = budget - left + reserved_bytes + fewest;  // about half of the budget at least
+    const uint64_t rest = budget - left + reserved_bytes + fewest;  // more than half of the budget named below
     if (room < fewest)
         throw gpu::BudgetError(
             sentence(info.name, ": a picture needs ", gpu::mebibytes(beside + fewest), " of device memory",
@@ -156,9 +156,9 @@ void Scene::load(uint64_t reserved_bytes)
         .in_slices = options_.in_slices};
     source_ = with_levels(std::move(source_), options_.host_bytes, options_.progress);
     offsets_ = std::make_shared<OffsetSource>(source_);
-    for (;;) try {
+    while (!volume_) {
+        try {
             volume_ = std::make_unique<PagedVolume>(executor_, memory_, offsets_, window, paged);
-            return;
         } catch (const gpu::BudgetError&) {
             throw;
         } catch (const gpu::MemoryError&) {  // the driver has less than it says, or less in one piece
@@ -167,6 +167,7 @@ void Scene::load(uint64_t reserved_bytes)
             paged.device_bytes /= 2;
             memory_.free_idle();
         }
+    }
 }
 
 /// False: the driver has less memory than it says, or other programs have it, and bricks can be paged instead.

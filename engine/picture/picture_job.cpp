@@ -297,7 +297,8 @@ std::vector<gpu::PassReport> PictureJob::draw(const PicturePart& part, WaitingRa
     return take(begin(part, waiting));
 }
 
-/// One drawing makes a part complete; the part before it is taken once the device has this one.
+/// One drawing makes a part complete; the part before it is taken once the device has this one. But the first is waited
+/// for: how long it took tells how the others are divided.
 void PictureJob::draw_ahead(const PicturePart& part)
 {
     look_at(scene(), look_, pane().shot, part);
@@ -305,6 +306,7 @@ void PictureJob::draw_ahead(const PicturePart& part)
     tell(progress, 0.0);
     renew_occlusion(progress);
     UnderWay next = begin(part);
+    if (drawn_pixels_ == 0 && !under_way_) return finish(part, take(std::move(next)));
     catch_up();
     under_way_ = std::move(next);
 }

@@ -267,10 +267,11 @@ TEST_CASE_FIXTURE(OnDevice, "asking what is due looks at a brick again only wher
     static_cast<void>(draw(session, overview(volume())));
     Occlusion& occlusion = renderer().scene().occlusion();
     CHECK_FALSE(occlusion.is_due());
-    const uint64_t looks = occlusion.counts().looks;
+    const uint64_t looks = occlusion.counts().looks, walks = occlusion.counts().walks;
     CHECK(looks > 0);
     for (int i = 0; i < 100; ++i) CHECK_FALSE(occlusion.is_due());
     CHECK(occlusion.counts().looks == looks);
+    CHECK(occlusion.counts().walks == walks);  // nor asks any at all
     // Paint in one corner: its brick and those beside it.
     Annotator annotator(renderer());
     annotator.paint({.brush = Brush::fill, .group = 2, .radius_voxels = 3.0, .path = {{6, 6, 6}}});

@@ -47,8 +47,8 @@ class Quality(Seen):
         shown, render, pictures = "interactive", {}, {}
         for name in [*names, "draft"]:  # at last from the most exact to the fastest: every key comes back
             begun = len(self.done())
-            left, top, _, _ = next(seen for seen in self.seen("Quality") if seen["text"] == "Quality")["box"]
-            on_row = [seen for seen in self.seen(shown) if abs(seen["box"][1] - top) < 4 and seen["box"][2] < left]
+            _, top, right, _ = next(seen for seen in self.seen("Quality") if seen["text"] == "Quality")["box"]
+            on_row = [seen for seen in self.seen(shown) if abs(seen["box"][1] - top) < 4 and seen["box"][0] > right]
             x, y = self.middle_of(on_row[-1])
             self.do("mousemove", x, y, pause_s=0.2)
             self.do("click", 1, pause_s=0.3)

@@ -122,6 +122,33 @@ TEST_CASE("what kernels read often is in the device's own memory where the host 
     }
 }
 
+TEST_CASE("a GPU computes the light of many bricks at once, to the bits of a few at a time")
+{
+    Session session = plain_session({{0.0, RED, 0.05}, {255.0, BLUE, 0.3}}, {64, 64});
+    session.light.shaded = true;
+    session.render.sampling = Sampling::exact;
+    session.light.occlusion = {.strength = 0.9, .radius = 6.0, .rays = 8};
+    // 125 bricks: more than a row of columns of them (shaders/occlusion/occlusion.h).
+    const std::shared_ptr<const VolumeSource> source = open_procedural({.kind = "ramp", .size = {160, 160, 160}});
+    const Camera camera = camera_looking("front", source->info());
+    const auto drawn = [&](Renderer& renderer, int& slices) {
+        renderer.load(source, BYTES, session.render, true);
+        const Picture picture = renderer.render(session, camera);
+        CHECK(picture.complete);
+        CHECK(renderer.scene().occlusion().counts().values == 125);
+        for (const gpu::PassReport& pass : picture.passes)
+            if (pass.name == "occlusion_bake") slices = int(pass.dispatches);
+        return picture.image;
+    };
+    int few = 0, many = 0;
+    Renderer plain({.device = {"", true}, .threads = 1});
+    const ImageF expected = drawn(plain, few);
+    On device("nvidia");
+    CHECK(different_bits(drawn(*device, many), expected) == 0);
+    CHECK(few >= 8);
+    CHECK(many == 1);
+}
+
 TEST_CASE("small buffers share allocations, of which a device may allow few")
 {
     On device("minimum");
