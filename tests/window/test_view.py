@@ -415,7 +415,9 @@ class View(Window):
 
     def test_a_window_that_grows_over_the_budget_says_so_and_recovers(self):
         session = self.write_ball()
-        self.start(session, "--budget-device", 12)
+        # Validation (1.3.239) of barriers between submissions falls over, on a busy machine, in the vkDeviceWaitIdle
+        # before a new swapchain is made: a segmentation fault of the layer's own, once in about 60 times.
+        self.start(session, "--budget-device", 12, environment={"VK_LAYER_ENABLES": ""})
         self.wait_for_window("sphere.* - SHVR")
         window = self.display.do("search", "--name", "sphere.* - SHVR").split()[0]
         self.do("windowsize", window, 3000, 2400, pause_s=3)
