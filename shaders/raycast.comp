@@ -106,7 +106,6 @@ ivec2 beside(const RaycastParams params, uvec2 in_part)
 
 #include "library/rays.glsl"
 #include "library/counters.glsl"
-#include "library/group_counters.glsl"
 #ifdef MASKED
 #ifdef PAGED
 #define MASK_TABLE_HASHED
@@ -379,7 +378,7 @@ uint bricks_between(vec3 a, vec3 b)
     return uint(d.x + d.y + d.z) + 1u;
 }
 
-void draw_pixel()
+void main()
 {
     const RaycastParams params = params_block.data;
     const uvec2 in_part = thread_in_part();
@@ -531,15 +530,15 @@ void draw_pixel()
 
     if (COUNT_WORK != 0u && extent > 0.0) {
         const uint crossed = bricks_between(position_at(params, ray, block_begin), position_at(params, ray, block_end));
-        count_in_group(COUNTER_RAYS, uint(params.first_step == 0u));
-        count_in_group(COUNTER_SAMPLES, work.samples);
-        count_in_group(COUNTER_SHADED, work.shaded);
-        count_in_group(COUNTER_DENSITY_READS, density_reads);
-        count_in_group(COUNTER_LEAPS, work.leaps);
-        count_in_group(COUNTER_BRICKS_VISITED, work.bricks);
-        count_in_group(COUNTER_BRICKS_SKIPPED, crossed - min(work.bricks, crossed));
+        count(COUNTER_RAYS, uint(params.first_step == 0u));
+        count(COUNTER_SAMPLES, work.samples);
+        count(COUNTER_SHADED, work.shaded);
+        count(COUNTER_DENSITY_READS, density_reads);
+        count(COUNTER_LEAPS, work.leaps);
+        count(COUNTER_BRICKS_VISITED, work.bricks);
+        count(COUNTER_BRICKS_SKIPPED, crossed - min(work.bricks, crossed));
         const bool ends_here = KEPT == KEPT_ALL ? is_done && !was_done : is_last;
-        count_in_group(COUNTER_TERMINATED, uint(ends_here && is_stopped));
+        count(COUNTER_TERMINATED, uint(ends_here && is_stopped));
     }
 
 #ifdef KEEPS
@@ -583,11 +582,4 @@ void draw_pixel()
     }
     const float through = (1.0 - sum.a) * params.background.a;
     imageStore(color, texel, vec4(sum.rgb + through * params.background.rgb, sum.a + through));
-}
-
-void main()
-{
-    if (COUNT_WORK != 0u) begin_group_counts();
-    draw_pixel();
-    if (COUNT_WORK != 0u) end_group_counts();
 }

@@ -232,9 +232,10 @@ void PictureJob::step()
     SHVR_CHECK(!is_done());
     const PicturePart part = parts_.back();
     parts_.pop_back();
-    const bool is_paged = scene().volume().counts().has_value();
+    // A CPU that draws takes the pixels as well: it would only need more memory.
+    const bool is_paged = scene().volume().counts().has_value(), is_ahead = !is_paged && !scene().traits().is_cpu;
     try {
-        is_paged ? draw_completely(part) : draw_ahead(part);
+        is_ahead ? draw_ahead(part) : draw_completely(part);
     } catch (const gpu::MemoryError& error) {
         if (under_way_) {
             catch_up();

@@ -27,8 +27,8 @@ public:
     bool is_done() const { return parts_.empty() && band_end_ == size_.y; }
     /// Draws the next part. Of a paged volume waits for it, and for bricks: a part is drawn again until all bricks that
     /// its rays visit are on the device. A part that needs more bricks than there is room for is split into quarters,
-    /// or drawn by rays that wait for them. Where nothing is paged, waits for the part before, so that the device has
-    /// work while that one's pixels are taken. Hands on the rows of a band that is done.
+    /// or drawn by rays that wait for them. Where nothing is paged, and a GPU draws, waits for the part before, so that
+    /// the device has work while that one's pixels are taken. Hands on the rows of a band that is done.
     void step();
     /// The share of all pixels drawn so far.
     double progress() const { return double(drawn_pixels_) / double(uint64_t(size_.x) * size_.y); }

@@ -423,7 +423,7 @@ void fields(Fields& f, Measurement& measurement)
 
 namespace {
 
-const About MEASUREMENTS{.meaning = "distances that were measured; pictures do not show them",
+const About MEASUREMENTS{.meaning = "distances that were measured, which the window shows",
                          .allowed = "array of at most 1000",
                          .standard = "none"};
 static_assert(MAX_MEASUREMENTS == 1000);

@@ -125,7 +125,7 @@ void fields(Fields& f, RenderSettings& render)
         "smooth_borders", render.smooth_borders,
         {"painted groups end between voxels, where their labels, interpolated, weigh less than their neighbours'; at "
          "the middle of a voxel its own label holds, and no third one appears between two. Slices show voxels. "
-         "A picture takes up to 1.4 times as long"});
+         "A picture takes about half as long again where much is painted"});
     f.number(
         "saturation", render.saturation, SHARE,
         {"of the picture's colours, background included; 0: greys of the same luminance, for print, or for anaglyphs "

@@ -30,8 +30,11 @@ class Events(Seen):
         report = self.finish()
         self.assertEqual(sorted(report["voxels_in_group"]), ["3"])  # which it paints as well
         self.assertEqual((report["undoable"], report["redoable"]), (1, 1))
-        again = self.check_json("annotate", self.session, "--script", self.write_script("s.jsonl", [{"op": "undo"}]))
-        self.assertEqual(again["commands"], 1)
+        # The stroke that is left raised what it raised, and nothing else is raised without it.
+        self.check_refused("annotate", self.session, "--script", self.write_script("s.jsonl", [
+            {"op": "expect", "voxels_with_offset": 0}]), says=["voxels have an offset"], status=3)
+        self.check_json("annotate", self.session, "--script", self.write_script("s.jsonl", [
+            {"op": "undo"}, {"op": "expect", "voxels_with_offset": 0, "voxels_in_group": {"3": 0}}]))
 
     def test_the_light_is_dragged_on_its_ball_and_put_back_by_a_double_click(self):
         self.open_with("light")

@@ -376,6 +376,12 @@ TEST_CASE_FIXTURE(OnDevice,
     CHECK(on.bench.model().measurements.size() == 1);
     on.perform(RedoOp{});
     CHECK(on.bench.model().session.measurements == two);
+    on.perform(SaveOp{});
+    on.bench.open(on.folder.path / "scan.json", {});
+    settle(on.bench);
+    CHECK(on.bench.model().session.measurements == two);
+    on.perform(UndoOp{});
+    CHECK(on.bench.model().measurements.size() == 1);
 }
 
 TEST_CASE_FIXTURE(OnDevice, "what is under the probe is read: value, offset, group, depth, and how full the probe is")

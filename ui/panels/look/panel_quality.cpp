@@ -105,7 +105,7 @@ void quality_panel(const Model& model, Actions& actions)
     is_other |= ImGui::Checkbox("Smooth borders of groups", &render.smooth_borders);
     hint(
         "Painted groups end between voxels instead of in steps. What is painted stays the same, and slices show it. "
-        "A picture takes up to 1.4 times as long.");
+        "A picture takes about half as long again where much is painted.");
     if (is_other && !is_reset) set(actions, model, [&](Session& s) { s.render = render; });
     budget(model);
 }
