@@ -13,30 +13,34 @@ BrickSlots::BrickSlots(uint32_t count, std::function<BrickNeed(const BrickKey&)>
     for (uint32_t slot = count; slot-- > 1;) free_.push_back(slot);
 }
 
-std::optional<uint32_t> BrickSlots::find(const BrickKey& key) const
+std::vector<std::pair<BrickKey, uint32_t>> BrickSlots::placed() const
 {
-    const auto found = placed_.find(key);
-    return found == placed_.end() ? std::nullopt : std::optional(found->second);
+    std::vector<std::pair<BrickKey, uint32_t>> placed;
+    placed.reserve(placed_.size());
+    for (uint32_t slot = 1; slot < count(); ++slot)
+        if (slots_[slot].key) placed.emplace_back(*slots_[slot].key, slot);
+    return placed;
 }
 
 size_t BrickSlots::room() const
 {
     size_t room = free_.size();
-    for (const auto& [key, slot] : placed_) room += !slots_[slot].is_pinned && need_(key) == BrickNeed::none;
+    for (const Slot& slot : slots_) room += slot.key && !slot.is_pinned && need_(*slot.key) == BrickNeed::none;
     return room;
 }
 
 void BrickSlots::use(const BrickKey& key)
 {
-    if (const auto found = placed_.find(key); found != placed_.end()) slots_[found->second].used = now_;
+    if (const std::optional<uint32_t> slot = find(key)) slots_[*slot].used = now_;
 }
 
 /// Ties go to the lowest slot, so that equal histories have equal outcomes.
 void BrickSlots::list_evictable(BrickNeed below)
 {
     evictable_.clear();
-    for (const auto& [key, slot] : placed_)
-        if (!slots_[slot].is_pinned && need_(key) < below) evictable_.push_back({slots_[slot].used, slot});
+    for (uint32_t slot = 1; slot < count(); ++slot)
+        if (const Slot& at = slots_[slot]; at.key && !at.is_pinned && need_(*at.key) < below)
+            evictable_.push_back({at.used, slot});
     std::ranges::sort(evictable_, std::greater());
 }
 
@@ -70,7 +74,7 @@ std::optional<BrickSlots::Placed> BrickSlots::place(const BrickKey& key, BrickNe
         free_.pop_back();
     }
     slots_[placed.slot] = {.key = key, .used = now_, .is_pinned = is_pinned};
-    placed_[key] = placed.slot;
+    placed_.set(key, placed.slot);
     if (!is_pinned && need_(key) == BrickNeed::none) evictable_is_stale_ = true;
     return placed;
 }

@@ -7,10 +7,10 @@
 
 #include <functional>
 #include <optional>
-#include <unordered_map>
+#include <utility>
 #include <vector>
 
-#include "engine/volume/brick_key.h"
+#include "engine/bricks/brick_map.h"
 
 namespace shvr {
 
@@ -23,10 +23,11 @@ public:
     BrickSlots(uint32_t count, std::function<BrickNeed(const BrickKey&)> need);
 
     uint32_t count() const { return uint32_t(slots_.size()); }
-    /// Brick -> slot.
-    const std::unordered_map<BrickKey, uint32_t, BrickKeyHash>& placed() const { return placed_; }
+    /// Bricks and their slots, in the order of these.
+    std::vector<std::pair<BrickKey, uint32_t>> placed() const;
+    size_t placed_count() const { return placed_.size(); }
     bool contains(const BrickKey& key) const { return placed_.contains(key); }
-    std::optional<uint32_t> find(const BrickKey& key) const;
+    std::optional<uint32_t> find(const BrickKey& key) const { return placed_.find(key); }
     bool is_pinned(uint32_t slot) const { return slots_[slot].is_pinned; }
     /// Number of slots that are free, or whose bricks neither a picture nor a region needs.
     size_t room() const;
@@ -66,7 +67,7 @@ private:
 
     std::function<BrickNeed(const BrickKey&)> need_;
     std::vector<Slot> slots_;
-    std::unordered_map<BrickKey, uint32_t, BrickKeyHash> placed_;
+    BrickMap placed_;
     std::vector<uint32_t> free_;
     std::vector<Candidate> evictable_;  ///< bricks that are not needed; the next one to evict is last
     bool evictable_is_stale_ = true;

@@ -230,9 +230,11 @@ PageTree make_page_tree(const VolumeInfo& volume, int levels, const PageView& vi
     tree.counts = glm::uvec3(((volume.size - int64_t{1}) >> int64_t{tree.cell_shift}) + int64_t{1});
     tree.entries.assign(size_t(tree.counts.x) * tree.counts.y * tree.counts.z, empty_entry(1));
 
-    std::vector<std::pair<uint32_t, uint32_t>> places;  // entry, leaf
-    for (uint32_t index = 0; index < tree.leaves.size(); ++index) {
-        const BrickKey& key = tree.leaves[index].key;
+    tree.entries_of_leaves.reserve(tree.leaves.size());
+    tree.begin_of_leaf.reserve(tree.leaves.size() + 1);
+    for (const PageTree::Leaf& leaf : tree.leaves) {
+        const BrickKey& key = leaf.key;
+        tree.begin_of_leaf.push_back(uint32_t(tree.entries_of_leaves.size()));
         const int coarser = key.level + 5 - tree.cell_shift;  // log2 of the leaf's side in cells, if above 0
         const glm::ivec3 first = coarser > 0 ? key.brick << coarser : key.brick >> -coarser;
         const glm::ivec3 end = glm::min(coarser > 0 ? (key.brick + 1) << coarser : first + 1, glm::ivec3(tree.counts));
@@ -242,11 +244,14 @@ PageTree make_page_tree(const VolumeInfo& volume, int levels, const PageView& vi
                     const uint32_t cell = gpu::grid_index(glm::uvec3(x, y, z), tree.counts);
                     const uint32_t entry = entry_below(tree, cell, tree.cell_shift, key);
                     tree.entries[entry] = 0;
-                    places.emplace_back(entry, index);
+                    tree.entries_of_leaves.push_back(entry);
                 }
     }
+    tree.begin_of_leaf.push_back(uint32_t(tree.entries_of_leaves.size()));
     tree.leaf_of_entry.assign(tree.entries.size(), PageTree::NO_LEAF);
-    for (const auto& [entry, leaf] : places) tree.leaf_of_entry[entry] = leaf;
+    for (uint32_t leaf = 0; leaf < tree.leaves.size(); ++leaf)
+        for (uint32_t i = tree.begin_of_leaf[leaf]; i < tree.begin_of_leaf[leaf + 1]; ++i)
+            tree.leaf_of_entry[tree.entries_of_leaves[i]] = leaf;
     measure_distances(tree);
     return tree;
 }

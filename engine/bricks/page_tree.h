@@ -43,6 +43,8 @@ struct PageTree {
     /// `leaf_of_entry` names a leaf, the caller fills in the brick to draw for it.
     std::vector<uint32_t> entries;
     std::vector<uint32_t> leaf_of_entry;
+    /// The other way round: leaf i shows in `entries_of_leaves`[`begin_of_leaf`[i] ... `begin_of_leaf`[i + 1] - 1].
+    std::vector<uint32_t> entries_of_leaves, begin_of_leaf;
 };
 
 /// `levels` as VolumeSource::levels. `shows`: whether anything in a brick, or in the bricks below it, may be visible. A

@@ -168,6 +168,7 @@ public:
         uint64_t evictions = 0;
         uint64_t leaves = 0;                           ///< leaves of the tree
         uint64_t reached = 0;                          ///< leaves that rays visited
+        uint64_t leaves_looked_up = 0;                 ///< to say what the directory shows in their place
         uint64_t host_bytes = 0, peak_host_bytes = 0;  ///< of bricks kept on the host
         BrickStore::Counts store;
     };

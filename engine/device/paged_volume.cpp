@@ -173,23 +173,24 @@ int PagedVolume::look(const PageView& view, const Visibility& visibility)
     }
     view_ = view;
     const std::shared_ptr<const PageTree> before = tree_;
-    const std::vector<bool> reached_before = std::move(is_reached_);
+    const std::vector<bool> reached_before = std::move(is_reached_), was_reached_before = std::move(was_reached_);
     tree_ = std::make_shared<const PageTree>(
         make_page_tree(info(), levels_, view, [this](const BrickKey& key) { return shows(key); }));
-    leaf_index_.clear();
-    for (uint32_t leaf = 0; leaf < tree_->leaves.size(); ++leaf) leaf_index_[tree_->leaves[leaf].key] = leaf;
+    leaf_index_.clear(tree_->leaves.size());
+    for (uint32_t leaf = 0; leaf < tree_->leaves.size(); ++leaf) leaf_index_.set(tree_->leaves[leaf].key, leaf);
     is_reached_.assign(tree_->leaves.size(), false);
+    was_reached_.assign(tree_->leaves.size(), false);
     has_visits_ = false;
     // Bricks needed a moment ago are likely to be needed again.
     for (size_t leaf = 0; before && !is_other_look && leaf < reached_before.size(); ++leaf) {
-        if (!reached_before[leaf]) continue;
-        const auto found = leaf_index_.find(before->leaves[leaf].key);
-        if (found != leaf_index_.end()) is_reached_[found->second] = has_visits_ = true;
+        if (!reached_before[leaf] && !was_reached_before[leaf]) continue;
+        if (const std::optional<uint32_t> now = leaf_index_.find(before->leaves[leaf].key))
+            was_reached_[*now] = has_visits_ = true;
     }
     slots_.tick();
     ++reached_revision_;
     is_limited_ = false;
-    directory_is_stale_ = true;
+    note_all_changed();
     needs_changed();
     return finest_level();
 }
@@ -209,32 +210,55 @@ DeviceVolume::Presence PagedVolume::state_of(const BrickKey& key) const
     return store_.failure_of(key) ? Presence::failed : Presence::missing;
 }
 
+/// What the directory shows in the place of a leaf: its brick, the finest one above it that is there, or nothing.
+uint32_t PagedVolume::entry_of(const BrickKey& leaf) const
+{
+    const Presence state = state_of(leaf);
+    if (state == Presence::empty) return 1u << gpu::PAGE_DISTANCE_SHIFT;
+    const bool is_awaited = state == Presence::missing || (state == Presence::failed && !given_up_.contains(leaf)) ||
+                            (state == Presence::there && is_ready_ && !is_ready_(leaf));
+    if (rays_wait_ && is_awaited) return gpu::PAGE_MISSING << gpu::PAGE_LEVEL_SHIFT;
+    for (BrickKey key = leaf; key.level < levels_; key = parent_of(key))
+        if (const std::optional<uint32_t> slot = slots_.find(key))
+            return uint32_t(key.level) << gpu::PAGE_LEVEL_SHIFT | atlas_.packed(*slot);
+    return 1u << gpu::PAGE_DISTANCE_SHIFT;
+}
+
 void PagedVolume::fill_directory()
 {
-    entries_ = tree_->entries;
-    std::vector<uint32_t> entry_of_leaf(tree_->leaves.size());
-    constexpr uint32_t NOTHING = 1u << gpu::PAGE_DISTANCE_SHIFT;
-    for (size_t leaf = 0; leaf < entry_of_leaf.size(); ++leaf) {
-        BrickKey key = tree_->leaves[leaf].key;
-        entry_of_leaf[leaf] = NOTHING;
-        const Presence state = state_of(key);
-        if (state == Presence::empty) continue;
-        const bool is_awaited = state == Presence::missing || (state == Presence::failed && !given_up_.contains(key)) ||
-                                (state == Presence::there && is_ready_ && !is_ready_(key));
-        if (rays_wait_ && is_awaited) {
-            entry_of_leaf[leaf] = gpu::PAGE_MISSING << gpu::PAGE_LEVEL_SHIFT;
-            continue;
-        }
-        for (; key.level < levels_; key = parent_of(key)) {
-            const std::optional<uint32_t> slot = slots_.find(key);
-            if (!slot) continue;
-            entry_of_leaf[leaf] = uint32_t(key.level) << gpu::PAGE_LEVEL_SHIFT | atlas_.packed(*slot);
-            break;
-        }
+    const auto fill = [&](uint32_t leaf) {
+        const uint32_t entry = entry_of(tree_->leaves[leaf].key);
+        for (uint32_t i = tree_->begin_of_leaf[leaf]; i < tree_->begin_of_leaf[leaf + 1]; ++i)
+            entries_[tree_->entries_of_leaves[i]] = entry;
+        ++leaves_looked_up_;
+    };
+    if (std::exchange(all_leaves_are_stale_, false)) {
+        entries_ = tree_->entries;
+        // Powers of two: views differ, and a frame's buffers are reused if their sizes match.
+        entries_.resize(std::bit_ceil(entries_.size()));
+        for (uint32_t leaf = 0; leaf < tree_->leaves.size(); ++leaf) fill(leaf);
+    } else {
+        for (const uint32_t leaf : stale_leaves_) fill(leaf);
     }
-    for (size_t entry = 0; entry < entries_.size(); ++entry)
-        if (const uint32_t leaf = tree_->leaf_of_entry[entry]; leaf != PageTree::NO_LEAF)
-            entries_[entry] = entry_of_leaf[leaf];
+    stale_leaves_.clear();
+}
+
+void PagedVolume::note_all_changed()
+{
+    directory_is_stale_ = all_leaves_are_stale_ = true;
+}
+
+/// The brick has arrived, has gone, or is known to be empty or unreadable.
+void PagedVolume::note_changed(const BrickKey& key)
+{
+    directory_is_stale_ = true;
+    if (all_leaves_are_stale_) return;
+    if (const std::optional<uint32_t> leaf = leaf_index_.find(key))
+        stale_leaves_.push_back(*leaf);
+    else if (key.level > finest_level())  // it may stand in for leaves below it
+        all_leaves_are_stale_ = true;
+    // What waits for a brick's light waits for its neighbours as well.
+    if (is_ready_) all_leaves_are_stale_ = true;
 }
 
 int64_t PagedVolume::mask_index(const glm::ivec3& brick) const
@@ -305,8 +329,6 @@ Resource PagedVolume::upload_directory(FrameGraph& graph)
     if (!std::exchange(directory_is_stale_, false)) return graph.import("page directory", directory_.import());
     graph.unless_submitted([this] { directory_is_stale_ = true; });
     fill_directory();
-    // Powers of two: views differ, and a frame's buffers are reused if their sizes match.
-    entries_.resize(std::bit_ceil(entries_.size()));
     const uint64_t bytes = entries_.size() * sizeof(uint32_t);
     if (!directory_ || directory_.desc().bytes < bytes) {
         directory_.reset();
@@ -341,42 +363,21 @@ void PagedVolume::note_reached(const std::shared_ptr<const PageTree>& tree, std:
             uint32_t leaf = tree->leaf_of_entry[entry];
             if (leaf == PageTree::NO_LEAF) continue;
             if (tree != tree_) {  // the view has moved since
-                const auto found = leaf_index_.find(tree->leaves[leaf].key);
-                if (found == leaf_index_.end()) continue;
-                leaf = found->second;
+                const std::optional<uint32_t> now = leaf_index_.find(tree->leaves[leaf].key);
+                if (!now) continue;
+                leaf = *now;
             }
             if (is_reached_[leaf]) continue;
             is_reached_[leaf] = has_visits_ = true;
             slots_.use(tree_->leaves[leaf].key);
             if (rays_wait_ && state_of(tree_->leaves[leaf].key) == Presence::failed) {
                 given_up_.insert(tree_->leaves[leaf].key);
-                directory_is_stale_ = true;
+                note_changed(tree_->leaves[leaf].key);
             }
             ++reached_revision_;
             needs_changed();
         }
     }
-}
-
-void PagedVolume::forget_visits()
-{
-    is_reached_.assign(is_reached_.size(), false);
-    has_visits_ = false;
-    directory_is_stale_ = directory_is_stale_ || is_ready_;
-    slots_.tick();
-    ++reached_revision_;
-    is_limited_ = false;
-    needs_changed();
-}
-
-void PagedVolume::let_rays_wait(bool wait, std::function<bool(const BrickKey&)> is_ready)
-{
-    if (wait == rays_wait_) return;
-    rays_wait_ = wait;
-    is_ready_ = std::move(is_ready);
-    given_up_.clear();
-    directory_is_stale_ = true;
-    forget_visits();
 }
 
 }  // namespace shvr

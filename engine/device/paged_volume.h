@@ -95,6 +95,8 @@ private:
     void add_around(const BrickKey& key, int reach, std::unordered_set<BrickKey, BrickKeyHash>& keys) const;
     BrickNeed need_of(const BrickKey& key) const;
     bool leaf_is_reached(const BrickKey& key) const;
+    bool is_visited(size_t leaf) const { return is_reached_[leaf] || was_reached_[leaf]; }
+    bool list_wants(std::vector<BrickKey>& keys);
     void needs_changed();
     bool place(const BrickKey& key, const BrickTexels& texels, bool for_region);
     void stage(const BrickKey& key, uint32_t slot, const BrickTexels& texels);
@@ -107,7 +109,10 @@ private:
     void take_bricks(std::vector<VoxelBox>& changed);
     std::vector<BrickKey> set_region(const RegionBricks& region);
     void pin_coarse_levels();
+    uint32_t entry_of(const BrickKey& leaf) const;
     void fill_directory();
+    void note_changed(const BrickKey& key);
+    void note_all_changed();
     gpu::BrickLeapJob job_of(const BrickKey& key, uint32_t slot) const;
     int64_t mask_index(const glm::ivec3& brick) const;
 
@@ -125,15 +130,21 @@ private:
     std::optional<PageView> view_;
     Visibility visibility_;
     std::shared_ptr<const PageTree> tree_;
-    std::unordered_map<BrickKey, uint32_t, BrickKeyHash> leaf_index_;
-    std::vector<bool> is_reached_;  ///< by leaf
-    bool has_visits_ = false;       ///< whether a leaf is reached
+    BrickMap leaf_index_;
+    std::vector<bool> is_reached_;  ///< by leaf: visited by rays since the view is as it is
+    /// By leaf: visited before. As good as reached, until there is no room for both: else a camera that turns would end
+    /// with bricks that nobody sees any longer.
+    std::vector<bool> was_reached_;
+    bool has_visits_ = false;  ///< whether a leaf is reached
     bool rays_wait_ = false;
     std::function<bool(const BrickKey&)> is_ready_;
     /// Bricks that cannot be read and that rays have waited for: coarser ones are drawn from then on.
     std::unordered_set<BrickKey, BrickKeyHash> given_up_;
-    std::vector<uint32_t> entries_;  ///< the directory to be uploaded
-    bool directory_is_stale_ = true;
+    /// The directory. Leaves whose entries are to be made anew are named, or are all of them.
+    std::vector<uint32_t> entries_, stale_leaves_;
+    bool all_leaves_are_stale_ = true;
+    bool directory_is_stale_ = true;  ///< on the device
+    uint64_t leaves_looked_up_ = 0;
     bool wants_are_stale_ = true;
     bool is_limited_ = false;
     size_t pending_ = 0;                                 ///< visited leaves that are requested and can still arrive

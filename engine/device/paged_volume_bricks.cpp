@@ -17,8 +17,8 @@ constexpr size_t MAX_RENEWED_NOW = 256;
 
 bool PagedVolume::leaf_is_reached(const BrickKey& key) const
 {
-    const auto leaf = leaf_index_.find(key);
-    return leaf != leaf_index_.end() && is_reached_[leaf->second];
+    const std::optional<uint32_t> leaf = leaf_index_.find(key);
+    return leaf && is_visited(*leaf);
 }
 
 /// The bricks of its level at most `reach` away, itself included.
@@ -29,6 +29,28 @@ void PagedVolume::add_around(const BrickKey& key, int reach, std::unordered_set<
     for (int z = first.z; z <= last.z; ++z)
         for (int y = first.y; y <= last.y; ++y)
             for (int x = first.x; x <= last.x; ++x) keys.insert({key.level, {x, y, z}});
+}
+
+void PagedVolume::forget_visits()
+{
+    is_reached_.assign(is_reached_.size(), false);
+    was_reached_.assign(was_reached_.size(), false);
+    has_visits_ = false;
+    if (is_ready_) note_all_changed();
+    slots_.tick();
+    ++reached_revision_;
+    is_limited_ = false;
+    needs_changed();
+}
+
+void PagedVolume::let_rays_wait(bool wait, std::function<bool(const BrickKey&)> is_ready)
+{
+    if (wait == rays_wait_) return;
+    rays_wait_ = wait;
+    is_ready_ = std::move(is_ready);
+    given_up_.clear();
+    note_all_changed();
+    forget_visits();
 }
 
 bool PagedVolume::limit_visits(const std::vector<int>& reach)
@@ -42,7 +64,7 @@ bool PagedVolume::limit_visits(const std::vector<int>& reach)
     std::unordered_set<BrickKey, BrickKeyHash> keys;
     bool is_full = false, is_any = false;
     for (size_t leaf = 0; leaf < is_reached_.size(); ++leaf) {
-        if (!is_reached_[leaf]) continue;
+        if (!is_visited(leaf)) continue;
         std::unordered_set<BrickKey, BrickKeyHash> more;
         const BrickKey& key = tree_->leaves[leaf].key;
         add_around(key, reach.at(size_t(key.level)), more);
@@ -50,7 +72,7 @@ bool PagedVolume::limit_visits(const std::vector<int>& reach)
             more, [&](const BrickKey& near) { return !keys.contains(near) && takes_room(near); }));
         is_full = is_full || added > room;
         if (is_full) {
-            is_reached_[leaf] = false;
+            is_reached_[leaf] = was_reached_[leaf] = false;
             continue;
         }
         is_any = true;
@@ -70,7 +92,7 @@ void PagedVolume::want_around(const std::vector<int>& reach)
     std::unordered_set<BrickKey, BrickKeyHash> keys;
     for (size_t leaf = 0; tree_ && !reach.empty() && leaf < is_reached_.size(); ++leaf) {
         const BrickKey& key = tree_->leaves[leaf].key;
-        if (!is_reached_[leaf] || state_of(key) == Presence::empty) continue;
+        if (!is_visited(leaf) || state_of(key) == Presence::empty) continue;
         add_around(key, reach.at(size_t(key.level)), keys);
     }
     if (keys == around_) return;
@@ -103,13 +125,14 @@ bool PagedVolume::place(const BrickKey& key, const BrickTexels& texels, bool for
     known_ranges_[key] = texels.range;
     if (slots_.contains(key)) return true;
     if (!for_region && state_of(key) == Presence::empty) {
-        directory_is_stale_ = true;
+        note_changed(key);
         return true;
     }
     const bool is_pinned = std::ranges::find(coarse_, key) != coarse_.end();
     const std::optional<BrickSlots::Placed> placed =
         slots_.place(key, for_region ? BrickNeed::region : BrickNeed::picture, is_pinned);
     if (!placed) return false;
+    if (placed->evicted) note_changed(*placed->evicted);
     stage(key, placed->slot, texels);
     return true;
 }
@@ -118,7 +141,7 @@ void PagedVolume::stage(const BrickKey& key, uint32_t slot, const BrickTexels& t
 {
     ++places_revision_;
     leap_jobs_.push_back(key);
-    directory_is_stale_ = true;
+    note_changed(key);
     atlas_.stage(slot, texels);
 }
 
@@ -144,7 +167,7 @@ void PagedVolume::renew(std::span<const VoxelBox> changed)
         }
     }
     atlas_.flush();
-    directory_is_stale_ = true;
+    note_all_changed();
     needs_changed();
     rebuild_tree();
 }
@@ -155,38 +178,47 @@ void PagedVolume::rebuild_tree()
     if (!view_) return;
     const PageView view = *std::exchange(view_, std::nullopt);
     look(view, visibility_);
+    std::swap(is_reached_, was_reached_);
+}
+
+/// Adds the bricks that the picture misses, nearest first. False where there is no room for all.
+bool PagedVolume::list_wants(std::vector<BrickKey>& keys)
+{
+    // Bricks that are on the device, or will be.
+    size_t room = slots_.room();
+    room -= std::min(room, keys.size());
+    pending_ = 0;
+    const auto add = [&](const BrickKey& key) {
+        if (pending_ == room) return false;
+        ++pending_;
+        keys.push_back(key);
+        return true;
+    };
+    for (size_t leaf = 0; tree_ && leaf < is_reached_.size(); ++leaf) {
+        const BrickKey& key = tree_->leaves[leaf].key;
+        if (is_visited(leaf) && state_of(key) == Presence::missing && !add(key)) return false;
+    }
+    for (const BrickKey& key : around_)
+        if (state_of(key) == Presence::missing && !leaf_is_reached(key) && !add(key)) return false;
+    return true;
 }
 
 void PagedVolume::update_wants()
 {
     if (!std::exchange(wants_are_stale_, false)) return;
-    std::vector<BrickKey> keys;
+    std::vector<BrickKey> needed;
     for (const BrickKey& key : region_)
-        if (!slots_.contains(key) && !store_.failure_of(key)) keys.push_back(key);
+        if (!slots_.contains(key) && !store_.failure_of(key)) needed.push_back(key);
     for (const BrickKey& key : coarse_)
-        if (!slots_.contains(key) && !store_.failure_of(key)) keys.push_back(key);
-    // Bricks that are on the device, or will be.
-    size_t room = slots_.room();
-    room -= std::min(room, keys.size());
-    pending_ = 0;
-    is_limited_ = false;
-    for (size_t leaf = 0; tree_ && leaf < is_reached_.size(); ++leaf) {
-        if (!is_reached_[leaf] || state_of(tree_->leaves[leaf].key) != Presence::missing) continue;
-        if (pending_ == room) {
-            is_limited_ = true;
-            break;
-        }
-        ++pending_;
-        keys.push_back(tree_->leaves[leaf].key);
-    }
-    for (const BrickKey& key : around_) {
-        if (state_of(key) != Presence::missing || leaf_is_reached(key)) continue;
-        if (pending_ == room) {
-            is_limited_ = true;
-            break;
-        }
-        ++pending_;
-        keys.push_back(key);
+        if (!slots_.contains(key) && !store_.failure_of(key)) needed.push_back(key);
+    std::vector<BrickKey> keys = needed;
+    is_limited_ = !list_wants(keys);
+    if (is_limited_ && std::ranges::find(was_reached_, true) != was_reached_.end()) {
+        was_reached_.assign(was_reached_.size(), false);
+        ++reached_revision_;
+        slots_.needs_changed();
+        keys = std::move(needed);
+        is_limited_ = !list_wants(keys);
     }
     store_.want(std::move(keys));
 }
@@ -216,7 +248,7 @@ void PagedVolume::take_bricks(std::vector<VoxelBox>& changed)
         const bool for_region =
             region_.contains(finished.key) || std::ranges::find(coarse_, finished.key) != coarse_.end();
         if (!finished.texels) {
-            directory_is_stale_ = true;
+            note_changed(finished.key);
             ++reached_revision_;
             continue;
         }
@@ -239,7 +271,7 @@ size_t PagedVolume::missing() const
     if (rays_wait_) return given_up_.size();
     size_t count = 0;
     for (size_t leaf = 0; leaf < is_reached_.size(); ++leaf)
-        count += is_reached_[leaf] && state_of(tree_->leaves[leaf].key) == Presence::failed;
+        count += is_visited(leaf) && state_of(tree_->leaves[leaf].key) == Presence::failed;
     return count;
 }
 
@@ -319,12 +351,15 @@ void PagedVolume::note_painted(const Mask& mask, std::span<const int64_t> bricks
 
 std::optional<DeviceVolume::Counts> PagedVolume::counts() const
 {
+    uint64_t reached = 0;
+    for (size_t leaf = 0; leaf < is_reached_.size(); ++leaf) reached += is_visited(leaf);
     return Counts{.slots = slots_.count() - 1,
-                  .resident = slots_.placed().size(),
+                  .resident = slots_.placed_count(),
                   .uploads = atlas_.uploads(),
                   .evictions = slots_.evictions(),
                   .leaves = is_reached_.size(),
-                  .reached = uint64_t(std::ranges::count(is_reached_, true)),
+                  .reached = reached,
+                  .leaves_looked_up = leaves_looked_up_,
                   .host_bytes = store_.bytes(),
                   .peak_host_bytes = store_.peak_bytes(),
                   .store = store_.counts()};

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include <doctest/doctest.h>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "engine/live/annotator.h"
 #include "engine/live/view.h"
@@ -75,6 +76,21 @@ public:
 
 private:
     Source source_;
+};
+
+/// One value everywhere, with all its levels: as large as one likes.
+class Plain final : public VolumeSource {
+public:
+    Plain(const Size3& size, int levels) : VolumeSource({.name = "plain", .size = size}), levels_(levels) {}
+    void read(const VoxelBox& box, std::span<std::byte> voxels) const override { read_level(0, box, voxels); }
+    int levels() const override { return levels_; }
+    void read_level(int, const VoxelBox&, std::span<std::byte> voxels) const override
+    {
+        std::ranges::fill(voxels, std::byte{200});
+    }
+
+private:
+    int levels_;
 };
 
 void settle(View& view)
@@ -156,6 +172,46 @@ TEST_CASE("only bricks that rays visit are loaded, each once")
     for (int i = 0; i < 3; ++i) CHECK(different_bits(all.renderer.render(session, camera).image, first.image) == 0);
     CHECK(all.counts().uploads == counts.uploads);
     CHECK(all.counts().store.loads == counts.store.loads);
+}
+
+TEST_CASE("of 10^5 bricks in view those that come and go are looked up; a camera that turns sees each side as it is")
+{
+    const auto source = std::make_shared<Plain>(Size3(1536), 6);
+    Session session = session_of(1.0, false);
+    session.transfer_function = TransferFunction({{0.0, WHITE, 1.0}, {255.0, WHITE, 1.0}});
+    session.render.size = {48, 48};
+    // A side has up to 1300 bricks under 48 x 48 rays, and those of all views together are more than 4000.
+    for (const uint64_t mib : {64, 256}) {
+        CAPTURE(mib);
+        Budgeted on(mib, 64);
+        on.load(source, session, Paging::always);
+        View view(on.renderer);
+        double worst_ms = 0.0;
+        for (const double degrees : {0.0, 30.0, 60.0, 90.0, 120.0}) {
+            CAPTURE(degrees);
+            Camera camera = camera_looking("front", source->info());
+            camera.eye = camera.target + glm::dvec3(glm::rotate(glm::dmat4(1.0), glm::radians(degrees), camera.up) *
+                                                    glm::dvec4(camera.eye - camera.target, 0.0));
+            const DeviceVolume::Counts before = on.counts();
+            const auto begin = std::chrono::steady_clock::now();
+            view.look(session, camera, session.render.size);
+            view.advance();
+            const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - begin;
+            if (degrees > 0.0) worst_ms = std::max(worst_ms, taken.count());
+            settle(view);
+            const DeviceVolume::Counts after = on.counts();
+            CHECK(after.leaves > 90'000);
+            CHECK(after.uploads > before.uploads);
+            CHECK((on.renderer.volume().state() == DeviceVolume::State::complete) == (mib == 256));
+            // Once more where bricks of the coarse levels arrive, which may stand for any leaf.
+            const uint64_t all = degrees == 0.0 ? 4 : 1;
+            CHECK(after.leaves_looked_up - before.leaves_looked_up >= after.leaves);
+            CHECK(after.leaves_looked_up - before.leaves_looked_up <=
+                  all * after.leaves + (after.uploads - before.uploads) + (after.evictions - before.evictions));
+        }
+        CHECK(on.counts().evictions > 0);
+        MESSAGE(mib, " MiB: a view of ", on.counts().leaves, " bricks takes the thread that asks ", worst_ms, " ms");
+    }
 }
 
 TEST_CASE("a view of paged bricks comes to rest on the direct picture and then does nothing")
