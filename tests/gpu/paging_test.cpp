@@ -2,6 +2,7 @@
 // unreadable bricks are reported.
 
 #include <chrono>
+#include <random>
 
 #include <doctest/doctest.h>
 #include <glm/gtc/matrix_transform.hpp>
@@ -211,6 +212,48 @@ TEST_CASE("of 10^5 bricks in view those that come and go are looked up; a camera
         }
         CHECK(on.counts().evictions > 0);
         MESSAGE(mib, " MiB: a view of ", on.counts().leaves, " bricks takes the thread that asks ", worst_ms, " ms");
+    }
+}
+
+TEST_CASE("the directory is the same, entry by entry, whether made anew or only where bricks came and went")
+{
+    const auto source = std::make_shared<Plain>(Size3(512), 4);
+    Session session = session_of(0.3, false);
+    for (const double detail : {0.0, 2.0}) {
+        CAPTURE(detail);
+        session.render.detail = detail;
+        Budgeted on(48, 64);
+        on.load(source, session, Paging::always);
+        DeviceVolume& volume = on.renderer.volume();
+        const auto directory = [&] {
+            FrameGraph graph;
+            const VolumeBinding bound = volume.prepare(graph, on.renderer.scene().mask(), std::nullopt, false);
+            const uint32_t back = graph.read_back(bound.pages->directory);
+            return on.renderer.executor().run(graph).read_backs[back];
+        };
+        const auto made_anew = [&] {
+            volume.let_rays_wait(true);
+            volume.let_rays_wait(false);
+            return directory();
+        };
+        View view(on.renderer);
+        view.look(session, camera_looking("front", source->info()), session.render.size);
+        settle(view);
+        const std::vector<std::byte> first = directory();
+        CHECK(made_anew() == first);
+        std::mt19937 random(7);
+        std::vector<std::byte> before = first;
+        int changes = 0;
+        for (int i = 0; i < 30; ++i) {
+            const Size3 lower(random() % 440, random() % 440, random() % 440);
+            REQUIRE(volume.region({lower, lower + int64_t{64}}, true));
+            const std::vector<std::byte> patched = directory();
+            REQUIRE(made_anew() == patched);
+            changes += patched != before;
+            before = patched;
+        }
+        if (detail == 0.0) CHECK(changes > 10);
+        CHECK(on.counts().evictions > 30);
     }
 }
 
