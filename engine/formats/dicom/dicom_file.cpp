@@ -17,11 +17,12 @@
 #include <mutex>
 #include <ostream>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
-#include "engine/formats/dicom/dicom_layout.h"
+#include "engine/formats/dicom/dicom_jpeg.h"
 
 namespace shvr {
 namespace {
@@ -33,6 +34,8 @@ constexpr int64_t MAX_FRAMES = 65536;
 /// A larger decoded slice must have a minimum of bytes in its file; no codec compresses real slices better.
 constexpr int64_t LARGE_SLICE = int64_t{64} << 20;
 constexpr int64_t MAX_EXPANSION = 1000;
+/// The storage class of pictures of magnetic resonance.
+constexpr std::string_view RESONANCE = "1.2.840.10008.5.1.4.1.1.4";
 
 /// Held while GDCM runs, which it silences: GDCM would write to standard error, and its decoders to C's `stderr`, which
 /// therefore points to /dev/null meanwhile (the GNU C library allows assigning it; file descriptor 2, which sanitizers
@@ -311,11 +314,25 @@ void check_types(const DataSet& set, const std::filesystem::path& path)
     }
 }
 
+/// GDCM's readers of pictures end the program where magnetic resonance states an intercept and no slope.
+void check_rescale(const gdcm::File& file, const std::filesystem::path& path)
+{
+    const DataSet& set = file.GetDataSet();
+    const Tag intercept(0x0028, 0x1052), slope(0x0028, 0x1053), storage(0x0008, 0x0016), modality(0x0008, 0x0060);
+    if (!set.FindDataElement(intercept) && !set.FindDataElement(slope)) return;
+    const Values values({&set}), header({&file.GetHeader()});
+    const bool is_resonance = values.text(storage) == RESONANCE || values.text(modality) == "MR" ||
+                              header.text(Tag(0x0002, 0x0002)) == RESONANCE;
+    if (is_resonance && values.text(slope).empty())
+        fail(path.string(), ": Rescale Slope is missing beside Rescale Intercept; expected both, or neither");
+}
+
 }  // namespace
 
 std::optional<DicomFile> read_dicom_file(const std::filesystem::path& path)
 {
-    const std::optional<DicomLayout> layout = check_dicom_layout(open_input_file(path));
+    const InputFile input = open_input_file(path);
+    const std::optional<DicomLayout> layout = check_dicom_layout(input);
     if (!layout || layout->pixel_bytes == 0) return {};
     const Turn turn;
     gdcm::Reader reader;
@@ -325,7 +342,9 @@ std::optional<DicomFile> read_dicom_file(const std::filesystem::path& path)
     try {
         if (!reader.ReadUpToTag(pixels, {pixels})) fail(path.string(), ": GDCM cannot read it; expected a DICOM file");
         check_types(reader.GetFile().GetDataSet(), path);
+        check_rescale(reader.GetFile(), path);
         read_values(reader.GetFile().GetDataSet(), *layout, file);
+        if (is_jpeg(layout->transfer_syntax)) check_jpeg_headers(input, layout->fragments, file.columns, file.rows);
     } catch (const Error&) {
         throw;
     } catch (const std::exception& error) {

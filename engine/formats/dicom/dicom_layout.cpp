@@ -4,6 +4,7 @@
 #include <array>
 #include <iomanip>
 #include <string_view>
+#include <utility>
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
@@ -214,6 +215,7 @@ private:
             const int64_t item_end = end_of(item, end);
             if (are_fragments) {
                 layout_.pixel_bytes += item.length;
+                if (std::exchange(has_offsets_, true)) layout_.fragments.push_back({item.value_at, item.length});
             } else {
                 walk_elements(item.value_at, item_end, encoding, depth, false);
             }
@@ -225,6 +227,7 @@ private:
 
     const InputFile& file_;
     DicomLayout layout_;
+    bool has_offsets_ = false;  ///< the first item of Pixel Data is their table
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/formats/voxel_bytes.h"
 
@@ -15,6 +16,10 @@ struct DicomLayout {
     std::string transfer_syntax;  ///< its UID
     int64_t pixel_bytes = 0;      ///< of Pixel Data, as stored; 0 if there is none
     bool is_encapsulated = false;
+    struct Fragment {
+        int64_t at = 0, bytes = 0;
+    };
+    std::vector<Fragment> fragments;  ///< of encapsulated Pixel Data, without the table of offsets before them
 };
 
 /// Nothing if `file` is not a DICOM file. Fails if lengths do not fit into each other or into the file.
