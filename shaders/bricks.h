@@ -15,6 +15,7 @@ SHARED_CONST uint BRICK_TEXELS = 34u;  // BRICK_SIZE + 2 * BRICK_APRON
 SHARED_CONST uint CELL_SIZE = 4u;      // a cell of the leap grid, in voxels a side
 SHARED_CONST uint BRICK_CELLS = 8u;    // BRICK_SIZE / CELL_SIZE
 SHARED_CONST uint NO_SLOT = 0u;
+SHARED_CONST uint MAX_ATLASES = 4u;  // images that an atlas of paged bricks may be made of (library/atlas.glsl)
 
 /// Linear index of a brick (or cell) in a grid of `counts`, x fastest.
 SHARED_FUNCTION uint grid_index(uvec3 position, uvec3 counts)
@@ -23,7 +24,7 @@ SHARED_FUNCTION uint grid_index(uvec3 position, uvec3 counts)
 }
 
 /// The position of a slot in its atlas, in slots, 8 bits per axis: rays need no division, and atlases have up to 255
-/// slots a side. Slot 0, the first corner, never holds a brick.
+/// slots a side, stacked ones together. Slot 0, the first corner, never holds a brick.
 SHARED_FUNCTION uint pack_slot(uvec3 slot)
 {
     return slot.x | slot.y << 8u | slot.z << 16u;

@@ -82,8 +82,10 @@ layout(binding = 7, rgba32f) uniform readonly image2D groups;
 #endif
 
 #ifdef OCCLUDED
+// Light follows a curve of points, not a power (occlusion.h).
+layout(constant_id = 14) const uint OCCLUSION_MAPPED = 0u;
 layout(binding = 10, r8ui) uniform readonly uimage3D occlusion;
-layout(binding = 11, scalar) readonly buffer Look { OcclusionLook data; } occlusion_look;
+layout(binding = 11, scalar) readonly buffer Look { OcclusionLook data; OcclusionSegment segments[]; } occlusion_look;
 #endif
 #ifdef SURFACED
 layout(binding = 12, rgba32f) uniform readonly image2D surfaces;   // linear RGB, length along the ray
@@ -113,6 +115,9 @@ ivec2 beside(const RaycastParams params, uvec2 in_part)
 #include "library/mask.glsl"
 #endif
 uint density_reads = 0u;
+#ifdef PAGED
+#define STACKED 16
+#endif
 #ifdef FILTERED
 #include "library/density_filtered.glsl"
 #else

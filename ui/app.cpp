@@ -5,7 +5,10 @@
 #include <limits>
 #include <utility>
 
+#include <GLFW/glfw3.h>
 #include <imgui/imgui.h>
+
+#include "ui/panels/field_keys.h"
 
 namespace shvr::ui {
 
@@ -41,6 +44,7 @@ App::App(const AppOptions& options) : options_(options), window_("SHVR", options
     gpu::DeviceOptions device = window_.device_needs();
     device.device = options.device;
     device.validation = options.validation;
+    device.looks_ahead = true;
     renderer_ = std::make_unique<Renderer>(
         Renderer::Options{.device = device, .budget = budget_of(options), .threads = options.threads});
     appearance_.scale = window_.content_scale();
@@ -89,7 +93,7 @@ void App::turn()
     } catch (const DeviceLost&) {
         throw;
     } catch (const std::exception& error) {
-        bench_->say(error.what(), Weight::error);
+        bench_->say(told_of(error), Weight::error);
     }
     apply_all();
     bench_->set_pixels(bench_->is_open() ? viewport_.pixels() : glm::uvec2(0));
@@ -133,7 +137,8 @@ void App::draw()
     } catch (const DeviceLost&) {
         throw;
     } catch (const std::exception& error) {
-        if (std::exchange(frame_failure_, error.what()) != error.what()) bench_->say(error.what(), Weight::error);
+        const std::string why = told_of(error);
+        if (std::exchange(frame_failure_, why) != why) bench_->say(why, Weight::error);
     }
     const double now = window_.now_s();
     undrawable_since_s_.reset();
@@ -213,6 +218,7 @@ double App::next_reason_to_draw_s() const
     if (bench_->shows_jobs()) return report_.last_begun_s() + SHARPEN_S;
     const bool sharpens_or_tells =
         bench_->is_open() && (bench_->document().screen.revision() != drawn_revision_ ||
+                              bench_->document().screen.complete() != drew_complete_ ||
                               bench_->document().touch.servo() || bench_->takes_large_screenshot());
     return sharpens_or_tells ? report_.last_begun_s() + SHARPEN_S : std::numeric_limits<double>::infinity();
 }
@@ -255,33 +261,66 @@ bool App::ui_has_mouse(const InputEvent& event) const
 bool App::ui_has_key(const KeyEvent& event) const
 {
     const ImGuiIO& io = ImGui::GetIO();
-    if (io.WantTextInput || choosers_have_keys()) return true;
+    if (field_has_keys() || choosers_have_keys()) return true;
     if (!bench_->model().awaits_key.empty()) return false;  // any key may be the one that is chosen
     const bool has_popup = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
     return (io.NavVisible || has_popup) && moves_in_panels(event);
 }
 
+/// Those that came behind a key that may have opened or closed a field wait for the frame that tells whose they are.
+std::vector<InputEvent> App::events_in_turn(double timeout_s)
+{
+    for (InputEvent& event : window_.wait_events(timeout_s)) held_back_.push_back(std::move(event));
+    const bool awaits_frame = held_back_in_frame_ == ImGui::GetFrameCount() && !undrawable_since_s_;
+    return awaits_frame ? std::vector<InputEvent>() : std::exchange(held_back_, {});
+}
+
+void App::hold_back(std::vector<InputEvent>& events, size_t first)
+{
+    const auto begin = events.begin() + std::ptrdiff_t(first);
+    held_back_.assign(std::move_iterator(begin), std::move_iterator(events.end()));
+    held_back_in_frame_ = ImGui::GetFrameCount();
+    events.erase(begin, events.end());
+}
+
+/// Enter and Escape where the interface has them, and what leads to a field. Before its actions are applied.
+bool App::decides_who_has_keys(const KeyEvent& event, bool is_for_ui) const
+{
+    if (!event.pressed) return false;
+    const bool ends = event.key == GLFW_KEY_ENTER || event.key == GLFW_KEY_KP_ENTER || event.key == GLFW_KEY_ESCAPE;
+    return (ends && is_for_ui) || std::ranges::any_of(actions_, [](const Action& action) {
+               return std::holds_alternative<AskOpen>(action) || std::holds_alternative<ShowPalette>(action);
+           });
+}
+
 void App::handle_events(double timeout_s)
 {
-    const std::vector<InputEvent> events = window_.wait_events(timeout_s);
-    for (const InputEvent& event : events) {
+    std::vector<InputEvent> events = events_in_turn(timeout_s);
+    for (size_t i = 0; i < events.size(); ++i) {
+        const InputEvent& event = events[i];
         keep_drawing(AFTERGLOW_S);
         const auto* const key = std::get_if<KeyEvent>(&event.what);
         if (key || std::holds_alternative<ButtonEvent>(event.what)) report_.asked(event.time_s);
+        window_.tell_ui(event);
+        bool decides = false;
         if (key) {
-            keyboard_.handle(*key, model(), ui_has_key(*key), actions_);
+            const bool is_for_ui = ui_has_key(*key);
+            keyboard_.handle(*key, model(), is_for_ui, actions_);
+            decides = decides_who_has_keys(*key, is_for_ui);
+            if (decides && !is_for_ui) ImGui::GetIO().ClearInputCharacters();  // those were of shortcuts
             if (leaves_panels(*key)) leave_panels();
         } else if (bench_->model().is_painting || !is_overtaken(events, event)) {
             viewport_.handle(event, model(), ui_has_mouse(event), actions_);
         }
         bench_->set_pointer(viewport_.pointer());
         apply_all();  // the next event may depend on it: the probe's position, the selection
+        if (decides) hold_back(events, i + 1);
     }
     if (window_.has_clicks()) keep_drawing(AFTERGLOW_S);
     viewport_.wait(window_.now_s(), actions_);
     apply_all();
     const double now = window_.now_s();
-    if (!ImGui::GetIO().WantTextInput && !choosers_have_keys())
+    if (!field_has_keys() && !choosers_have_keys())
         keyboard_.hold(
             std::min(now - last_keys_s_, 0.1), mods_held(window_), [this](int key) { return window_.is_down(key); },
             model(), actions_);

@@ -59,6 +59,7 @@ private:
     bool draw_ui();
     void try_again_soon();
     void draw_strokes() const;
+    void say_that_it_is_coming() const;
     void write_screen_texts() const;
     Model model() const;
     void keep_drawing(double for_s);
@@ -67,6 +68,9 @@ private:
     double next_reason_to_draw_s() const;
     double time_to_wait() const;
     bool ui_has_key(const KeyEvent& event) const;
+    std::vector<InputEvent> events_in_turn(double timeout_s);
+    void hold_back(std::vector<InputEvent>& events, size_t first);
+    bool decides_who_has_keys(const KeyEvent& event, bool is_for_ui) const;
     bool closes();
     bool refuses_to_close(const std::string& why);
 
@@ -82,6 +86,8 @@ private:
     Viewport viewport_;
     Keyboard keyboard_;
     Actions actions_;
+    std::vector<InputEvent> held_back_;  ///< until a frame after this one:
+    int held_back_in_frame_ = -1;
     bool was_asked_to_close_ = false;  ///< and could not save everything; nothing was done since
     bool was_stopped_ = false;         ///< from outside (AppOptions::stop)
     std::string frame_failure_;
@@ -97,6 +103,7 @@ private:
     uint64_t ui_until_frame_ = 3;               ///< and until so many frames are presented
     double last_keys_s_ = 0.0;
     uint64_t drawn_revision_ = ~uint64_t(0);
+    bool drew_complete_ = false;  ///< the interface says whether the picture is sharp
     bool drew_cut_box_ = false;
     uint64_t drawn_messages_ = 0, drawn_openings_ = 0;
     glm::dvec3 drawn_probe_voxel_{0.0};

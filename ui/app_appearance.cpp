@@ -6,6 +6,7 @@
 #include <imgui/imgui_internal.h>
 
 #include "ui/app.h"
+#include "ui/panels/field_keys.h"
 #include "ui/workbench/preferences.h"
 
 namespace shvr::ui {
@@ -61,7 +62,7 @@ void App::follow_appearance()
 void App::leave_panels() const
 {
     const bool has_popup = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
-    if (ImGui::GetIO().NavVisible && !has_popup && !ImGui::GetIO().WantTextInput) ImGui::SetWindowFocus(nullptr);
+    if (ImGui::GetIO().NavVisible && !has_popup && !field_has_keys()) ImGui::SetWindowFocus(nullptr);
 }
 
 /// Inside a frame, since windows are known by then.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <functional>
 
 #include <imgui/imgui.h>
 
@@ -59,10 +60,15 @@ bool App::draw_ui()
         draw_strokes();
         layers = document.screen.layers();
         drawn_revision_ = document.screen.revision();
+        drew_complete_ = document.screen.complete();
         drawn_probe_voxel_ = document.probe_voxel();
     }
     viewport_.set_layout(layout);
-    if (!window_.present(layers, viewport_.layout().begin)) return false;
+    // Of a software device the wait would be for this, too, and grow with it.
+    std::function<void(double)> go_on;
+    if (is_open && !renderer_->device().traits().is_cpu)
+        go_on = [this](double wait_ms) { bench_->screen().submit_ahead(wait_ms); };
+    if (!window_.present(layers, viewport_.layout().begin, go_on)) return false;
     undrawable_since_s_.reset();
     if (!options_.screen_texts.empty()) write_screen_texts();
     if (is_open && !layers.empty())
@@ -74,6 +80,8 @@ bool App::draw_ui()
                        .moves = moves,
                        .shows_picture = !layers.empty(),
                        .shows_sharp_picture = !layers.empty() && bench_->document().screen.complete()});
+    // Presented by a software device it is done; later would count the next turn, and the wait for events in it.
+    report_.done(window_.frames_done(), window_.now_s());
     return true;
 }
 
@@ -89,12 +97,25 @@ void App::write_screen_texts() const
     std::filesystem::rename(written, options_.screen_texts);
 }
 
+/// Until there is a picture.
+void App::say_that_it_is_coming() const
+{
+    const glm::dvec2 middle = 0.5 * glm::dvec2(viewport_.layout().begin + viewport_.layout().end);
+    Marks words;
+    words.labels.push_back({.at = middle,
+                            .anchor = glm::dvec2(0.5),
+                            .text = "The first picture is being made ...",
+                            .color = glm::dvec3(1.0)});
+    draw_over(
+        words, [](const glm::dvec2& at) { return ImVec2(float(at.x), float(at.y)); }, *ImGui::GetBackgroundDrawList());
+}
+
 /// The lines over each pane: the probe's outline, visible even if the probe is hidden; in maps the camera's direction;
 /// and a line towards the point where assistance pulls the probe.
 void App::draw_strokes() const
 {
     const Document& document = bench_->document();
-    if (!document.screen.shows_anything()) return;
+    if (!document.screen.shows_anything()) return say_that_it_is_coming();
     const ProbeLook look = document.probe_look();
     const TraceMarks marks = document.trace_marks();
     const ServoState* servo = document.touch.servo();

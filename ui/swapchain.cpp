@@ -10,10 +10,10 @@
 
 namespace shvr::ui {
 
-void Swapchain::check(VkResult result, const char* call)
+void Swapchain::check(VkResult result, const char* call) const
 {
     if (result == VK_ERROR_SURFACE_LOST_KHR) throw SurfaceLost(sentence(call, ": the window's surface is lost"));
-    gpu::check(result, call);
+    device_.check(result, call);
 }
 
 Swapchain::Swapchain(gpu::Device& device, gpu::Memory& memory, GLFWwindow* window)
@@ -86,9 +86,7 @@ constexpr VkImageUsageFlags USAGE = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMA
 void Swapchain::renew_surface()
 {
     device_.wait_idle();
-    acquired_.reset();
-    destroy_targets();
-    vkDestroySwapchainKHR(device_.handle(), std::exchange(swapchain_, VK_NULL_HANDLE), nullptr);
+    destroy_swapchains();
     vkDestroySurfaceKHR(device_.instance(), std::exchange(surface_, VK_NULL_HANDLE), nullptr);
     create_surface();
     const VkSurfaceFormatKHR before = format_;
@@ -201,11 +199,9 @@ void Swapchain::renew_fonts()
     create_imgui();
 }
 
-void Swapchain::create_swapchain()
+/// Nobody waits for the device: what the swapchain before still needs goes later. False where the window is minimised.
+bool Swapchain::create_swapchain()
 {
-    device_.wait_idle();
-    if (std::exchange(acquired_, std::nullopt)) renew_semaphore(frames_[next_frame_]);
-    destroy_targets();
     if (!surface_) create_surface();  // which could not be had when it was lost
     glfwGetFramebufferSize(window_, &made_for_.x, &made_for_.y);
     VkSurfaceCapabilitiesKHR& capabilities = made_of_;
@@ -220,10 +216,11 @@ void Swapchain::create_swapchain()
         extent_ = {std::clamp(uint32_t(made_for_.x), least.width, most.width),
                    std::clamp(uint32_t(made_for_.y), least.height, most.height)};
     }
-    if (extent_.width == 0 || extent_.height == 0) return;  // minimised
+    if (extent_.width == 0 || extent_.height == 0) return false;
+    mode_ = mode_of(device_.physical(), surface_);
+    waits_ms_ = {};
     uint32_t images = std::max(capabilities.minImageCount + 1, IMAGES);
     if (capabilities.maxImageCount > 0) images = std::min(images, capabilities.maxImageCount);
-    const VkSwapchainKHR old = swapchain_;
     const VkSwapchainCreateInfoKHR info{.sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR,
                                         .surface = surface_,
                                         .minImageCount = images,
@@ -235,13 +232,10 @@ void Swapchain::create_swapchain()
                                         .imageSharingMode = VK_SHARING_MODE_EXCLUSIVE,
                                         .preTransform = capabilities.currentTransform,
                                         .compositeAlpha = alpha_of(capabilities),
-                                        .presentMode = mode_of(device_.physical(), surface_),
+                                        .presentMode = mode_,
                                         .clipped = VK_TRUE,
-                                        .oldSwapchain = old};
-    swapchain_ = VK_NULL_HANDLE;
-    const VkResult result = vkCreateSwapchainKHR(device_.handle(), &info, nullptr, &swapchain_);
-    if (old) vkDestroySwapchainKHR(device_.handle(), old, nullptr);
-    check(result, "vkCreateSwapchainKHR");
+                                        .oldSwapchain = retire()};
+    check(vkCreateSwapchainKHR(device_.handle(), &info, nullptr, &swapchain_), "vkCreateSwapchainKHR");
     is_stale_ = true;  // until it has all its targets
     const auto chain = gpu::enumerate<VkImage>([&](uint32_t* count, VkImage* items) {
         SHVR_VK(vkGetSwapchainImagesKHR(device_.handle(), swapchain_, count, items));
@@ -249,6 +243,39 @@ void Swapchain::create_swapchain()
     for (VkImage image : chain) add_target(image);
     patient_acquisitions_ = uint32_t(chain.size());
     is_stale_ = false;
+    return true;
+}
+
+/// Puts the swapchain aside, with the image that was taken from it in vain; returns it, for the one that follows.
+VkSwapchainKHR Swapchain::retire()
+{
+    if (!swapchain_) return VK_NULL_HANDLE;
+    Retired& old = retired_.emplace_back();
+    old.swapchain = std::exchange(swapchain_, VK_NULL_HANDLE);
+    old.targets = std::exchange(targets_, {});
+    old.submission = last_submission_;
+    for (const Target& target : old.targets) old.presented = std::max(old.presented, target.presented);
+    if (std::exchange(acquired_, std::nullopt))
+        old.acquired = std::exchange(frames_[next_frame_].acquired, VK_NULL_HANDLE);
+    return old.swapchain;
+}
+
+/// Frees swapchains whose frames the device has drawn and the screen has taken. Vulkan does not tell the latter but by
+/// giving an image back that was shown later. While a window's edge is dragged every frame has a swapchain of its own,
+/// none of which gets an image back: of those only the last ones are kept, once the device is done with something that
+/// came after them in the queue, or nothing did.
+void Swapchain::free_retired()
+{
+    constexpr size_t MOST = 2;
+    while (!retired_.empty()) {
+        const Retired& oldest = retired_.front();
+        const bool was_taken = oldest.submission <= device_.done() && oldest.presented <= taken_;
+        const bool is_overtaken =
+            retired_.size() > MOST && (oldest.submission < device_.done() || device_.done() == device_.submitted());
+        if (!was_taken && !is_overtaken) return;
+        destroy(oldest);
+        retired_.pop_front();
+    }
 }
 
 void Swapchain::add_target(VkImage image)
@@ -274,22 +301,30 @@ void Swapchain::add_target(VkImage image)
     SHVR_VK(vkCreateSemaphore(device_.handle(), &semaphore, nullptr, &target.drawn));
 }
 
-void Swapchain::destroy_targets()
+void Swapchain::destroy(const Retired& retired) const
 {
-    for (const Target& target : targets_) {
+    for (const Target& target : retired.targets) {
         vkDestroySemaphore(device_.handle(), target.drawn, nullptr);
         vkDestroyFramebuffer(device_.handle(), target.framebuffer, nullptr);
         vkDestroyImageView(device_.handle(), target.view, nullptr);
     }
-    targets_.clear();
+    vkDestroySemaphore(device_.handle(), retired.acquired, nullptr);
+    vkDestroySwapchainKHR(device_.handle(), retired.swapchain, nullptr);
+}
+
+/// The device is idle.
+void Swapchain::destroy_swapchains()
+{
+    retire();
+    for (const Retired& retired : retired_) destroy(retired);
+    retired_.clear();
 }
 
 void Swapchain::destroy()
 {
     vkDeviceWaitIdle(device_.handle());
     if (imgui_is_ready_) ImGui_ImplVulkan_Shutdown();
-    destroy_targets();
-    vkDestroySwapchainKHR(device_.handle(), swapchain_, nullptr);
+    destroy_swapchains();
     for (const Frame& frame : frames_) {
         vkDestroyFence(device_.handle(), frame.done, nullptr);
         vkDestroySemaphore(device_.handle(), frame.acquired, nullptr);

@@ -7,6 +7,8 @@
 // The main thread.
 
 #include <array>
+#include <deque>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -22,6 +24,9 @@ public:
     /// Fails if the device cannot present to the window.
     Swapchain(gpu::Device& device, gpu::Memory& memory, GLFWwindow* window);
     ~Swapchain();
+    /// Called once the frame is on its way to the device, where a call that waits for the screen comes next: for about
+    /// so many milliseconds.
+    using Meanwhile = std::function<void(double wait_ms)>;
     Swapchain(const Swapchain&) = delete;
     Swapchain& operator=(const Swapchain&) = delete;
 
@@ -37,7 +42,7 @@ public:
     bool is_ready();
     /// As Window::present, after ImGui::Render. A frame that fails leaves nothing behind that later ones trip over; a
     /// surface that is lost is made anew, and the frame is not shown.
-    bool present(const std::vector<View::Layer>& layers, const glm::uvec2& origin);
+    bool present(const std::vector<View::Layer>& layers, const glm::uvec2& origin, const Meanwhile& meanwhile);
 
     uint64_t frames_presented() const { return presented_; }
     uint64_t frames_done() const;
@@ -50,6 +55,7 @@ private:
         VkImageView view = VK_NULL_HANDLE;
         VkFramebuffer framebuffer = VK_NULL_HANDLE;
         VkSemaphore drawn = VK_NULL_HANDLE;
+        uint64_t presented = 0;  ///< number of the last frame that was shown by it
     };
     struct Frame {
         VkCommandBuffer commands = VK_NULL_HANDLE;
@@ -57,6 +63,15 @@ private:
         VkFence done = VK_NULL_HANDLE;
         uint64_t number = 0;      ///< last frame that used it
         uint64_t submission = 0;  ///< its number (gpu::Device)
+        uint64_t follows = 0;     ///< number of the frame that the same image showed before
+    };
+    /// A swapchain that another one has replaced: the screen may still be reading from it.
+    struct Retired {
+        VkSwapchainKHR swapchain = VK_NULL_HANDLE;
+        std::vector<Target> targets;
+        VkSemaphore acquired = VK_NULL_HANDLE;  ///< of an image that nothing was drawn in
+        uint64_t submission = 0;                ///< the last that uses it
+        uint64_t presented = 0;                 ///< its last frame
     };
 
     /// Is made anew; other failures are the caller's.
@@ -64,7 +79,7 @@ private:
     public:
         using Error::Error;
     };
-    static void check(VkResult result, const char* call);
+    void check(VkResult result, const char* call) const;
     void create();
     void create_surface();
     void renew_surface();
@@ -72,18 +87,23 @@ private:
     void create_render_pass();
     void create_frames();
     void complete(Frame& frame) const;
-    void renew_semaphore(Frame& frame) const;
     void abandon(Frame& frame);
     bool prepare(Frame& frame);
     bool acquire(Frame& frame);
     bool surface_has_changed() const;
-    bool show(Frame& frame, const std::vector<View::Layer>& layers, const glm::uvec2& origin);
+    bool show(Frame& frame, const std::vector<View::Layer>& layers, const glm::uvec2& origin,
+              const Meanwhile& meanwhile);
+    VkResult hand_to_screen(const VkPresentInfoKHR& info);
+    double expected_wait_ms() const;
     template <class Try>
     bool attempt(const Try& attempted);
     void create_imgui();
-    void create_swapchain();
+    bool create_swapchain();
+    VkSwapchainKHR retire();
+    void free_retired();
     void add_target(VkImage image);
-    void destroy_targets();
+    void destroy(const Retired& retired) const;
+    void destroy_swapchains();
     void destroy();
     void record(const Frame& frame, const Target& target, const std::vector<View::Layer>& layers,
                 const glm::uvec2& origin) const;
@@ -105,10 +125,15 @@ private:
     std::optional<uint32_t> acquired_;    ///< index of the image for the next frame
     uint32_t patient_acquisitions_ = 0;   ///< of a new swapchain, that may wait a little
     std::vector<Target> targets_;
+    std::deque<Retired> retired_;  ///< the oldest first
     std::array<Frame, FRAMES_IN_FLIGHT> frames_;
     uint32_t next_frame_ = 0;
+    VkPresentModeKHR mode_ = VK_PRESENT_MODE_FIFO_KHR;
+    std::array<double, 3> waits_ms_{};  ///< of the last frames for the screen
     uint64_t presented_ = 0;
-    bool is_stale_ = false;  ///< must be made anew before the next frame
+    uint64_t taken_ = 0;            ///< number of the last frame that the screen is known to have taken from the queue
+    uint64_t last_submission_ = 0;  ///< of all frames
+    bool is_stale_ = false;         ///< must be made anew before the next frame
     bool imgui_is_ready_ = false;
 };
 

@@ -3,6 +3,8 @@
 #include "ui/swapchain.h"
 
 #include <algorithm>
+#include <chrono>
+#include <exception>
 #include <utility>
 
 #define GLFW_INCLUDE_VULKAN
@@ -137,21 +139,15 @@ void Swapchain::complete(Frame& frame) const
 }
 
 /// After a failure half way: its semaphore may be signalled and its fence never be, and an image may be acquired that
-/// is never presented. All of them go.
+/// is never presented. All of them go, and what was recorded.
 void Swapchain::abandon(Frame& frame)
 {
     device_.wait_idle_or_lost();
+    static_cast<void>(vkResetCommandBuffer(frame.commands, 0));
     acquired_.reset();
     vkDestroySemaphore(device_.handle(), std::exchange(frame.acquired, VK_NULL_HANDLE), nullptr);
     vkDestroyFence(device_.handle(), std::exchange(frame.done, VK_NULL_HANDLE), nullptr);
     is_stale_ = true;
-}
-
-/// One that nobody waits for, in place of one that may be signalled. Nothing is under way.
-void Swapchain::renew_semaphore(Frame& frame) const
-{
-    vkDestroySemaphore(device_.handle(), std::exchange(frame.acquired, VK_NULL_HANDLE), nullptr);
-    complete(frame);
 }
 
 template <class Try>
@@ -175,9 +171,20 @@ bool Swapchain::is_ready()
     return attempt([this](Frame& frame) { return prepare(frame); });
 }
 
-bool Swapchain::present(const std::vector<View::Layer>& layers, const glm::uvec2& origin)
+bool Swapchain::present(const std::vector<View::Layer>& layers, const glm::uvec2& origin, const Meanwhile& meanwhile)
 {
-    return attempt([&](Frame& frame) { return prepare(frame) && show(frame, layers, origin); });
+    // What fails meanwhile is told after the frame, which is on its way by then.
+    std::exception_ptr failure;
+    const Meanwhile safely = [&](double wait_ms) {
+        try {
+            if (meanwhile) meanwhile(wait_ms);
+        } catch (...) {
+            failure = std::current_exception();
+        }
+    };
+    const bool is_shown = attempt([&](Frame& frame) { return prepare(frame) && show(frame, layers, origin, safely); });
+    if (failure) std::rethrow_exception(failure);
+    return is_shown;
 }
 
 /// Whether the frame has an image to be drawn in.
@@ -189,8 +196,7 @@ bool Swapchain::prepare(Frame& frame)
     // Of a swapchain that is out of date when it is made another one is made at once: nobody else asks for the frame.
     for (int tries = 0; tries < 2; ++tries) {
         if (!swapchain_ || size != made_for_) is_stale_ = true;
-        if (is_stale_) create_swapchain();
-        if (targets_.empty()) return false;
+        if (is_stale_ && !create_swapchain()) return false;
         complete(frame);
         if (acquired_ || acquire(frame)) return true;
         if (!is_stale_) return false;
@@ -207,6 +213,8 @@ bool Swapchain::acquire(Frame& frame)
     check(status, "vkWaitForFences");
     if (status == VK_TIMEOUT) return false;
     device_.note_done(frame.submission);
+    taken_ = std::max(taken_, frame.follows);
+    free_retired();
     uint32_t index = 0;
     const VkResult acquired =
         vkAcquireNextImageKHR(device_.handle(), swapchain_, patient_acquisitions_ > 0 ? PATIENCE_NS : 0, frame.acquired,
@@ -234,7 +242,8 @@ bool Swapchain::surface_has_changed() const
 }
 
 /// Draws and presents the image that was acquired; false if it is lost.
-bool Swapchain::show(Frame& frame, const std::vector<View::Layer>& layers, const glm::uvec2& origin)
+bool Swapchain::show(Frame& frame, const std::vector<View::Layer>& layers, const glm::uvec2& origin,
+                     const Meanwhile& meanwhile)
 {
     const uint32_t index = *acquired_;
     record(frame, targets_[index], layers, origin);
@@ -255,10 +264,11 @@ bool Swapchain::show(Frame& frame, const std::vector<View::Layer>& layers, const
                                .pCommandBufferInfos = &commands,
                                .signalSemaphoreInfoCount = 1,
                                .pSignalSemaphoreInfos = &signal};
-    SHVR_VK(vkQueueSubmit2(device_.queue(), 1, &submit, frame.done));
+    check(vkQueueSubmit2(device_.queue(), 1, &submit, frame.done), "vkQueueSubmit2");
     acquired_.reset();
-    frame.submission = device_.note_submission();
+    frame.submission = last_submission_ = device_.note_submission();
     frame.number = ++presented_;
+    frame.follows = std::exchange(targets_[index].presented, frame.number);
     next_frame_ = (next_frame_ + 1) % FRAMES_IN_FLIGHT;
     const VkPresentInfoKHR present_info{.sType = VK_STRUCTURE_TYPE_PRESENT_INFO_KHR,
                                         .waitSemaphoreCount = 1,
@@ -266,7 +276,8 @@ bool Swapchain::show(Frame& frame, const std::vector<View::Layer>& layers, const
                                         .swapchainCount = 1,
                                         .pSwapchains = &swapchain_,
                                         .pImageIndices = &index};
-    const VkResult shown = vkQueuePresentKHR(device_.queue(), &present_info);
+    if (const double wait_ms = expected_wait_ms(); wait_ms > 0.0) meanwhile(wait_ms);
+    const VkResult shown = hand_to_screen(present_info);
     if (shown == VK_ERROR_OUT_OF_DATE_KHR)
         is_stale_ = true;
     else if (shown == VK_SUBOPTIMAL_KHR)
@@ -274,6 +285,27 @@ bool Swapchain::show(Frame& frame, const std::vector<View::Layer>& layers, const
     else
         check(shown, "vkQueuePresentKHR");
     return shown != VK_ERROR_OUT_OF_DATE_KHR;
+}
+
+/// Presents, and learns how long that waits for the screen: where each image is shown in turn, many drivers wait until
+/// there is room for another one.
+VkResult Swapchain::hand_to_screen(const VkPresentInfoKHR& info)
+{
+    const auto begun = std::chrono::steady_clock::now();
+    const VkResult result = vkQueuePresentKHR(device_.queue(), &info);
+    const std::chrono::duration<double, std::milli> waited = std::chrono::steady_clock::now() - begun;
+    std::ranges::rotate(waits_ms_, waits_ms_.begin() + 1);
+    waits_ms_.back() = waited.count();
+    return result;
+}
+
+/// For the screen, when the next image is handed to it; 0: none that is worth filling.
+double Swapchain::expected_wait_ms() const
+{
+    constexpr double LEAST_MS = 1.0, MOST_MS = 50.0;  // longer waits are of a screen that is slow for now
+    // One frame that waited says nothing; and where a newer image replaces the one before, none waits.
+    const double wait_ms = std::min(*std::ranges::min_element(waits_ms_), MOST_MS);
+    return mode_ == VK_PRESENT_MODE_FIFO_KHR && wait_ms >= LEAST_MS ? wait_ms : 0.0;
 }
 
 uint64_t Swapchain::frames_done() const

@@ -8,6 +8,7 @@
 #include <backends/imgui_impl_glfw.h>
 #include <imgui/imgui.h>
 
+#include "engine/gpu/live_trace.h"
 #include "ui/mouse_feed.h"
 #include "ui/swapchain.h"
 
@@ -105,14 +106,18 @@ struct Window::Input {
                (down(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT) ? GLFW_MOD_SHIFT : 0) |
                (down(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT) ? GLFW_MOD_ALT : 0);
     }
-    /// Call before Dear ImGui installs its own callbacks, which call these.
-    void listen() const
+    /// Call after Dear ImGui has installed its own callbacks, which these replace (Window::tell_ui).
+    void listen_to_keys() const
     {
         glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
             const char* const character = glfwGetKeyName(key, scancode);
-            if (action == GLFW_PRESS && key >= 0) of(w).pressed.push_back(key);
             add(w, KeyEvent{key, mods, action != GLFW_RELEASE, action == GLFW_REPEAT, character ? character : ""});
         });
+        glfwSetCharCallback(window, [](GLFWwindow* w, unsigned character) { add(w, TextEvent{character}); });
+    }
+    /// Call before, since those call these.
+    void listen() const
+    {
         glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int mods) {
             of(w).mouse.add(button, action == GLFW_PRESS, cursor(w), of(w).earliest_s(), glfwGetTime());
             add(w, ButtonEvent{button, mods, action == GLFW_PRESS, cursor(w)});
@@ -130,7 +135,6 @@ struct Window::Input {
         glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { add(w, DamageEvent{}); });
         glfwSetWindowContentScaleCallback(window, [](GLFWwindow* w, float, float) { add(w, DamageEvent{}); });
         glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { add(w, DamageEvent{}); });
-        glfwSetCharCallback(window, [](GLFWwindow*, unsigned) {});
     }
 };
 
@@ -150,6 +154,7 @@ Window::Window(const std::string& title, const glm::uvec2& size) : input_(std::m
     ImGui::GetIO().IniFilename = nullptr;  // no settings file in the working directory
     ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
     ImGui_ImplGlfw_InitForVulkan(input_->window, true);
+    input_->listen_to_keys();
 }
 
 Window::~Window()
@@ -249,6 +254,16 @@ std::vector<InputEvent> Window::wait_events(double timeout_s)
     return std::exchange(input_->events, {});
 }
 
+void Window::tell_ui(const InputEvent& event)
+{
+    if (const auto* text = std::get_if<TextEvent>(&event.what))
+        ImGui_ImplGlfw_CharCallback(input_->window, text->character);
+    const auto* const key = std::get_if<KeyEvent>(&event.what);
+    if (!key || key->repeated || key->key < 0) return;
+    if (key->pressed) input_->pressed.push_back(key->key);
+    ImGui_ImplGlfw_KeyCallback(input_->window, key->key, 0, key->pressed ? GLFW_PRESS : GLFW_RELEASE, key->mods);
+}
+
 bool Window::is_down(int key) const
 {
     return glfwGetKey(input_->window, key) == GLFW_PRESS;
@@ -285,11 +300,14 @@ void Window::begin_ui()
     for (const int key : pressed) down[key] = is_down(key);
 }
 
-bool Window::present(const std::vector<View::Layer>& layers, const glm::uvec2& origin)
+bool Window::present(const std::vector<View::Layer>& layers, const glm::uvec2& origin,
+                     const std::function<void(double wait_ms)>& meanwhile)
 {
     ImGui::Render();
     input_->frame_is_open = false;
-    return swapchain_->present(layers, origin);
+    const bool is_shown = swapchain_->present(layers, origin, meanwhile);
+    gpu::trace_frame();
+    return is_shown;
 }
 
 bool Window::swaps_red_and_blue() const

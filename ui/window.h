@@ -6,12 +6,13 @@
 //     window.attach(renderer.device(), renderer.memory());
 //     while (!window.should_close()) {
 //         for (const InputEvent& event : window.wait_events(0.01)) ...
-//         window.begin_ui(); ... ImGui calls ...; window.present(layers, origin);
+//         window.begin_ui(); ... ImGui calls ...; window.present(layers, origin, {});
 //     }
 //     window.detach();                                       // before the device is destroyed
 //
 // The main thread.
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <variant>
@@ -28,6 +29,10 @@ struct KeyEvent {
     bool pressed = false;
     bool repeated = false;
     std::string character{};  ///< that it stands for in the person's layout, without modifiers; empty: none, or unknown
+};
+/// A character that was typed, by whatever keys.
+struct TextEvent {
+    char32_t character = 0;
 };
 struct ButtonEvent {
     int button = 0;  ///< GLFW_MOUSE_BUTTON_*
@@ -50,7 +55,7 @@ struct DropEvent {
 struct DamageEvent {};
 /// Positions are in pixels of the frame buffer.
 struct InputEvent {
-    std::variant<KeyEvent, ButtonEvent, MoveEvent, ScrollEvent, DropEvent, DamageEvent> what;
+    std::variant<KeyEvent, TextEvent, ButtonEvent, MoveEvent, ScrollEvent, DropEvent, DamageEvent> what;
     double time_s = 0.0;         ///< when it was received
     double earliest_s = time_s;  ///< it happened no sooner: what comes while a long frame is drawn is received after it
 };
@@ -82,6 +87,9 @@ public:
 
     /// Waits for events, at most that long (0: not at all), and returns them.
     std::vector<InputEvent> wait_events(double timeout_s);
+    /// Lets the interface know a key or a character in its next frame: in the order of events, and no sooner than it is
+    /// its turn.
+    void tell_ui(const InputEvent& event);
     /// Whether a key is held down.
     bool is_down(int key) const;
     /// Whether the interface has not been told of all presses of buttons yet: each frame tells one.
@@ -98,7 +106,10 @@ public:
     void renew_fonts();
     /// Draws the layers with their upper left corner at `origin`, the interface over them, and shows the frame. False
     /// if there is nothing to draw on (minimised, hidden), or if the frame was lost: draw it again.
-    bool present(const std::vector<View::Layer>& layers, const glm::uvec2& origin);
+    /// Where that will wait for the screen, `meanwhile` is called with for how long, once the frame is on its way to
+    /// the device; it may be empty.
+    bool present(const std::vector<View::Layer>& layers, const glm::uvec2& origin,
+                 const std::function<void(double wait_ms)>& meanwhile);
 
     /// Frames submitted to the device, and those it has finished, which are visible. Never waits.
     uint64_t frames_presented() const;

@@ -87,16 +87,17 @@ constexpr Sensitivity RED_GREEN{1.0, 0.0053, 0.0, 1e-5};
 constexpr Sensitivity BLUE_YELLOW{34.1, 0.04, 13.5, 0.025};
 
 /// The sum is normalised so that its weights in the plane add up to 1; each of its Gaussians is separable.
-Plane blurred_as_seen(const Plane& plane, const Sensitivity& sensitivity, double pixels_per_degree)
+Plane blurred_as_seen(const Plane& plane, const Sensitivity& sensitivity, double pixels_per_degree,
+                      FilterProgress& progress)
 {
     const auto sigma_of = [&](double b) { return std::sqrt(b / 2.0) / std::numbers::pi * pixels_per_degree; };
     // One radius for all channels: 3 sigma of the widest Gaussian.
     const int radius = int(std::ceil(3.0 * sigma_of(BLUE_YELLOW.b1)));
     const auto weights1 = gaussian_weights(sigma_of(sensitivity.b1), radius);
-    Plane result = filtered(plane, weights1, weights1);
+    Plane result = filtered(plane, weights1, weights1, progress);
     if (sensitivity.a2 == 0.0) return result;
     const auto weights2 = gaussian_weights(sigma_of(sensitivity.b2), radius);
-    const Plane second = filtered(plane, weights2, weights2);
+    const Plane second = filtered(plane, weights2, weights2, progress);
     // The middle weight of a kernel that sums to 1 is 1 over the sum of the unscaled kernel.
     const auto volume_of = [&](double a, double b, const std::vector<double>& weights) {
         const double middle = weights[size_t(radius)];
@@ -110,11 +111,11 @@ Plane blurred_as_seen(const Plane& plane, const Sensitivity& sensitivity, double
     return result;
 }
 
-Planes seen(const Planes& ycxcz, double pixels_per_degree)
+Planes seen(const Planes& ycxcz, double pixels_per_degree, FilterProgress& progress)
 {
-    return {blurred_as_seen(ycxcz[0], ACHROMATIC, pixels_per_degree),
-            blurred_as_seen(ycxcz[1], RED_GREEN, pixels_per_degree),
-            blurred_as_seen(ycxcz[2], BLUE_YELLOW, pixels_per_degree)};
+    return {blurred_as_seen(ycxcz[0], ACHROMATIC, pixels_per_degree, progress),
+            blurred_as_seen(ycxcz[1], RED_GREEN, pixels_per_degree, progress),
+            blurred_as_seen(ycxcz[2], BLUE_YELLOW, pixels_per_degree, progress)};
 }
 
 glm::dvec3 hunt_lab_at(const Planes& ycxcz, size_t pixel)
@@ -154,17 +155,18 @@ void balance(std::vector<double>& weights)
 }
 
 /// Length of the vector of two filtered pictures: `derivative` along x with `smooth` along y, and the other way round.
-Plane magnitude(const Plane& plane, const std::vector<double>& derivative, const std::vector<double>& smooth)
+Plane magnitude(const Plane& plane, const std::vector<double>& derivative, const std::vector<double>& smooth,
+                FilterProgress& progress)
 {
-    Plane result = filtered(plane, derivative, smooth);
-    const Plane vertical = filtered(plane, smooth, derivative);
+    Plane result = filtered(plane, derivative, smooth, progress);
+    const Plane vertical = filtered(plane, smooth, derivative, progress);
     for (size_t pixel = 0; pixel < result.values.size(); ++pixel) {
         result.values[pixel] = std::hypot(result.values[pixel], vertical.values[pixel]);
     }
     return result;
 }
 
-Features features_of(Plane brightness, double pixels_per_degree)
+Features features_of(Plane brightness, double pixels_per_degree, FilterProgress& progress)
 {
     constexpr double WIDTH_DEGREES = 0.082;
     const double sigma = 0.5 * WIDTH_DEGREES * pixels_per_degree;
@@ -179,7 +181,7 @@ Features features_of(Plane brightness, double pixels_per_degree)
     balance(first);
     balance(second);
     for (double& y : brightness.values) y = (y + 16.0) / 116.0;
-    return {magnitude(brightness, first, smooth), magnitude(brightness, second, smooth)};
+    return {magnitude(brightness, first, smooth, progress), magnitude(brightness, second, smooth, progress)};
 }
 
 double feature_distance(const Features& a, const Features& b, size_t pixel)
@@ -192,17 +194,21 @@ double feature_distance(const Features& a, const Features& b, size_t pixel)
 
 }  // namespace
 
-std::vector<double> flip_map(const Image8& a, const Image8& b, double pixels_per_degree)
+std::vector<double> flip_map(const Image8& a, const Image8& b, double pixels_per_degree, const Progress& progress)
 {
     SHVR_CHECK(a.width == b.width && a.height == b.height && a.rgba.size() == b.rgba.size());
     SHVR_CHECK(pixels_per_degree > 0.0, pixels_per_degree);
+    constexpr size_t PIXELS_TOLD = 1 << 16;
     const Planes ycxcz_a = ycxcz_planes(a), ycxcz_b = ycxcz_planes(b);
-    const Planes seen_a = seen(ycxcz_a, pixels_per_degree), seen_b = seen(ycxcz_b, pixels_per_degree);
-    const Features features_a = features_of(ycxcz_a[0], pixels_per_degree);
-    const Features features_b = features_of(ycxcz_b[0], pixels_per_degree);
+    // Eight filters for each picture; the rest takes about as long as these.
+    FilterProgress filters(part_of(progress, 0.0, 0.5), 16.0);
+    const Planes seen_a = seen(ycxcz_a, pixels_per_degree, filters), seen_b = seen(ycxcz_b, pixels_per_degree, filters);
+    const Features features_a = features_of(ycxcz_a[0], pixels_per_degree, filters);
+    const Features features_b = features_of(ycxcz_b[0], pixels_per_degree, filters);
     const double largest = color_distance(hunt_lab_of_rgb({0.0, 1.0, 0.0}), hunt_lab_of_rgb({0.0, 0.0, 1.0}));
     std::vector<double> map(ycxcz_a[0].values.size());
     for (size_t pixel = 0; pixel < map.size(); ++pixel) {
+        if (pixel % PIXELS_TOLD == 0) tell(progress, 0.5 + 0.5 * double(pixel) / double(map.size()));
         const double distance = color_distance(hunt_lab_at(seen_a, pixel), hunt_lab_at(seen_b, pixel));
         map[pixel] = std::pow(remapped(distance, largest), 1.0 - feature_distance(features_a, features_b, pixel));
     }

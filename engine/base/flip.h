@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/image.h"
+#include "engine/base/progress.h"
 
 namespace shvr {
 
@@ -14,6 +15,7 @@ namespace shvr {
 inline constexpr double FLIP_PIXELS_PER_DEGREE = 3840.0 * std::numbers::pi / 180.0;
 
 /// One value per pixel, rows from the top. Both pictures must have the same size.
-std::vector<double> flip_map(const Image8& a, const Image8& b, double pixels_per_degree = FLIP_PIXELS_PER_DEGREE);
+std::vector<double> flip_map(const Image8& a, const Image8& b, double pixels_per_degree = FLIP_PIXELS_PER_DEGREE,
+                             const Progress& progress = {});
 
 }  // namespace shvr

@@ -36,20 +36,21 @@ Plane luma_of(const Image8& image)
 }
 
 /// The mean over the window around each pixel of the product of both planes.
-Plane window_means(Plane a, const Plane& b, const std::vector<double>& window)
+Plane window_means(Plane a, const Plane& b, const std::vector<double>& window, FilterProgress& filters)
 {
     std::transform(a.values.begin(), a.values.end(), b.values.begin(), a.values.begin(), std::multiplies());
-    return filtered(a, window, window);
+    return filtered(a, window, window, filters);
 }
 
-double ssim_of(const Plane& a, const Plane& b)
+double ssim_of(const Plane& a, const Plane& b, const Progress& progress)
 {
     constexpr int RADIUS = 5;
     constexpr double C1 = 0.01 * 255 * 0.01 * 255, C2 = 0.03 * 255 * 0.03 * 255;
     const std::vector<double> window = gaussian_weights(1.5, RADIUS);
-    const Plane mean_a = filtered(a, window, window), mean_b = filtered(b, window, window);
-    const Plane mean_aa = window_means(a, a, window), mean_bb = window_means(b, b, window);
-    const Plane mean_ab = window_means(a, b, window);
+    FilterProgress filters(progress, 5.0);
+    const Plane mean_a = filtered(a, window, window, filters), mean_b = filtered(b, window, window, filters);
+    const Plane mean_aa = window_means(a, a, window, filters), mean_bb = window_means(b, b, window, filters);
+    const Plane mean_ab = window_means(a, b, window, filters);
     const bool one_fits = std::min(a.width, a.height) > 2 * RADIUS;
     const int margin = one_fits ? RADIUS : 0;
     double sum = 0.0;
@@ -99,11 +100,13 @@ PixelDifference compare_pixels(const Image8& a, const Image8& b)
     return result;
 }
 
-ImageDifference compare(const Image8& a, const Image8& b)
+ImageDifference compare(const Image8& a, const Image8& b, const Progress& progress)
 {
+    tell(progress, 0.0);
     ImageDifference result{compare_pixels(a, b)};
-    result.ssim = ssim_of(luma_of(a), luma_of(b));
-    std::vector<double> flip = flip_map(a, b);
+    constexpr double SSIM = 0.1;  // of the time
+    result.ssim = ssim_of(luma_of(a), luma_of(b), part_of(progress, 0.0, SSIM));
+    std::vector<double> flip = flip_map(a, b, FLIP_PIXELS_PER_DEGREE, part_of(progress, SSIM, 1.0));
     result.flip_mean = std::accumulate(flip.begin(), flip.end(), 0.0) / double(flip.size());
     const auto p99 = flip.begin() + std::ptrdiff_t((flip.size() * 99 + 99) / 100 - 1);
     std::nth_element(flip.begin(), p99, flip.end());

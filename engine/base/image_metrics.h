@@ -7,6 +7,7 @@
 #include <string>
 
 #include "engine/base/image.h"
+#include "engine/base/progress.h"
 
 namespace shvr {
 
@@ -31,7 +32,7 @@ struct ImageDifference : PixelDifference {
 
 /// Both fail if the sizes differ, and state them.
 PixelDifference compare_pixels(const Image8& a, const Image8& b);
-ImageDifference compare(const Image8& a, const Image8& b);
+ImageDifference compare(const Image8& a, const Image8& b, const Progress& progress = {});
 
 /// Opaque picture of |a - b| * gain, for viewing. A difference in alpha shows as grey.
 Image8 difference_picture(const Image8& a, const Image8& b, double gain = 16.0);

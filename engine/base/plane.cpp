@@ -9,12 +9,13 @@
 namespace shvr {
 namespace {
 
-Plane filtered_across(const Plane& plane, std::span<const double> weights)
+Plane filtered_across(const Plane& plane, std::span<const double> weights, FilterProgress& progress)
 {
     const size_t width = size_t(plane.width), radius = weights.size() / 2;
     Plane result(plane.width, plane.height);
     std::vector<double> padded(width + 2 * radius);
     for (size_t start = 0; start < plane.values.size(); start += width) {
+        progress.row(2 * plane.height);
         const double* const row = plane.values.data() + start;
         double* const sums = result.values.data() + start;
         std::fill_n(padded.begin(), radius, row[0]);
@@ -29,12 +30,13 @@ Plane filtered_across(const Plane& plane, std::span<const double> weights)
     return result;
 }
 
-Plane filtered_down(const Plane& plane, std::span<const double> weights)
+Plane filtered_down(const Plane& plane, std::span<const double> weights, FilterProgress& progress)
 {
     const size_t width = size_t(plane.width);
     const int radius = int(weights.size() / 2);
     Plane result(plane.width, plane.height);
     for (int y = 0; y < plane.height; ++y) {
+        progress.row(2 * plane.height);
         double* const sums = result.values.data() + size_t(y) * width;
         for (size_t tap = 0; tap < weights.size(); ++tap) {
             const double weight = weights[tap];
@@ -48,10 +50,11 @@ Plane filtered_down(const Plane& plane, std::span<const double> weights)
 
 }  // namespace
 
-Plane filtered(const Plane& plane, std::span<const double> across, std::span<const double> down)
+Plane filtered(const Plane& plane, std::span<const double> across, std::span<const double> down,
+               FilterProgress& progress)
 {
     SHVR_CHECK(across.size() % 2 == 1 && down.size() % 2 == 1, across.size(), ", ", down.size());
-    return filtered_down(filtered_across(plane, across), down);
+    return filtered_down(filtered_across(plane, across, progress), down, progress);
 }
 
 std::vector<double> gaussian_weights(double sigma, int radius)

@@ -3,8 +3,11 @@
 // its own.
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
+
+#include "engine/base/progress.h"
 
 namespace shvr {
 
@@ -17,9 +20,28 @@ struct Plane {
     {}
 };
 
+/// Tells how far a number of filters is, row by row; what `progress` throws ends them. One thread.
+class FilterProgress {
+public:
+    FilterProgress(Progress progress, double filters) : progress_(std::move(progress)), filters_(filters) {}
+
+    void row(int rows_of_filter)
+    {
+        done_ += 1.0 / rows_of_filter;
+        if (++rows_ % ROWS_TOLD == 0) tell(progress_, done_ / filters_);
+    }
+
+private:
+    static constexpr int64_t ROWS_TOLD = 64;
+    Progress progress_;
+    double filters_, done_ = 0.0;
+    int64_t rows_ = 0;
+};
+
 /// Correlation with `across` along rows and `down` along columns; both have odd lengths, and their middle is the pixel
 /// itself. The picture's border is repeated outwards.
-Plane filtered(const Plane& plane, std::span<const double> across, std::span<const double> down);
+Plane filtered(const Plane& plane, std::span<const double> across, std::span<const double> down,
+               FilterProgress& progress);
 
 /// exp(-x^2 / (2 sigma^2)) for x = -radius..radius, normalised to a sum of 1.
 std::vector<double> gaussian_weights(double sigma, int radius);

@@ -46,9 +46,16 @@ void BrickSlots::list_evictable(BrickNeed below)
 
 std::optional<uint32_t> BrickSlots::next_evictable(BrickNeed below)
 {
-    // A slot used since it was listed is out of order in the list.
-    if (!evictable_.empty() && slots_[evictable_.back().slot].used != evictable_.back().used)
-        evictable_is_stale_ = true;
+    // A brick may be needed since it was listed; one that was used since then is out of order in the list.
+    while (!evictable_is_stale_ && !evictable_.empty()) {
+        const Slot& slot = slots_[evictable_.back().slot];
+        const bool is_needed = slot.key && need_(*slot.key) != BrickNeed::none;
+        if (!is_needed && slot.used == evictable_.back().used) break;
+        if (is_needed)
+            evictable_.pop_back();
+        else
+            evictable_is_stale_ = true;
+    }
     if (std::exchange(evictable_is_stale_, false)) list_evictable(BrickNeed::picture);
     if (evictable_.empty() && below > BrickNeed::picture) {
         list_evictable(below);

@@ -29,7 +29,8 @@ public:
     bool contains(const BrickKey& key) const { return placed_.contains(key); }
     std::optional<uint32_t> find(const BrickKey& key) const { return placed_.find(key); }
     bool is_pinned(uint32_t slot) const { return slots_[slot].is_pinned; }
-    /// Number of slots that are free, or whose bricks neither a picture nor a region needs.
+    size_t free_count() const { return free_.size(); }
+    /// Number of slots that are free, or whose bricks neither a picture nor a region needs. Asks about all of them.
     size_t room() const;
     /// Bricks evicted so far.
     uint64_t evictions() const { return evictions_; }
@@ -37,7 +38,7 @@ public:
     /// Later uses count as more recent than all before.
     void tick() { ++now_; }
     void use(const BrickKey& key);
-    /// To be called when the answers of `need` may have changed.
+    /// To be called where `need` may answer less than before; a brick that is needed more is noticed in its turn.
     void needs_changed() { evictable_is_stale_ = true; }
 
     struct Placed {

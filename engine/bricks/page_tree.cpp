@@ -256,4 +256,31 @@ PageTree make_page_tree(const VolumeInfo& volume, int levels, const PageView& vi
     return tree;
 }
 
+void for_each_entry_below(const PageTree& tree, const BrickKey& key,
+                          const std::function<void(uint32_t entry, uint32_t leaf)>& visit)
+{
+    const auto descend = [&](const auto& self, uint32_t entry) -> void {
+        if (tree.entries[entry] >> gpu::PAGE_LEVEL_SHIFT == gpu::PAGE_NODE) {
+            for (uint32_t child = 0; child < 8; ++child)
+                self(self, (tree.entries[entry] & gpu::PAGE_PAYLOAD_MASK) + child);
+        } else if (const uint32_t leaf = tree.leaf_of_entry[entry]; leaf != PageTree::NO_LEAF) {
+            if (tree.leaves[leaf].key.level <= key.level) visit(entry, leaf);
+        }
+    };
+    const int coarser = key.level + 5 - tree.cell_shift;  // log2 of the brick's side in cells of the grid
+    if (coarser < 0) {
+        uint32_t entry = gpu::grid_index(glm::uvec3(key.brick >> -coarser), tree.counts);
+        for (int shift = -coarser - 1; shift >= 0; --shift) {
+            if (tree.entries[entry] >> gpu::PAGE_LEVEL_SHIFT != gpu::PAGE_NODE) return;  // within a leaf
+            const glm::ivec3 half = key.brick >> shift & 1;
+            entry = (tree.entries[entry] & gpu::PAGE_PAYLOAD_MASK) + uint32_t(half.x + 2 * half.y + 4 * half.z);
+        }
+        return descend(descend, entry);
+    }
+    const glm::ivec3 first = key.brick << coarser, end = glm::min((key.brick + 1) << coarser, glm::ivec3(tree.counts));
+    for (int z = first.z; z < end.z; ++z)
+        for (int y = first.y; y < end.y; ++y)
+            for (int x = first.x; x < end.x; ++x) descend(descend, gpu::grid_index(glm::uvec3(x, y, z), tree.counts));
+}
+
 }  // namespace shvr

@@ -52,4 +52,8 @@ struct PageTree {
 PageTree make_page_tree(const VolumeInfo& volume, int levels, const PageView& view,
                         const std::function<bool(const BrickKey&)>& shows, size_t max_leaves = size_t{1} << 17);
 
+/// Visits the entries of the directory that show a leaf below a brick, or the brick itself where it is one, each once.
+void for_each_entry_below(const PageTree& tree, const BrickKey& key,
+                          const std::function<void(uint32_t entry, uint32_t leaf)>& visit);
+
 }  // namespace shvr

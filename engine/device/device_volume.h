@@ -26,6 +26,16 @@ glm::uvec3 atlas_layout(uint64_t slots, uint32_t brick_texels, uint32_t max_side
 /// The most slots that it has an answer for.
 uint64_t max_atlas_slots(uint32_t brick_texels, uint32_t max_side);
 
+/// An atlas of paged bricks: images of the same size, stacked along z (shaders/library/atlas.glsl).
+struct StackedLayout {
+    glm::uvec3 slots{0};  ///< of one image
+    uint32_t images = 1;
+    glm::uvec3 all() const { return slots * glm::uvec3(1, 1, images); }
+    uint64_t count() const { return uint64_t{slots.x} * slots.y * slots.z * images; }
+};
+/// At least so many slots in as few images as the device's limits allow; null where it takes too many.
+std::optional<StackedLayout> stacked_layout(uint64_t slots, const gpu::DeviceTraits& traits);
+
 /// The packed address of the slot with that index, x fastest.
 uint32_t slot_at(uint32_t index, const glm::uvec3& slots);
 
@@ -61,7 +71,10 @@ public:
 
     // ---- The view
 
-    /// Sets the view. Costs nothing if it is unchanged. Returns finest_level().
+    /// Whether look() at this would not wait. If not, it begins to list the bricks that it needs, beside this thread:
+    /// ask again. Fails as look() does.
+    virtual bool get_ready(const PageView& view, const Visibility& visibility) = 0;
+    /// Sets the view; waits until its bricks are listed. Costs nothing if it is unchanged. Returns finest_level().
     virtual int look(const PageView& view, const Visibility& visibility) = 0;
     /// Sets what is visible, and keeps the view if there is one.
     virtual void look_by(const Visibility& visibility) = 0;
@@ -166,9 +179,12 @@ public:
         uint64_t resident = 0;  ///< bricks on the device
         uint64_t uploads = 0;
         uint64_t evictions = 0;
-        uint64_t leaves = 0;                           ///< leaves of the tree
-        uint64_t reached = 0;                          ///< leaves that rays visited
+        uint64_t leaves = 0;   ///< leaves of the tree
+        uint64_t reached = 0;  ///< leaves that rays visited
+        // What the thread that draws has done itself:
         uint64_t leaves_looked_up = 0;                 ///< to say what the directory shows in their place
+        uint64_t directory_bytes = 0;                  ///< written, of directories
+        uint64_t waits_for_lists = 0;                  ///< looks that had to wait until the view's bricks were listed
         uint64_t host_bytes = 0, peak_host_bytes = 0;  ///< of bricks kept on the host
         BrickStore::Counts store;
     };

@@ -29,24 +29,19 @@ uint64_t useful_slots(const VolumeInfo& info, int levels)
     return useful;
 }
 
-/// As many as fit, rounded as atlas_layout rounds.
-uint64_t slots_for(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, uint64_t bytes)
+/// As many as fit, in as many images as that takes.
+StackedLayout layout_for(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, uint64_t bytes)
 {
-    const uint64_t useful = useful_slots(info, levels);
-    // Paging is for what does not fit: the atlas is as large as one image of the device can be.
-    const uint64_t most = std::min({bytes / BrickAtlas::slot_bytes(), traits.max_volume_bytes / BrickTexels::CODE_BYTES,
-                                    max_atlas_slots(gpu::BRICK_TEXELS, traits.limits.maxImageDimension3D)});
-    const auto made = [&](uint64_t slots) {
-        const glm::u64vec3 layout(
-            atlas_layout(slots, gpu::BRICK_TEXELS, traits.limits.maxImageDimension3D, traits.is_cpu));
-        return layout.x * layout.y * layout.z;
-    };
-    uint64_t slots = std::min(useful, most);
-    while (slots > std::min(PagedVolume::MIN_SLOTS, most) && made(slots) > most) --slots;
-    if (slots < std::min(useful, PagedVolume::MIN_SLOTS))
-        fail(info.name, ": ", gpu::mebibytes(bytes), " of device memory are left for its bricks; expected at least ",
-             gpu::mebibytes(PagedVolume::MIN_SLOTS * BrickAtlas::slot_bytes()), ", as a larger --budget-device gives");
-    return slots;
+    const uint64_t useful = useful_slots(info, levels), most = bytes / BrickAtlas::slot_bytes();
+    const uint64_t least = std::min(useful, PagedVolume::MIN_SLOTS);
+    // Layouts round up. One that takes fewer slots may be of more, or be there where one of more is not.
+    for (uint64_t slots = std::min(useful, most); slots >= least; --slots)
+        if (const std::optional<StackedLayout> layout = stacked_layout(slots, traits))
+            if (layout->count() <= most) return *layout;
+    const std::optional<StackedLayout> smallest = stacked_layout(least, traits);
+    if (smallest && most >= least) return *smallest;
+    fail(info.name, ": ", gpu::mebibytes(bytes), " of device memory are left for its bricks; expected at least ",
+         gpu::mebibytes(PagedVolume::MIN_SLOTS * BrickAtlas::slot_bytes()), ", as a larger --budget-device gives");
 }
 
 int kept_levels(int levels)
@@ -69,7 +64,7 @@ void check_coarsest(const VolumeInfo& info, int levels, uint64_t slots)
 void PagedVolume::check_room(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, uint64_t device_bytes)
 {
     levels = kept_levels(levels);
-    check_coarsest(info, levels, slots_for(traits, info, levels, device_bytes));
+    check_coarsest(info, levels, layout_for(traits, info, levels, device_bytes).count());
 }
 
 PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
@@ -79,9 +74,11 @@ PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shar
       source_(std::move(source)),
       options_(options),
       levels_(kept_levels(source_->levels())),
-      atlas_(executor, memory, slots_for(memory.device().traits(), source_->info(), levels_, options.device_bytes),
+      atlas_(executor, memory, layout_for(memory.device().traits(), source_->info(), levels_, options.device_bytes),
              options.filtered),
       slots_(atlas_.slot_count(), [this](const BrickKey& key) { return need_of(key); }),
+      known_(info(), levels_, window, source_),
+      lister_(known_),
       store_(*source_, window, options.host_bytes, options.threads)
 {
     cell_leap_ = memory.create("cell leap", image_desc(Format::r8_uint, atlas_.slots() * gpu::BRICK_CELLS),
@@ -134,131 +131,75 @@ double PagedVolume::loaded() const
 
 // ---- The view -------------------------------------------------------------------------------------------------------
 
-bool PagedVolume::is_painted(const BrickKey& key) const
+/// With `shown` as far as the bricks that it meets reach, so that few views differ in it.
+PageView PagedVolume::rounded(PageView view) const
 {
-    if (visibility_.params.paint_reach == 0) return painted_.contains(key);
-    bool is = false;
-    if (!painted_.empty()) for_each_around(key, [&](const BrickKey& around) { is = is || painted_.contains(around); });
-    return is;
+    constexpr int64_t SIZE = gpu::BRICK_SIZE;
+    if (!view.shown || glm::any(glm::greaterThanEqual(view.shown->lower, view.shown->upper))) return view;
+    view.shown->lower = view.shown->lower / SIZE * SIZE;
+    view.shown->upper = (view.shown->upper + SIZE - int64_t{1}) / SIZE * SIZE;
+    return view;
 }
 
-/// Whether the brick is shown whatever the transfer function hides.
-bool PagedVolume::is_always_shown(const BrickKey& key) const
+bool PagedVolume::get_ready(const PageView& exact, const Visibility& visibility)
 {
-    if (!view_) return false;
-    if (view_->shows_all || !view_->shown) return view_->shows_all;
-    const VoxelBox voxels = voxels_of(key, info().size);
-    return glm::all(glm::lessThan(voxels.lower, view_->shown->upper)) &&
-           glm::all(glm::lessThan(view_->shown->lower, voxels.upper));
-}
-
-bool PagedVolume::shows(const BrickKey& key) const
-{
-    if (is_painted(key) || is_always_shown(key)) return true;
-    const std::optional<ValueRange> range = source_->brick_range(key.level, Size3(key.brick));
-    if (!range) return true;
-    return range->lower <= range->upper &&
-           visibility_.shows(window().code_of(range->lower), window().code_of(range->upper));
-}
-
-int PagedVolume::look(const PageView& view, const Visibility& visibility)
-{
+    const PageView view = rounded(exact);
+    if (list_ && !list_is_outdated_ && list_->sight.view == view && list_->sight.visibility == visibility) return true;
     check_camera(view.camera);
-    const bool is_other_look = !tree_ || !(visibility == visibility_);
-    if (!is_other_look && view_ == view) return finest_level();
+    return lister_.get_ready(view, visibility);
+}
+
+int PagedVolume::look(const PageView& exact, const Visibility& visibility)
+{
+    check_camera(exact.camera);
+    const PageView view = rounded(exact);
+    if (!list_ || list_is_outdated_ || !(list_->sight.view == view) || !(list_->sight.visibility == visibility))
+        install(lister_.take(view, visibility));
+    return finest_level();
+}
+
+/// Looks at what was listed. What was listed before is kept, as far as it is as changes have made it.
+void PagedVolume::install(std::shared_ptr<PageList> list)
+{
+    const std::shared_ptr<PageList> before = std::exchange(list_, std::move(list));
+    const bool is_other_look = !before || !(before->sight.visibility == sight().visibility);
+    const bool was_outdated = std::exchange(list_is_outdated_, false);
+    const bool is_same_view = was_outdated && !is_other_look && before->sight.view == sight().view;
     if (is_other_look) {
-        visibility_ = visibility;
         leap_jobs_.clear();
         for (const auto& [key, slot] : slots_.placed()) leap_jobs_.push_back(key);
     }
-    view_ = view;
-    const std::shared_ptr<const PageTree> before = tree_;
-    const std::vector<bool> reached_before = std::move(is_reached_), was_reached_before = std::move(was_reached_);
-    tree_ = std::make_shared<const PageTree>(
-        make_page_tree(info(), levels_, view, [this](const BrickKey& key) { return shows(key); }));
-    leaf_index_.clear(tree_->leaves.size());
-    for (uint32_t leaf = 0; leaf < tree_->leaves.size(); ++leaf) leaf_index_.set(tree_->leaves[leaf].key, leaf);
-    is_reached_.assign(tree_->leaves.size(), false);
-    was_reached_.assign(tree_->leaves.size(), false);
-    has_visits_ = false;
+    is_reached_.assign(tree().leaves.size(), false);
+    was_reached_.assign(tree().leaves.size(), false);
+    awaited_.clear();
     // Bricks needed a moment ago are likely to be needed again.
-    for (size_t leaf = 0; before && !is_other_look && leaf < reached_before.size(); ++leaf) {
-        if (!reached_before[leaf] && !was_reached_before[leaf]) continue;
-        if (const std::optional<uint32_t> now = leaf_index_.find(before->leaves[leaf].key))
-            was_reached_[*now] = has_visits_ = true;
+    for (const uint32_t leaf : std::exchange(visited_, {})) {
+        if (!before || is_other_look) break;
+        if (const std::optional<uint32_t> now = leaf_of(before->tree->leaves[leaf].key)) visit(*now, !is_same_view);
     }
     slots_.tick();
     ++reached_revision_;
     is_limited_ = false;
-    note_all_changed();
+    if (before && !was_outdated) {
+        before->has_entries = before->has_entries && !rays_wait_ && !all_leaves_are_stale_;
+        lister_.keep(before);
+    }
+    all_leaves_are_stale_ = rays_wait_ || !list_->has_entries;
+    directory_is_stale_ = all_entries_changed_ = true;
+    changed_entries_.clear();
     needs_changed();
-    return finest_level();
 }
 
 void PagedVolume::look_by(const Visibility& visibility)
 {
-    if (view_) look(PageView(*view_), visibility);
+    if (list_ && !(list_->sight.visibility == visibility)) look(PageView(list_->sight.view), visibility);
 }
 
 DeviceVolume::Presence PagedVolume::state_of(const BrickKey& key) const
 {
     if (slots_.contains(key)) return Presence::there;
-    const auto range = known_ranges_.find(key);
-    if (range != known_ranges_.end() && !is_painted(key) && !is_always_shown(key) &&
-        !visibility_.shows(range->second.minimum, range->second.maximum))
-        return Presence::empty;
+    if (known_.is_empty(sight(), key)) return Presence::empty;
     return store_.failure_of(key) ? Presence::failed : Presence::missing;
-}
-
-/// What the directory shows in the place of a leaf: its brick, the finest one above it that is there, or nothing.
-uint32_t PagedVolume::entry_of(const BrickKey& leaf) const
-{
-    const Presence state = state_of(leaf);
-    if (state == Presence::empty) return 1u << gpu::PAGE_DISTANCE_SHIFT;
-    const bool is_awaited = state == Presence::missing || (state == Presence::failed && !given_up_.contains(leaf)) ||
-                            (state == Presence::there && is_ready_ && !is_ready_(leaf));
-    if (rays_wait_ && is_awaited) return gpu::PAGE_MISSING << gpu::PAGE_LEVEL_SHIFT;
-    for (BrickKey key = leaf; key.level < levels_; key = parent_of(key))
-        if (const std::optional<uint32_t> slot = slots_.find(key))
-            return uint32_t(key.level) << gpu::PAGE_LEVEL_SHIFT | atlas_.packed(*slot);
-    return 1u << gpu::PAGE_DISTANCE_SHIFT;
-}
-
-void PagedVolume::fill_directory()
-{
-    const auto fill = [&](uint32_t leaf) {
-        const uint32_t entry = entry_of(tree_->leaves[leaf].key);
-        for (uint32_t i = tree_->begin_of_leaf[leaf]; i < tree_->begin_of_leaf[leaf + 1]; ++i)
-            entries_[tree_->entries_of_leaves[i]] = entry;
-        ++leaves_looked_up_;
-    };
-    if (std::exchange(all_leaves_are_stale_, false)) {
-        entries_ = tree_->entries;
-        // Powers of two: views differ, and a frame's buffers are reused if their sizes match.
-        entries_.resize(std::bit_ceil(entries_.size()));
-        for (uint32_t leaf = 0; leaf < tree_->leaves.size(); ++leaf) fill(leaf);
-    } else {
-        for (const uint32_t leaf : stale_leaves_) fill(leaf);
-    }
-    stale_leaves_.clear();
-}
-
-void PagedVolume::note_all_changed()
-{
-    directory_is_stale_ = all_leaves_are_stale_ = true;
-}
-
-/// The brick has arrived, has gone, or is known to be empty or unreadable.
-void PagedVolume::note_changed(const BrickKey& key)
-{
-    directory_is_stale_ = true;
-    if (all_leaves_are_stale_) return;
-    if (const std::optional<uint32_t> leaf = leaf_index_.find(key))
-        stale_leaves_.push_back(*leaf);
-    else if (key.level > finest_level())  // it may stand in for leaves below it
-        all_leaves_are_stale_ = true;
-    // What waits for a brick's light waits for its neighbours as well.
-    if (is_ready_) all_leaves_are_stale_ = true;
 }
 
 int64_t PagedVolume::mask_index(const glm::ivec3& brick) const
@@ -272,34 +213,36 @@ gpu::BrickLeapJob PagedVolume::job_of(const BrickKey& key, uint32_t slot) const
     return {.brick = glm::uvec3(key.brick),
             .level = uint32_t(key.level),
             .slot = atlas_.packed(slot),
-            .mask_slot = is_painted(key)};
+            .mask_slot = known_.is_painted(sight(), key)};
 }
 
 VolumeBinding PagedVolume::atlas(FrameGraph& graph)
 {
     atlas_.flush();
-    return {.atlas = atlas_.import_codes(graph), .filtered = options_.filtered};
+    VolumeBinding volume{.filtered = options_.filtered};
+    atlas_.import_codes(graph, volume);
+    return volume;
 }
 
 VolumeBinding PagedVolume::prepare(FrameGraph& graph, const DeviceMask& mask, const std::optional<MaskBinding>& painted,
                                    bool feedback)
 {
-    SHVR_CHECK(tree_ != nullptr, "nothing is looked at");
+    SHVR_CHECK(list_ != nullptr, "nothing is looked at");
     atlas_.flush();
-    VolumeBinding volume{.atlas = atlas_.import_codes(graph),
-                         .cell_ranges = atlas_.import_cell_ranges(graph),
+    VolumeBinding volume{.cell_ranges = atlas_.import_cell_ranges(graph),
                          .brick_counts = glm::uvec3(brick_counts(info().size)),
                          .filtered = options_.filtered};
+    atlas_.import_codes(graph, volume);
     volume.pages = PageBinding{.directory = {},
                                .cell_leap = graph.import("cell leap", cell_leap_.import()),
                                .reached = {},
                                .feedback = feedback,
-                               .counts = tree_->counts,
-                               .cell_shift = uint32_t(tree_->cell_shift),
-                               .depth = uint32_t(tree_->depth)};
+                               .counts = tree().counts,
+                               .cell_shift = uint32_t(tree().cell_shift),
+                               .depth = uint32_t(tree().depth)};
     add_leaps(graph, volume, mask, painted);
     volume.pages->directory = upload_directory(graph);
-    const uint64_t words = feedback ? std::bit_ceil((tree_->entries.size() + 31) / 32) : 1;
+    const uint64_t words = feedback ? std::bit_ceil((tree().entries.size() + 31) / 32) : 1;
     volume.pages->reached =
         graph.fill(graph.create("reached", buffer_desc(words * sizeof(uint32_t))), 0, "clear reached");
     return volume;
@@ -318,31 +261,17 @@ void PagedVolume::add_leaps(FrameGraph& graph, VolumeBinding& volume, const Devi
         const std::optional<uint32_t> slot = slots_.find(key);
         if (!slot || !done.insert(key).second) continue;
         jobs.push_back(job_of(key, *slot));
-        if (key.level == 0 && !mask.empty() && visibility_.params.paint_reach == 0)
+        if (key.level == 0 && !mask.empty() && sight().visibility.params.paint_reach == 0)
             jobs.back().mask_slot = mask.slot_of(mask_index(key.brick));
     }
-    brick_leap(graph, volume, visibility_, painted, jobs);
-}
-
-Resource PagedVolume::upload_directory(FrameGraph& graph)
-{
-    if (!std::exchange(directory_is_stale_, false)) return graph.import("page directory", directory_.import());
-    graph.unless_submitted([this] { directory_is_stale_ = true; });
-    fill_directory();
-    const uint64_t bytes = entries_.size() * sizeof(uint32_t);
-    if (!directory_ || directory_.desc().bytes < bytes) {
-        directory_.reset();
-        directory_ = memory_.create("page directory", buffer_desc(bytes), gpu::Placement::device, "the view");
-    }
-    return graph.copy(graph.upload<uint32_t>("page directory entries", entries_),
-                      graph.import("page directory", directory_.import()), {{0, 0, bytes}}, "upload page directory");
+    brick_leap(graph, volume, sight().visibility, painted, jobs);
 }
 
 DeviceVolume::Feedback PagedVolume::request_feedback(FrameGraph& graph, const VolumeBinding& volume) const
 {
     Feedback feedback;
     feedback.read_back_ = graph.read_back(volume.pages->reached, "what rays came by");
-    feedback.tree_ = tree_;
+    feedback.tree_ = list_->tree;
     return feedback;
 }
 
@@ -351,31 +280,32 @@ void PagedVolume::take_feedback(const Feedback& feedback, const gpu::FrameResult
     if (feedback.read_back_) note_reached(feedback.tree_, result.read_backs[*feedback.read_back_]);
 }
 
-/// `bits`: PageBinding::reached of a picture drawn with `tree`.
-void PagedVolume::note_reached(const std::shared_ptr<const PageTree>& tree, std::span<const std::byte> bits)
+/// `bits`: PageBinding::reached of a picture drawn with `drawn`.
+void PagedVolume::note_reached(const std::shared_ptr<const PageTree>& drawn, std::span<const std::byte> bits)
 {
     for (size_t word = 0; word < bits.size() / sizeof(uint32_t); ++word) {
         uint32_t set = 0;
         std::memcpy(&set, bits.data() + word * sizeof(uint32_t), sizeof set);
         for (; set != 0; set &= set - 1) {
             const size_t entry = 32 * word + size_t(std::countr_zero(set));
-            if (entry >= tree->leaf_of_entry.size()) break;
-            uint32_t leaf = tree->leaf_of_entry[entry];
+            if (entry >= drawn->leaf_of_entry.size()) break;
+            uint32_t leaf = drawn->leaf_of_entry[entry];
             if (leaf == PageTree::NO_LEAF) continue;
-            if (tree != tree_) {  // the view has moved since
-                const std::optional<uint32_t> now = leaf_index_.find(tree->leaves[leaf].key);
+            if (drawn != list_->tree) {  // the view has moved since
+                const std::optional<uint32_t> now = leaf_of(drawn->leaves[leaf].key);
                 if (!now) continue;
                 leaf = *now;
             }
             if (is_reached_[leaf]) continue;
-            is_reached_[leaf] = has_visits_ = true;
-            slots_.use(tree_->leaves[leaf].key);
-            if (rays_wait_ && state_of(tree_->leaves[leaf].key) == Presence::failed) {
-                given_up_.insert(tree_->leaves[leaf].key);
-                note_changed(tree_->leaves[leaf].key);
+            visit(leaf, false);
+            const BrickKey& key = tree().leaves[leaf].key;
+            slots_.use(key);
+            if (rays_wait_ && state_of(key) == Presence::failed) {
+                given_up_.insert(key);
+                note_changed(key);
             }
             ++reached_revision_;
-            needs_changed();
+            wants_are_stale_ = true;
         }
     }
 }

@@ -1,7 +1,7 @@
 #pragma once
 // A volume of paged bricks: any size, any budget.
 //
-//   view -> PageTree (which bricks, page_tree.h)
+//   view -> PageTree (which bricks, page_tree.h), and its directory, listed on a thread of their own (page_lister.h)
 //        -> rays mark what they visit -> wanted bricks, nearest first
 //        -> BrickStore (host budget, loader threads)
 //        -> atlas (device budget, least recently used is evicted) -> directory
@@ -11,15 +11,20 @@
 // device. While the view rests, needed bricks are never evicted, so nothing is loaded twice and the picture only
 // improves.
 //
+// What a brick that comes or goes costs does not depend on how many the view has: its entries of the directory are
+// patched, on the host and on the device.
+//
 // One thread, the one that owns the executor; nothing here waits for a loader unless its comment says so.
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <unordered_map>
 
 #include "engine/bricks/brick_slots.h"
 #include "engine/device/brick_atlas.h"
 #include "engine/device/device_volume.h"
+#include "engine/device/page_lister.h"
 
 namespace shvr {
 
@@ -45,10 +50,11 @@ public:
     /// Fails where so much device memory holds too few bricks of such a volume, its coarsest level among them.
     static void check_room(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, uint64_t device_bytes);
 
+    bool get_ready(const PageView& view, const Visibility& visibility) override;
     int look(const PageView& view, const Visibility& visibility) override;
     void look_by(const Visibility& visibility) override;
-    bool has_view() const override { return tree_ != nullptr; }
-    int finest_level() const override { return tree_ ? tree_->finest_level : 0; }
+    bool has_view() const override { return list_ != nullptr; }
+    int finest_level() const override { return list_ ? list_->tree->finest_level : 0; }
     /// Preparation depends on the view, so all of it is left to prepare().
     std::optional<FrameGraph> next_preparation(const Visibility&, const DeviceMask&) override { return std::nullopt; }
     std::optional<FrameGraph> next_refinement(const Visibility&, const DeviceMask&) override { return std::nullopt; }
@@ -63,7 +69,7 @@ public:
     void let_rays_wait(bool wait, std::function<bool(const BrickKey&)> is_ready = {}) override;
     bool limit_visits(const std::vector<int>& reach) override;
     Presence presence_of(const BrickKey& key) const override { return state_of(key); }
-    bool has_rays_waiting() const override { return rays_wait_ && has_visits_; }
+    bool has_rays_waiting() const override { return rays_wait_ && !visited_.empty(); }
     std::vector<VoxelBox> advance(bool wait = false, const Progress& progress = {}) override;
     State state() const override;
     size_t missing() const override;
@@ -88,30 +94,44 @@ public:
     std::optional<Counts> counts() const override;
 
 private:
-    bool is_always_shown(const BrickKey& key) const;
-    bool shows(const BrickKey& key) const;
-    bool is_painted(const BrickKey& key) const;
+    PageView rounded(PageView view) const;
+    void install(std::shared_ptr<PageList> list);
+    /// Nothing, before something is looked at.
+    const PageSight& sight() const { return list_ ? list_->sight : no_sight_; }
+    const PageTree& tree() const { return *list_->tree; }
+    std::optional<uint32_t> leaf_of(const BrickKey& key) const
+    {
+        return list_ ? list_->leaves.find(key) : std::nullopt;
+    }
     Presence state_of(const BrickKey& key) const;
     void add_around(const BrickKey& key, int reach, std::unordered_set<BrickKey, BrickKeyHash>& keys) const;
     BrickNeed need_of(const BrickKey& key) const;
     bool leaf_is_reached(const BrickKey& key) const;
     bool is_visited(size_t leaf) const { return is_reached_[leaf] || was_reached_[leaf]; }
+    void visit(uint32_t leaf, bool is_before);
+    void forget_unvisited();
     bool list_wants(std::vector<BrickKey>& keys);
     void needs_changed();
     bool place(const BrickKey& key, const BrickTexels& texels, bool for_region);
     void stage(const BrickKey& key, uint32_t slot, const BrickTexels& texels);
-    void note_reached(const std::shared_ptr<const PageTree>& tree, std::span<const std::byte> bits);
+    void note_reached(const std::shared_ptr<const PageTree>& drawn, std::span<const std::byte> bits);
     void rebuild_tree();
+    bool note_painted_in(const BrickKey& key, bool is, bool asks);
     void add_leaps(FrameGraph& graph, VolumeBinding& volume, const DeviceMask& mask,
                    const std::optional<MaskBinding>& painted);
     Resource upload_directory(FrameGraph& graph);
+    std::vector<BufferRegion> changed_regions(std::vector<uint32_t> entries, std::vector<uint32_t>& values) const;
     void update_wants();
     void take_bricks(std::vector<VoxelBox>& changed);
     std::vector<BrickKey> set_region(const RegionBricks& region);
     void pin_coarse_levels();
     uint32_t entry_of(const BrickKey& leaf) const;
+    void set_entry(uint32_t entry, uint32_t value);
+    void fill_leaf(uint32_t leaf);
     void fill_directory();
-    void note_changed(const BrickKey& key);
+    void note(const BrickEvent& change);
+    /// Something else about the brick, which says what is drawn in its place.
+    void note_changed(const BrickKey& key) { note({.key = key}); }
     void note_all_changed();
     gpu::BrickLeapJob job_of(const BrickKey& key, uint32_t slot) const;
     int64_t mask_index(const glm::ivec3& brick) const;
@@ -124,27 +144,29 @@ private:
     gpu::Storage cell_leap_, directory_;
 
     BrickSlots slots_;
-    std::unordered_map<BrickKey, BrickTexels::Range, BrickKeyHash> known_ranges_;  ///< of every brick read so far
-    std::unordered_map<BrickKey, int64_t, BrickKeyHash> painted_;                  ///< painted level 0 bricks below
+    KnownBricks known_;  ///< the same slots, what was read, and what is painted
+    PageLister lister_;
+    const PageSight no_sight_{};
+    std::shared_ptr<PageList> list_;  ///< of the view
+    bool list_is_outdated_ = false;   ///< paint makes the view need other bricks: they are being listed
 
-    std::optional<PageView> view_;
-    Visibility visibility_;
-    std::shared_ptr<const PageTree> tree_;
-    BrickMap leaf_index_;
-    std::vector<bool> is_reached_;  ///< by leaf: visited by rays since the view is as it is
-    /// By leaf: visited before. As good as reached, until there is no room for both: else a camera that turns would end
-    /// with bricks that nobody sees any longer.
+    // By leaf.
+    std::vector<bool> is_reached_;  ///< visited by rays since the view is as it is
+    /// Visited before. As good as reached, until there is no room for both: else a camera that turns would end with
+    /// bricks that nobody sees any longer.
     std::vector<bool> was_reached_;
-    bool has_visits_ = false;  ///< whether a leaf is reached
+    std::vector<uint32_t> visited_;  ///< those of both
+    std::set<uint32_t> awaited_;     ///< of these, all that are missing, and perhaps others; the nearest first
     bool rays_wait_ = false;
     std::function<bool(const BrickKey&)> is_ready_;
     /// Bricks that cannot be read and that rays have waited for: coarser ones are drawn from then on.
     std::unordered_set<BrickKey, BrickKeyHash> given_up_;
-    /// The directory. Leaves whose entries are to be made anew are named, or are all of them.
-    std::vector<uint32_t> entries_, stale_leaves_;
+    /// The directory is the list's. Entries that differ from those on the device are named, or are all of them.
+    std::vector<uint32_t> changed_entries_;
+    bool all_entries_changed_ = true;
     bool all_leaves_are_stale_ = true;
-    bool directory_is_stale_ = true;  ///< on the device
-    uint64_t leaves_looked_up_ = 0;
+    bool directory_is_stale_ = true;  ///< changes may have been noted since it was uploaded
+    uint64_t leaves_looked_up_ = 0, directory_bytes_ = 0;
     bool wants_are_stale_ = true;
     bool is_limited_ = false;
     size_t pending_ = 0;                                 ///< visited leaves that are requested and can still arrive

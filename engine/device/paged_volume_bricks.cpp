@@ -17,8 +17,25 @@ constexpr size_t MAX_RENEWED_NOW = 256;
 
 bool PagedVolume::leaf_is_reached(const BrickKey& key) const
 {
-    const std::optional<uint32_t> leaf = leaf_index_.find(key);
+    const std::optional<uint32_t> leaf = leaf_of(key);
     return leaf && is_visited(*leaf);
+}
+
+/// `is_before`: by rays of the view before.
+void PagedVolume::visit(uint32_t leaf, bool is_before)
+{
+    if (!is_visited(leaf)) {
+        visited_.push_back(leaf);
+        if (state_of(tree().leaves[leaf].key) == Presence::missing) awaited_.insert(leaf);
+    }
+    (is_before ? was_reached_ : is_reached_)[leaf] = true;
+}
+
+/// Of the list of visited leaves.
+void PagedVolume::forget_unvisited()
+{
+    std::erase_if(visited_, [this](uint32_t leaf) { return !is_visited(leaf); });
+    std::erase_if(awaited_, [this](uint32_t leaf) { return !is_visited(leaf); });
 }
 
 /// The bricks of its level at most `reach` away, itself included.
@@ -35,7 +52,7 @@ void PagedVolume::forget_visits()
 {
     is_reached_.assign(is_reached_.size(), false);
     was_reached_.assign(was_reached_.size(), false);
-    has_visits_ = false;
+    forget_unvisited();
     if (is_ready_) note_all_changed();
     slots_.tick();
     ++reached_revision_;
@@ -63,10 +80,10 @@ bool PagedVolume::limit_visits(const std::vector<int>& reach)
     };
     std::unordered_set<BrickKey, BrickKeyHash> keys;
     bool is_full = false, is_any = false;
-    for (size_t leaf = 0; leaf < is_reached_.size(); ++leaf) {
-        if (!is_visited(leaf)) continue;
+    std::ranges::sort(visited_);
+    for (const uint32_t leaf : visited_) {
         std::unordered_set<BrickKey, BrickKeyHash> more;
-        const BrickKey& key = tree_->leaves[leaf].key;
+        const BrickKey& key = tree().leaves[leaf].key;
         add_around(key, reach.at(size_t(key.level)), more);
         const auto added = size_t(std::ranges::count_if(
             more, [&](const BrickKey& near) { return !keys.contains(near) && takes_room(near); }));
@@ -79,6 +96,7 @@ bool PagedVolume::limit_visits(const std::vector<int>& reach)
         room -= added;
         keys.merge(more);
     }
+    forget_unvisited();
     ++reached_revision_;
     needs_changed();
     return is_any || !is_full;
@@ -90,10 +108,9 @@ void PagedVolume::want_around(const std::vector<int>& reach)
     around_reach_ = reach;
     around_revision_ = reached_revision_;
     std::unordered_set<BrickKey, BrickKeyHash> keys;
-    for (size_t leaf = 0; tree_ && !reach.empty() && leaf < is_reached_.size(); ++leaf) {
-        const BrickKey& key = tree_->leaves[leaf].key;
-        if (!is_visited(leaf) || state_of(key) == Presence::empty) continue;
-        add_around(key, reach.at(size_t(key.level)), keys);
+    for (const uint32_t leaf : visited_) {
+        const BrickKey& key = tree().leaves[leaf].key;
+        if (!reach.empty() && state_of(key) != Presence::empty) add_around(key, reach.at(size_t(key.level)), keys);
     }
     if (keys == around_) return;
     around_ = std::move(keys);
@@ -103,7 +120,8 @@ void PagedVolume::want_around(const std::vector<int>& reach)
 std::vector<DeviceVolume::Place> PagedVolume::places() const
 {
     std::vector<Place> places;
-    for (const auto& [key, slot] : slots_.placed()) places.push_back({key, atlas_.packed(slot), known_ranges_.at(key)});
+    for (const auto& [key, slot] : slots_.placed())
+        places.push_back({key, atlas_.packed(slot), known_.range_of(key).value()});
     return places;
 }
 
@@ -122,17 +140,14 @@ void PagedVolume::needs_changed()
 
 bool PagedVolume::place(const BrickKey& key, const BrickTexels& texels, bool for_region)
 {
-    known_ranges_[key] = texels.range;
-    if (slots_.contains(key)) return true;
-    if (!for_region && state_of(key) == Presence::empty) {
-        note_changed(key);
-        return true;
-    }
+    note(KnownBricks::read(key, texels.range));
+    if (slots_.contains(key) || (!for_region && state_of(key) == Presence::empty)) return true;
     const bool is_pinned = std::ranges::find(coarse_, key) != coarse_.end();
     const std::optional<BrickSlots::Placed> placed =
         slots_.place(key, for_region ? BrickNeed::region : BrickNeed::picture, is_pinned);
     if (!placed) return false;
-    if (placed->evicted) note_changed(*placed->evicted);
+    if (placed->evicted) note({*placed->evicted, BrickEvent::Kind::gone});
+    note(KnownBricks::placed(key, atlas_.packed(placed->slot)));
     stage(key, placed->slot, texels);
     return true;
 }
@@ -154,38 +169,40 @@ void PagedVolume::renew(std::span<const VoxelBox> changed)
     const auto there =
         size_t(std::ranges::count_if(keys, [this](const BrickKey& key) { return slots_.contains(key); }));
     for (const BrickKey& key : keys) {
-        known_ranges_.erase(key);
+        note({key, BrickEvent::Kind::unread});
         const std::optional<uint32_t> slot = slots_.find(key);
         if (!slot) continue;
         const bool now = there <= MAX_RENEWED_NOW || slots_.is_pinned(*slot);
         if (const BrickStore::Texels texels = now ? store_.get(key) : nullptr) {
-            known_ranges_[key] = texels->range;
+            note(KnownBricks::read(key, texels->range));
             stage(key, *slot, *texels);
         } else {
             slots_.remove(key);
+            note({key, BrickEvent::Kind::gone});
             ++places_revision_;
         }
     }
     atlas_.flush();
-    note_all_changed();
     needs_changed();
     rebuild_tree();
 }
 
-/// Rebuilds the tree after the source's data or the paint has changed; keeps which bricks rays visited.
+/// Rebuilds the tree after the source's data has changed; keeps which bricks rays visited. It is waited for, as the
+/// bricks on the device were.
 void PagedVolume::rebuild_tree()
 {
-    if (!view_) return;
-    const PageView view = *std::exchange(view_, std::nullopt);
-    look(view, visibility_);
-    std::swap(is_reached_, was_reached_);
+    lister_.forget();
+    if (!list_) return;
+    list_is_outdated_ = true;
+    install(lister_.take(list_->sight.view, list_->sight.visibility));
 }
 
 /// Adds the bricks that the picture misses, nearest first. False where there is no room for all.
 bool PagedVolume::list_wants(std::vector<BrickKey>& keys)
 {
-    // Bricks that are on the device, or will be.
-    size_t room = slots_.room();
+    // Bricks that are on the device, or will be. Where slots are free for all, it does not matter how many are.
+    const bool is_roomy = keys.size() + awaited_.size() + around_.size() <= slots_.free_count();
+    size_t room = is_roomy ? slots_.free_count() : slots_.room();
     room -= std::min(room, keys.size());
     pending_ = 0;
     const auto add = [&](const BrickKey& key) {
@@ -194,9 +211,14 @@ bool PagedVolume::list_wants(std::vector<BrickKey>& keys)
         keys.push_back(key);
         return true;
     };
-    for (size_t leaf = 0; tree_ && leaf < is_reached_.size(); ++leaf) {
-        const BrickKey& key = tree_->leaves[leaf].key;
-        if (is_visited(leaf) && state_of(key) == Presence::missing && !add(key)) return false;
+    for (auto leaf = awaited_.begin(); leaf != awaited_.end();) {
+        const BrickKey& key = tree().leaves[*leaf].key;
+        if (state_of(key) != Presence::missing) {
+            leaf = awaited_.erase(leaf);
+            continue;
+        }
+        if (!add(key)) return false;
+        ++leaf;
     }
     for (const BrickKey& key : around_)
         if (state_of(key) == Presence::missing && !leaf_is_reached(key) && !add(key)) return false;
@@ -215,6 +237,7 @@ void PagedVolume::update_wants()
     is_limited_ = !list_wants(keys);
     if (is_limited_ && std::ranges::find(was_reached_, true) != was_reached_.end()) {
         was_reached_.assign(was_reached_.size(), false);
+        forget_unvisited();
         ++reached_revision_;
         slots_.needs_changed();
         keys = std::move(needed);
@@ -270,8 +293,7 @@ size_t PagedVolume::missing() const
 {
     if (rays_wait_) return given_up_.size();
     size_t count = 0;
-    for (size_t leaf = 0; leaf < is_reached_.size(); ++leaf)
-        count += is_visited(leaf) && state_of(tree_->leaves[leaf].key) == Presence::failed;
+    for (const uint32_t leaf : visited_) count += state_of(tree().leaves[leaf].key) == Presence::failed;
     return count;
 }
 
@@ -327,39 +349,71 @@ std::optional<RegionBricks> PagedVolume::region(const VoxelBox& voxels, bool wai
     return region;
 }
 
+/// A brick of any level has got paint of a brick below it, or lost it. What the view shows in its place, and of those
+/// beside it that its paint reaches, is looked up again. True: the view needs other bricks now; `asks`: whether that is
+/// to be found out.
+bool PagedVolume::note_painted_in(const BrickKey& key, bool is, bool asks)
+{
+    std::vector<BrickKey> reached;
+    if (list_) reached.push_back(key);
+    if (list_ && sight().visibility.params.paint_reach > 0)
+        for_each_around(key, [&](const BrickKey& beside) {
+            if (!(beside == key) && glm::all(glm::greaterThanEqual(beside.brick, glm::ivec3(0))))
+                reached.push_back(beside);
+        });
+    std::vector<bool> were_shown;
+    for (size_t i = 0; asks && i < reached.size(); ++i) were_shown.push_back(known_.may_show(sight(), reached[i]));
+    note({key, BrickEvent::Kind::painted, is ? known_.painted_in(key) + 1 : known_.painted_in(key) - 1});
+    bool needs_others = false;
+    for (size_t i = 0; i < reached.size(); ++i) {
+        needs_others = needs_others || (asks && known_.may_show(sight(), reached[i]) != were_shown[i]);
+        if (i > 0) note_changed(reached[i]);
+        const std::optional<uint32_t> leaf = leaf_of(reached[i]);
+        if (leaf && is_visited(*leaf)) awaited_.insert(*leaf);  // what was empty may be missing now
+    }
+    return needs_others;
+}
+
 void PagedVolume::note_painted(const Mask& mask, std::span<const int64_t> bricks)
 {
     const glm::i64vec3 counts = mask.brick_counts();
-    bool tree_is_stale = false;
+    bool has_changed = false, needs_others = false;
     for (int64_t index : bricks) {
         BrickKey key{0, glm::ivec3(position_of(index, counts))};
-        const bool is = mask.brick(index) != nullptr, was = painted_.contains(key);
+        const bool is = mask.brick(index) != nullptr, was = known_.painted_in(key) > 0;
+        has_changed = has_changed || is != was;
         for (; key.level < levels_; key = parent_of(key)) {
-            if (is != was) {
-                tree_is_stale = true;
-                if ((painted_[key] += is ? 1 : -1) == 0) painted_.erase(key);
-            }
-            if (visibility_.params.paint_reach == 0 && slots_.contains(key)) leap_jobs_.push_back(key);
-            if (visibility_.params.paint_reach > 0)
+            if (is != was) needs_others = note_painted_in(key, is, !needs_others) || needs_others;
+            const bool spreads = sight().visibility.params.paint_reach > 0;
+            if (!spreads && slots_.contains(key)) leap_jobs_.push_back(key);
+            if (spreads)
                 for_each_around(key, [&](const BrickKey& around) {
                     if (slots_.contains(around)) leap_jobs_.push_back(around);
                 });
         }
     }
-    if (tree_is_stale) rebuild_tree();  // painted voxels are shown, whatever their density
+    if (!has_changed) return;
+    lister_.forget();  // what other views need
+    ++reached_revision_;
+    needs_changed();
+    if (!needs_others || !list_) return;
+    // Painted voxels are shown, whatever the file says of their densities. What is there is drawn until the bricks are
+    // listed, so that a stroke does not wait for a list in each brick that it comes to.
+    list_is_outdated_ = true;
+    static_cast<void>(lister_.get_ready(sight().view, sight().visibility));
 }
 
 std::optional<DeviceVolume::Counts> PagedVolume::counts() const
 {
-    uint64_t reached = 0;
-    for (size_t leaf = 0; leaf < is_reached_.size(); ++leaf) reached += is_visited(leaf);
     return Counts{.slots = slots_.count() - 1,
                   .resident = slots_.placed_count(),
                   .uploads = atlas_.uploads(),
                   .evictions = slots_.evictions(),
                   .leaves = is_reached_.size(),
-                  .reached = reached,
+                  .reached = visited_.size(),
                   .leaves_looked_up = leaves_looked_up_,
+                  .directory_bytes = directory_bytes_,
+                  .waits_for_lists = lister_.waits(),
                   .host_bytes = store_.bytes(),
                   .peak_host_bytes = store_.peak_bytes(),
                   .store = store_.counts()};

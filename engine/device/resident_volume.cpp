@@ -1,5 +1,4 @@
 #include "engine/device/resident_volume.h"
-#include "engine/volume/grid.h"
 
 #include <algorithm>
 #include <chrono>
@@ -12,66 +11,9 @@
 #include <thread>
 #include <utility>
 
+#include "engine/volume/grid.h"
+
 namespace shvr {
-
-namespace {
-
-constexpr glm::uvec3 BRICK_EXTENT(gpu::BRICK_TEXELS);
-constexpr uint32_t BRICKS_IN_UPLOAD = 64;  // bricks per upload: 5 MiB of staging
-constexpr size_t MAX_RENEWALS = 2;         // uploads in flight
-
-/// Collects bricks in a staging buffer and copies a batch of them at a time.
-class Uploader {
-public:
-    Uploader(gpu::Executor& executor, gpu::Memory& memory, uint64_t bricks, uint32_t codes_per_texel)
-        : executor_(executor),
-          codes_per_texel_(codes_per_texel, 1, 1),
-          capacity_(uint32_t(std::min<uint64_t>(BRICKS_IN_UPLOAD, bricks))),
-          staging_(memory.create("staging",
-                                 buffer_desc(capacity_ * (BrickTexels::CODE_BYTES + BrickTexels::RANGE_BYTES)),
-                                 gpu::Placement::upload, "the transfer of the volume"))
-    {}
-
-    void add(const glm::uvec3& brick, uint32_t packed_slot, const BrickTexels& texels)
-    {
-        const auto count = uint32_t(atlas_regions_.size());
-        std::byte* staged = staging_.mapped().data();
-        std::memcpy(staged + count * BrickTexels::CODE_BYTES, texels.codes.data(), BrickTexels::CODE_BYTES);
-        std::memcpy(staged + capacity_ * BrickTexels::CODE_BYTES + count * BrickTexels::RANGE_BYTES,
-                    texels.cell_ranges.data(), BrickTexels::RANGE_BYTES);
-        atlas_regions_.push_back({count * BrickTexels::CODE_BYTES, gpu::slot_origin(packed_slot) / codes_per_texel_,
-                                  BRICK_EXTENT / codes_per_texel_});
-        cell_regions_.push_back({capacity_ * BrickTexels::CODE_BYTES + count * BrickTexels::RANGE_BYTES,
-                                 brick * gpu::BRICK_CELLS, glm::uvec3(gpu::BRICK_CELLS)});
-    }
-    bool full() const { return atlas_regions_.size() == capacity_; }
-
-    void flush(const gpu::Storage& atlas, const gpu::Storage& cell_ranges)
-    {
-        if (!atlas_regions_.empty()) executor_.run(copies(atlas, cell_ranges), {.timestamps = false});
-    }
-    /// Copies all that was added. The staging buffer must outlive the copies.
-    FrameGraph copies(const gpu::Storage& atlas, const gpu::Storage& cell_ranges)
-    {
-        FrameGraph graph;
-        const Resource staging = graph.import("staging", staging_.import());
-        static_cast<void>(graph.copy_to_image(staging, graph.import("atlas", atlas.import()),
-                                              std::exchange(atlas_regions_, {}), "upload bricks"));
-        static_cast<void>(graph.copy_to_image(staging, graph.import("cell ranges", cell_ranges.import()),
-                                              std::exchange(cell_regions_, {}), "upload cell ranges"));
-        return graph;
-    }
-    gpu::Storage take_staging() { return std::move(staging_); }
-
-private:
-    gpu::Executor& executor_;
-    glm::uvec3 codes_per_texel_;
-    uint32_t capacity_;
-    gpu::Storage staging_;
-    std::vector<ImageRegion> atlas_regions_, cell_regions_;
-};
-
-}  // namespace
 
 /// Encodes bricks in the order of their index, beside the thread that uploads them: batches go through a short queue.
 class ResidentVolume::Builder {
@@ -112,7 +54,7 @@ public:
     }
 
 private:
-    static constexpr size_t MAX_READY = 4;  // batches: 20 MiB
+    static constexpr size_t MAX_READY = 8;  // batches: 20 MiB
     struct Abandoned {};
 
     void build(const IntensityWindow& window, int threads)
@@ -121,7 +63,7 @@ private:
         try {
             build_bricks(*source_, window, threads, [&](const glm::ivec3& brick, const BrickTexels& texels) {
                 batch.push_back({glm::uvec3(brick), texels});
-                if (batch.size() == BRICKS_IN_UPLOAD) hand_on(std::exchange(batch, {}));
+                if (batch.size() == BrickUploads::BATCH) hand_on(std::exchange(batch, {}));
             });
             if (!batch.empty()) hand_on(std::move(batch));
         } catch (const Abandoned&) {
@@ -158,16 +100,13 @@ ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std
 {
     create_images();
     const uint64_t bricks = brick_count();
-    Uploader uploader(executor, memory, bricks, filtered ? 1 : 2);
+    uploads_.emplace(executor, memory, bricks, filtered);
     build_bricks(*source_, window, threads, [&](const glm::ivec3& brick, const BrickTexels& texels) {
         slots_.push_back(slot_at(uint32_t(slots_.size()) + 1, atlas_slots_));
-        uploader.add(glm::uvec3(brick), slots_.back(), texels);
+        upload(texels, glm::uvec3(brick), slots_.back());
         ranges_.push_back(texels.range);
-        if (!uploader.full()) return;
-        uploader.flush(atlas_, cell_ranges_);
-        tell(progress, double(slots_.size()) / double(bricks));
+        if (slots_.size() % BrickUploads::BATCH == 0) tell(progress, double(slots_.size()) / double(bricks));
     });
-    uploader.flush(atlas_, cell_ranges_);
     upload_page_table();
 }
 
@@ -230,8 +169,19 @@ void ResidentVolume::create_images()
     for (gpu::Storage& scratch : leap_scratch_) scratch = create("leap scratch", shape->cells);
 }
 
+void ResidentVolume::upload(const BrickTexels& texels, const glm::uvec3& brick, uint32_t slot)
+{
+    uploads_->stage(
+        {.codes = &atlas_, .texel = gpu::slot_origin(slot), .cells = &cell_ranges_, .cell = gpu::BRICK_CELLS * brick},
+        texels);
+}
+
+/// Once all bricks are staged.
 void ResidentVolume::upload_page_table()
 {
+    uploads_->flush();
+    uploads_->finish();
+    uploads_.reset();
     gpu::Storage staging = memory_.create("staging", page_table_.desc(), gpu::Placement::upload);
     std::memcpy(staging.mapped().data(), slots_.data(), staging.mapped().size());
     slots_ = {};
@@ -242,23 +192,20 @@ void ResidentVolume::upload_page_table()
     executor_.run(graph, {.timestamps = false});
 }
 
-/// A batch is one upload.
 bool ResidentVolume::load_on(double seconds)
 {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                                      std::chrono::duration<double>(std::max(seconds, 0.0)));
-    std::optional<Uploader> uploader;
     while (builder_) {
         const Builder::Batch batch = builder_->take();
         if (batch.empty()) return false;
-        if (!uploader) uploader.emplace(executor_, memory_, brick_count(), filtered_ ? 1 : 2);
+        if (!uploads_) uploads_.emplace(executor_, memory_, brick_count(), filtered_);
         for (const Builder::Brick& brick : batch) {
             slots_.push_back(slot_at(uint32_t(slots_.size()) + 1, atlas_slots_));
-            uploader->add(brick.place, slots_.back(), brick.texels);
+            upload(brick.texels, brick.place, slots_.back());
             ranges_.push_back(brick.texels.range);
         }
-        uploader->flush(atlas_, cell_ranges_);
         if (slots_.size() == brick_count()) {
             upload_page_table();
             builder_.reset();
@@ -389,27 +336,23 @@ void ResidentVolume::renew(std::span<const VoxelBox> changed)
 
 void ResidentVolume::renew_bricks(std::span<const BrickKey> keys)
 {
+    if (uploads_ && (uploads_->is_idle() || uploads_->batch() < std::min(keys.size(), BrickUploads::BATCH))) {
+        uploads_->finish();
+        uploads_.reset();
+    }
+    if (keys.empty()) return;
+    if (!uploads_) uploads_.emplace(executor_, memory_, keys.size(), filtered_);
     BrickMaker maker(*source_, window());
     const auto texels = std::make_unique<BrickTexels>();
-    for (size_t begin = 0; begin < keys.size(); begin += BRICKS_IN_UPLOAD) {
-        std::erase_if(renewals_, [](const Renewal& renewal) { return renewal.copy.done(); });
-        if (renewals_.size() >= MAX_RENEWALS) {
-            static_cast<void>(renewals_.front().copy.finish());
-            renewals_.erase(renewals_.begin());
-        }
-        const size_t end = std::min(begin + BRICKS_IN_UPLOAD, keys.size());
-        Uploader uploader(executor_, memory_, end - begin, filtered_ ? 1 : 2);
-        for (size_t i = begin; i < end; ++i) {
-            const glm::uvec3 brick(keys[i].brick);
-            const uint32_t index = gpu::grid_index(brick, brick_counts_);
-            maker.make(keys[i], *texels);
-            uploader.add(brick, slot_at(index + 1, atlas_slots_), *texels);
-            ranges_[index] = texels->range;
-        }
-        gpu::Submission copy = executor_.submit(uploader.copies(atlas_, cell_ranges_), {.timestamps = false});
-        renewals_.push_back({uploader.take_staging(), std::move(copy)});
+    for (const BrickKey& key : keys) {
+        const glm::uvec3 brick(key.brick);
+        const uint32_t index = gpu::grid_index(brick, brick_counts_);
+        maker.make(key, *texels);
+        upload(*texels, brick, slot_at(index + 1, atlas_slots_));
+        ranges_[index] = texels->range;
     }
-    places_revision_ += !keys.empty();
+    uploads_->flush();
+    ++places_revision_;
 }
 
 uint64_t ResidentVolume::brick_count() const

@@ -5,6 +5,7 @@
 //
 // One thread, the one that owns the executor.
 
+#include "engine/device/brick_uploads.h"
 #include "engine/device/device_volume.h"
 #include "engine/device/empty_space.h"
 
@@ -32,6 +33,7 @@ public:
     /// Handles for a new frame graph.
     VolumeBinding import(FrameGraph& graph) const;
 
+    bool get_ready(const PageView&, const Visibility&) override { return true; }
     int look(const PageView& view, const Visibility& visibility) override;
     void look_by(const Visibility& visibility) override;
     bool has_view() const override { return true; }
@@ -81,10 +83,7 @@ private:
     static std::optional<Shape> shape_of(const gpu::Memory& memory, const glm::uvec3& brick_counts, bool filtered);
     void create_images();
     void upload_page_table();
-    struct Renewal {
-        gpu::Storage staging;
-        gpu::Submission copy;
-    };
+    void upload(const BrickTexels& texels, const glm::uvec3& brick, uint32_t slot);
     void renew_bricks(std::span<const BrickKey> keys);
     LeapGridInput leap_input(const std::optional<MaskBinding>& painted) const;
 
@@ -99,9 +98,9 @@ private:
     uint64_t places_revision_ = 1;
     Visibility visibility_;
     EmptySpace empty_space_;
-    std::vector<Renewal> renewals_;     ///< the device may still be copying from these
-    std::vector<uint32_t> slots_;       ///< of the bricks that are loaded, until all are
-    std::unique_ptr<Builder> builder_;  ///< while it is loaded in slices
+    std::optional<BrickUploads> uploads_;  ///< while bricks are under way to the device
+    std::vector<uint32_t> slots_;          ///< of the bricks that are loaded, until all are
+    std::unique_ptr<Builder> builder_;     ///< while it is loaded in slices
 };
 
 }  // namespace shvr

@@ -108,7 +108,7 @@ uint64_t atlas_bytes(const gpu::Memory& memory, const VolumeInfo& info, bool wit
                      ", and ", gpu::mebibytes(left), " of the budget of ", gpu::mebibytes(budget),
                      " are left; expected at least --budget-device ", budget_for(rest + scratch(2 * rest))));
     const uint64_t fifths = with_occlusion ? PAGED_FIFTHS_WITH_OCCLUSION : PAGED_FIFTHS;
-    return std::min({Scene::most_atlas_bytes(memory.traits()),
+    return std::min({Scene::most_atlas_bytes(memory.traits(), with_occlusion),
                      std::max(left / 5 * fifths, fewest / with_light * of_slot), room / with_light * of_slot});
 }
 
@@ -218,9 +218,12 @@ uint64_t Scene::atlas_share(uint64_t device_budget, bool with_occlusion)
     return device_budget / 5 * (with_occlusion ? PAGED_FIFTHS_WITH_OCCLUSION : PAGED_FIFTHS);
 }
 
-uint64_t Scene::most_atlas_bytes(const gpu::DeviceTraits& traits)
+/// In several images, but for ambient light, whose values are in one that is half as large.
+uint64_t Scene::most_atlas_bytes(const gpu::DeviceTraits& traits, bool with_occlusion)
 {
-    const uint64_t slots = traits.max_volume_bytes / BrickTexels::CODE_BYTES;
+    const uint64_t of_image = std::min(traits.max_volume_bytes / BrickTexels::CODE_BYTES,
+                                       max_atlas_slots(gpu::BRICK_TEXELS, traits.limits.maxImageDimension3D));
+    const uint64_t slots = of_image * (with_occlusion ? 1 : gpu::MAX_ATLASES);
     return std::min(traits.is_cpu ? MAX_ATLAS_BYTES_OF_CPU : UINT64_MAX, slots * BrickAtlas::slot_bytes());
 }
 
@@ -332,7 +335,7 @@ void Scene::show_surfaces(std::vector<SurfaceLook> surfaces, const TraceGraph& t
     std::vector<KeyedSurface> all = keyed(surfaces);
     const std::vector<KeyedSurface> of_trace = surfaces_of(trace, groups, info().spacing);
     all.insert(all.end(), of_trace.begin(), of_trace.end());
-    surfaces_.set(SurfaceForest(std::move(all), info()));
+    if (!surfaces_.restyle(all, info())) surfaces_.set(SurfaceForest(std::move(all), info()));
     trace_look_ = TraceLook{std::move(surfaces), groups};
 }
 

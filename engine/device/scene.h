@@ -49,7 +49,7 @@ public:
     static uint64_t bytes_to_show(const Document& document);
     /// The most that the atlas of paged bricks takes of a budget; and of a device.
     static uint64_t atlas_share(uint64_t device_budget, bool with_occlusion);
-    static uint64_t most_atlas_bytes(const gpu::DeviceTraits& traits);
+    static uint64_t most_atlas_bytes(const gpu::DeviceTraits& traits, bool with_occlusion);
     /// Whether an image of the device could hold all bricks of the source, however much memory is free.
     static bool can_be_resident(const gpu::Memory& memory, const VolumeSource& source, const Options& options);
     /// Whether such a scene would be paged, even if nothing else were on the device.
@@ -89,7 +89,8 @@ public:
     void update_density(const DensityField& field, std::span<const VoxelBox> changed);
 
     /// Sets the opaque balls and rods that end rays: these, and those of the trace in the colours of `groups`. Fails as
-    /// `surface_tree` and gpu::Memory::create do; then the earlier ones stay.
+    /// `surface_tree` and gpu::Memory::create do; then the earlier ones stay. Where only colours or sizes differ from
+    /// what is shown, only those are written.
     void show_surfaces(std::vector<SurfaceLook> surfaces, const TraceGraph& trace, const Groups& groups);
     /// Shows the trace after these changes. The cost is proportional to the changes, except for thousands of nodes at
     /// once or a change of a group's radius.

@@ -12,6 +12,8 @@ namespace {
 constexpr double ROUNDING = 0x1p-20;
 /// In place of infinity, since zero times infinity is not a number.
 constexpr double FAR = 1e20;
+/// So many values that have not changed are sent again rather than left out.
+constexpr uint32_t SHORT_GAP = 16;
 
 template <class Value>
 Resource send_all(FrameGraph& graph, const std::string& name, const std::vector<Value>& values, Resource target)
@@ -30,13 +32,16 @@ Resource send(FrameGraph& graph, const std::string& name, const std::vector<Valu
     if (places.empty()) return target;
     std::vector<Value> written;
     std::vector<BufferRegion> regions;
+    uint32_t next = 0;  // after the last one written
     for (const uint32_t place : places) {
-        const uint64_t from = written.size() * sizeof(Value), to = place * sizeof(Value);
-        if (!regions.empty() && regions.back().target_offset + regions.back().bytes == to)
+        if (regions.empty() || place - next > SHORT_GAP) {
+            regions.push_back({written.size() * sizeof(Value), place * sizeof(Value), 0});
+            next = place;
+        }
+        for (; next <= place; ++next) {
+            written.push_back(values[next]);
             regions.back().bytes += sizeof(Value);
-        else
-            regions.push_back({from, to, sizeof(Value)});
-        written.push_back(values[place]);
+        }
     }
     return graph.copy(graph.upload<Value>(name + " to upload", written), target, std::move(regions), "upload " + name);
 }
@@ -68,6 +73,11 @@ bool SurfaceScene::replace(std::span<const uint64_t> keys, std::span<const Keyed
                            const VolumeInfo& volume)
 {
     return forest_.replace(keys, surfaces, volume);
+}
+
+bool SurfaceScene::restyle(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume)
+{
+    return forest_.restyle(surfaces, volume);
 }
 
 std::optional<SurfaceList> SurfaceScene::upload(FrameGraph& graph)

@@ -20,6 +20,8 @@ public:
     void set(SurfaceForest forest);
     /// Replaces a few, as SurfaceForest::replace does.
     bool replace(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces, const VolumeInfo& volume);
+    /// Gives those that there are other looks, as SurfaceForest::restyle does.
+    bool restyle(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume);
     bool empty() const { return forest_.nodes().empty(); }
 
     /// Handles for a graph that must be submitted; uploads what has changed. Null where there are none.

@@ -5,6 +5,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/formats/coarser.h"
 #include "engine/formats/readers.h"
 #include "engine/formats/restated.h"
 #include "engine/volume/grid.h"
@@ -128,7 +129,7 @@ std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path, con
     for (const Reader& reader : READERS) {
         if (is_folder && !reader.reads_folders) continue;
         if (std::unique_ptr<VolumeSource> source = reader.open(path, options)) {
-            source = restated(std::move(source), path, options);
+            source = restated(coarser(std::move(source), path, options.level), path, options);
             check_spacing(path, source->info());
             return source;
         }

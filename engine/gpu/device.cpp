@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 #include "engine/gpu/device_needs.h"
@@ -98,13 +99,36 @@ DeviceHas what_it_has(VkPhysicalDevice physical, const DeviceTraits& traits)
 
 }  // namespace
 
+namespace {
+
+/// `fault`: what the driver tells of it; may be empty.
+[[noreturn]] void fail_as_lost(const char* call, const std::string& fault)
+{
+    throw DeviceLost(sentence("the graphics device stopped answering (device lost at ", call,
+                              fault.empty() ? "" : "; its driver says: ", fault,
+                              "): its driver was reset or it was taken away; start again, or choose another device "
+                              "with --device"));
+}
+
+const char* name_of(VkDeviceFaultAddressTypeEXT type)
+{
+    switch (type) {
+        case VK_DEVICE_FAULT_ADDRESS_TYPE_READ_INVALID_EXT: return "read at address ";
+        case VK_DEVICE_FAULT_ADDRESS_TYPE_WRITE_INVALID_EXT: return "write at address ";
+        case VK_DEVICE_FAULT_ADDRESS_TYPE_EXECUTE_INVALID_EXT: return "jump to address ";
+        case VK_DEVICE_FAULT_ADDRESS_TYPE_INSTRUCTION_POINTER_UNKNOWN_EXT:
+        case VK_DEVICE_FAULT_ADDRESS_TYPE_INSTRUCTION_POINTER_INVALID_EXT:
+        case VK_DEVICE_FAULT_ADDRESS_TYPE_INSTRUCTION_POINTER_FAULT_EXT: return "kernel stopped at address ";
+        default: return "address ";
+    }
+}
+
+}  // namespace
+
 void check(VkResult result, const char* call)
 {
     if (result >= 0) return;
-    if (result == VK_ERROR_DEVICE_LOST)
-        throw DeviceLost(sentence("the graphics device stopped answering (device lost at ", call,
-                                  "): its driver was reset or it was taken away; start again, or choose another device "
-                                  "with --device"));
+    if (result == VK_ERROR_DEVICE_LOST) fail_as_lost(call, {});
     const std::string said = sentence("Vulkan: ", call, " returned ", int(result), " (", name_of(result), ")");
     switch (result) {
         case VK_ERROR_OUT_OF_HOST_MEMORY:
@@ -115,12 +139,42 @@ void check(VkResult result, const char* call)
     }
 }
 
+void Device::check(VkResult result, const char* call) const
+{
+    if (result == VK_ERROR_DEVICE_LOST) fail_as_lost(call, fault_in_words());
+    gpu::check(result, call);
+}
+
+/// Empty where the driver does not tell. Of many addresses and codes the first ones.
+std::string Device::fault_in_words() const
+{
+    constexpr uint32_t MOST = 4;
+    if (!get_fault_) return {};
+    VkDeviceFaultCountsEXT counts{.sType = VK_STRUCTURE_TYPE_DEVICE_FAULT_COUNTS_EXT};
+    if (get_fault_(device_, &counts, nullptr) < 0) return {};
+    std::vector<VkDeviceFaultAddressInfoEXT> addresses(counts.addressInfoCount);
+    std::vector<VkDeviceFaultVendorInfoEXT> codes(counts.vendorInfoCount);
+    counts.vendorBinarySize = 0;  // a dump for the driver's makers
+    VkDeviceFaultInfoEXT info{.sType = VK_STRUCTURE_TYPE_DEVICE_FAULT_INFO_EXT,
+                              .pAddressInfos = addresses.data(),
+                              .pVendorInfos = codes.data()};
+    if (get_fault_(device_, &counts, &info) < 0) return {};
+    std::ostringstream words;
+    words << info.description;
+    for (uint32_t i = 0; i < std::min(counts.addressInfoCount, MOST); ++i)
+        words << ", " << name_of(addresses[i].addressType) << "0x" << std::hex << addresses[i].reportedAddress;
+    for (uint32_t i = 0; i < std::min(counts.vendorInfoCount, MOST); ++i)
+        words << ", " << codes[i].description << " (code " << std::dec << codes[i].vendorFaultCode << ")";
+    return words.str();
+}
+
 Device::Device(const DeviceOptions& options)
 {
     try {
         create_instance(options);
         choose_physical(options);
         create_device(!options.instance_extensions.empty());
+        looks_ahead_ = options.looks_ahead && !traits_.is_cpu;
     } catch (...) {
         destroy();
         throw;
@@ -241,6 +295,7 @@ void Device::read_traits()
     traits_.is_integrated = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
     traits_.max_allocation_bytes = maintenance.maxMemoryAllocationSize;
     traits_.max_buffer_bytes = buffers.maxBufferSize;
+    traits_.tells_faults = device_extension_is_present(physical_, VK_EXT_DEVICE_FAULT_EXTENSION_NAME);
     traits_.tells_memory_left = device_extension_is_present(physical_, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
     const auto families = enumerate<VkQueueFamilyProperties>([&](uint32_t* count, VkQueueFamilyProperties* items) {
         vkGetPhysicalDeviceQueueFamilyProperties(physical_, count, items);
@@ -312,6 +367,10 @@ void Device::create_device(bool presents)
     traits_.has_pipeline_statistics = has.features.pipelineStatisticsQuery == VK_TRUE;
     want.features.pipelineStatisticsQuery = has.features.pipelineStatisticsQuery;
 
+    VkPhysicalDeviceFaultFeaturesEXT faults{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FAULT_FEATURES_EXT,
+                                            .deviceFault = VK_TRUE};
+    if (traits_.tells_faults) want13.pNext = &faults;
+
     const float priority = 1.0f;
     const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                         .queueFamilyIndex = queue_family_,
@@ -320,6 +379,7 @@ void Device::create_device(bool presents)
     std::vector<const char*> extensions;
     if (presents) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
     if (traits_.tells_memory_left) extensions.push_back(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
+    if (traits_.tells_faults) extensions.push_back(VK_EXT_DEVICE_FAULT_EXTENSION_NAME);
     const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                   .pNext = &want,
                                   .queueCreateInfoCount = 1,
@@ -328,6 +388,9 @@ void Device::create_device(bool presents)
                                   .ppEnabledExtensionNames = extensions.data()};
     SHVR_VK(vkCreateDevice(physical_, &info, nullptr, &device_));
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+    if (traits_.tells_faults)
+        get_fault_ =
+            reinterpret_cast<PFN_vkGetDeviceFaultInfoEXT>(vkGetDeviceProcAddr(device_, "vkGetDeviceFaultInfoEXT"));
     set_name(VK_OBJECT_TYPE_QUEUE, reinterpret_cast<uint64_t>(queue_), "queue");
 }
 
@@ -355,7 +418,7 @@ void Device::end_label(VkCommandBuffer commands) const
 
 void Device::wait_idle()
 {
-    SHVR_VK(vkDeviceWaitIdle(device_));
+    check(vkDeviceWaitIdle(device_), "vkDeviceWaitIdle");
     done_ = submitted_;
 }
 

@@ -37,8 +37,9 @@ void check(VkResult result, const char* call);
 #define SHVR_VK(call) ::shvr::gpu::check(call, #call)
 
 struct DeviceOptions {
-    std::string device;       ///< part of the device's name, or its index; empty: $SHVR_DEVICE, else the best
-    bool validation = false;  ///< Khronos layer with synchronisation validation; fails where it is not installed
+    std::string device;        ///< part of the device's name, or its index; empty: $SHVR_DEVICE, else the best
+    bool looks_ahead = false;  ///< on a GPU, compiles what graphs expect later ones to run (FrameGraph::expect)
+    bool validation = false;   ///< Khronos layer with synchronisation validation; fails where it is not installed
     std::vector<std::string> instance_extensions;  ///< those for a window's surface; if any, the device can present
     /// Whether a queue of a family can show pictures in the window; null: nobody asks.
     std::function<bool(VkInstance, VkPhysicalDevice, uint32_t family)> can_present{};
@@ -62,6 +63,7 @@ struct DeviceTraits {
     uint64_t max_buffer_bytes = 0;
     uint64_t max_volume_bytes = 0;   ///< of a 3-D image of codes; no more than one allocation holds
     bool tells_memory_left = false;  ///< VK_EXT_memory_budget
+    bool tells_faults = false;       ///< VK_EXT_device_fault
 };
 
 /// For Vulkan calls that are made twice, first for the count and then for the items: returns the items.
@@ -89,6 +91,7 @@ public:
     VkQueue queue() const { return queue_; }
     uint32_t queue_family() const { return queue_family_; }
     const DeviceTraits& traits() const { return traits_; }
+    bool looks_ahead() const { return looks_ahead_; }
     const VkPhysicalDeviceMemoryProperties& memory_properties() const { return memory_properties_; }
     /// How much of the heap of `device_bytes` the driver would still give this program, beside all others; null where
     /// it does not tell.
@@ -98,6 +101,9 @@ public:
     void set_name(VkObjectType type, uint64_t handle, const std::string& name) const;
     void begin_label(VkCommandBuffer commands, const std::string& name) const;
     void end_label(VkCommandBuffer commands) const;
+
+    /// As gpu::check, for calls that tell of a lost device: with what its driver says of it.
+    void check(VkResult result, const char* call) const;
 
     /// Waits for all that was submitted. The second one does so where nobody can be told that it failed.
     void wait_idle();
@@ -119,9 +125,11 @@ private:
     void read_traits();
     void create_device(bool presents);
     void destroy() noexcept;
+    std::string fault_in_words() const;
     static VkBool32 on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                const VkDebugUtilsMessengerCallbackDataEXT* data, void* self);
 
+    bool looks_ahead_ = false;
     VkInstance instance_ = VK_NULL_HANDLE;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
     VkPhysicalDevice physical_ = VK_NULL_HANDLE;
@@ -135,6 +143,7 @@ private:
     PFN_vkSetDebugUtilsObjectNameEXT set_name_ = nullptr;
     PFN_vkCmdBeginDebugUtilsLabelEXT begin_label_ = nullptr;
     PFN_vkCmdEndDebugUtilsLabelEXT end_label_ = nullptr;
+    PFN_vkGetDeviceFaultInfoEXT get_fault_ = nullptr;
     std::mutex messages_mutex_;
     std::vector<std::string> messages_;
 };

@@ -10,6 +10,7 @@
 // between the tiles of passes and the parts of copies. Callers that must let other work run in between make several
 // small frames and keep few of them in flight. One thread at a time.
 
+#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,6 +31,8 @@ struct PassReport {
     double start_ms = 0.0;  ///< since the first pass of the frame began
     double gpu_ms = 0.0;    ///< 0 where the device has no timestamps, see `timed`
     bool timed = false;
+    std::chrono::steady_clock::time_point recorded{};  ///< when the host began to record it
+    double record_ms = 0.0;                            ///< that the host took to bind and record it
     uint32_t dispatches = 0;
     uint32_t tiles = 0;              ///< dispatches that its declaration asks for; more are for a device that was slow
     uint32_t submissions = 0;        ///< that hold parts of it
@@ -93,6 +96,9 @@ public:
     /// Submits and waits.
     FrameResult run(FrameGraph graph, const Options& options) { return submit(std::move(graph), options).finish(); }
     FrameResult run(FrameGraph graph) { return run(std::move(graph), Options{}); }
+
+    /// How many kernels that graphs expect (FrameGraph::expect) are still to be compiled.
+    size_t expected_kernels() const { return kernels_.expected(); }
 
     /// Frees the memory of transient resources that the last `runs` runs did not use.
     void trim(uint64_t runs = 0);

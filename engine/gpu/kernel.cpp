@@ -180,13 +180,18 @@ void Kernel::create_pipeline(PipelineCache& cache, std::span<const uint32_t> spi
 Kernels::Kernels(Device& device) : device_(device), cache_(device)
 {
     // A processor that draws has better things to do, and its driver compiles when a kernel first runs.
-    if (cache_.likely().empty() || device.traits().is_cpu) return;
-    worker_ = std::thread([this] { make_likely(); });
+    if (device.traits().is_cpu || (cache_.likely().empty() && !device.looks_ahead())) return;
+    expected_.assign(cache_.likely().begin(), cache_.likely().end());
+    worker_ = std::thread([this] { work(); });
 }
 
 Kernels::~Kernels()
 {
-    ends_ = true;
+    {
+        const std::lock_guard lock(mutex_);
+        ends_ = true;
+    }
+    has_work_.notify_all();
     if (worker_.joinable()) worker_.join();
     std::set<KernelVariant> used;
     for (const auto& [variant, made] : kernels_)
@@ -195,15 +200,36 @@ Kernels::~Kernels()
 }
 
 /// What fails here fails again, with words, once it is asked for.
-void Kernels::make_likely() noexcept
+void Kernels::work() noexcept
 {
-    for (const KernelVariant& variant : cache_.likely()) {
+    for (;;) {
+        std::unique_lock lock(mutex_);
+        has_work_.wait(lock, [this] { return ends_ || !expected_.empty(); });
         if (ends_) return;
+        const KernelVariant variant = expected_.front();
+        lock.unlock();
         try {
             make(variant);
         } catch (const std::exception&) {
         }
+        lock.lock();
+        expected_.pop_front();
     }
+}
+
+void Kernels::expect(std::span<const KernelVariant> variants)
+{
+    if (!device_.looks_ahead() || variants.empty()) return;
+    const std::lock_guard lock(mutex_);
+    for (const KernelVariant& variant : variants)
+        if (kernels_.emplace(variant, Made()).second) expected_.push_back(variant);
+    if (!expected_.empty()) has_work_.notify_all();
+}
+
+size_t Kernels::expected() const
+{
+    const std::lock_guard lock(mutex_);
+    return expected_.size();
 }
 
 const Kernels::Code& Kernels::code(const std::string& name)

@@ -4,8 +4,8 @@
 // declarations.
 
 #include <array>
-#include <atomic>
 #include <condition_variable>
+#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -77,7 +77,7 @@ private:
 };
 
 /// All kernels of the program, created on first use. On a GPU a thread of their own makes those that were used the last
-/// time (pipeline_cache.h), from the start on. One thread asks.
+/// time (pipeline_cache.h), from the start on, and then those that are expected. One thread asks.
 class Kernels {
 public:
     explicit Kernels(Device& device);
@@ -88,6 +88,10 @@ public:
     /// On failure, names the known kernels or the known constants. Waits where that thread is at this kernel.
     const Kernel& get(const std::string& name, const std::vector<std::pair<std::string, uint32_t>>& constants);
     const KernelInterface& interface(const std::string& name);
+    /// They are likely to be asked for; where the device looks ahead (gpu::DeviceOptions) that thread makes them.
+    void expect(std::span<const KernelVariant> variants);
+    /// How many that thread has still to make.
+    size_t expected() const;
 
 private:
     struct Code {
@@ -101,15 +105,16 @@ private:
     };
     const Code& code(const std::string& name);
     Made& make(const KernelVariant& variant);
-    void make_likely() noexcept;
+    void work() noexcept;
 
     Device& device_;
     PipelineCache cache_;
-    std::mutex mutex_;  ///< of the next two
+    mutable std::mutex mutex_;  ///< of all that follows
     std::map<std::string, Code> codes_;
     std::map<KernelVariant, Made> kernels_;
-    std::condition_variable is_made_;
-    std::atomic<bool> ends_ = false;
+    std::deque<KernelVariant> expected_;  ///< the first is being made
+    std::condition_variable is_made_, has_work_;
+    bool ends_ = false;
     std::thread worker_;
 };
 

@@ -17,11 +17,9 @@
 #include <vector>
 
 #include "engine/gpu/device.h"
+#include "engine/graph/kernel_variants.h"
 
 namespace shvr::gpu {
-
-/// A kernel's name and its specialization constants.
-using KernelVariant = std::pair<std::string, std::vector<std::pair<std::string, uint32_t>>>;
 
 /// What a file holds.
 struct KeptPipelines {

@@ -209,6 +209,9 @@ public:
     /// Returns the whole resource to the host as bytes once the frame is done; keeps the passes that made it. The
     /// result is an index into `FrameResult::read_backs`.
     uint32_t read_back(Resource resource, const std::string& name = {}, Location at = Location::current());
+    /// A later graph is likely to run that kernel: an executor may compile it meanwhile.
+    void expect(KernelVariant kernel) { expected_.push_back(std::move(kernel)); }
+
     /// Keeps the passes that made `resource`, even if nothing in this graph reads it.
     void keep(Resource resource);
 
@@ -234,6 +237,7 @@ public:
     };
     const std::vector<PassData>& passes() const { return passes_; }
     const std::vector<ResourceData>& resources() const { return resources_; }
+    const std::vector<KernelVariant>& expected() const { return expected_; }
     uint32_t read_back_count() const { return read_backs_; }
 
 private:
@@ -244,6 +248,7 @@ private:
 
     std::vector<PassData> passes_;
     std::vector<ResourceData> resources_;
+    std::vector<KernelVariant> expected_;
     uint32_t read_backs_ = 0;
     struct Undo;
     std::shared_ptr<Undo> undo_;  ///< shared by copies

@@ -3,12 +3,18 @@
 // generates the table (tools/embed_kernels.cmake) and compiles every subset, so that the order is stated in one place
 // only. Any thread.
 
+#include <cstdint>
 #include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace shvr {
+
+/// A compiled kernel's name, and its specialization constants in the order in which the pass gives them.
+using KernelVariant = std::pair<std::string, std::vector<std::pair<std::string, uint32_t>>>;
 
 /// A macro of a kernel, and its value.
 struct VariantChoice {

@@ -120,6 +120,11 @@ void Screen::advance()
 {
     for (const Part& part : parts_) part.view->collect();
     take_changed();
+    submit_ahead(0.0);
+}
+
+void Screen::submit_ahead(double ahead_ms)
+{
     const auto first = [&](const auto& wants) {
         size_t part = 0;
         while (part < parts_.size() && !wants(part)) ++part;
@@ -135,9 +140,9 @@ void Screen::advance()
         if (part != next && !parts_[part].view->is_idle()) return;
     give_turn(next);
     if (unsketched < parts_.size())
-        parts_[next].view->submit_sketches();
+        parts_[next].view->submit_sketches(ahead_ms);
     else
-        parts_[next].view->submit_due();
+        parts_[next].view->submit_due(ahead_ms);
 }
 
 void Screen::wait()

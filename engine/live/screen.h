@@ -26,6 +26,9 @@ public:
     void update_occlusion();
 
     void advance();
+    /// Submits so much more of what is due: the thread will wait that long for something else, and the device is not
+    /// to be idle meanwhile.
+    void submit_ahead(double ahead_ms);
     void wait();
     /// Frees all panes and their device memory; look() makes new ones.
     void clear();

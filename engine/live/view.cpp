@@ -135,6 +135,7 @@ void View::forget()
     tiles_.clear();
     changed_during_base_.clear();
     shown_sight_.reset();
+    coming_sight_.reset();
     finer_sight_.reset();
     ++revision_;
 }
@@ -153,15 +154,15 @@ void View::advance()
     submit_due();
 }
 
-void View::submit_due()
+void View::submit_due(double ahead_ms)
 {
-    while (in_flight_ms_ < options_.in_flight_ms && submit_or_give_way(false)) {
+    while (in_flight_ms_ < options_.in_flight_ms + ahead_ms && submit_or_give_way(false)) {
     }
 }
 
-void View::submit_sketches()
+void View::submit_sketches(double ahead_ms)
 {
-    while (in_flight_ms_ < options_.in_flight_ms && submit_or_give_way(true)) {
+    while (in_flight_ms_ < options_.in_flight_ms + ahead_ms && submit_or_give_way(true)) {
     }
 }
 
@@ -181,6 +182,30 @@ bool View::patch_is_due() const
     return patch_.shown.sight != shown_sight_ || patch_.shown.probe != probe_ || (probe_ && patch_is_dirty_);
 }
 
+bool View::is_listed(const Sight& sight)
+{
+    return get_ready(scene(), sight.look, sight.shot,
+                     {.pixels = sight.pixels, .always_shown = voxels_of_shell(probe_, scene().info())});
+}
+
+/// The wanted sight, or one that was wanted a moment ago, once its bricks are listed; null: not yet.
+View::SightRef View::listed_sight()
+{
+    if (!coming_sight_) coming_sight_ = sight_;
+    if (!is_listed(*coming_sight_)) return nullptr;
+    const SightRef listed = std::exchange(coming_sight_, nullptr);
+    return is_listed(*sight_) ? sight_ : listed;
+}
+
+/// While a sketch is drawn, the bricks of the next one are listed.
+void View::list_ahead()
+{
+    if (sight_ == shown_sight_ || (base_.job && base_.job->sight == sight_)) return;
+    if (coming_sight_ == sight_ || (coming_sight_ && !is_listed(*coming_sight_))) return;
+    coming_sight_ = sight_;
+    static_cast<void>(is_listed(*sight_));
+}
+
 bool View::submit_next(bool sketches_alone)
 {
     if (!sight_) return false;
@@ -189,12 +214,17 @@ bool View::submit_next(bool sketches_alone)
         drop_finer_sketch();
     }
     if (submit_sketch(base_, Purpose::base) || submit_sketch(patch_, Purpose::patch)) return true;
-    if (base_.job || patch_.job) return false;  // in flight
+    if (base_.job || patch_.job) {  // in flight
+        list_ahead();
+        return false;
+    }
     if (sight_ != shown_sight_) {
+        const SightRef sight = listed_sight();
+        if (!sight) return false;
         pass_times_.clear();
         changed_during_base_.clear();
-        start(base_, sight_, std::nullopt, options_.motion_ms);
-        if (probe_) start(patch_, sight_, probe_, options_.probe_ms);  // shown together with it
+        start(base_, sight, std::nullopt, options_.motion_ms);
+        if (probe_) start(patch_, sight, probe_, options_.probe_ms);  // shown together with it
         patch_is_dirty_ = false;
         return submit_next(sketches_alone);
     }
@@ -210,6 +240,8 @@ bool View::submit_next(bool sketches_alone)
     if (patch_is_due()) return submit_next(sketches_alone);
     if (submit_finer_sketch()) return submit_next(sketches_alone);
     if (submit_tiles()) return true;
+    if (std::ranges::any_of(tiles_, [this](const Tile& tile) { return may_draw(tile); }))
+        return false;  // their bricks are being listed
     if (running_.empty() && patch_.shown.share < 1.0 && !patch_.shown.part.empty()) {
         start(patch_, sight_, probe_, std::numeric_limits<double>::infinity());  // nothing moves: draw it sharp
         return submit_next(sketches_alone);
@@ -422,6 +454,7 @@ bool View::submit_tiles()
         }
     if (!nearest) return false;
     if (!has_room_for_tiles()) return submit_sketch_instead();
+    if (!is_listed(*shown_sight_)) return false;  // paint or the probe's shell has come to another brick
     if (submit_preparation(*shown_sight_)) return true;
 
     const PixelBox strip = strip_of_tiles(*nearest);

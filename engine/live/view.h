@@ -1,7 +1,9 @@
 #pragma once
 // An interactive picture: coarse at once, then sharp, tile by tile, nearest to the probe first.
 //
-//   look changed      sketch of the whole picture, at a scale that takes about `motion_ms`   -> shown when all is done
+//   look changed      the bricks of the view are listed, beside this thread; a camera that moves faster is followed at
+//                     that pace
+//                     sketch of the whole picture, at a scale that takes about `motion_ms`   -> shown when all is done
 //                     and at most the session's `interaction.resolution`
 //   probe moved       sketch of the pixels its ball may cover, drawn over everything else    -> shown when done
 //   still             a finer sketch of the whole picture, where that is a small part of the work
@@ -63,8 +65,9 @@ public:
     void advance();
     // The parts of advance(), for owners of several views, which take the scene's changes and report them to each view.
     void collect() { reap(); }
-    void submit_sketches();  ///< only the work that is_sketched() waits for
-    void submit_due();
+    // `ahead_ms`: so much more than `in_flight_ms` may be in flight, since nobody comes by for that long.
+    void submit_sketches(double ahead_ms = 0.0);  ///< only the work that is_sketched() waits for
+    void submit_due(double ahead_ms = 0.0);
     /// Whether the whole picture is shown, perhaps coarse.
     bool is_sketched() const { return sight_ == shown_sight_ && !base_.job && !patch_.job && !patch_is_due(); }
     /// Whether nothing is due or in flight; bricks may still arrive.
@@ -153,6 +156,9 @@ private:
         DeviceVolume::Feedback feedback;
     };
 
+    bool is_listed(const Sight& sight);
+    SightRef listed_sight();
+    void list_ahead();
     bool submit_next(bool sketches_alone);
     bool submit_or_give_way(bool sketches_alone);
     void forget();
@@ -206,6 +212,7 @@ private:
     Options options_;
     SightRef sight_;                  ///< the wanted state
     SightRef shown_sight_;            ///< the state that base, tiles and patch show
+    SightRef coming_sight_;           ///< a wanted one whose bricks are being listed
     SightRef cut_short_sight_;        ///< the last one of which rays stopped before their end
     std::optional<ProbeLook> probe_;  ///< the wanted probe
     Sketch base_, patch_;

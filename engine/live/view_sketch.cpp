@@ -80,11 +80,12 @@ void View::drop_finer_sketch()
     if (unsharp_sight_ == shown_sight_) mark_due({glm::uvec2(0), shown_sight_->pixels}, false);
 }
 
-/// Submits the next graph of a sketch; false if all are in flight.
+/// Submits the next graph of a sketch; false if all are in flight, or if its bricks are still being listed.
 bool View::submit_sketch(Sketch& sketch, Purpose purpose)
 {
     if (!sketch.job) return false;
     if (sketch.next_row < sketch.job->part.end.y) {
+        if (!is_listed(*sketch.job->sight)) return false;
         if (!submit_preparation(*sketch.job->sight)) submit_rows(sketch, purpose);
         return true;
     }

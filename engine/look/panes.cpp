@@ -66,7 +66,9 @@ Pane slice_pane(int axis, const PixelBox& box, const VolumeInfo& volume, const g
     Camera& camera = pane.shot.camera;
     const glm::dvec3 forward = glm::normalize(camera.target - camera.eye);
     const glm::dvec3 size(volume.size);
-    const double voxel = std::clamp(probe_voxel[axis], 0.0, std::nextafter(size[axis], 0.0));
+    // Below the volume's end in the floats of a kernel, too: a plane in it has no inside, and is drawn without an edge.
+    constexpr double LAST = 1.0 - 1e-6;
+    const double voxel = std::clamp(probe_voxel[axis], 0.0, LAST * size[axis]);
     if (slices.center || slices.zoom > 1.0) {
         const glm::dvec3 way = middle_of(slices, volume, probe_voxel) * volume.spacing - camera.target;
         camera.target += way;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include <glm/glm.hpp>
 
@@ -14,16 +15,27 @@ namespace shvr {
 /// The largest OcclusionSettings::radius; limited by the bricks gathered around a brick (engine/passes/occlusion.h).
 inline constexpr double MAX_OCCLUSION_RADIUS = 60.0;
 
+/// A point of the curve that maps the light that arrives to the light that is seen; linear in between, level outside.
+struct OcclusionPoint {
+    double arrives = 0.0, seen = 0.0;  ///< shares
+    bool operator==(const OcclusionPoint&) const = default;
+};
+inline constexpr size_t MAX_OCCLUSION_POINTS = 16;
+
 /// How much of the ambient light reaches a point (shaders/occlusion/occlusion.h).
 struct OcclusionSettings {
-    double strength = 0.0;     ///< 0: off; 1: fully blocked places get no ambient light
-    double radius = 16.0;      ///< distance that light comes from, in reference lengths
-    uint32_t rays = 32;        ///< per voxel
-    bool full_sphere = false;  ///< also rays from behind surfaces
-    double curve = 1.0;        ///< exponent of the light that arrives: above 1 darker
-    bool automatic = true;     ///< false: the window renews it on request
+    double strength = 0.0;                  ///< 0: off; 1: fully blocked places get no ambient light
+    double radius = 16.0;                   ///< distance that light comes from, in reference lengths
+    uint32_t rays = 32;                     ///< per voxel
+    bool full_sphere = false;               ///< also rays from behind surfaces
+    double curve = 1.0;                     ///< exponent of the light that arrives: above 1 darker
+    bool automatic = true;                  ///< false: the window renews it on request
+    std::vector<OcclusionPoint> mapping{};  ///< instead of `curve`, by `arrives`; empty: none
     bool operator==(const OcclusionSettings&) const = default;
 };
+
+/// The share of the light that is seen of one that arrives, at full strength.
+double seen_of(const OcclusionSettings& settings, double arrives);
 
 struct Light {
     bool shaded = true;

@@ -57,6 +57,13 @@ bool SurfaceForest::replace(std::span<const uint64_t> keys, std::span<const Keye
 
     added_ = std::move(added);
     for (const uint64_t key : gone) remove(key);
+    set_added(tree);
+    return true;
+}
+
+/// The small hierarchy, of `added_`.
+void SurfaceForest::set_added(const SurfaceTree& tree)
+{
     nodes_.resize(base_nodes_);
     list_.resize(base_list_);
     for (gpu::SurfaceNode node : tree.nodes) {
@@ -71,6 +78,57 @@ bool SurfaceForest::replace(std::span<const uint64_t> keys, std::span<const Keye
         list_.push_back(surface);
     }
     SHVR_CHECK(nodes_.size() <= max_nodes() && list_.size() <= max_surfaces());
+}
+
+namespace {
+
+bool is_placed_alike(const gpu::Surface& a, const gpu::Surface& b)
+{
+    return a.from == b.from && a.from_rest == b.from_rest && a.along == b.along && a.radius_from == b.radius_from &&
+           a.radius_to == b.radius_to;
+}
+
+}  // namespace
+
+bool SurfaceForest::restyle(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume)
+{
+    if (!may_grow()) return false;
+    // The keys of both hierarchies are sorted, and so are the surfaces: one walk through all three.
+    std::vector<std::pair<uint32_t, gpu::Surface>> other;
+    std::vector<KeyedSurface> added = added_;
+    size_t place = 0, of_added = 0;
+    bool is_moved = false, is_added_other = false;
+    for (const KeyedSurface& surface : surfaces) {
+        while (place < places_.size() && places_[place].at == GONE) ++place;
+        if (place < places_.size() && places_[place].key == surface.key) {
+            const uint32_t at = places_[place++].at;
+            const gpu::Surface now = surface_on_device(surface, volume);
+            const bool is_placed = is_placed_alike(now, list_[at]);
+            is_moved = is_moved || !is_placed;
+            if (!is_placed || now.color != list_[at].color) other.emplace_back(at, now);
+        } else if (of_added < added.size() && added[of_added].key == surface.key) {
+            is_added_other = is_added_other || added[of_added].look != surface.look;
+            added[of_added++].look = surface.look;
+        } else {
+            return false;
+        }
+    }
+    while (place < places_.size() && places_[place].at == GONE) ++place;
+    if (place < places_.size() || of_added < added.size()) return false;
+    const SurfaceTree tree = is_added_other ? surface_tree(added, volume, max_in_leaf_) : SurfaceTree();
+
+    for (const auto& [at, now] : other) {
+        list_[at] = now;
+        written_.list.push_back(at);
+    }
+    if (is_moved) {
+        const std::vector<uint32_t> changed = refit(std::span(nodes_).first(base_nodes_), list_);
+        written_.nodes.insert(written_.nodes.end(), changed.begin(), changed.end());
+    }
+    if (is_added_other) {
+        added_ = std::move(added);
+        set_added(tree);
+    }
     return true;
 }
 

@@ -26,6 +26,11 @@ public:
     /// the changes and MAX_SURFACES_ADDED, not to the forest.
     bool replace(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces, const VolumeInfo& volume);
 
+    /// Gives the surfaces that there are other looks: `surfaces`, sorted by key, are all of them. Returns false, and
+    /// changes nothing, if others are there, or if a new forest is as cheap. Fails as `surface_tree` does, and then
+    /// changes nothing. What is written is what looks different, and boxes where something changed its size.
+    bool restyle(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume);
+
     const std::vector<gpu::SurfaceNode>& nodes() const { return nodes_; }
     const std::vector<gpu::Surface>& list() const { return list_; }
     /// Upper bound of the number of nodes, whatever `replace` does.
@@ -42,6 +47,7 @@ private:
     /// Smaller forests are rebuilt as fast as the small hierarchy.
     bool may_grow() const { return base_list_ > 2 * MAX_SURFACES_ADDED; }
     void remove(uint64_t key);
+    void set_added(const SurfaceTree& tree);
 
     size_t max_in_leaf_ = SURFACES_IN_LEAF;
     std::vector<gpu::SurfaceNode> nodes_;

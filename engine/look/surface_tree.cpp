@@ -95,6 +95,17 @@ Box box_of(const gpu::Surface& surface)
     return box;
 }
 
+glm::vec3 rounded(const glm::dvec3& v, float towards)
+{
+    const glm::vec3 f(v);
+    return {std::nextafter(f.x, towards), std::nextafter(f.y, towards), std::nextafter(f.z, towards)};
+}
+
+double reference_length_of(const VolumeInfo& volume)
+{
+    return std::min({volume.spacing.x, volume.spacing.y, volume.spacing.z});
+}
+
 struct Item {
     Box box;
     glm::dvec3 middle{0.0};
@@ -128,12 +139,6 @@ public:
 
 private:
     static constexpr int BINS = 16;
-
-    static glm::vec3 rounded(const glm::dvec3& v, float towards)
-    {
-        const glm::vec3 f(v);
-        return {std::nextafter(f.x, towards), std::nextafter(f.y, towards), std::nextafter(f.z, towards)};
-    }
 
     size_t split(size_t begin, size_t end)
     {
@@ -206,18 +211,23 @@ std::vector<KeyedSurface> keyed(std::span<const SurfaceLook> surfaces)
     return all;
 }
 
+gpu::Surface surface_on_device(const KeyedSurface& surface, const VolumeInfo& volume)
+{
+    const double reference_length = reference_length_of(volume);
+    check(surface.look, surface.key, reference_length);
+    return on_device(surface.look, surface.key, reference_length);
+}
+
 SurfaceTree surface_tree(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume, size_t max_in_leaf)
 {
     if (surfaces.size() > MAX_SURFACES)
         fail(surfaces.size(), " surfaces are to be drawn; expected at most ", MAX_SURFACES);
-    const double reference_length = std::min({volume.spacing.x, volume.spacing.y, volume.spacing.z});
     std::vector<gpu::Surface> all;
     std::vector<Item> items;
     all.reserve(surfaces.size());
     items.reserve(surfaces.size());
     for (size_t i = 0; i < surfaces.size(); ++i) {
-        check(surfaces[i].look, surfaces[i].key, reference_length);
-        all.push_back(on_device(surfaces[i].look, surfaces[i].key, reference_length));
+        all.push_back(surface_on_device(surfaces[i], volume));
         const Box box = box_of(all.back());
         items.push_back({box, 0.5 * (box.lower + box.upper), uint32_t(i)});
     }
@@ -231,6 +241,31 @@ SurfaceTree surface_tree(std::span<const KeyedSurface> surfaces, const VolumeInf
         tree.keys.push_back(surfaces[item.surface].key);
     }
     return tree;
+}
+
+std::vector<uint32_t> refit(std::span<gpu::SurfaceNode> nodes, std::span<const gpu::Surface> list)
+{
+    std::vector<uint32_t> changed;
+    for (size_t node = nodes.size(); node-- > 0;) {  // children follow their parents
+        gpu::SurfaceNode& parent = nodes[node];
+        glm::vec3 lower(INFINITY), upper(-INFINITY);
+        for (size_t child = node + 1; child < parent.skip; child = nodes[child].skip) {
+            lower = glm::min(lower, nodes[child].lower);
+            upper = glm::max(upper, nodes[child].upper);
+        }
+        if (parent.begin < parent.end) {
+            Box box;
+            for (uint32_t i = parent.begin; i < parent.end; ++i) box.add(box_of(list[i]));
+            lower = rounded(box.lower, -INFINITY);
+            upper = rounded(box.upper, INFINITY);
+        }
+        // A leaf that has lost its surfaces keeps its box.
+        if (lower.x > upper.x || (lower == parent.lower && upper == parent.upper)) continue;
+        parent.lower = lower;
+        parent.upper = upper;
+        changed.push_back(uint32_t(node));
+    }
+    return changed;
 }
 
 }  // namespace shvr

@@ -54,4 +54,10 @@ struct SurfaceTree {
 SurfaceTree surface_tree(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume,
                          size_t max_in_leaf = SURFACES_IN_LEAF);
 
+/// One of them as it would be in the tree's list. Fails as `surface_tree` does.
+gpu::Surface surface_on_device(const KeyedSurface& surface, const VolumeInfo& volume);
+
+/// Fits the boxes of `nodes`, which are whole trees, to what lies in their leaves. Returns the nodes that changed.
+std::vector<uint32_t> refit(std::span<gpu::SurfaceNode> nodes, std::span<const gpu::Surface> list);
+
 }  // namespace shvr

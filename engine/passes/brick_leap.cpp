@@ -40,6 +40,7 @@ bool operator==(const Visibility& a, const Visibility& b)
 void brick_leap(FrameGraph& graph, VolumeBinding& volume, const Visibility& visibility,
                 const std::optional<MaskBinding>& mask, std::span<const gpu::BrickLeapJob> jobs)
 {
+    graph.expect({variant_of("brick_leap", {{"MASKED", true}}), {}});  // once something is painted
     for (size_t first = 0; first < jobs.size(); first += BATCH) {
         const std::span<const gpu::BrickLeapJob> batch = jobs.subspan(first, std::min(BATCH, jobs.size() - first));
         Pass pass = graph.compute("brick_leap", {{"MASKED", mask.has_value()}});

@@ -30,6 +30,8 @@ void occupancy(FrameGraph& graph, const VolumeBinding& volume, const LeapGridInp
     params.cell_begin = cells.begin;
     params.cell_end = cells.end;
     params.empty_distance = empty_distance;
+    graph.expect({variant_of("leap_occupancy", {{"MASKED", true}}), {}});  // once something is painted
+    graph.expect({"leap_bound", {}});
     pass.push(params);
     pass.dispatch(cells.end - cells.begin);
     to = pass.write("leap", to);

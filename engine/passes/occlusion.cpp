@@ -153,7 +153,8 @@ void gather(FrameGraph& graph, const VolumeBinding& volume, const OcclusionBindi
     pass.block("jobs", jobs);
     pass.block("bricks_around", around);
     bind_opacities(pass, input.near);
-    pass.read("atlas", volume.atlas);
+    if (volume.pages) pass.constant("ATLASES", atlases_of(volume));
+    read_atlas(pass, volume);
     bind_leap(pass, volume);
     group_each(pass, jobs.size(), gpu::OCCLUSION_SPLIT);
     for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) {
@@ -175,7 +176,8 @@ void occlusion_cells(FrameGraph& graph, const VolumeBinding& volume, OcclusionBi
     pass.block("params_block", std::span<const gpu::OcclusionCellsParams>(&params, 1));
     pass.block("jobs", jobs);
     bind_opacities(pass, input);
-    pass.read("atlas", volume.atlas);
+    if (volume.pages) pass.constant("ATLASES", atlases_of(volume));
+    read_atlas(pass, volume);
     group_each(pass, jobs.size());
     for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size)
         occlusion.cells[size] = pass.write(CELL_NAMES[size], occlusion.cells[size]);
@@ -210,7 +212,8 @@ void occlusion_bake(FrameGraph& graph, const VolumeBinding& volume, OcclusionBin
     pass.block("jobs", jobs);
     pass.block("bricks_around", around);
     pass.block("visible_intervals", std::span<const uint32_t>(input.visible_intervals));
-    pass.read("atlas", volume.atlas);
+    if (volume.pages) pass.constant("ATLASES", atlases_of(volume));
+    read_atlas(pass, volume);
     pass.read("near", scratch.near);
     for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) pass.read(AROUND_NAMES[size], scratch.around[size]);
     bind_leap(pass, volume);

@@ -22,7 +22,8 @@ uint64_t word_bytes(const gpu::RegionParams& params)
 Labelled region_bits(FrameGraph& graph, const VolumeBinding& volume, const RegionInput& input)
 {
     Pass pass = graph.compute("region_bits", {{"FILTERED", volume.filtered}});
-    pass.read("atlas", volume.atlas);
+    pass.constant("ATLASES", atlases_of(volume));
+    read_stacked_atlas(pass, volume);
     pass.block("region_bricks", std::span<const uint32_t>(input.bricks.slots));
     pass.block("rows", input.rows);
     gpu::RegionParams params = input.params;
@@ -99,6 +100,13 @@ Resource region_select(FrameGraph& graph, const gpu::RegionParams& params, const
 }
 
 }  // namespace
+
+void expect_brushes(FrameGraph& graph, const VolumeBinding& volume)
+{
+    graph.expect({variant_of("region_bits", {{"FILTERED", volume.filtered}}), {{"ATLASES", atlases_of(volume)}}});
+    for (const char* kernel : {"region_merge", "region_mark"}) graph.expect({kernel, {}});
+    for (const uint32_t keep : {gpu::KEEP_SEED, gpu::KEEP_UNMARKED}) graph.expect({"region_select", {{"KEEP", keep}}});
+}
 
 Resource select_fill(FrameGraph& graph, const VolumeBinding& volume, const RegionInput& input)
 {

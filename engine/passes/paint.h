@@ -23,6 +23,9 @@ Resource select_flood(FrameGraph& graph, const VolumeBinding& volume, const Regi
 /// The components without a voxel at the region's edge.
 Resource select_speckles(FrameGraph& graph, const VolumeBinding& volume, const RegionInput& input);
 
+/// Some brush is likely to be used before long.
+void expect_brushes(FrameGraph& graph, const VolumeBinding& volume);
+
 /// Bits of a box of voxels, laid out as a region's, that need not lie in it.
 struct SeedBits {
     Resource words;

@@ -5,19 +5,36 @@
 
 namespace shvr {
 
+namespace {
+
+KernelVariant kernel_of(const PreviewInput& input)
+{
+    return {variant_of("preview", {{"SURFACED", input.surfaces.has_value()}}),
+            {{"GROUP_WIDTH", input.group_width},
+             {"SHININESS_SQUARINGS", shininess_squarings(input.params.shininess)},
+             {"DISTANCE_BLEND", input.params.blend_size > 0.0f},
+             {"SLICE", input.slice}}};
+}
+
+}  // namespace
+
+void expect_preview(FrameGraph& graph, const PreviewInput& input)
+{
+    graph.expect(kernel_of(input));
+    graph.expect({"preview_over", {}});
+}
+
 PreviewSeen preview(FrameGraph& graph, const PreviewInput& input)
 {
     const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
     const ResourceDesc desc = picture_desc(Format::rgba32_float, pixels);
-    Pass pass = graph.compute("preview", {{"SURFACED", input.surfaces.has_value()}});
+    const KernelVariant kernel = kernel_of(input);
+    Pass pass = graph.compute(kernel.first, "preview");
+    for (const auto& [name, value] : kernel.second) pass.constant(name, value);
     pass.block("params_block", std::span(&input.params, 1));
     pass.block("preview_params", std::span(&input.preview, 1));
     pass.block("preview_words", input.words);
     if (input.surfaces) pass.read("surfaces", *input.surfaces);
-    pass.constant("GROUP_WIDTH", input.group_width);
-    pass.constant("SHININESS_SQUARINGS", shininess_squarings(input.params.shininess));
-    pass.constant("DISTANCE_BLEND", input.params.blend_size > 0.0f);
-    pass.constant("SLICE", input.slice);
     pixel_groups(pass, pixels, input.group_width);
     PreviewSeen made;
     const Resource nearest = pass.write("nearest", graph.create("preview surfaces", desc));

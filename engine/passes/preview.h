@@ -26,6 +26,9 @@ struct PreviewSeen {
 /// All its resources last for this frame only.
 PreviewSeen preview(FrameGraph& graph, const PreviewInput& input);
 
+/// One is likely to be drawn before long.
+void expect_preview(FrameGraph& graph, const PreviewInput& input);
+
 /// Draws the preview over the picture in `target`, which the ray caster made with those surfaces. Returns its new
 /// version.
 Resource preview_over(FrameGraph& graph, Resource seen, Resource target, const gpu::PreviewOverParams& params);

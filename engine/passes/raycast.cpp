@@ -46,31 +46,115 @@ uint64_t steps_of_ray(const gpu::RaycastParams& params)
     return uint64_t(std::min(longest / double(params.step) * ROUNDING + 1.0, MOST));
 }
 
+std::vector<std::byte> bytes_of(const RaycastOcclusion& occlusion)
+{
+    const auto look = std::as_bytes(std::span(&occlusion.look, 1)),
+               segments = std::as_bytes(std::span(occlusion.segments));
+    std::vector<std::byte> bytes(look.begin(), look.end());
+    bytes.insert(bytes.end(), segments.begin(), segments.end());
+    return bytes;
+}
+
+/// What decides which kernel draws, and with which constants.
+struct Choice {
+    bool is_paged, is_filtered, is_masked, is_occluded, is_surfaced;
+    uint32_t shell = gpu::SHELL_NONE;
+    bool feedback, has_sample_bits, is_shaded, picks;
+    uint32_t kept = gpu::KEPT_NOTHING;
+    uint32_t atlases = 1;
+};
+
+Choice choice_of(const VolumeBinding& volume, const RaycastInput& input, bool is_shelled, bool keeps_rays)
+{
+    return {.is_paged = volume.pages.has_value(),
+            .is_filtered = volume.filtered,
+            .is_masked = input.mask.has_value(),
+            .is_occluded = input.occlusion.has_value(),
+            .is_surfaced = input.surfaces.has_value(),
+            .shell = is_shelled ? input.shell : gpu::SHELL_NONE,
+            .feedback = volume.pages && volume.pages->feedback,
+            .has_sample_bits = volume.sample_bits.has_value(),
+            .is_shaded = input.shaded,
+            .picks = input.pick,
+            .kept = input.waiting ? gpu::KEPT_ALL
+                    : keeps_rays  ? gpu::KEPT_SHELL
+                                  : gpu::KEPT_NOTHING,
+            .atlases = atlases_of(volume)};
+}
+
+KernelVariant kernel_of(const Choice& choice, const RaycastInput& input)
+{
+    const bool is_shelled = choice.shell != gpu::SHELL_NONE;
+    KernelVariant kernel{variant_of("raycast", {{"PAGED", choice.is_paged},
+                                                {"FILTERED", choice.is_filtered},
+                                                {"MASKED", choice.is_masked},
+                                                {"OCCLUDED", choice.is_occluded},
+                                                {"SURFACED", choice.is_surfaced},
+                                                {"SHELLED", is_shelled}}),
+                         {}};
+    const auto constant = [&](const char* name, uint32_t value) { kernel.second.emplace_back(name, value); };
+    if (choice.is_paged) {
+        constant("FEEDBACK", choice.feedback);
+        constant("ATLASES", choice.atlases);
+    } else if (!choice.is_filtered) {
+        constant("HAS_SAMPLE_BITS", choice.has_sample_bits);
+    }
+    constant("SHADED", choice.is_shaded);
+    if (choice.is_shaded) constant("SHININESS_SQUARINGS", shininess_squarings(input.params.shininess));
+    constant("COUNT_WORK", input.count_work);
+    constant("GROUP_WIDTH", input.group_width);
+    constant("SLICE", input.slice);
+    constant("PREINTEGRATED", input.preintegrated ? input.params.opaque_map > 0 ? 2 : 1 : 0);
+    if (is_shelled) constant("SHELL", choice.shell);
+    constant("PICK", choice.picks);
+    if (choice.is_masked) constant("SMOOTH_BORDERS", input.smooth_borders);
+    if (choice.is_occluded) constant("OCCLUSION_MAPPED", !input.occlusion->segments.empty());
+    constant("DISTANCE_BLEND", input.params.blend_size > 0.0f);
+    if (choice.is_paged || is_shelled) constant("KEPT", choice.kept);
+    return kernel;
+}
+
+/// What a person may do next: paint, bring an iso-surface or something with a surface into the picture, click.
+void expect_next(FrameGraph& graph, const Choice& now, const RaycastInput& input)
+{
+    const auto expect = [&](const auto& change) {
+        Choice next = now;
+        change(next);
+        graph.expect(kernel_of(next, input));
+    };
+    if (!now.is_masked) expect([](Choice& next) { next.is_masked = true; });
+    if (input.slice || now.picks) return;
+    if (!now.is_surfaced) expect([](Choice& next) { next.is_surfaced = true; });
+    if (now.shell == gpu::SHELL_NONE)
+        for (const uint32_t shell : {gpu::SHELL_BALL, gpu::SHELL_BOX})
+            expect([&](Choice& next) { next.shell = shell; });
+    expect([](Choice& next) {
+        next.picks = true;
+        next.is_shaded = next.feedback = false;
+        next.shell = gpu::SHELL_NONE;
+        next.kept = gpu::KEPT_NOTHING;
+    });
+}
+
 Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, bool is_shelled,
                        Resource target, std::optional<Resource>& rays)
 {
     const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
-    Pass pass = graph.compute("raycast", {{"PAGED", volume.pages.has_value()},
-                                          {"FILTERED", volume.filtered},
-                                          {"MASKED", input.mask.has_value()},
-                                          {"OCCLUDED", input.occlusion.has_value()},
-                                          {"SURFACED", input.surfaces.has_value()},
-                                          {"SHELLED", is_shelled}});
+    const KernelVariant kernel = kernel_of(choice_of(volume, input, is_shelled, rays.has_value()), input);
+    Pass pass = graph.compute(kernel.first, "raycast");
+    for (const auto& [name, value] : kernel.second) pass.constant(name, value);
     pass.block("params_block", std::span(&input.params, 1));
     pass.read("table", input.table);
     if (volume.pages) {
         pass.read("directory", volume.pages->directory);
         pass.read("cell_leap", volume.pages->cell_leap);
-        pass.constant("FEEDBACK", volume.pages->feedback);
         volume.pages->reached = pass.modify("reached", volume.pages->reached);
     } else {
         pass.read("leap", volume.leap);
-        if (!volume.filtered) {
+        if (!volume.filtered)
             pass.read("sample_bits", volume.sample_bits.value_or(volume.leap));  // a stand-in is never read
-            pass.constant("HAS_SAMPLE_BITS", volume.sample_bits.has_value());
-        }
     }
-    pass.read("atlas", volume.atlas);
+    read_atlas(pass, volume);
     if (input.mask) {
         pass.read("mask", input.mask->mask);
         pass.read("mask_table", input.mask->mask_table);
@@ -78,21 +162,11 @@ Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastIn
     }
     if (input.occlusion) {
         pass.read("occlusion", input.occlusion->values);
-        pass.block("occlusion_look", std::span<const gpu::OcclusionLook>(&input.occlusion->look, 1));
+        const std::vector<std::byte> look = bytes_of(*input.occlusion);
+        pass.block("occlusion_look", std::span(look));
     }
     if (input.surfaces) pass.read("surfaces", *input.surfaces);
-    pass.constant("SHADED", input.shaded);
-    if (input.shaded) pass.constant("SHININESS_SQUARINGS", shininess_squarings(input.params.shininess));
-    pass.constant("COUNT_WORK", input.count_work);
-    pass.constant("GROUP_WIDTH", input.group_width);
-    pass.constant("SLICE", input.slice);
-    pass.constant("PREINTEGRATED", input.preintegrated ? input.params.opaque_map > 0 ? 2 : 1 : 0);
-    if (is_shelled) pass.constant("SHELL", input.shell);
-    pass.constant("PICK", input.pick);
-    if (input.mask) pass.constant("SMOOTH_BORDERS", input.smooth_borders);
-    pass.constant("DISTANCE_BLEND", input.params.blend_size > 0.0f);
     if (volume.pages || is_shelled) {
-        pass.constant("KEPT", input.waiting ? gpu::KEPT_ALL : rays ? gpu::KEPT_SHELL : gpu::KEPT_NOTHING);
         const bool is_first = input.params.first_step == 0;
         if (!rays) {
             static_cast<void>(pass.write("rays", graph.create("rays", picture_desc(Format::rgba32_float, {1, 1}))));
@@ -127,6 +201,7 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
         block.params.is_last_block = i + 1 == blocks;
         target = raycast_block(graph, volume, block, is_shelled, target, rays);
     }
+    expect_next(graph, choice_of(volume, input, is_shelled, rays.has_value()), input);
     if (input.waiting) *input.waiting = {*rays, true};
     return target;
 }

@@ -16,6 +16,7 @@ namespace shvr {
 struct RaycastOcclusion {
     Resource values;  ///< OcclusionBinding::values
     gpu::OcclusionLook look;
+    std::vector<gpu::OcclusionSegment> segments{};  ///< empty: the light follows a power
 };
 
 /// log2 of the shininess if the kernels can reach it by squaring, otherwise gpu::NOT_A_POWER_OF_TWO.

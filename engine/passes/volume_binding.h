@@ -3,8 +3,11 @@
 
 #include <array>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "engine/graph/frame_graph.h"
+#include "shaders/bricks.h"
 
 namespace shvr {
 
@@ -20,7 +23,9 @@ struct PageBinding {
 };
 
 struct VolumeBinding {
-    Resource atlas;        ///< bricks with their aprons: see `filtered`
+    Resource atlas;  ///< bricks with their aprons: see `filtered`
+    /// Images of the same size that are stacked upon it (shaders/library/atlas.glsl); of paged volumes.
+    std::vector<Resource> more_atlases;
     Resource cell_ranges;  ///< r32ui per cell of the volume, or of every slot: minimum | maximum << 16
     // Resident volumes:
     Resource page_table;                   ///< uint per brick: slot
@@ -35,6 +40,30 @@ struct VolumeBinding {
     /// filter.
     bool filtered = false;
 };
+
+/// The constant ATLASES of kernels that know stacked images.
+inline uint32_t atlases_of(const VolumeBinding& volume)
+{
+    return uint32_t(1 + volume.more_atlases.size());
+}
+
+/// Binds the atlas to such a kernel. Images that are not there are never read.
+inline void read_stacked_atlas(Pass& pass, const VolumeBinding& volume)
+{
+    pass.read("atlas", volume.atlas);
+    for (size_t i = 0; i + 1 < gpu::MAX_ATLASES; ++i)
+        pass.read("atlas_" + std::to_string(i + 1),
+                  i < volume.more_atlases.size() ? volume.more_atlases[i] : volume.atlas);
+}
+
+/// Likewise to one that knows them where bricks are paged.
+inline void read_atlas(Pass& pass, const VolumeBinding& volume)
+{
+    if (volume.pages)
+        read_stacked_atlas(pass, volume);
+    else
+        pass.read("atlas", volume.atlas);
+}
 
 /// The bricks of a region of level 0, and their slots.
 struct RegionBricks {

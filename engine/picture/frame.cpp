@@ -6,6 +6,7 @@
 
 #include "engine/passes/anaglyph.h"
 #include "engine/passes/mix.h"
+#include "engine/passes/paint.h"
 #include "engine/passes/saturation.h"
 #include "engine/picture/ray_params.h"
 
@@ -20,6 +21,34 @@ constexpr glm::uvec2 TILE{128, 128};
 constexpr uint32_t GROUP_WIDTH_OF_GPU = 8, GROUP_WIDTH_OF_CPU = 16;
 /// Opacity of a preview behind something else, and of one in slices.
 constexpr float PREVIEW_SHARE = 0.55f, PREVIEW_SLICE_SHARE = 0.7f;
+
+RaycastOcclusion raycast_occlusion(Resource values, const OcclusionSettings& settings)
+{
+    RaycastOcclusion occlusion{values, {float(settings.strength), float(settings.curve), 0.0f, 0}};
+    const std::vector<OcclusionPoint>& points = settings.mapping;
+    if (points.empty()) return occlusion;
+    constexpr double NARROWEST = 1e-6;  // a step
+    // Where there is one point alone, a segment that rises by nothing.
+    for (size_t i = 0; i + 1 < std::max<size_t>(points.size(), 2); ++i) {
+        const OcclusionPoint &from = points[i], &to = points[std::min(i + 1, points.size() - 1)];
+        occlusion.segments.push_back({float(from.arrives), float(1.0 / std::max(to.arrives - from.arrives, NARROWEST)),
+                                      float(to.seen - from.seen)});
+    }
+    occlusion.look.lowest = float(points.front().seen);
+    occlusion.look.segments = uint32_t(occlusion.segments.size());
+    return occlusion;
+}
+
+PageView page_view(const Look& look, const Shot& shot, const PicturePart& part)
+{
+    return {.camera = shot.camera,
+            .other_eye = shot.right_eye,
+            .pixels = part.detail_pixels.x > 0 ? part.detail_pixels : part.pixels,
+            .detail = look.render.detail,
+            .cut = shot.is_slice ? CutBox{} : look.cut,
+            .shows_all = shot.is_slice,
+            .shown = part.always_shown};
+}
 
 /// Data shared by the eyes of a shot.
 struct Prepared {
@@ -38,9 +67,7 @@ Prepared prepare(FrameGraph& graph, Scene& scene, const Look& look, const Shot& 
     input.mask = scene.mask().import(graph);
     prepared.volume = scene.volume().prepare(graph, scene.mask(), input.mask, feedback);
     if (!shot.is_slice && scene.has_occlusion(look)) {
-        const OcclusionSettings& settings = look.light.occlusion;
-        input.occlusion = RaycastOcclusion{scene.occlusion().bring_up_to_date(graph).values,
-                                           {float(settings.strength), float(settings.curve)}};
+        input.occlusion = raycast_occlusion(scene.occlusion().bring_up_to_date(graph).values, look.light.occlusion);
     }
     input.table = scene.tables().upload_function(graph, look, scene.volume().window(), step_voxels);
     if (input.mask) input.groups = scene.tables().upload_groups(graph, look, step_voxels);
@@ -97,8 +124,15 @@ Resource draw_contents(FrameGraph& graph, Scene& scene, Prepared& prepared, Rayc
         input.waiting = &waiting;
     }
     input.surfaces = draw_surfaces(graph, scene, prepared, input, camera, part);
-    if (!part.probe || !part.probe->preview || part.probe->preview->voxels == 0)
+    if (!part.probe || !part.probe->preview || part.probe->preview->voxels == 0) {
+        expect_preview(graph, {.params = input.params,
+                               .preview = {},
+                               .words = {},
+                               .surfaces = input.surfaces,
+                               .slice = input.slice,
+                               .group_width = input.group_width});
         return raycast(graph, prepared.volume, input, target);
+    }
     const PreviewSeen made = preview(graph, {.params = input.params,
                                              .preview = preview_params(*part.probe, camera, part.pixels, scene.info()),
                                              .words = part.probe->preview->words,
@@ -184,6 +218,7 @@ Drawn draw(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, 
         drawn.target = anaglyph(graph, by_left, by_right, target, size, part.target);
     }
     if (waiting) waiting->have_begun();
+    expect_brushes(graph, prepared.volume);
     drawn.feedback = scene.volume().request_feedback(graph, prepared.volume);
     return drawn;
 }
@@ -223,16 +258,14 @@ std::string cut_short_sentence(uint64_t rays, const Look& look)
                     look.render.step_voxels, ", or a smaller box of the cutting planes");
 }
 
+bool get_ready(Scene& scene, const Look& look, const Shot& shot, const PicturePart& part)
+{
+    return scene.volume().get_ready(page_view(look, shot, part), scene.visibility_of(look));
+}
+
 double look_at(Scene& scene, const Look& look, const Shot& shot, const PicturePart& part)
 {
-    const int finest = scene.volume().look({.camera = shot.camera,
-                                            .other_eye = shot.right_eye,
-                                            .pixels = part.detail_pixels.x > 0 ? part.detail_pixels : part.pixels,
-                                            .detail = look.render.detail,
-                                            .cut = shot.is_slice ? CutBox{} : look.cut,
-                                            .shows_all = shot.is_slice,
-                                            .shown = part.always_shown},
-                                           scene.visibility_of(look));
+    const int finest = scene.volume().look(page_view(look, shot, part), scene.visibility_of(look));
     return std::ldexp(look.render.step_voxels, finest);
 }
 

@@ -79,6 +79,9 @@ uint64_t rays_cut_short(const std::vector<gpu::PassReport>& passes);
 /// That, in a sentence.
 std::string cut_short_sentence(uint64_t rays, const Look& look);
 
+/// Whether draw() of a part, or look_at(), would not wait until the bricks of the view are listed. If not, that begins:
+/// ask again.
+bool get_ready(Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);
 /// Sets the volume's view, as draw() does. Returns the distance between samples in reference lengths: samples of coarse
 /// bricks may be farther apart.
 double look_at(Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);

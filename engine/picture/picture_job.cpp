@@ -20,6 +20,8 @@ void append(std::vector<gpu::PassReport>& sum, std::vector<gpu::PassReport> pass
             continue;
         }
         known->gpu_ms += pass.gpu_ms;
+        known->record_ms += pass.record_ms;
+        known->submissions += pass.submissions;
         known->dispatches += pass.dispatches;
         known->tiles += pass.tiles;
         for (size_t i = 0; i < known->counters.size(); ++i) known->counters[i] += pass.counters[i];

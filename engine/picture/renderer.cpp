@@ -95,7 +95,7 @@ SceneEstimate Renderer::estimate(const VolumeSource& source, const RenderSetting
     const gpu::Memory& memory = on_device_->memory;
     return estimate_scene(source, settings.paging, with_occlusion, memory.device_budget(), host_budget_,
                           Scene::can_be_resident(memory, source, scene_options(settings, with_occlusion)),
-                          Scene::most_atlas_bytes(memory.traits()));
+                          Scene::most_atlas_bytes(memory.traits(), with_occlusion));
 }
 
 Scene& Renderer::scene() const

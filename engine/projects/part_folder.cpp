@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 
@@ -61,6 +62,22 @@ FileDescriptor locked(const fs::path& folder)
          ": another process is importing into it; expected no other: wait until it ends, or choose another name");
 }
 
+constexpr const char* METADATA[] = {".zattrs", ".zgroup", ".zarray", "zarr.json", ".zmetadata"};
+
+bool is_zarr(const fs::path& folder)
+{
+    return std::ranges::any_of(METADATA, [&](const char* name) { return is_there(folder / name); });
+}
+
+/// Whether it is found directly in a project or another Zarr folder: metadata, arrays, groups, chunks, and our shvr.
+bool belongs_to_zarr(const fs::path& path)
+{
+    const std::string name = path.filename().string();
+    const bool is_chunk = name == "c" || name.find_first_not_of("0123456789.") == std::string::npos;
+    return std::ranges::find(METADATA, name) != std::end(METADATA) || is_chunk || name == "shvr" || name == "labels" ||
+           name == "OME" || is_zarr(path);
+}
+
 /// All that is in the folder.
 void remove_content(const fs::path& folder)
 {
@@ -99,11 +116,15 @@ void PartFolder::refuse_target() const
 {
     if (!is_there(target_) || is_empty_folder(target_)) return;
     if (!overwrites_) fail(target_.string(), ": already exists; expected a new name, or --overwrite");
-    for (const char* name : {".zattrs", ".zgroup", ".zarray", "zarr.json"}) {
-        if (is_there(target_ / name)) return;
-    }
-    fail(target_.string(),
-         ": is not a project; expected one, since --overwrite replaces nothing else: choose a new name");
+    if (!is_zarr(target_))
+        fail(target_.string(),
+             ": is not a project; expected one, since --overwrite replaces nothing else: choose a new name");
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(target_, error))
+        if (!belongs_to_zarr(entry.path()))
+            fail(entry.path().string(),
+                 ": is no part of a project; expected nothing else there, since --overwrite removes the whole folder: "
+                 "move it, or choose a new name");
 }
 
 void PartFolder::clear() const

@@ -15,7 +15,8 @@ namespace shvr {
 class PartFolder {
 public:
     /// Creates NAME.part if it does not exist yet, and locks it. Fails if `target` exists and is not an empty folder;
-    /// with `overwrites`, only if it is neither a project nor another Zarr folder. Fails if NAME.part was not left by
+    /// with `overwrites`, only if it is neither a project nor another Zarr folder, or holds what no such folder does,
+    /// which would be lost. Fails if NAME.part was not left by
     /// an import, or if another process works on it.
     PartFolder(const std::filesystem::path& target, bool overwrites);
 

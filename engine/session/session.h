@@ -41,7 +41,8 @@ struct InteractionSettings {
     bool scale_bar = true;
     bool axes = true;
     bool probe_label = true;        ///< the probe's depth, and how much of it is relevant
-    bool screenshot_marks = false;  ///< screenshots have scale bar, axes and distances as the window shows them
+    bool group_legend = true;       ///< colours and names of the groups that are drawn
+    bool screenshot_marks = false;  ///< screenshots have scale bar, axes, groups and distances as the window shows them
     bool operator==(const InteractionSettings&) const = default;
 };
 

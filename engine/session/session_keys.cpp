@@ -123,6 +123,8 @@ void raw_fields(Fields& f, std::filesystem::path& path, std::optional<RawLayout>
     spacing_fields(f, layout->spacing, layout->unit);
 }
 
+constexpr int MAX_LEVEL = 23;
+
 /// One of three forms: a procedural function, bare voxels, or a file in a known format.
 void volume_fields(Fields& f, Session& session)
 {
@@ -145,6 +147,14 @@ void volume_fields(Fields& f, Session& session)
            {.meaning = "of a file with several time points: a number from 1",
             .allowed = "text",
             .standard = "none: such a file is refused"});
+    std::optional<int64_t> level = session.open_options.level;
+    if (level == 0) level.reset();
+    f.any_whole(
+        "level", level, 0, MAX_LEVEL,
+        {.meaning = "of a file with several sizes, as OME-Zarr has: 0 the finest, and each twice as coarse as the "
+                    "one before. It is opened as a volume of its own, whose paint and trace fit it alone",
+         .standard = "0"});
+    session.open_options.level = int(level.value_or(0));
     spacing_fields(f, session.open_options);
 }
 

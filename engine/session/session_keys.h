@@ -32,6 +32,7 @@ void fields(Fields& f, InteractionSettings& interaction);
 void fields(Fields& f, ControlPoint& point);
 void fields(Fields& f, Unpainted& unpainted);
 void fields(Fields& f, Light& light);
+void fields(Fields& f, OcclusionPoint& point);
 void fields(Fields& f, OcclusionSettings& occlusion);
 void fields(Fields& f, DistanceBlend& blend);
 void fields(Fields& f, RenderSettings& render);

@@ -1,5 +1,6 @@
 // The keys of a session file for the look of a picture.
 
+#include <algorithm>
 #include <limits>
 
 #include "engine/session/quality.h"
@@ -22,6 +23,12 @@ void fields(Fields& f, ControlPoint& point)
              {.meaning = "opacity", .unit = "per reference length", .is_required = true});
 }
 
+void fields(Fields& f, OcclusionPoint& point)
+{
+    f.number("arrives", point.arrives, SHARE, {.meaning = "share of the light that arrives", .is_required = true});
+    f.number("seen", point.seen, SHARE, {.meaning = "share that is seen of it", .is_required = true});
+}
+
 void fields(Fields& f, OcclusionSettings& occlusion)
 {
     f.number("strength", occlusion.strength, SHARE,
@@ -33,6 +40,19 @@ void fields(Fields& f, OcclusionSettings& occlusion)
            {"look behind surfaces, too; otherwise only before them, where there is one"});
     f.number("curve", occlusion.curve, above_zero(0.1, 10.0),
              {"the share of light that arrives is raised to this power: above 1 darker"});
+    static_assert(MAX_OCCLUSION_POINTS == 16);
+    const About mapping{.meaning =
+                            "instead of `curve`: points of the light that is seen over the light that arrives, by "
+                            "the latter; linear in between, level before the first and after the last",
+                        .allowed = "array of at most 16",
+                        .standard = "none"};
+    if (f.has("mapping", !occlusion.mapping.empty())) {
+        f.list("mapping", occlusion.mapping, MAX_OCCLUSION_POINTS, mapping);
+        f.check("mapping", std::ranges::is_sorted(occlusion.mapping, {}, &OcclusionPoint::arrives),
+                "points in the order of `arrives`");
+    } else {
+        f.mention("mapping", mapping);
+    }
     f.flag("automatic", occlusion.automatic, {"the window renews it at once; false: when it is asked to (F8)"});
 }
 
@@ -187,12 +207,15 @@ void fields(Fields& f, InteractionSettings& interaction)
     f.whole("screenshot_scale", interaction.screenshot_scale, 1, 32,
             {"of large screenshots: pixels for one of the window, along each axis"});
     f.flag("screenshot_marks", interaction.screenshot_marks,
-           {"the window's screenshots have the scale bar, axes and distances that the window draws"});
+           {"the window's screenshots have the scale bar, axes, names of groups and distances that the window draws"});
     f.choice("pivot", interaction.pivot, {"what turning the view goes about"});
     f.flag("scale_bar", interaction.scale_bar, {"the window draws a length over each pane"});
     f.flag("axes", interaction.axes, {"the window draws the directions of x, y and z over each pane"});
     f.flag("probe_label", interaction.probe_label,
            {"the window writes beside the probe how deep it is, and how much of it is at or above the threshold"});
+    f.flag(
+        "group_legend", interaction.group_legend,
+        {"the window writes names and colours of the groups that are painted or traced, and drawn, over the picture"});
     f.number("workspace_scale", interaction.workspace_scale, above_zero(MIN_WORKSPACE_SCALE, MAX_WORKSPACE_SCALE),
              {"how far the probe goes for a move of a haptic device; 1: its whole reach is the height of the view"});
 }

@@ -129,35 +129,70 @@ std::string laid_out(const OrderedJson& value, const std::string& indent, bool m
     return value.is_array() ? "[" + text + "]" : "{" + text + "}";
 }
 
-/// In words a number has as many digits as a person reads.
-std::string leaf_text(const OrderedJson& leaves, const std::string& path)
+/// A value as a person reads it. Of points and the like, whose numbers say little one by one, their count.
+std::string in_words(const OrderedJson& value)
 {
-    const auto found = leaves.find(path);
-    if (found == leaves.end()) return {};
-    if (found->is_number_float()) return sentence(found->get<double>());
-    return found->is_string() ? found->get<std::string>() : found->dump();
+    if (value.is_number_float()) return sentence(value.get<double>());
+    if (value.is_string()) return value.get<std::string>();
+    if (!value.is_array()) return value.dump();
+    if (!value.empty() && value.front().is_object()) return sentence(value.size(), " points");
+    std::string text;
+    for (const OrderedJson& one : value) text += (text.empty() ? "(" : ", ") + in_words(one);
+    return text.empty() ? "none" : text + ")";
+}
+
+struct ChangedKey {
+    std::string path, from, to;  ///< words; empty where there is no value
+};
+
+/// The keys of a section that differ. An array is one value.
+void add_changes(const OrderedJson& was, const OrderedJson& is, const std::string& path, std::vector<ChangedKey>& found)
+{
+    if (!was.is_object() || !is.is_object()) {
+        // Of a whole object that comes or goes its name says enough.
+        const auto words = [](const OrderedJson& value) {
+            return value.is_null() || value.is_object() ? std::string() : in_words(value);
+        };
+        if (was != is) found.push_back({path, words(was), words(is)});
+        return;
+    }
+    const auto member = [](const OrderedJson& object, const std::string& name) {
+        const auto at = object.find(name);
+        return at == object.end() ? OrderedJson() : *at;
+    };
+    for (const OrderedJson* object : {&was, &is})
+        for (const auto& item : object->items())
+            if (object == &was || !was.contains(item.key()))
+                add_changes(member(was, item.key()), member(is, item.key()),
+                            path.empty() ? item.key() : path + " " + item.key(), found);
+}
+
+std::string in_words(const ChangedKey& changed)
+{
+    std::string path = changed.path;
+    std::ranges::replace(path, '_', ' ');
+    if (path == "occlusion mapping") path = "occlusion curve";  // as the window calls both
+    if (changed.from == changed.to) return path;
+    if (changed.to.empty()) return sentence(path, " ", changed.from, " given up");
+    if (changed.from.empty()) return sentence(path, " ", changed.to);
+    return sentence(path, " ", changed.from, " to ", changed.to);
 }
 
 /// One section's difference: its name and, where few values differ, which.
 std::string difference_of(std::string name, const std::string& before, const std::string& after)
 {
+    constexpr size_t MOST = 3;
     std::ranges::replace(name, '_', ' ');
-    if (before.empty() || after.empty()) return name;
-    if (name == "measurements")
-        return sentence(name, ": ", OrderedJson::parse(before).size(), " to ", OrderedJson::parse(after).size());
-    const OrderedJson was = OrderedJson::parse(before).flatten(), is = OrderedJson::parse(after).flatten();
-    std::vector<std::string> paths;
-    for (const OrderedJson& leaves : {was, is})
-        for (const auto& leaf : leaves.items())
-            if (leaf_text(was, leaf.key()) != leaf_text(is, leaf.key()) &&
-                std::ranges::find(paths, leaf.key()) == paths.end())
-                paths.push_back(leaf.key());
-    if (paths.size() != 1 || paths.front().size() < 2 || name == "transfer function") return name;
-    std::string path = paths.front().substr(1);
-    std::ranges::replace(path, '/', ' ');
-    std::ranges::replace(path, '_', ' ');
-    const std::string from = leaf_text(was, paths.front()), to = leaf_text(is, paths.front());
-    return sentence(name, ": ", path, from.empty() ? "" : " ", from, to.empty() ? "" : from.empty() ? " " : " to ", to);
+    if (before.empty() || after.empty() || name == "transfer function") return name;
+    const OrderedJson was = OrderedJson::parse(before), is = OrderedJson::parse(after);
+    if (name == "measurements") return sentence(name, ": ", was.size(), " to ", is.size());
+    std::vector<ChangedKey> changes;
+    add_changes(was, is, {}, changes);
+    if (changes.size() > MOST) return name;
+    std::string text;
+    for (const ChangedKey& changed : changes)
+        if (!changed.path.empty()) text += (text.empty() ? ": " : ", ") + in_words(changed);
+    return name + text;
 }
 
 SettingValues sections_of(const OrderedJson& object)

@@ -8,6 +8,7 @@ void fields(Fields& f, DescribeTask& task)
            {.meaning = "volume, session or project folder", .standard = "required", .is_required = true});
     f.flag("exact", task.exact,
            {"go through all voxels, also of volumes so large that a sample or a coarser level would do"});
+    incomplete_field(f, task.allows_incomplete, "voxels that cannot be read are left out of every number");
     texts_field(
         f, "set", task.settings,
         {.meaning = "keys of a session, each as in `\"volume.unit=um\"`", .allowed = "texts", .standard = "none"});
@@ -19,8 +20,10 @@ DescribeResult run(const DescribeTask& task, ProgressReporter& reporter)
     const bool is_there = std::filesystem::exists(task.input, ignored) || leads_into_archive(task.input);
     const bool is_bare = is_there && session_file_of(task.input).empty();
     OpenedSession opened;
-    const OpeningOptions opening{
-        .measure = {.exact = task.exact, .progress = reporter.begin("measuring " + task.input.string())}};
+    Gaps gaps = gaps_of(task.allows_incomplete, task.names);
+    const OpeningOptions opening{.measure = {.exact = task.exact,
+                                             .progress = reporter.begin("measuring " + task.input.string()),
+                                             .gaps = &gaps}};
     // Opening a session would compute a transfer function for a bare volume and report it, which nobody requested.
     if (is_bare) {
         opened.source =
@@ -35,10 +38,12 @@ DescribeResult run(const DescribeTask& task, ProgressReporter& reporter)
     DescribeResult result{.info = opened.source->info(),
                           .statistics = opened.statistics,
                           .levels = opened.source->levels(),
+                          .voxels_not_read = gaps.voxels(),
                           .mask = opened.session.mask_path,
                           .warnings = std::move(opened.warnings),
                           .losses = std::move(opened.losses)};
     for (const std::string& warning : result.info.warnings) result.warnings.push_back(warning);
+    if (!gaps.empty()) result.warnings.push_back(gaps.in_words() + " and are left out of every number");
     return result;
 }
 

@@ -10,7 +10,9 @@ struct DescribeTask {
 
     std::filesystem::path input;
     bool exact = false;                 ///< all voxels, also of volumes for which a sample or a coarser level would do
+    bool allows_incomplete = false;     ///< voxels that cannot be read count nowhere
     std::vector<std::string> settings;  ///< "key=value" of a session
+    OptionNames names = OptionNames::keys;  ///< in messages; not an option
 };
 void fields(Fields& f, DescribeTask& task);
 
@@ -18,6 +20,7 @@ struct DescribeResult {
     VolumeInfo info;
     VolumeStatistics statistics;
     int levels = 1;
+    int64_t voxels_not_read = 0;
     std::filesystem::path mask;         ///< of a session; empty: none
     std::vector<std::string> warnings;  ///< also those of `info`
     std::vector<std::string> losses;    ///< what is not there although it was saved

@@ -62,6 +62,17 @@ std::string groups_in_words(const std::map<uint8_t, int64_t>& voxels)
     return text;
 }
 
+/// The voxels of a project's volume are no groups, unless it is of a mask itself and has none of its own.
+void expect_no_annotated_project(const fs::path& path)
+{
+    std::error_code ignored;
+    if (!fs::exists(path, ignored) || session_file_of(path).empty()) return;
+    const fs::path mask = open_unmeasured_session(path).session.mask_path;
+    if (!mask.empty() && fs::exists(mask, ignored))
+        fail(path.string(), ": is a project or session, whose volume is no mask; expected its mask, ", mask.string(),
+             ", or another one");
+}
+
 class Evaluation {
 public:
     Evaluation(const EvaluateTask& task, ProgressReporter& reporter) : task_(task), reporter_(reporter) {}
@@ -111,6 +122,7 @@ private:
             return mask;
         };
         if (!is_bare_mask(path)) {
+            expect_no_annotated_project(path);
             const std::unique_ptr<VolumeSource> source = open_volume(path);
             const Size3 size = source->info().size;
             if (space && size != space->size)
@@ -118,7 +130,13 @@ private:
             const std::string elsewhere = space ? why_elsewhere(space_of(source->info()), *space) : std::string();
             if (!elsewhere.empty())
                 fail(path.string(), ": is a mask of a volume with ", elsewhere, ", where the others lie");
-            return mask_of(size, mask_changes(ToldSource(*source, progress), path.string()));
+            Gaps gaps = gaps_of(task_.allows_incomplete, task_.names);
+            const GapSource readable(*source, gaps);
+            Mask mask = mask_of(size, mask_changes(ToldSource(readable, progress), path.string()));
+            result_.voxels_not_read += gaps.voxels();
+            if (!gaps.empty())
+                result_.warnings.push_back(sentence(path.string(), ": ", gaps.in_words(), " and count as unpainted"));
+            return mask;
         }
         if (!space)
             throw UsageError(sentence(path.string(), ": does not state the size of its volume; expected ",
@@ -217,6 +235,7 @@ void fields(Fields& f, EvaluateTask& task)
              {.meaning = "how far apart two balls may be and still count as touching",
               .unit = "physical units",
               .standard = "the longest side of a voxel"});
+    incomplete_field(f, task.allows_incomplete, "voxels of masks that cannot be read count as unpainted");
     texts_field(f, "set", task.settings,
                 {.meaning = "keys of a session, for `volume`", .allowed = "texts", .standard = "none"});
 }

@@ -14,6 +14,7 @@ struct EvaluateTask {
     std::filesystem::path volume;           ///< that all are of: size, spacing and unit where no file states them
     std::vector<std::string> truth_groups;  ///< "FROM=TO"
     std::optional<double> slack;            ///< in the unit of the volume; nothing: the longest side of a voxel
+    bool allows_incomplete = false;         ///< voxels of masks that cannot be read count as unpainted
     std::vector<std::string> settings;      ///< "key=value" of a session, for `volume`
     OptionNames names = OptionNames::keys;  ///< in messages; not an option
 };
@@ -26,6 +27,7 @@ struct EvaluateResult {
     std::optional<BallScores> nodes, internodes;
     std::optional<TraceComparison> traces;
     std::optional<double> slack;
+    int64_t voxels_not_read = 0;  ///< of both masks
     std::vector<std::string> warnings;
 };
 

@@ -31,9 +31,9 @@ void expect_trace(const AnnotationView& annotation)
 {
     const std::filesystem::path& path = annotation.trace_path;
     if (!annotation.trace.nodes().empty() || std::filesystem::exists(path)) return;
-    fail(path.empty() ? "the session" : path.string(),
-         path.empty() ? ": names no trace; expected the key annotation.trace"
-                      : ": does not exist; expected the trace that shvr annotate saves");
+    if (path.empty()) fail("the session: names no trace; expected the key annotation.trace");
+    fail(path.string(),
+         ": does not exist: nothing is traced; expected the trace that the window or shvr annotate saves");
 }
 
 /// The topology of all painted voxels (-1), and of each group.
@@ -59,6 +59,11 @@ ExportResult summary_of(const AnnotationView& annotation)
     for (const auto& [group, length] : measure(annotation.trace).length_by_group)
         result.length_by_group[group] = length;
     return result;
+}
+
+std::filesystem::path plain(const std::filesystem::path& path)
+{
+    return std::filesystem::absolute(path).lexically_normal();
 }
 
 }  // namespace
@@ -95,12 +100,13 @@ AnnotationSnapshot::AnnotationSnapshot(const AnnotationView& view)
       groups_(view.groups),
       volume_hash_(view.volume_hash),
       project_(view.project),
+      volume_path_(view.volume_path),
       trace_path_(view.trace_path)
 {}
 
 AnnotationView AnnotationSnapshot::view() const
 {
-    return {volume_, mask_, density_, trace_, groups_, volume_hash_, project_, trace_path_};
+    return {volume_, mask_, density_, trace_, groups_, volume_hash_, project_, volume_path_, trace_path_};
 }
 
 void check(const ExportTask& task)
@@ -110,6 +116,20 @@ void check(const ExportTask& task)
         throw UsageError(sentence(name("mask"), " is '", task.mask.string(),
                                   "'; expected a name that ends in one of: .mask, .nrrd, .tif, .tiff, .zarr, or ",
                                   "PROJECT/labels/NAME"));
+    if (is_label_image(task.mask))
+        check_output_folder(task.mask);
+    else if (!task.mask.empty())
+        check_output_place(task.mask);
+    const std::pair<const char*, const std::filesystem::path&> outputs[] = {{"mask", task.mask},
+                                                                            {"offset", task.offset},
+                                                                            {"trace", task.trace},
+                                                                            {"mesh", task.mesh},
+                                                                            {"metrics", task.metrics}};
+    for (const auto& [key, path] : outputs)
+        for (const auto& [other, same] : outputs)
+            if (&path != &same && !path.empty() && !same.empty() && plain(path) == plain(same))
+                throw UsageError(
+                    sentence(name(key), " and ", name(other), " are both '", path.string(), "'; expected two names"));
     check_output(name("offset"), task.offset, {".offset", ".nrrd", ".tif", ".tiff"});
     check_output(name("trace"), task.trace, {".txt", ".swc", ".graphml", ".rsml"});
     check_output(name("mesh"), task.mesh, {".obj", ".ply"});
@@ -119,6 +139,7 @@ void check(const ExportTask& task)
 void check(const ExportTask& task, const AnnotationView& annotation)
 {
     check(task);
+    for (const std::filesystem::path& path : replaced_files(task)) check_output_is_not(annotation.volume_path, path);
     if (!task.trace.empty() || !task.mesh.empty()) expect_trace(annotation);
     static_cast<void>(project_labels(task, annotation.project));
 }

@@ -45,9 +45,10 @@ struct AnnotationView {
     const DensityField& density;
     const TraceGraph& trace;
     const Groups& groups;
-    std::string volume_hash{};           ///< as Session::volume_hash
-    std::filesystem::path project{};     ///< as it was opened; for `labels`
-    std::filesystem::path trace_path{};  ///< as Session::trace_path; for messages where there is no trace
+    std::string volume_hash{};            ///< as Session::volume_hash
+    std::filesystem::path project{};      ///< as it was opened; for `labels`
+    std::filesystem::path volume_path{};  ///< as Session::volume_path, which no file may replace
+    std::filesystem::path trace_path{};   ///< as Session::trace_path; for messages where there is no trace
 };
 
 /// A copy that belongs to whoever holds it. Any thread may read it, and destroy it.
@@ -65,7 +66,7 @@ private:
     TraceGraph trace_;
     Groups groups_;
     std::string volume_hash_;
-    std::filesystem::path project_, trace_path_;
+    std::filesystem::path project_, volume_path_, trace_path_;
 };
 
 struct ExportResult {

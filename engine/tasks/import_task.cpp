@@ -99,6 +99,7 @@ void fields(Fields& f, ImportTask& task)
     f.check("unit", !has_controls(task.choice.unit), "the name of a unit");
     f.text("channel", task.choice.channel,
            {.meaning = "what to take from a file with channels: its name or number", .standard = "none"});
+    f.whole("level", task.choice.level, 0, 23, {"which size to take from a file with several: 0 the finest"});
     f.text("frame", task.choice.frame,
            {.meaning = "which time point to take from a file with several: its number", .standard = "none"});
     version_field(f, task.version, "version of OME-Zarr; automatic: 0.4");
@@ -149,7 +150,8 @@ ImportResult run(const ImportTask& task, ProgressReporter& reporter)
                                                .blur_sigma_voxels = task.blur_voxels,
                                                .downscale = task.downscale},
                                .halving = task.labels ? Halving::label : Halving::mean,
-                               .choice = sentence(task.choice.channel, "\n", task.choice.frame, "\n", task.raw),
+                               .choice = sentence(task.choice.channel, "\n", task.choice.frame, "\n", task.raw,
+                                                  task.choice.level > 0 ? sentence("\nlevel ", task.choice.level) : ""),
                                .overwrites = task.overwrite,
                                .threads = task.threads,
                                .version = task.version,

@@ -6,6 +6,7 @@
 #include "engine/base/atomic_writer.h"
 #include "engine/base/text.h"
 #include "engine/formats/export/volume_export.h"
+#include "engine/tasks/task_output.h"
 
 namespace shvr {
 
@@ -95,6 +96,7 @@ void fields(Fields& f, LabelTask& task)
         "output", task.output,
         {.meaning = "the labels, from 1 in the order of first voxels: .zarr, .nrrd, .tif, .mask", .standard = "none"});
     version_field(f, task.version, "version of OME-Zarr; automatic: as the image or the labels there are, or 0.4");
+    incomplete_field(f, task.allows_incomplete, "voxels that cannot be read are as low as their type allows");
     threads_field(f, task.threads);
 }
 
@@ -113,13 +115,18 @@ void check(const LabelTask& task)
         throw UsageError(sentence(name("output"), " is '", task.output.string(),
                                   "'; expected a name that ends in one of: .zarr, .nrrd, .tif, .tiff, .mask, or "
                                   "PROJECT/labels/NAME"));
+    if (form == ".zarr")
+        check_output_folder(task.output);
+    else if (!task.output.empty())
+        check_output_place(task.output);
 }
 
-void check(const LabelTask& task, const VolumeSource& source)
+void check(const LabelTask& task, const VolumeSource& source, const fs::path& volume)
 {
     // Of a sparse volume more can be labelled than anybody can write.
     constexpr int64_t MAX_VOXELS_WRITTEN = int64_t{1} << 44;
     check(task);
+    check_output_is_not(volume, task.output);
     const VolumeInfo& info = source.info();
     if (task.output.empty() || voxel_count(info) <= MAX_VOXELS_WRITTEN) return;
     const std::optional<StoredBlocks> stored = source.stored_blocks(0, MAX_STORED_BLOCKS);
@@ -132,7 +139,7 @@ void check(const LabelTask& task, const VolumeSource& source)
 
 LabelResult run(const LabelTask& task, const VolumeSource& source, const std::string& name, ProgressReporter& reporter)
 {
-    check(task, source);
+    check(task, source, {});
     const Clock::time_point begin = Clock::now();
     ComponentOptions wanted{
         .threshold = task.threshold,
@@ -143,13 +150,17 @@ LabelResult run(const LabelTask& task, const VolumeSource& source, const std::st
         .progress = reporter.begin("labelling " + name),
     };
     if (!task.output.empty()) wanted.run_folder = folder_of(task.output);
-    const std::unique_ptr<Components> components = find_components(source, wanted);
+    Gaps gaps = gaps_of(task.allows_incomplete, task.names);
+    const std::unique_ptr<Components> components = find_components(GapSource(source, gaps), wanted);
     LabelResult result{.counts = components->counts(), .label_seconds = seconds_since(begin)};
     if (!task.output.empty()) {
         const std::unique_ptr<VolumeSource> labels = components->labels();
         result.type = labels->info().type;
         write_labels(task, *labels, reporter);
     }
+    result.voxels_not_read = gaps.voxels();
+    if (!gaps.empty())
+        result.warnings.push_back(sentence(name, ": ", gaps.in_words(), " and count as below the threshold"));
     result.seconds = seconds_since(begin);
     return result;
 }

@@ -32,6 +32,17 @@ void version_field(Fields& f, std::optional<OmeZarrVersion>& version, const char
         if (each.name == chosen) version = each.value;
 }
 
+void incomplete_field(Fields& f, bool& allows_incomplete, const char* counts_as)
+{
+    f.flag("allow_incomplete", allows_incomplete, {counts_as});
+}
+
+Gaps gaps_of(bool allows_incomplete, OptionNames names)
+{
+    if (allows_incomplete) return Gaps();
+    return Gaps(option_name(names, "allow_incomplete") + " goes on without what cannot be read");
+}
+
 void threads_field(Fields& f, int& threads)
 {
     f.whole("threads", threads, 0, MAX_THREADS, {"that work; 0: one per core"});

@@ -5,6 +5,7 @@
 #include "engine/jobs/progress_reporter.h"
 #include "engine/projects/import_volume.h"
 #include "engine/session/session_keys.h"
+#include "engine/volume/gaps.h"
 
 namespace shvr {
 
@@ -39,6 +40,11 @@ std::vector<SessionKey> options_of()
 
 /// "ome_zarr", a version of OME-Zarr or "automatic".
 void version_field(Fields& f, std::optional<OmeZarrVersion>& version, const char* automatic);
+
+/// "allow_incomplete": what cannot be read is left out, counted and said, instead of ending the task.
+void incomplete_field(Fields& f, bool& allows_incomplete, const char* counts_as);
+/// What of a volume the task may do without: nothing, unless that is allowed.
+Gaps gaps_of(bool allows_incomplete, OptionNames names);
 
 /// "threads": worker threads, 0 ... 1024; 0: one per core.
 void threads_field(Fields& f, int& threads);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/volume/gaps.h"
 #include "engine/volume/outliers.h"
 #include "engine/volume/voxel_walk.h"
 
@@ -16,14 +17,16 @@ namespace {
 
 constexpr size_t BINS = 256;
 
-/// What is measured, and who is told how far it is. Several passes may go over the same walk.
+/// What is measured, who is told how far it is, and what takes gaps. Several passes may go over the same walk.
 struct Measured {
     const VolumeSource& source;
     const VoxelWalk& walk;
     const Progress& progress;
+    Gaps* gaps;
 };
 
-/// Calls `take(span<const T>, times)` for every box of the walk: each voxel of the span occurs so many times.
+/// Calls `take(span<const T>, times)` for every box of the walk, or what can be read of it: each voxel of the span
+/// occurs so many times.
 template <class T, class Take>
 void for_each_slab(const Measured& measured, double lower, double upper, const Take& take)
 {
@@ -33,8 +36,10 @@ void for_each_slab(const Measured& measured, double lower, double upper, const T
         const VoxelBox box = measured.walk.box(i);
         const Size3 extent = box.size();
         slab.resize(size_t(extent.x * extent.y * extent.z));
-        measured.source.read(box, std::as_writable_bytes(std::span(slab)));
-        take(std::span<const T>(slab), int64_t{1});
+        read_parts(measured.source, box, std::as_writable_bytes(std::span(slab)), measured.gaps,
+                   [&](const VoxelBox&, std::span<const std::byte> part) {
+                       take(std::span<const T>(slab).first(part.size() / sizeof(T)), int64_t{1});  // at its begin
+                   });
         done += int64_t(slab.size());
         tell(measured.progress, lower + (upper - lower) * double(done) / double(measured.walk.voxels()));
     }
@@ -80,18 +85,23 @@ VolumeStatistics measure_integers(const Measured& measured)
 
 // ---- Types with too many values to count each -----------------------------------------------------------------------
 
-/// Calls `take(double, times)` for every finite voxel.
+/// Calls `take(double, times)` for every finite voxel; returns how many others there are.
 template <class T, class Take>
-void for_each_finite(const Measured& measured, double lower, double upper, const Take& take)
+int64_t for_each_finite(const Measured& measured, double lower, double upper, const Take& take)
 {
+    int64_t others = 0;
     for_each_slab<T>(measured, lower, upper, [&](std::span<const T> voxels, int64_t times) {
         for (const T voxel : voxels) {
             if constexpr (std::is_floating_point_v<T>) {
-                if (!std::isfinite(voxel)) continue;
+                if (!std::isfinite(voxel)) {
+                    others += times;
+                    continue;
+                }
             }
             take(double(voxel), times);
         }
     });
+    return others;
 }
 
 /// Excludes outliers from the statistics' range, if there are any.
@@ -115,14 +125,13 @@ VolumeStatistics measure_wide(const Measured& measured)
     long double sum = 0.0L;
     int64_t finite = 0;
     OutlierFinder outliers(measured.walk.voxels() + measured.walk.rest());
-    for_each_finite<T>(measured, 0.0, 0.5, [&](double value, int64_t times) {
+    statistics.not_finite = for_each_finite<T>(measured, 0.0, 0.5, [&](double value, int64_t times) {
         all.lower = std::min(all.lower, value);
         all.upper = std::max(all.upper, value);
         sum += static_cast<long double>(value) * static_cast<long double>(times);
         outliers.add(value, times);
         finite += times;
     });
-    statistics.not_finite = measured.walk.voxels() + measured.walk.rest() - finite;
     if (finite == 0) return statistics;
     statistics.minimum = all.lower;
     statistics.maximum = all.upper;
@@ -180,9 +189,9 @@ private:
     int level_;
 };
 
-VolumeStatistics measure_walk(const VolumeSource& source, const VoxelWalk& walk, const Progress& progress)
+VolumeStatistics measure_walk(const VolumeSource& source, const VoxelWalk& walk, const MeasureOptions& options)
 {
-    const Measured measured{source, walk, progress};
+    const Measured measured{source, walk, options.progress, options.gaps};
     switch (source.info().type) {
         case VoxelType::uint8: return measure_integers<uint8_t>(measured);
         case VoxelType::int8: return measure_integers<int8_t>(measured);
@@ -214,18 +223,18 @@ std::optional<StoredBlocks> stored_in(const VolumeSource& source, int level, int
 
 /// One level, whole or what it stores.
 VolumeStatistics measure_exactly(const VolumeSource& source, std::optional<StoredBlocks> stored,
-                                 const Progress& progress)
+                                 const MeasureOptions& options)
 {
     return measure_walk(source, stored ? VoxelWalk::stored(source, *std::move(stored)) : VoxelWalk::all(source),
-                        progress);
+                        options);
 }
 
 }  // namespace
 
-VolumeStatistics measure_level(const VolumeSource& source, int level, const Progress& progress)
+VolumeStatistics measure_level(const VolumeSource& source, int level, const MeasureOptions& options)
 {
     const OneLevel one(source, level);
-    return measure_exactly(one, stored_in(one, 0, std::numeric_limits<int64_t>::max()), progress);
+    return measure_exactly(one, stored_in(one, 0, std::numeric_limits<int64_t>::max()), options);
 }
 
 Size3 size_of_level(const Size3& size, int level)
@@ -240,8 +249,11 @@ VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest)
     for (size_t i = 0; i < counts.size(); ++i) {
         if (counts[i] > 0) present.emplace_back(lowest + int(i), counts[i]);
     }
-    VolumeStatistics statistics{.minimum = present.front().first, .maximum = present.back().first};
+    VolumeStatistics statistics;
     statistics.histogram.assign(BINS, 0);
+    if (present.empty()) return statistics;  // nothing could be read
+    statistics.minimum = present.front().first;
+    statistics.maximum = present.back().first;
     long double sum = 0.0L;
     int64_t voxels = 0;
     for (const auto& [value, count] : present) {
@@ -259,27 +271,27 @@ VolumeStatistics measure(const VolumeSource& source, const MeasureOptions& optio
     static_cast<void>(voxel_count(source.info()));
     if (options.exact) {
         constexpr int64_t ANY = std::numeric_limits<int64_t>::max();
-        return measure_exactly(source, stored_in(source, 0, ANY), options.progress);
+        return measure_exactly(source, stored_in(source, 0, ANY), options);
     }
     for (int level = 0; level < source.levels(); ++level) {
         std::optional<StoredBlocks> stored = stored_in(source, level, MAX_VOXELS_MEASURED);
         if (!stored && voxels_of_level(source, level) > double(MAX_VOXELS_MEASURED)) continue;
-        if (level == 0) return measure_exactly(source, std::move(stored), options.progress);
-        VolumeStatistics statistics = measure_exactly(OneLevel(source, level), std::move(stored), options.progress);
+        if (level == 0) return measure_exactly(source, std::move(stored), options);
+        VolumeStatistics statistics = measure_exactly(OneLevel(source, level), std::move(stored), options);
         statistics.measured_level = level;
         return statistics;
     }
     const int coarsest = source.levels() - 1;
     if (voxels_of_level(source, coarsest) <= double(MAX_VOXELS_EXACT)) {
-        if (coarsest == 0) return measure_exactly(source, std::nullopt, options.progress);
-        VolumeStatistics statistics = measure_level(source, coarsest, options.progress);
+        if (coarsest == 0) return measure_exactly(source, std::nullopt, options);
+        VolumeStatistics statistics = measure_level(source, coarsest, options);
         statistics.measured_level = coarsest;
         return statistics;
     }
     if (std::optional<StoredBlocks> stored = stored_in(source, 0, MAX_VOXELS_EXACT))
-        return measure_exactly(source, std::move(stored), options.progress);
+        return measure_exactly(source, std::move(stored), options);
     const VoxelWalk walk = VoxelWalk::sample(source);
-    VolumeStatistics statistics = measure_walk(source, walk, options.progress);
+    VolumeStatistics statistics = measure_walk(source, walk, options);
     statistics.sampled_voxels = walk.voxels();
     return statistics;
 }

@@ -31,11 +31,14 @@ struct StoredBlocks {
 struct OpenOptions {
     std::string channel{};  ///< "red", "green", "blue", "alpha", a channel's name in the file, or its number from 1
     std::string frame{};    ///< a number from 1, if there are several time points
-    /// Given, or instead of what the file states (engine/formats/restated.h).
+    int level = 0;          ///< of a file with several: 0 the finest; what is opened begins there (coarser.h)
+    /// Of what is opened: given, or instead of what the file states (engine/formats/restated.h).
     std::optional<glm::dvec3> spacing{};
     std::string unit{};  ///< empty: the file's
     bool operator==(const OpenOptions&) const = default;
 };
+
+class Gaps;
 
 class VolumeSource {
 public:
@@ -75,6 +78,7 @@ private:
 struct MeasureOptions {
     bool exact = false;  ///< level 0 and all of its voxels, whatever it takes
     Progress progress{};
+    Gaps* gaps = nullptr;  ///< takes what cannot be read, which then counts nowhere (gaps.h); null: that is thrown
 };
 /// Passes over the volume in slabs of bounded size: at most 32 MiB, at least one row. Types of 32 and 64 bits need a
 /// second pass for the histogram, whose range the first one finds, without outliers (outliers.h). A volume without a
@@ -92,7 +96,7 @@ inline constexpr int64_t MAX_VOXELS_EXACT = int64_t{1} << 30;
 inline constexpr int64_t MAX_STORED_BLOCKS = int64_t{1} << 24;
 
 /// Like an exact `measure`, for one level, always by reading its voxels.
-VolumeStatistics measure_level(const VolumeSource& source, int level, const Progress& progress = {});
+VolumeStatistics measure_level(const VolumeSource& source, int level, const MeasureOptions& options = {});
 /// The statistics of integers of 8 or 16 bits; `lowest` + i occurs `counts[i]` times.
 VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest);
 

@@ -5,6 +5,7 @@
 //
 // A sample touches the eight codes around it and, for the gradient, one more row on the nearer side of each axis. All
 // lie within the brick's apron, so no second lookup is ever needed.
+#include "atlas.glsl"
 
 struct Density {
     ivec3 corner;      // lower corner, in codes
@@ -16,7 +17,7 @@ struct Density {
 uint pair_at(int x, int y, int z)
 {
     if (COUNT_WORK != 0u) ++density_reads;
-    return imageLoad(atlas, ivec3(x, y, z)).x;
+    return atlas_pair(ivec3(x, y, z));
 }
 
 float lower_of(uint pair)

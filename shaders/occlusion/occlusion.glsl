@@ -19,6 +19,15 @@ float ambient_share(vec3 lattice, ivec3 to_atlas, vec3 last)
                       occlusion_value(c + ivec3(1, 0, 1)), occlusion_value(c + ivec3(1, 1, 1))), f.x);
     const vec2 w = mix(v.xz, v.yw, f.y);
     const float value = clamp(mix(w.x, w.y, f.z) / 255.0, 1e-4, 1.0);
-    const float curved = occlusion_look.data.curve == 1.0 ? value : exp2(occlusion_look.data.curve * log2(value));
+    float curved = value;
+    if (OCCLUSION_MAPPED != 0u) {
+        curved = occlusion_look.data.lowest;
+        for (uint i = 0u; i < occlusion_look.data.segments; ++i) {
+            const OcclusionSegment s = occlusion_look.segments[i];
+            curved += s.rise * clamp((value - s.begin) * s.per_width, 0.0, 1.0);
+        }
+    } else if (occlusion_look.data.curve != 1.0) {
+        curved = exp2(occlusion_look.data.curve * log2(value));
+    }
     return 1.0 - occlusion_look.data.strength * (1.0 - curved);
 }

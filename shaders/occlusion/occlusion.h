@@ -107,10 +107,20 @@ SHARED_FUNCTION uvec3 scratch_place(uint job)
     return uvec3(column % OCCLUSION_COLUMNS_A_ROW, column / OCCLUSION_COLUMNS_A_ROW, job % OCCLUSION_COLUMN);
 }
 
-/// Converts values to the share of ambient light: 1 - strength (1 - value^curve), which maps 1 to 1.
+/// Converts values to the share of ambient light: 1 - strength (1 - value^curve), which maps 1 to 1; or, where a curve
+/// of points is set (OCCLUSION_MAPPED of raycast.comp), 1 - strength (1 - lowest - the sum of what its segments rise).
 struct OcclusionLook {
     float strength;
     float curve;
+    float lowest;   ///< of the curve of points: at its first one
+    uint segments;  ///< and how many follow this, each an OcclusionSegment
+};
+
+/// rise clamp((value - begin) per_width, 0, 1)
+struct OcclusionSegment {
+    float begin;
+    float per_width;
+    float rise;
 };
 
 SHARED_END

@@ -29,6 +29,9 @@ layout(binding = 8, r32ui) uniform readonly uimage3D leap;
 layout(binding = 9, scalar) readonly buffer VisibleIntervals { uint before[]; } visible_intervals;
 
 #include "occlusion_around.glsl"
+#ifdef PAGED
+#define STACKED 20
+#endif
 #include "../library/voxel_code.glsl"
 
 OcclusionBakeParams params;

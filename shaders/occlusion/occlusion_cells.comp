@@ -18,6 +18,9 @@ layout(binding = 3, r32ui) uniform readonly uimage3D atlas;
 layout(binding = 4, r32ui) uniform writeonly uimage3D cells_2;
 layout(binding = 5, r32ui) uniform writeonly uimage3D cells_4;
 #include "occlusion_opacity.glsl"
+#ifdef PAGED
+#define STACKED 20
+#endif
 #include "../library/voxel_code.glsl"
 
 float opacity_at(const OcclusionCellsParams params, const OcclusionCellsJob job, uvec3 voxel)

@@ -31,6 +31,9 @@ layout(binding = 13, r32ui) uniform writeonly uimage3D around_4;
 
 #include "occlusion_around.glsl"
 #include "occlusion_opacity.glsl"
+#ifdef PAGED
+#define STACKED 20
+#endif
 #include "../library/voxel_code.glsl"
 
 const uint CELLS_A_SIDE = NEAR_SIDE / CELL_SIZE;

@@ -18,6 +18,8 @@ layout(binding = 2, scalar) readonly buffer Rows { RowSpan spans[]; } rows;
 layout(binding = 3, scalar) writeonly buffer Bits { uint words[]; } bits;
 layout(binding = 4, scalar) writeonly buffer Parents { uint of[]; } parents;
 
+#define STACKED 5
+#include "../library/atlas.glsl"
 #include "region.glsl"
 
 uint code_at(uvec3 voxel)
@@ -25,9 +27,9 @@ uint code_at(uvec3 voxel)
     const uint slot = region_bricks.slots[grid_index(voxel / BRICK_SIZE - params.brick_begin, params.brick_counts)];
     const uvec3 texel = slot_origin(slot) + voxel % BRICK_SIZE + BRICK_APRON;
 #ifdef FILTERED
-    return uint(texelFetch(atlas, ivec3(texel), 0).x * 65535.0 + 0.5);
+    return uint(atlas_texel(ivec3(texel)) * 65535.0 + 0.5);
 #else
-    return imageLoad(atlas, ivec3(texel.x / 2u, texel.yz)).x >> (texel.x % 2u * 16u) & 0xffffu;
+    return atlas_pair(ivec3(texel.x / 2u, texel.yz)) >> (texel.x % 2u * 16u) & 0xffffu;
 #endif
 }
 

@@ -82,6 +82,51 @@ class Usage(CliTest):
             with self.subTest(command=command, option=option):
                 self.check_refused(command, volume, option, self.folder / "none" / name, says=["none", "no folder"])
 
+    def test_outputs_in_missing_folders_are_refused_before_any_work(self):
+        volume, none = self.folder / "missing.nhdr", self.folder / "none"  # opening the volume would fail otherwise
+        picture = self.folder / "a.png"
+        for command in (["label", volume, "--threshold", "1", "-o", none / "a.nrrd"],
+                        ["export", volume, "--mask", none / "a.mask"],
+                        ["compare", picture, picture, "--diff", none / "a.png"],
+                        ["haptics", "bench", "--sweep", none / "a.csv"],
+                        ["haptics", "bench", "--sweep", self.folder / "a.csv", "--plot", none / "a.svg"]):
+            with self.subTest(command=command):
+                self.check_refused(*command, says=["cannot be written: there is no folder", "none"])
+        (self.folder / "file").write_text("")
+        for command in (["bench", "--quick", "--scenes", "fog"], ["golden", "run"], ["golden", "report"]):
+            with self.subTest(command=command):
+                self.check_refused(*command, "-o", self.folder / "file" / "out", says=["file is no folder"])
+
+    def test_no_two_outputs_have_one_name(self):
+        session, mask = self.write_session(), self.folder / "a.nrrd"
+        self.check_refused("export", session, "--mask", mask, "--offset", self.folder / "." / "a.nrrd", status=2,
+                           says=["--mask and --offset are both", "expected two names"])
+        self.assertFalse(mask.exists())
+
+    def test_no_output_replaces_what_is_read(self):
+        volume = Volume.noise((8, 8, 8), seed=1)
+        scan = self.folder / "scan.nrrd"
+        self.check("label", volume.write(self.folder), "--threshold", "100", "-o", scan)
+        slices = self.folder / "slices"
+        slices.mkdir()
+        session = self.write_session(volume={"path": "scan.nrrd"})
+        picture, other = self.folder / "a.png", self.folder / "b.png"
+        self.check("render", session, "-o", picture, "--with-session")
+        self.check("render", session, "-o", other)
+        self.check("label", scan, "--threshold", "1", "-o", slices / "1.tif")
+        before = {path: path.read_bytes() for path in self.folder.rglob("*") if path.is_file()}
+        for command, name in ((["label", scan, "--threshold", "1", "-o", scan], "scan.nrrd"),
+                              (["label", slices, "--threshold", "1", "-o", slices / "1.tif"], "1.tif"),
+                              (["label", session, "--threshold", "1", "-o", scan], "scan.nrrd"),
+                              (["export", session, "--mask", scan], "scan.nrrd"),
+                              (["export", session, "--offset", scan], "scan.nrrd"),
+                              (["render", picture, "-o", picture], "a.png"),
+                              (["compare", picture, other, "--diff", other], "b.png"),
+                              (["profile", session, "--frames", "1", "--trace", session], "session.json")):
+            with self.subTest(command=command):
+                self.check_refused(*command, says=[name, "is read", "it would be lost"])
+        self.assertEqual({path: path.read_bytes() for path in self.folder.rglob("*") if path.is_file()}, before)
+
     def test_without_a_display_the_window_says_so(self):
         for arguments in [[], ["view"], ["view", self.write_session()]]:
             result = run(*arguments, environment={"DISPLAY": "", "WAYLAND_DISPLAY": ""})

@@ -1,7 +1,7 @@
 """shvr evaluate: scores of constructed annotations with known answers."""
 import unittest
 
-from harness import CliTest
+from harness import CliTest, Volume
 
 KEYS = ["dice", "dice_by_group", "node_score", "node_out", "internode_score", "internode_out", "segments",
         "topological_errors", "centreline_rms_um"]
@@ -139,6 +139,21 @@ class Evaluate(CliTest):
         self.check_refused("evaluate", "--truth-mask", mask, "--mask", self.folder / "short.mask",
                            says=["short.mask", "7 bytes", str(32 * 24 * 20)])
         self.check_refused("evaluate", "--truth-mask", self.folder / "no.mask", "--mask", mask, says=["no.mask"])
+
+
+class Projects(CliTest):
+    def test_a_project_with_annotation_is_no_mask_and_one_made_of_a_mask_is(self):
+        volume = Volume((6, 5, 4), [(i % 7 == 0) * 2 for i in range(120)]).write(self.folder)
+        project = self.folder / "project"
+        self.check("import", volume, project, "--labels")
+        evaluate = ["evaluate", "--truth-mask", volume, "--mask", project]
+        self.assertEqual(self.check_json(*evaluate)["dice"], 1)
+        script = self.write_script("s.jsonl", [{"op": "paint", "brush": "fill", "region": "box", "group": 2,
+                                                "threshold": 1, "radius": 9, "path": [[1, 1, 1]]}, {"op": "save"}])
+        self.check("annotate", project, "--script", script)
+        mask = project / "shvr" / "paint.mask"
+        self.check_refused(*evaluate, says=["project: is a project", f"expected its mask, {mask}"])
+        self.assertEqual(self.check_json("evaluate", "--truth-mask", volume, "--mask", mask)["dice"], 1)
 
 
 if __name__ == "__main__":

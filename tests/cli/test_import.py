@@ -298,6 +298,12 @@ class Refusals(CliTest):
         (self.folder / "mine/text").write_text("keep")
         self.check_refused("import", header, self.folder / "mine", "--overwrite", says=["is not a project"])
         self.assertEqual((self.folder / "mine/text").read_text(), "keep")
+        # Nor does a project that holds what is none of its own.
+        (project / "notes.txt").write_text("keep")
+        self.check_refused("import", header, project, "--overwrite", says=["notes.txt: is no part of a project"])
+        self.assertEqual((project / "notes.txt").read_text(), "keep")
+        (project / "notes.txt").unlink()
+        self.check("import", header, project, "--overwrite", "--quiet")
         with open(self.folder / "volume.raw", "r+b") as voxels:
             voxels.truncate(100)
         self.check_refused("import", header, self.folder / "other", says=["100", "504"])

@@ -3,10 +3,20 @@ import os
 import pty
 import select
 import signal
+import struct
 import subprocess
 import unittest
+import zlib
 
 from harness import ENVIRONMENT, PROGRESS, SHVR, TIMEOUT_S, CliTest
+
+
+def write_png(path, width, height):
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    row = b"\0" + bytes(value % 251 for value in range(3 * width))
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) +
+                     chunk(b"IDAT", zlib.compress(row * height, 1)) + chunk(b"IEND", b""))
 
 
 class Long(CliTest):
@@ -62,6 +72,12 @@ class Long(CliTest):
 
     def test_profile(self):
         self.check_stopped("profile", self.fog, "--frames", "100000", "--set", "volume.size=[64,64,64]")
+
+    def test_compare(self):
+        picture = self.folder / "a.png"
+        write_png(picture, 2000, 2000)
+        line = self.check_stopped("compare", picture, picture, "--diff", self.folder / "d.png")
+        self.assertRegex(line, r"^comparing pictures: \d+ %")
 
     def test_import_keeps_what_is_done(self):
         line, rest, _ = self.stop("import", self.raw, self.folder / "p", *self.layout)

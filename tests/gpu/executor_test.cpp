@@ -155,6 +155,28 @@ TEST_CASE_FIXTURE(Fixture, "transient memory is used again by frames of the same
     CHECK(memory.device_bytes() < after_one);
 }
 
+TEST_CASE_FIXTURE(Fixture, "memory that only the busiest moments need stays as long as such frames come")
+{
+    const auto graph_of = [](uint64_t bytes) {
+        FrameGraph graph;
+        static_cast<void>(graph.read_back(graph.fill(graph.create("transient", buffer_desc(bytes)), 7)));
+        return graph;
+    };
+    constexpr uint64_t LARGE = 1 << 20;
+    const auto run_three = [&] {  // each in flight while the next is submitted
+        std::vector<gpu::Submission> running;
+        for (int i = 0; i < 3; ++i) running.push_back(executor.submit(graph_of(LARGE)));
+        for (gpu::Submission& one : running) static_cast<void>(one.finish());
+    };
+    run_three();
+    const uint64_t made = memory.allocations_made(), bytes = memory.device_bytes();
+    for (int i = 0; i < 600; ++i) executor.run(graph_of(LARGE));  // one at a time, of which three take turns
+    run_three();
+    CHECK(memory.allocations_made() == made);
+    for (int i = 0; i < 520; ++i) executor.run(graph_of(1024));
+    CHECK(memory.device_bytes() + 3 * LARGE <= bytes + 4096);
+}
+
 TEST_CASE_FIXTURE(Fixture, "what goes while a frame uses it is freed once that is done, or when its bytes are needed")
 {
     const auto start = [&](const gpu::Storage& storage) {

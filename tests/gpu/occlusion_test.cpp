@@ -189,6 +189,36 @@ TEST_CASE_FIXTURE(OnDevice, "strength and curve act on what is made, and all lig
     check_below("clear medium", worst_difference(pixels_of(with), pixels_of(draw(clear, camera))), 2e-6);
 }
 
+TEST_CASE_FIXTURE(OnDevice, "a curve of points maps the light that arrives as its power does, or as nothing else can")
+{
+    load(blobs({40, 40, 40}));
+    const Camera camera = overview(volume());
+    const auto drawn = [&](std::vector<OcclusionPoint> mapping, double curve = 1.0, double strength = 1.0) {
+        Session session = occluded({{36000.0, WHITE, 0.0}, {42000.0, WHITE, 0.9}, {65535.0, WHITE, 1.0}});
+        session.light.occlusion.strength = strength;
+        session.light.occlusion.curve = curve;
+        session.light.occlusion.mapping = std::move(mapping);
+        return pixels_of(draw(session, camera));
+    };
+    const auto even = drawn({{0.0, 0.0}, {0.25, 0.25}, {1.0, 1.0}}, 3.0);  // the points go before the power
+    check_below("the line of all light", worst_difference(even, drawn({})), 1e-6);
+    std::vector<OcclusionPoint> square;
+    for (int i = 0; i < 16; ++i) square.push_back({i / 15.0, i * i / 225.0});
+    // 16 points are off a square by 1/900 at most.
+    check_below("a square in 16 points", worst_difference(drawn(square), drawn({}, 2.0)), 2e-3);
+    // All light, for what is lit more than half, and none for the rest: a step, whose mean over the picture lies
+    // between.
+    const auto bright = drawn({{0.0, 1.0}}), dark = drawn({{0.5, 0.0}}), step = drawn({{0.5, 0.0}, {0.5, 1.0}});
+    check_below("all light", worst_difference(bright, drawn({}, 1.0, 1e-9)), 1e-5);
+    size_t like_bright = 0, like_dark = 0;
+    for (size_t i = 0; i < step.size(); ++i) {
+        like_bright += bright[i].r > dark[i].r + 0.05 && std::abs(step[i].r - bright[i].r) < 0.01;
+        like_dark += bright[i].r > dark[i].r + 0.05 && std::abs(step[i].r - dark[i].r) < 0.01;
+    }
+    CHECK(like_bright > 20);
+    CHECK(like_dark > 20);
+}
+
 TEST_CASE_FIXTURE(OnDevice, "a volume in bricks is lit as a paged one is, and as filtered ones nearly are")
 {
     const Session session = occluded({{36000.0, RED, 0.0}, {42000.0, GREEN, 0.9}, {65535.0, BLUE, 1.0}}, 12.0);

@@ -6,6 +6,7 @@
 
 #include "engine/gpu/embedded_kernels.h"
 #include "engine/gpu/kernel.h"
+#include "shaders/brick_unpack.h"
 #include "shaders/mix.h"
 #include "shaders/occlusion/occlusion_bake.h"
 #include "shaders/pages.h"
@@ -168,7 +169,8 @@ TEST_CASE("members of shared structs lie where C++ puts them")
           "raycast_paged_filtered_masked_occluded_surfaced"})
         check_members(kernel, "params_block", raycast_params());
     for (const char* kernel : {"raycast_occluded", "raycast_paged_filtered_masked_occluded"})
-        check_members(kernel, "occlusion_look", {MEMBER(OcclusionLook, strength), MEMBER(OcclusionLook, curve)});
+        check_members(kernel, "occlusion_look",
+                      {{"data", 0}, {"segments", sizeof(gpu::OcclusionLook)}});  // a look, and segments behind it
     for (const char* kernel : {"occlusion_bake", "occlusion_bake_paged_filtered"}) {
         check_members(kernel, "params_block", occlusion_bake_params());
         check_members(kernel, "jobs",
@@ -206,6 +208,10 @@ TEST_CASE("members of shared structs lie where C++ puts them")
         check_members(kernel, "push", brick_leap_params());
         check_members(kernel, "jobs", brick_leap_jobs());
     }
+    for (const char* kernel : {"brick_unpack", "brick_unpack_filtered"})
+        check_members(kernel, "jobs",
+                      {MEMBER(BrickUnpackJob, texel), MEMBER(BrickUnpackJob, codes), MEMBER(BrickUnpackJob, cell),
+                       MEMBER(BrickUnpackJob, ranges)});
     for (const char* kernel : {"leap_occupancy", "leap_occupancy_masked"})
         check_members(kernel, "push", occupancy_params());
     check_members("leap_distance", "push",

@@ -81,7 +81,11 @@ TEST_CASE_FIXTURE(Seen, "a view comes to rest on the direct picture, bit for bit
         for (const glm::dvec3& direction : {glm::dvec3(1, 2, 3), glm::dvec3(-1, 0.2, 0)}) {
             view.look(session, camera(direction), pixels());
             settle(view);
-            CHECK(shown(view) == direct(camera(direction)));
+            const ScreenPixels is = shown(view), expected = direct(camera(direction));
+            size_t differing = is.size() == expected.size() ? 0 : 1;
+            for (size_t i = 0; i < std::min(is.size(), expected.size()); ++i) differing += is[i] != expected[i];
+            CAPTURE(direction.x);
+            check_below("differing pixels", double(differing), 0.0);
         }
     }
 }

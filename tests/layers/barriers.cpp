@@ -16,7 +16,7 @@ namespace {
 std::atomic<uint64_t> barriers{0};
 std::atomic<uint64_t> dropped{0};
 
-struct Barriers {
+struct Barriers : layers::Unobtrusive {
     using Next = layers::Chain<Barriers>;
 
     static VKAPI_ATTR void VKAPI_CALL barrier(VkCommandBuffer commands, const VkDependencyInfo* info)
@@ -42,7 +42,6 @@ struct Barriers {
     {
         if (const char* const path = std::getenv("SHVR_BARRIERS_LOG")) std::ofstream(path) << "barriers " << barriers;
     }
-    static VkDeviceCreateInfo device_info(const VkDeviceCreateInfo& info) { return info; }
 };
 
 }  // namespace

@@ -1,9 +1,9 @@
 // A Vulkan layer for tests: a driver that remembers what it compiled, as those of GPUs do and lavapipe does not. Its
 // pipeline caches hold a sum for each pipeline, behind the driver's own head.
 //
-//   SHVR_CACHE_LOG=FILE          at the end of an instance: "compiled N", pipelines that no cache had; "cached N", that
-//                                one had; "waited N", made by the thread that made the instance; "refused N", data of
-//                                caches that are not what the driver gave
+//   SHVR_CACHE_LOG=FILE          after each pipeline, and at the end of an instance: "compiled N", pipelines that no
+//                                cache had; "cached N", that one had; "waited N", made by the thread that made the
+//                                instance; "refused N", data of caches that are not what the driver gave
 //   SHVR_CACHE_DRIVER=N          the driver says that this is its version
 //   SHVR_CACHE_PATIENT=1         samplers, which a program makes before it draws, are made once another thread has made
 //                                a pipeline, or after half a minute
@@ -12,11 +12,13 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <map>
 #include <mutex>
 #include <set>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -46,7 +48,18 @@ Driver& driver()
     return *one;
 }
 
-struct Cache {
+/// Whole at any time. Under the driver's mutex.
+void write_log()
+{
+    const char* const path = std::getenv("SHVR_CACHE_LOG");
+    if (!path) return;
+    const std::string unfinished = std::string(path) + ".new";
+    std::ofstream(unfinished) << "compiled " << driver().compiled << "\ncached " << driver().cached << "\nwaited "
+                              << driver().waited << "\nrefused " << driver().refused << '\n';
+    std::rename(unfinished.c_str(), path);
+}
+
+struct Cache : layers::Unobtrusive {
     using Next = layers::Chain<Cache>;
 
     static VKAPI_ATTR VkResult VKAPI_CALL create_cache(VkDevice device, const VkPipelineCacheCreateInfo* info,
@@ -139,6 +152,7 @@ struct Cache {
                         VK_PIPELINE_CREATION_FEEDBACK_VALID_BIT |
                         (was_there ? VK_PIPELINE_CREATION_FEEDBACK_APPLICATION_PIPELINE_CACHE_HIT_BIT : 0);
         }
+        write_log();
         return result;
     }
 
@@ -175,13 +189,9 @@ struct Cache {
     static void instance_made(VkInstance) { driver().first = std::this_thread::get_id(); }
     static void instance_goes(VkInstance)
     {
-        const char* const path = std::getenv("SHVR_CACHE_LOG");
-        if (!path) return;
         const std::lock_guard lock(driver().mutex);
-        std::ofstream(path) << "compiled " << driver().compiled << "\ncached " << driver().cached << "\nwaited "
-                            << driver().waited << "\nrefused " << driver().refused << '\n';
+        write_log();
     }
-    static VkDeviceCreateInfo device_info(const VkDeviceCreateInfo& info) { return info; }
 };
 
 }  // namespace

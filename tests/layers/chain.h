@@ -2,13 +2,14 @@
 // What makes a Vulkan layer of a set of hooks (vk_layer.h, interface version 2). A layer is a struct with
 //
 //   static PFN_vkVoidFunction hook(const char* name);     // null: not hooked
-//   static void instance_made(VkInstance);                // and
+//   static void instance_made(VkInstance);                // those that `Unobtrusive` does not do for it:
 //   static void instance_goes(VkInstance);
 //   static VkDeviceCreateInfo device_info(const VkDeviceCreateInfo&);   // as the driver gets it
 //
 // and `Chain<Layer>::negotiate` is what its manifest names. `Chain<Layer>::next` is a call of whoever comes next. Any
 // thread.
 
+#include <algorithm>
 #include <cstring>
 #include <mutex>
 #include <string>
@@ -54,7 +55,22 @@ inline constexpr const char* INSTANCE_CALLS[] = {"vkDestroyInstance",
                                                  "vkGetPhysicalDeviceFormatProperties",
                                                  "vkGetPhysicalDeviceImageFormatProperties",
                                                  "vkGetPhysicalDeviceQueueFamilyProperties",
+                                                 "vkGetPhysicalDeviceSurfacePresentModesKHR",
                                                  "vkEnumerateDeviceExtensionProperties"};
+
+/// Calls of extensions that a layer may add to a driver which has none of them.
+inline constexpr const char* ADDED_CALLS[] = {"vkGetDeviceFaultInfoEXT"};
+inline bool is_added(const char* name)
+{
+    return std::ranges::any_of(ADDED_CALLS, [&](const char* one) { return std::strcmp(name, one) == 0; });
+}
+
+/// What a layer does that only hooks calls: the base of those that hide none of these.
+struct Unobtrusive {
+    static void instance_made(VkInstance) {}
+    static void instance_goes(VkInstance) {}
+    static VkDeviceCreateInfo device_info(const VkDeviceCreateInfo& info) { return info; }
+};
 
 template <class Layer>
 class Chain {
@@ -184,7 +200,7 @@ private:
         }
         const PFN_vkVoidFunction there = next ? next(device, name) : nullptr;
         const PFN_vkVoidFunction hooked = Layer::hook(name);
-        return hooked && there ? hooked : there;
+        return hooked && (there || is_added(name)) ? hooked : there;
     }
 
     static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_call(VkInstance instance, const char* name)

@@ -3,9 +3,9 @@
 //   SHVR_FAULTS="vkQueueSubmit2:40:device_lost vkQueuePresentKHR:3+:suboptimal"
 //
 // CALL:N:ERROR lets the N-th call fail, CALL:N+:ERROR every call from the N-th on. A call that fails does not reach the
-// driver, but for `suboptimal`, which is a success. Once the device is lost, it stays so: all calls that may say so do,
-// until the device is destroyed; a device created afterwards is whole. Faults count from the creation of the instance,
-// and each fires once, so that what is made anew is not lost again.
+// driver; one that is `suboptimal` does as it should. Once the device is lost, it stays so: all calls that may say so
+// do, until the device is destroyed; a device created afterwards is whole. Faults count from the creation of the
+// instance, and each fires once, so that what is made anew is not lost again.
 //
 // SHVR_FAULTS_NOW names a file: when it appears, the faults that it lists are added, counted from then on, and it is
 // removed. It must appear whole, by renaming.
@@ -119,6 +119,7 @@ constexpr Spelling ERRORS[] = {{"out_of_host_memory", VK_ERROR_OUT_OF_HOST_MEMOR
                                {"device_lost", VK_ERROR_DEVICE_LOST},
                                {"surface_lost", VK_ERROR_SURFACE_LOST_KHR},
                                {"out_of_date", VK_ERROR_OUT_OF_DATE_KHR},
+                               {"not_ready", VK_NOT_READY},
                                {"suboptimal", VK_SUBOPTIMAL_KHR}};
 
 /// Calls that may return VK_ERROR_DEVICE_LOST. Those that wait let the driver finish first.
@@ -249,7 +250,7 @@ VKAPI_ATTR VkResult VKAPI_CALL device_call(First first, Rest... rest)
         static_cast<void>(reinterpret_cast<PFN_vkDeviceWaitIdle>(wait)(device));
         return fault;
     }
-    if (fault < 0) return fault;
+    if (fault < 0 || fault == VK_NOT_READY) return fault;
     const VkResult result = reinterpret_cast<VkResult(VKAPI_PTR*)(First, Rest...)>(next)(first, rest...);
     if (result != VK_SUCCESS) return result;
     const std::lock_guard lock(known.mutex);

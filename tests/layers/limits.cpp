@@ -3,6 +3,7 @@
 //   SHVR_LIMITS=intel            a name of records.h
 //   SHVR_LIMITS_LOG=FILE         what was asked for beyond the limits, a line each
 //
+// Some drivers make a dispatch of each slice of each region of a copy: a copy of more than 256 regions is logged, too.
 // What a driver may refuse is refused as a driver does: memory of a heap that is full, allocations beyond their number.
 // What a program must not ask for is refused with VK_ERROR_INITIALIZATION_FAILED and logged: images and buffers that
 // are too large, memory mapped that cannot be, timestamps that there are not. Kernels read beside images, so a device
@@ -62,7 +63,7 @@ Used& used()
     return *one;
 }
 
-struct Limits {
+struct Limits : layers::Unobtrusive {
     using Next = layers::Chain<Limits>;
 
     static void limit(VkPhysicalDeviceProperties& properties)
@@ -149,6 +150,12 @@ struct Limits {
             budget->heapUsage[i] = used().of_heaps[i];
         }
     }
+    /// Extensions that the record has or has not, whatever the driver has.
+    static bool is_ours(const char* extension)
+    {
+        return std::strcmp(extension, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME) == 0 ||
+               std::strcmp(extension, VK_EXT_DEVICE_FAULT_EXTENSION_NAME) == 0;
+    }
     static VKAPI_ATTR VkResult VKAPI_CALL extensions(VkPhysicalDevice physical, const char* layer, uint32_t* count,
                                                      VkExtensionProperties* found)
     {
@@ -158,11 +165,9 @@ struct Limits {
         next(physical, layer, &there, nullptr);
         std::vector<VkExtensionProperties> all(there);
         next(physical, layer, &there, all.data());
-        const auto is_budget = [](const VkExtensionProperties& extension) {
-            return std::strcmp(extension.extensionName, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME) == 0;
-        };
-        std::erase_if(all, is_budget);
+        std::erase_if(all, [](const VkExtensionProperties& one) { return is_ours(one.extensionName); });
         if (record().tells_budget) all.push_back({VK_EXT_MEMORY_BUDGET_EXTENSION_NAME, 1});
+        if (record().tells_faults) all.push_back({VK_EXT_DEVICE_FAULT_EXTENSION_NAME, 1});
         if (!found) {
             *count = uint32_t(all.size());
             return VK_SUCCESS;
@@ -250,6 +255,28 @@ struct Limits {
         if (info->size > record().max_buffer) return violated("a buffer of " + std::to_string(info->size) + " bytes");
         return Next::next<PFN_vkCreateBuffer>(device, "vkCreateBuffer")(device, info, allocator, buffer);
     }
+    // ---- Commands
+
+    static void check_regions(uint32_t count)
+    {
+        constexpr uint32_t MOST = 256;
+        if (count > MOST) violated("a copy of " + std::to_string(count) + " regions");
+    }
+    static VKAPI_ATTR void VKAPI_CALL copy_buffer(VkCommandBuffer commands, VkBuffer from, VkBuffer to, uint32_t count,
+                                                  const VkBufferCopy* regions)
+    {
+        check_regions(count);
+        Next::next<PFN_vkCmdCopyBuffer>(commands, "vkCmdCopyBuffer")(commands, from, to, count, regions);
+    }
+    static VKAPI_ATTR void VKAPI_CALL copy_to_image(VkCommandBuffer commands, VkBuffer from, VkImage to,
+                                                    VkImageLayout layout, uint32_t count,
+                                                    const VkBufferImageCopy* regions)
+    {
+        check_regions(count);
+        Next::next<PFN_vkCmdCopyBufferToImage>(commands, "vkCmdCopyBufferToImage")(commands, from, to, layout, count,
+                                                                                   regions);
+    }
+
     static VKAPI_ATTR VkResult VKAPI_CALL create_queries(VkDevice device, const VkQueryPoolCreateInfo* info,
                                                          const VkAllocationCallbacks* allocator, VkQueryPool* pool)
     {
@@ -275,6 +302,22 @@ struct Limits {
         return result;
     }
 
+    // ---- A device that is lost (tests/layers/faults.cpp) tells of one address and one code
+
+    static VKAPI_ATTR VkResult VKAPI_CALL fault(VkDevice, VkDeviceFaultCountsEXT* counts, VkDeviceFaultInfoEXT* info)
+    {
+        const bool has_room = counts->addressInfoCount > 0 && counts->vendorInfoCount > 0;
+        *counts = {.sType = counts->sType, .addressInfoCount = 1, .vendorInfoCount = 1, .vendorBinarySize = 0};
+        if (!info) return VK_SUCCESS;
+        if (!has_room) return VK_INCOMPLETE;
+        std::snprintf(info->description, sizeof info->description, "page fault");
+        info->pAddressInfos[0] = {.addressType = VK_DEVICE_FAULT_ADDRESS_TYPE_READ_INVALID_EXT,
+                                  .reportedAddress = 0xfeed000,
+                                  .addressPrecision = 4096};
+        info->pVendorInfos[0] = {.description = "channel", .vendorFaultCode = 31, .vendorFaultData = 0};
+        return VK_SUCCESS;
+    }
+
     static PFN_vkVoidFunction hook(const char* name)
     {
         const auto is = [&](const char* other) { return std::strcmp(name, other) == 0; };
@@ -297,6 +340,9 @@ struct Limits {
         SHVR_HOOK(vkCreateBuffer, create_buffer)
         SHVR_HOOK(vkCreateQueryPool, create_queries)
         SHVR_HOOK(vkGetQueryPoolResults, query_results)
+        SHVR_HOOK(vkCmdCopyBuffer, copy_buffer)
+        SHVR_HOOK(vkCmdCopyBufferToImage, copy_to_image)
+        SHVR_HOOK(vkGetDeviceFaultInfoEXT, fault)
 #undef SHVR_HOOK
         return nullptr;
     }
@@ -304,8 +350,7 @@ struct Limits {
     {
         choose_record();
     }
-    static void instance_goes(VkInstance) {}
-    /// Without the extension that the driver may not have.
+    /// Without the extensions that the driver may not have, and what goes with them.
     static VkDeviceCreateInfo device_info(const VkDeviceCreateInfo& info)
     {
         const auto* const asked = chained<VkPhysicalDeviceVulkan13Features>(
@@ -313,8 +358,10 @@ struct Limits {
         if (!asked || !asked->robustImageAccess) violated("reads beside images, as robustImageAccess is off");
         static thread_local std::vector<const char*> kept;
         kept.assign(info.ppEnabledExtensionNames, info.ppEnabledExtensionNames + info.enabledExtensionCount);
-        std::erase_if(kept,
-                      [](const char* name) { return std::strcmp(name, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME) == 0; });
+        std::erase_if(kept, is_ours);
+        for (auto* at = static_cast<VkBaseOutStructure*>(const_cast<void*>(info.pNext)); at; at = at->pNext)
+            if (at->pNext && at->pNext->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FAULT_FEATURES_EXT)
+                at->pNext = at->pNext->pNext;
         VkDeviceCreateInfo changed = info;
         changed.enabledExtensionCount = uint32_t(kept.size());
         changed.ppEnabledExtensionNames = kept.data();

@@ -25,6 +25,7 @@ struct Record {
     bool tells_budget;  ///< VK_EXT_memory_budget: nine tenths of each heap, less what is allocated
     std::vector<VkMemoryHeap> heaps;
     std::vector<VkMemoryType> types;
+    bool tells_faults = false;               ///< VK_EXT_device_fault
     uint32_t max_storage_images = 1u << 20;  ///< in a kernel
 };
 
@@ -54,7 +55,8 @@ inline std::vector<Record> made_records()
          .timestamp_period = 1.0f,
          .tells_budget = true,
          .heaps = {{12 * GIBI, VK_MEMORY_HEAP_DEVICE_LOCAL_BIT}, {24 * GIBI, 0}, {214 * MEBI, 1}},
-         .types = {{0, 1}, {LOCAL, 0}, {MAPPED, 1}, {CACHED, 1}, {LOCAL | MAPPED, 2}}},
+         .types = {{0, 1}, {LOCAL, 0}, {MAPPED, 1}, {CACHED, 1}, {LOCAL | MAPPED, 2}},
+         .tells_faults = true},
         {.name = "amd",
          .device = "record of a discrete AMD",
          .type = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU,
@@ -125,7 +127,15 @@ inline std::vector<Record> made_records()
          .heaps = {{192 * MEBI, VK_MEMORY_HEAP_DEVICE_LOCAL_BIT}, {256 * MEBI, 0}},
          .types = {{LOCAL, 0}, {MAPPED, 1}}},
     };
-    Record bare = all.back();  // the least one, with fewer images than a kernel binds
+    const Record least = all.back();
+    Record filters = least;
+    filters.name = "filters";
+    filters.device = "record of the least device, with samplers, large sides and small images";
+    filters.linear_r16 = true;
+    filters.max_side_3d = 2048;
+    filters.max_image = 24 * MEBI;
+    all.push_back(filters);
+    Record bare = least;  // the least one, with fewer images than a kernel binds
     bare.name = "bare";
     bare.device = "record of a device with too few images";
     bare.max_storage_images = 4;

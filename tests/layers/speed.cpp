@@ -14,7 +14,7 @@ PFN_vkVoidFunction nothing_for(void(VKAPI_PTR*)(Arguments...))
     return reinterpret_cast<PFN_vkVoidFunction>(&nothing<Arguments...>);
 }
 
-struct Speed {
+struct Speed : layers::Unobtrusive {
     static PFN_vkVoidFunction hook(const char* name)
     {
 #define SHVR_LEAVE_OUT(call)                                                                                           \
@@ -27,12 +27,6 @@ struct Speed {
         SHVR_LEAVE_OUT(vkCmdFillBuffer)
 #undef SHVR_LEAVE_OUT
         return nullptr;
-    }
-    static void instance_made(VkInstance) {}
-    static void instance_goes(VkInstance) {}
-    static VkDeviceCreateInfo device_info(const VkDeviceCreateInfo& info)
-    {
-        return info;
     }
 };
 

@@ -2,12 +2,14 @@
 the log of actions. Tests wait on these, never on times."""
 import json
 import re
+import signal
 import struct
 import subprocess
 import time
 from pathlib import Path
 
-from test_view import PATIENCE_S, Window
+from harness import ENVIRONMENT, SHVR
+from test_view import PATIENCE_S, SIDE_PANEL, WINDOW, Window
 
 KEYS_FILE = Path("ui/workbench/bindings/KEYS.md")
 KEY_NAMES = {",": "comma", ".": "period", "/": "slash", "=": "equal", "-": "minus", "[": "bracketleft",
@@ -84,6 +86,14 @@ class Seen(Window):
                                 **(environment or {})})
         self.until(lambda: self.words.exists(), "a first frame")
 
+    def hung_disk(self, answers, log):
+        """The environment of a program whose disk does not answer about what is in a folder `hung` until the file
+        `answers` is there, and which writes into `log` what its main thread asks there."""
+        disk = Path(SHVR).resolve().parent / "stubs" / "libhung_disk.so"
+        if subprocess.run([SHVR, "--version"], env={**ENVIRONMENT, "LD_PRELOAD": str(disk)}).returncode:
+            self.skipTest("the program's sanitizer wants to be loaded first")
+        return {"LD_PRELOAD": disk, "SHVR_HUNG_UNTIL": answers, "SHVR_HUNG_LOG": log}
+
     def until(self, holds, what, patience_s=PATIENCE_S):
         """Waits until `holds` returns something true, and returns that."""
         end = time.monotonic() + patience_s
@@ -134,7 +144,14 @@ class Seen(Window):
 
     def open_scan(self, session, *arguments, **others):
         self.view(session, *arguments, **others)
-        self.until(lambda: self.frame()["sharp"], "sharp picture")
+        self.until(lambda: self.frame()["sharp"] and self.rests(), "sharp picture")
+
+    def rests(self):
+        """No frame is drawn any more: the window has its size, and its panels their places."""
+        before = time.monotonic()
+        frame = self.frame()["frame"]
+        self.until(lambda: self.frame()["frame"] > frame or time.monotonic() > before + 0.4, "frame")
+        return self.frame()["frame"] == frame
 
     @staticmethod
     def middle_of(seen):
@@ -155,9 +172,29 @@ class Seen(Window):
         return read_xwd(subprocess.run(["xwd", "-root", "-silent", "-display", self.display.name], capture_output=True,
                                        check=True).stdout)
 
+    def wander(self, steps=40):
+        """Over the panels, which are drawn anew for it."""
+        x, y = WINDOW[0] - SIDE_PANEL // 2, WINDOW[1] // 2
+        chain = [word for step in range(steps) for word in ("mousemove", x + step % 7, y + 3 * (step % 11), "sleep", 0.035)]
+        self.do(*chain, pause_s=0)
+
+    def write_fog(self):
+        """A session of which a picture takes many seconds."""
+        return self.write_session(
+            camera="front", volume={"procedural": "fog", "size": [160, 160, 160]}, render={"step_voxels": 0.1},
+            transfer_function={"points": [{"intensity": 0, "opacity": 0.0}, {"intensity": 255, "opacity": 0.01}]})
+
     def press(self, chord):
         """Held for a moment."""
         self.do("keydown", pressed(chord), "sleep", 0.03, "keyup", pressed(chord), pause_s=0)
+
+    def at_once(self, *commands):
+        """All in one turn of the program, as beside a frame that takes longer than a hand: it stands still meanwhile."""
+        self.program.send_signal(signal.SIGSTOP)
+        try:
+            self.do(*commands, pause_s=0)
+        finally:
+            self.program.send_signal(signal.SIGCONT)
 
     # ---- What was done
 
@@ -168,7 +205,7 @@ class Seen(Window):
         lines = self.log.read_text().split("\n")[:-1]
         return [json.loads(line) for line in lines[since:]]
 
-    def what_follows(self, cause, wanted, patience_s=5):
+    def what_follows(self, cause, wanted, patience_s=20):
         """Calls `cause`, and waits until one of the actions that it leads to is `wanted`; returns what was logged."""
         before = len(self.done())
         cause()

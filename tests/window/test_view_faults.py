@@ -1,8 +1,12 @@
 """What the window does when the graphics device or its surface fails: by a layer that lets calls fail (tests/layers)."""
+import subprocess
 import time
 import unittest
+from pathlib import Path
 
-from test_view import PATIENCE_S, Window
+from harness import ENVIRONMENT, SHVR
+from seen import Seen
+from test_view import PATIENCE_S, WINDOW, Window
 
 
 class Faults(Window):
@@ -15,12 +19,14 @@ class Faults(Window):
         self.wait_for_window("sphere.* - SHVR")
         return self.middle()
 
-    def let_fail(self, *faults):
-        """From now on; returns once the first of them has fired, while the pointer moves as a hand does."""
+    def let_fail(self, *faults, meanwhile=lambda: None):
+        """From now on; returns once the first of them has fired, while the pointer moves as a hand does. `meanwhile`:
+        done once they may fire."""
         before = self.log.read_text().count("fired") if self.log.exists() else 0
         written = self.folder / "faults.new"
         written.write_text(" ".join(faults))
         written.rename(self.now)
+        meanwhile()
         x, y = self.middle()
         end = time.monotonic() + PATIENCE_S
         step = 0
@@ -29,6 +35,16 @@ class Faults(Window):
             step += 1
             self.do("mousemove", x + 60 + step % 7, y + 60, pause_s=0.1)
         self.do("mousemove", x + 60, y + 60, pause_s=1)
+
+    def tell_of(self, *calls):
+        """Each is logged when it is first called from now on, and goes on as ever."""
+        written = self.folder / "faults.new"
+        written.write_text(" ".join(f"{call}:1:suboptimal" for call in calls))
+        written.rename(self.now)
+        end = time.monotonic() + PATIENCE_S
+        while self.now.exists():   # until any call has been made
+            self.assertLess(time.monotonic(), end)
+            self.do("mousemove_relative", 1, 0, pause_s=0.1)
 
     def paint_at(self, x, y, group):
         self.do("key", str(group), pause_s=0.2)
@@ -55,6 +71,34 @@ class Faults(Window):
         self.assertEqual(sorted(report["voxels_in_group"]), ["3", "5", "7"])
         self.check_photograph(session, photograph)
 
+    def test_nothing_waits_for_the_device_while_the_window_is_painted_in_turned_and_resized(self):
+        session = self.write_ball()
+        x, y = self.start_with_faults(session)
+        window = self.display.do("search", "--name", "sphere.* - SHVR").split()[-1]
+
+        def work(step):
+            self.display.do("windowsize", window, WINDOW[0] - 9 * step, WINDOW[1] - 7 * step)
+            self.do("mousemove", x, y, "mousedown", 1, "mousemove", x + 20 + step, y + 9, "mouseup", 1, pause_s=0.2)
+            self.stroke((x, y), (x + 6, y + 2), pause_s=0.3)
+
+        self.do("key", "3", pause_s=0.2)
+        self.put_probe(x, y)
+        work(0)
+        self.tell_of("vkDeviceWaitIdle", "vkQueueWaitIdle")
+        for step in [*range(1, 9), *range(8, -1, -1)]:
+            work(step)
+        # Dragged by an edge: a swapchain for each frame, none of which is drawn in twice.
+        for step in range(40):
+            self.do("windowsize", window, WINDOW[0] - 3 * step, WINDOW[1] - 2 * step, pause_s=0.03)
+        self.do("mousemove", x + 3, y + 3, pause_s=1)
+        self.assertFalse(self.log.exists(), "something waited for the device")
+        self.assertEqual(sorted(self.finish()["voxels_in_group"]), ["3"])
+        log = self.log.read_text()
+        self.assertIn("fired vkDeviceWaitIdle", log)    # the layer would have told
+        self.assertNotIn("leaked", log)
+        made = next(int(line.split()[1]) for line in log.splitlines() if line.startswith("vkCreateSwapchainKHR "))
+        self.assertGreater(made, 17)
+
     def test_a_surface_that_is_lost_or_out_of_date_is_made_anew(self):
         session = self.write_ball()
         x, y = self.start_with_faults(session)
@@ -70,6 +114,24 @@ class Faults(Window):
         self.assertEqual(sorted(report["voxels_in_group"]), ["3"])
         # Suboptimal for good, of a surface that stays as it is: nothing is made anew for that.
         self.assertNotIn("vkCreateSwapchainKHR", self.log.read_text().split("suboptimal")[-1])
+
+    def test_a_screen_that_never_takes_a_picture_again_keeps_nobody_from_work_and_from_leaving(self):
+        for fault in ["vkAcquireNextImageKHR:1+:not_ready", "vkAcquireNextImageKHR:1+:out_of_date",
+                      "vkAcquireNextImageKHR:1+:surface_lost", "vkQueuePresentKHR:1+:out_of_date",
+                      "vkQueuePresentKHR:1+:surface_lost"]:
+            with self.subTest(fault):
+                session = self.write_ball()
+                x, y = self.start_with_faults(session)
+                self.paint_at(x, y, 3)
+                self.let_fail(fault)
+                self.do("key", "5", pause_s=0.2)
+                self.stroke((x + 12, y + 8), (x - 8, y + 4))
+                time.sleep(2)   # frames that fail
+                report = self.finish()
+                self.assertEqual(sorted(report["voxels_in_group"]), ["3", "5"], report["messages"])
+                log = self.log.read_text()
+                self.assertNotIn("leaked", log)
+                self.log.unlink()
 
     def test_memory_that_is_short_for_a_moment_is_said_and_the_work_goes_on(self):
         session = self.write_ball()
@@ -88,6 +150,102 @@ class Faults(Window):
         report = self.finish()
         self.assertEqual(sorted(report["voxels_in_group"]), ["3", "5"], report["messages"])
         self.check_photograph(session, photograph)
+
+    def window(self):
+        return self.display.do("search", "--name", "sphere.* - SHVR").split()[0]
+
+    def test_a_window_that_is_resized_and_hidden_while_calls_fail_goes_on(self):
+        session = self.write_ball()
+        x, y = self.start_with_faults(session)
+        self.paint_at(x, y, 3)
+        for size, fault in [((700, 500), "vkCreateSwapchainKHR:1:out_of_device_memory"),
+                            ((800, 560), "vkAllocateMemory:1:out_of_device_memory"),
+                            ((640, 480), "vkCreateImage:1:out_of_host_memory"),
+                            ((720, 620), "vkCreateImageView:1:out_of_device_memory"),
+                            ((760, 520), "vkCreateFramebuffer:1:out_of_device_memory"),
+                            ((820, 640), "vkGetPhysicalDeviceSurfaceCapabilitiesKHR:1:surface_lost"),
+                            ((900, 600), "vkCreateSwapchainKHR:1:device_lost")]:
+            with self.subTest(fault):
+                self.let_fail(fault, meanwhile=lambda: self.do("windowsize", self.window(), *size, pause_s=0.3))
+                time.sleep(1)
+                self.assertIsNone(self.program.poll())
+        # Out of sight nothing is lost, and in sight again the work goes on.
+        hidden = self.window()
+        self.let_fail("vkQueueSubmit2:1:device_lost", meanwhile=lambda: self.do(
+            "key", "5", "keydown", "f", "mousemove_relative", 8, 4, "windowunmap", hidden, "sleep", 0.5, "windowmap", hidden,
+            "keyup", "f", pause_s=1))
+        time.sleep(1.5)
+        self.paint_at(x + 20, y - 20, 7)
+        self.do("key", "ctrl+s", pause_s=1)
+        self.do("key", "F12")
+        photograph = self.folder / "session-view-1.png"
+        self.wait_for_file(photograph)
+        report = self.finish()
+        self.assertLessEqual({"3", "7"}, set(report["voxels_in_group"]), report["messages"])
+        self.check_photograph(session, photograph)
+
+
+class Memory(Seen):
+    """A scan for which there is no memory, opened beside one that is painted in."""
+
+    def ask_for(self, path):
+        self.press("Ctrl+O")
+        self.see_at_rest("Hidden")
+        self.do("key", "ctrl+a", "type", "--delay", 30, path)
+        self.press("Enter")
+
+    def paint(self, *places):
+        self.assertIn("paint_here", self.what_follows(lambda: self.stroke(*places), "paint_here"))
+
+    def test_a_scan_that_host_memory_is_too_short_for_is_refused_in_words_and_the_work_goes_on(self):
+        stub = Path(SHVR).resolve().parent / "stubs" / "libshort_memory.so"
+        if subprocess.run([SHVR, "--version"], env={**ENVIRONMENT, "LD_PRELOAD": str(stub)}, stdout=subprocess.DEVNULL,
+                          check=False).returncode:
+            self.skipTest("the program's sanitizer wants to be loaded first")
+        short, refused = self.folder / "short", self.folder / "short.log"
+        said = self.check_refusal({"LD_PRELOAD": stub, "SHVR_SHORT_BYTES": 1 << 20, "SHVR_SHORT_WHILE": short,
+                                   "SHVR_SHORT_LOG": refused}, short, refused, f"{self.folder / 'large.nrrd'}: ")
+        self.assertIn("host memory is exhausted", said)
+
+    def test_a_scan_that_device_memory_is_too_short_for_is_refused_in_words_and_the_work_goes_on(self):
+        short, refused = self.folder / "short", self.folder / "short.log"
+        said = self.check_refusal({"VK_INSTANCE_LAYERS": "VK_LAYER_SHVR_memory", "SHVR_DEVICE_SHORT_BYTES": 1 << 20,
+                                   "SHVR_DEVICE_SHORT_WHILE": short, "SHVR_DEVICE_SHORT_LOG": refused}, short, refused,
+                                  "the device is out of memory")
+        self.assertIn("SHVR uses", said)
+
+    def check_refusal(self, environment, short, refused, begins):
+        """Opens a scan while the file `short` is there, and once it is not; returns why the first did not succeed,
+        words that begin so."""
+        side, scan = 128, self.folder / "large.nrrd"
+        scan.write_bytes(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: %d %d %d\nencoding: raw\n\n"
+                         % (side, side, side) + bytes(range(256)) * (side ** 3 // 256))
+        self.open_scan(self.write_ball(), preferences={"hints_seen": 3}, environment=environment)
+        x, y = self.middle()
+        self.do("key", "3", pause_s=0.2)
+        self.put_probe(x, y)
+        self.paint((x, y), (x + 8, y + 4))
+
+        short.touch()
+        self.ask_for(scan)
+        said = self.see(begins)["text"]
+        self.assertNotIn("bad_alloc", said)
+        self.assertTrue(refused.exists())
+        # The chooser stays, and what was open is painted in as before.
+        self.press("Escape")
+        self.see_no_more("Hidden")
+        self.assertIn("set probe.group", self.what_follows(lambda: self.do("key", "5"), "set probe.group"))
+        self.paint((x - 12, y - 8), (x - 20, y - 4))
+
+        short.unlink()
+        self.ask_for(scan)
+        self.see("Opened ")
+        report = self.finish()
+        self.assertTrue(any(line.startswith(f"Opened {scan}") for line in report["messages"]), report["messages"])
+        # Nothing of the strokes is lost, though nobody saved them.
+        exported = self.check_json("export", self.folder / "session.json", "--mask", self.folder / "mask.nrrd")
+        self.assertEqual(set(exported["voxels_by_group"]), {"3", "5"})
+        return said
 
 
 if __name__ == "__main__":

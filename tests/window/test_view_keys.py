@@ -19,7 +19,7 @@ FIRST = {
 # What it makes, where the table cannot know: there it is pressed in a state in which nothing is left to be set.
 MAKES = {"step_back": "set probe.tool", "single_view": "set view.arrangement", "tool_turn": "set probe.tool",
          "group_1": "set probe.group", "less_blending": "set blend.size",
-         "stronger": "set probe.touch.strength"}
+         "stronger": "set probe.touch.strength", "threshold_here": "set probe.paint_threshold"}
 # Whose answer is a sentence, always.
 REFUSED = {"regroup_0": "roup 0 is the eraser"}
 # They switch a window on that takes keys, or that hides what follows: pressed again, or closed by Escape.
@@ -91,7 +91,6 @@ class Keys(Seen):
             self.press("Escape")
             if shown:
                 self.see_no_more("", shown)
-                self.do(pause_s=0.3)   # a text that was open has the keyboard for a frame more
         return None if self.makes(row) in found else found
 
     def measure(self):

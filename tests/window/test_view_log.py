@@ -3,10 +3,10 @@ import json
 import signal
 import unittest
 
-from test_view import Window
+from seen import Seen
 
 
-class Log(Window):
+class Log(Seen):
     def test_what_was_done_in_the_window_is_replayed_without_one(self):
         session = self.write_ball()
         again = self.folder / "again" / "session.json"
@@ -43,14 +43,16 @@ class Log(Window):
 
     def test_the_window_that_opens_after_a_kill_is_the_one_that_was_there(self):
         session = self.write_ball()
-        self.start(session)
-        self.wait_for_window("sphere.* - SHVR")
+        self.open_scan(session)
         x, y = self.middle()
-        self.put_probe(x, y)
-        self.stroke((x, y), (x + 10, y))
+        self.assertIn("probe_onto", self.what_follows(lambda: self.put_probe(x, y), "probe_onto"))
+        self.assertIn("paint_here", self.what_follows(lambda: self.stroke((x, y), (x + 10, y)), "paint_here"))
         # Other view, panes, brush and tool; none of it is saved.
-        self.do("mousemove", x, y, "mousedown", 1, "mousemove", x + 60, y + 20, "mouseup", 1, pause_s=0.5)
-        self.do("key", "F6", "key", "7", "key", "End", "key", "x", pause_s=1.5)
+        self.do("mousemove", x, y, "mousedown", 1, "mousemove", x + 60, y + 20, "mouseup", 1)
+        keys = ["F6", "7", "End", "x"]
+        self.assertIn("set probe.tool", self.what_follows(lambda: self.do(*[word for key in keys for word in ("key", key)]),
+                                                          "set probe.tool"))
+        self.until(self.rests, "window at rest")   # settings are in the journal by then
         self.program.send_signal(signal.SIGKILL)
         self.program.communicate(timeout=30)
         self.assertNotIn("window", json.loads(session.read_text()).get("cameras", {}))

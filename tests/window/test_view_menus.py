@@ -117,7 +117,7 @@ class Menus(Seen):
             else {MAKES.get(name, row["action"])} if row else IN_PAINT if path[0] == "Paint" else set()
         before = len(self.done())
         self.choose(path, entry)
-        self.soon(lambda: wanted & self.made(before), 4)
+        self.soon(lambda: wanted & self.made(before), 20)
         if not wanted & self.made(before):
             self.wrong.append(f"{where} made {sorted(self.made(before))}; expected {sorted(wanted)}")
         if name in AGAIN:

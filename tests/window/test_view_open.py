@@ -3,7 +3,7 @@ import json
 import time
 import unittest
 
-from seen import Seen
+from seen import Seen, in_short
 from test_view import PATIENCE_S
 
 
@@ -59,6 +59,61 @@ class Open(Seen):
         self.keys("ctrl+o", "Escape", "ctrl+q")
         self.program.communicate(timeout=PATIENCE_S)
         self.assertEqual(self.program.returncode, 0)
+
+    def test_what_is_typed_before_a_field_is_there_is_typed_into_it_and_behind_it_keys_are_shortcuts(self):
+        self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
+        self.do("mousemove", *self.middle())
+        path = f"{self.folder}/5f8s"
+        self.at_once("key", "ctrl+o", "type", "--delay", 1, path)
+        self.see(path, "Open a volume")
+        self.at_once("key", "Escape", "key", "6", "key", "ctrl+shift+p", "type", "--delay", 1, "53 nothing")
+        self.see("53 nothing", "Find anything")
+        self.see_no_more("Hidden")
+        self.at_once("key", "Escape", "key", "7", "key", "ctrl+o")
+        self.see_at_rest("Hidden")
+        # In the list, where Enter leads, a slash begins a path.
+        self.press("Return")
+        self.see_at_rest("Hidden")
+        self.at_once("type", "--delay", 1, f"{self.folder}/9f")
+        self.see(f"{self.folder}/9f", "Open a volume")
+        self.at_once("key", "Escape", "key", "8", "key", "ctrl+q")
+        self.program.communicate(timeout=PATIENCE_S)
+        groups = [action["values"]["probe"]["group"] for action in self.done() if in_short(action) == "set probe.group"]
+        self.assertEqual(groups, [6, 7, 8])
+        self.assertFalse([action for action in self.done() if action["op"] == "paint_here"])
+
+    def test_a_folder_that_does_not_answer_is_waited_for_in_words_and_the_rest_goes_on(self):
+        (self.folder / "hung" / "deep").mkdir(parents=True)
+        (self.folder / "hung" / "slow.nrrd").write_text("no header")
+        (self.folder / "scans").mkdir()
+        (self.folder / "scans" / "near.nrrd").write_text("no header")
+        answers, log = self.folder / "answers", self.folder / "hung.log"
+        self.view(preferences={"hints_seen": 3}, environment=self.hung_disk(answers, log))
+        self.do("mousemove", *self.middle(), pause_s=1.5)
+        self.press("Ctrl+O")
+        self.see("Hidden")
+        self.do("type", "--delay", 40, f"{self.folder}/hung/")
+        self.see(f"Waiting for {self.folder}/hung")
+        before = self.frame()["frame"]
+        self.until(lambda: self.frame()["frame"] > before + 5, "frames beside it")
+        # Elsewhere all is as ever.
+        self.press("Ctrl+A")
+        self.do("type", "--delay", 40, f"{self.folder}/scans/")
+        self.see("near.nrrd")
+        self.see_no_more("Waiting")
+        # What is typed to the end and accepted is waited for, too, until it answers.
+        self.press("Ctrl+A")
+        self.do("type", "--delay", 40, f"{self.folder}/hung/deep")
+        self.press("Enter")
+        self.see(f"Waiting for {self.folder}/hung/deep")
+        answers.write_text("")
+        self.see_no_more("Waiting")
+        self.press("BackSpace")
+        self.see("slow.nrrd")
+        self.press("Escape")
+        self.see_no_more("Hidden")
+        self.finish()
+        self.assertFalse(log.exists() and log.read_text(), "the main thread asked the disk")
 
     def test_a_scan_that_was_worked_on_is_gone_on_with_and_a_typed_folder_is_listed(self):
         scan = self.folder / "scan.nrrd"

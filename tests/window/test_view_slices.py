@@ -56,7 +56,7 @@ class Slices(Seen):
 
     def test_a_group_is_renamed_and_dragged_below_another(self):
         session = self.scan()
-        x, y = self.middle_of(self.see("2  group 2", "Side panel"))
+        x, y = self.middle_of(self.see_at_rest("2  group 2", "Side panel"))
         self.do("mousemove", x, y, "click", 1, "click", 1)
         self.see("Belongs to no group")
         self.do("key", "ctrl+a", "type", "vein")
@@ -119,7 +119,7 @@ class Slices(Seen):
             self.until(name.exists, "picture")
             pictures.append(name.read_bytes())
             self.click_on("File")
-            self.click_does("set interaction.screenshot_marks", "Scale bar, axes and distances")
+            self.click_does("set interaction.screenshot_marks", "Scale bar, axes, groups in screenshots")
         self.assertTrue(pictures[0] != pictures[1], [in_short(action) for action in self.done()])
         self.finish()
 

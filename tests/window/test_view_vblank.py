@@ -6,12 +6,14 @@ from seen import Seen
 
 
 class Vblank(Seen):
-    def open_on_slow_screen(self, blank_us=16700):
+    def on_slow_screen(self, blank_us=16700, **others):
         self.hidden, self.screen_log = self.folder / "hidden", self.folder / "screen.log"
+        return {"VK_INSTANCE_LAYERS": "VK_LAYER_SHVR_screen", "SHVR_SCREEN_BLANK_US": blank_us,
+                "SHVR_SCREEN_HIDDEN": self.hidden, "SHVR_SCREEN_LOG": self.screen_log, **others}
+
+    def open_on_slow_screen(self, blank_us=16700):
         session = self.write_ball()
-        self.open_scan(session, environment={"VK_INSTANCE_LAYERS": "VK_LAYER_SHVR_screen",
-                                             "SHVR_SCREEN_BLANK_US": blank_us,
-                                             "SHVR_SCREEN_HIDDEN": self.hidden, "SHVR_SCREEN_LOG": self.screen_log})
+        self.open_scan(session, environment=self.on_slow_screen(blank_us))
         return session
 
     def counts(self):
@@ -31,6 +33,23 @@ class Vblank(Seen):
         # But for the first images of a swapchain, which some drivers are slow to make.
         self.assertLessEqual(counts["waited"], 4 * counts["swapchains"])
         self.assertEqual(counts["mailboxes"], counts["swapchains"])  # an X server has them
+
+    def test_where_presenting_waits_for_the_screen_work_is_handed_in_before(self):
+        self.view(self.write_fog(), environment=self.on_slow_screen(
+            SHVR_SCREEN_FIFO=1, VK_INSTANCE_LAYERS="VK_LAYER_SHVR_screen:VK_LAYER_SHVR_limits", SHVR_LIMITS="nvidia"))
+        x, y = self.middle()
+        self.do("mousemove", x, y, "mousedown", 1)
+        first, step = self.frame()["frame"], 0
+        while self.frame()["frame"] < first + 30:
+            step += 1
+            self.do("mousemove", x + step % 60, y + step % 40, pause_s=0.02)
+        self.do("mouseup", 1)
+        self.finish()
+        counts = self.counts()
+        self.assertEqual(counts["mailboxes"], 0)
+        self.assertGreaterEqual(counts["waited_for_blank"], 30)
+        # None would be without. A slow device has enough under way as it is.
+        self.assertGreater(counts["filled"], 0)
 
     def test_work_goes_on_while_the_window_is_hidden_and_is_seen_once_it_is_not(self):
         session = self.open_on_slow_screen()

@@ -1,5 +1,7 @@
 #include "tools/bench/measure.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -7,6 +9,7 @@
 #include <cstring>
 #include <map>
 #include <memory>
+#include <random>
 #include <thread>
 
 #include "engine/base/atomic_file.h"
@@ -14,6 +17,7 @@
 #include "engine/base/image_metrics.h"
 #include "engine/base/text.h"
 #include "tools/bench/reference_scene.h"
+#include "tools/bench/yardstick.h"
 #include "tools/golden/blessing.h"
 
 namespace shvr::bench {
@@ -25,6 +29,7 @@ constexpr double REFERENCE_TOLERANCE = 1e-8;
 /// Raised whenever the reference renderer draws something else, so that kept pictures are drawn anew.
 constexpr int REFERENCE_VERSION = 1;
 constexpr size_t ROWS_AT_A_TIME = 4;
+constexpr const char* YARDSTICK = "yardstick";  // among the runs' names
 
 double seconds_since(std::chrono::steady_clock::time_point begun)
 {
@@ -193,7 +198,7 @@ std::unique_ptr<Peer> started_peer(const Scene& scene, const golden::Studio& stu
     }
 }
 
-Measured first_look_of_peer(Peer& peer, const PeerRun& run, const ImageF& reference)
+Measured first_look_of_peer(Peer& peer, const PeerRun& run, const ImageF& reference, Pictures& pictures)
 {
     Measured measured{.name = run.name,
                       .family = run.family,
@@ -206,7 +211,9 @@ Measured first_look_of_peer(Peer& peer, const PeerRun& run, const ImageF& refere
                       .work = {},
                       .device_bytes = 0,
                       .on_front = false};
-    measured.error = error_of(peer.picture(run), reference);
+    const ImageF picture = peer.picture(run);
+    measured.error = error_of(picture, reference);
+    if (run.step == 0.5) pictures.of_peers.emplace_back(run.name, picture);
     return measured;
 }
 
@@ -220,6 +227,35 @@ void time_in_turns(std::vector<Timed>& timed, int rounds, const std::function<vo
     }
 }
 
+/// Where 95 % of medians lie whose times are drawn from these, as often and with putting back (a bootstrap); the same
+/// for the same times. `sorted` holds one at least.
+std::pair<double, double> interval_of_median(const std::vector<double>& sorted)
+{
+    constexpr size_t DRAWS = 1000;
+    std::mt19937 random(1);
+    std::vector<double> medians, drawn(sorted.size());
+    for (size_t i = 0; i < DRAWS; ++i) {
+        for (double& one : drawn) one = sorted[random() % sorted.size()];
+        std::ranges::sort(drawn);
+        medians.push_back(0.5 * (drawn[(drawn.size() - 1) / 2] + drawn[drawn.size() / 2]));
+    }
+    std::ranges::sort(medians);
+    return {medians[DRAWS / 40], medians[DRAWS - 1 - DRAWS / 40]};
+}
+
+std::vector<std::pair<std::string, std::string>> looked_at_environment()
+{
+    std::vector<std::pair<std::string, std::string>> found;
+    for (char** entry = environ; *entry; ++entry) {
+        const std::string text = *entry, name = text.substr(0, text.find('='));
+        for (const char* start : {"LP_", "LVP_", "GALLIUM_", "GALLIVM_", "MESA_", "VK_", "SHVR_"})
+            if (name.starts_with(start) && name.size() < text.size())
+                found.emplace_back(name, text.substr(name.size() + 1));
+    }
+    std::ranges::sort(found);
+    return found;
+}
+
 }  // namespace
 
 MeasuredScene measure_scene(const Scene& scene, const MeasureOptions& options)
@@ -230,7 +266,8 @@ MeasuredScene measure_scene(const Scene& scene, const MeasureOptions& options)
     MeasuredScene measured{
         .result = {.name = scene.name, .what = scene.what, .volume = {}, .reference_seconds = 0.0, .runs = {}},
         .pictures = {}};
-    const std::vector<Run> runs = runs_of(scene, options.quick);
+    std::vector<Run> runs = runs_of(scene, options.quick);
+    for (Run& run : mixed_runs(options.mixed)) runs.push_back(std::move(run));
     Studios studios(scene, options);
     std::vector<Prepared> prepared;
     for (const Run& run : runs) prepared.push_back(studios.prepare(run));
@@ -244,14 +281,20 @@ MeasuredScene measure_scene(const Scene& scene, const MeasureOptions& options)
     std::vector<PeerRun> peer_runs;
     const std::unique_ptr<Peer> peer = started_peer(scene, any, options, peer_runs, measured.result.notes);
     for (const PeerRun& run : peer_runs)
-        measured.result.runs.push_back(first_look_of_peer(*peer, run, measured.pictures.reference));
+        measured.result.runs.push_back(first_look_of_peer(*peer, run, measured.pictures.reference, measured.pictures));
 
     std::vector<Timed> timed;
     for (Prepared& each : prepared) timed.push_back({each.run->name, [&each] { return draw(each, false).wall_ms; }});
     for (const PeerRun& run : peer_runs) timed.push_back({run.name, [&] { return peer->draw(run); }});
+    const bool by_processor = prepared.front().studio->renderer().device().traits().is_cpu;
+    if (by_processor)
+        timed.push_back({YARDSTICK, [] { return yardstick_ms(int(std::thread::hardware_concurrency())); }});
     time_in_turns(timed, options.rounds, [&](double share) { say("timing", share); });
     for (const Timed& each : timed)
-        std::ranges::find(measured.result.runs, each.name, &Measured::name)->time = time_of(each.milliseconds);
+        if (each.name == YARDSTICK)
+            measured.result.yardstick = time_of(each.milliseconds);
+        else
+            std::ranges::find(measured.result.runs, each.name, &Measured::name)->time = time_of(each.milliseconds);
     find_front(measured.result.runs);
     return measured;
 }
@@ -270,6 +313,7 @@ Results who_measures(const std::string& device)
                     .width = 0,
                     .height = 0,
                     .scenes = {}};
+    results.environment = looked_at_environment();
     results.cores = int(std::thread::hardware_concurrency());
     double load = 0.0;
     if (::getloadavg(&load, 1) == 1) results.load = load;
@@ -297,6 +341,8 @@ Error error_of(const ImageF& picture, const ImageF& reference)
     error.ssim = seen.ssim;
     error.flip_mean = seen.flip_mean;
     error.flip_p99 = seen.flip_p99;
+    error.fraction_over_1 = seen.fraction_over_1;
+    error.fraction_over_4 = seen.fraction_over_4;
     return error;
 }
 
@@ -329,7 +375,8 @@ Time time_of(std::vector<double> milliseconds)
     const size_t count = milliseconds.size();
     const double median = 0.5 * (milliseconds[(count - 1) / 2] + milliseconds[count / 2]);
     const auto p95 = size_t(std::ceil(0.95 * double(count))) - 1;
-    return {milliseconds.front(), median, milliseconds[p95]};
+    const auto [low, high] = interval_of_median(milliseconds);
+    return {milliseconds.front(), median, milliseconds[p95], low, high};
 }
 
 }  // namespace shvr::bench

@@ -15,6 +15,7 @@ namespace shvr::bench {
 struct MeasureOptions {
     std::string device;
     bool quick = false;
+    int mixed = 0;  ///< settings that turn all knobs at once (mixed_runs)
     int rounds = 7;
     int threads = 2;  ///< of the reference
     PeerOptions peer = {};
@@ -22,10 +23,11 @@ struct MeasureOptions {
     std::function<void(const std::string& what, double share)> tell = {};  ///< may throw, which ends the work
 };
 
-/// A scene with pictures to look at: the reference's, and those of the qualities.
+/// A scene with pictures to look at: the reference's, those of the qualities, and another program's at the step that
+/// `interactive` has.
 struct Pictures {
     ImageF reference;
-    std::vector<std::pair<std::string, ImageF>> of_qualities;
+    std::vector<std::pair<std::string, ImageF>> of_qualities, of_peers = {};
 };
 struct MeasuredScene {
     SceneResult result;

@@ -8,6 +8,7 @@
 
 #include "engine/base/image_file.h"
 #include "engine/base/image_metrics.h"
+#include "tools/bench/insets.h"
 #include "tools/report/html.h"
 
 namespace shvr::bench {
@@ -16,33 +17,40 @@ namespace {
 
 using report::escaped;
 
-constexpr const char* STYLE = R"(body{font:14px/1.45 sans-serif;margin:1em auto;max-width:1500px;color:#222}
-table{border-collapse:collapse;margin:.5em 0}td,th{padding:.15em .8em;text-align:right;border-bottom:1px solid #ddd}
-td:first-child,th:first-child{text-align:left}.front{font-weight:bold}.off{color:#777}
-figure{display:inline-block;margin:.3em .6em .3em 0;vertical-align:top}figcaption{font-size:12px;color:#555}
-figure img{image-rendering:pixelated;width:220px;border:1px solid #bbb})";
+constexpr const char* STYLE = R"(.front{font-weight:bold}.off{color:var(--faint)}
+figure img{image-rendering:pixelated;width:220px;border:1px solid var(--line)}h3{margin:1em 0 .2em;font-size:1em})";
 
 std::string number(double value)
 {
     return sentence(std::setprecision(3), value);
 }
 
+std::string percent(double share)
+{
+    return sentence(std::setprecision(3), 100.0 * share, " %");
+}
+
 std::string table_of(const SceneResult& scene)
 {
-    std::string rows =
-        "<table><tr><th>run (bold: on the front)</th><th>median ms</th><th>min</th><th>p95</th><th>RMSE</th>"
-        "<th>largest error</th><th>PSNR dB</th><th>SSIM</th><th>FLIP</th><th>samples</th></tr>\n";
+    std::string rows = "<tr><th>run (bold: on the front)</th>";
+    for (const char* head : {"median ms", "95 % of it", "min", "p95", "RMSE", "largest error", "PSNR dB", "SSIM",
+                             "FLIP", "FLIP, 99 %", "off by &gt; 1 level", "&gt; 4", "samples"})
+        rows += sentence("<th>", head, "</th>");
+    rows += "</tr>\n";
     for (const Measured& run : scene.runs) {
         const auto samples = std::ranges::find(run.work, "samples", &std::pair<std::string, uint64_t>::first);
-        rows += sentence(
-            "<tr class=\"", run.on_front ? "front" : "off", "\"><td>", escaped(run.name), "</td><td>",
-            number(run.time.median_ms), "</td><td>", number(run.time.min_ms), "</td><td>", number(run.time.p95_ms),
-            "</td><td>", number(run.error.rmse), "</td><td>", number(run.error.max_abs), "</td><td>",
-            run.error.psnr_db ? number(*run.error.psnr_db) : std::string("equal"), "</td><td>",
-            sentence(std::setprecision(5), run.error.ssim), "</td><td>", number(run.error.flip_mean), "</td><td>",
-            samples == run.work.end() ? std::string("-") : sentence(samples->second), "</td></tr>\n");
+        const Error& error = run.error;
+        rows += sentence("<tr class=\"", run.on_front ? "front" : "off", "\"><td>", escaped(run.name), "</td>");
+        for (const std::string& text :
+             {number(run.time.median_ms), number(run.time.low_ms) + " to " + number(run.time.high_ms),
+              number(run.time.min_ms), number(run.time.p95_ms), number(error.rmse), number(error.max_abs),
+              error.psnr_db ? number(*error.psnr_db) : std::string("equal"), sentence(std::setprecision(5), error.ssim),
+              number(error.flip_mean), number(error.flip_p99), percent(error.fraction_over_1),
+              percent(error.fraction_over_4), samples == run.work.end() ? std::string("-") : sentence(samples->second)})
+            rows += "<td>" + text + "</td>";
+        rows += "</tr>\n";
     }
-    return rows + "</table>\n";
+    return "<h3>All runs</h3>\n<table>" + rows + "</table>\n";
 }
 
 std::string table_of_csv(const std::string& csv, const std::string& scene)
@@ -94,7 +102,8 @@ std::string peer_table_of(const Results& results, const std::string& scene)
                 cell_of(row.same_step) + "<td>" + ratio(row.same_step) + "</td></tr>\n";
     }
     if (rows.empty()) return {};
-    return "<p>Time at equal error: SHVR's fastest run whose error is no larger than VTK's, and its run of the same "
+    return "<h3>Time at equal error</h3>\n<p>SHVR's fastest run whose error is no larger than VTK's, and its run of "
+           "the same "
            "step.</p>\n<table><tr><th>VTK</th><th>ms</th><th>RMSE</th><th>SHVR</th><th>ms</th><th>RMSE</th><th>time "
            "over VTK's</th><th>same step</th><th>ms</th><th>RMSE</th><th>time over VTK's</th></tr>\n" +
            rows + "</table>\n";
@@ -114,7 +123,7 @@ std::string section_of(const Sweep& sweep)
                     "\n<details><summary>As a table</summary>", table_of_csv(csv_of(sweep), {}), "</details>\n");
 }
 
-std::string insets_of(const Pictures& pictures)
+std::string pictures_of(const Pictures& pictures)
 {
     const Image8 truth = to_image8(pictures.reference);
     std::string markup = figure_of(truth, "reference renderer, in double precision");
@@ -122,6 +131,16 @@ std::string insets_of(const Pictures& pictures)
         const Image8 seen = to_image8(picture);
         markup += figure_of(seen, name) + figure_of(difference_picture(seen, truth), name + ": difference, 16 times");
     }
+    const Insets insets = insets_of(pictures);
+    const Window& window = insets.window;
+    markup += sentence("<p>Where <i>interactive</i> errs most, pixels ", window.x, ",", window.y, " to ",
+                       window.x + window.width, ",", window.y + window.height, ":</p>\n");
+    for (const auto& [name, picture] : insets.pictures)
+        markup +=
+            figure_of(enlarged(*picture, window, 1),
+                      picture == &pictures.reference
+                          ? name
+                          : sentence(name, ": RMSE here ", number(rmse_in(*picture, pictures.reference, window))));
     return markup;
 }
 
@@ -176,12 +195,13 @@ report::Plot plot_of_qualities(const Results& results)
 
 std::string page_of(const Results& results, const std::vector<Pictures>& pictures, const std::vector<Sweep>& sweeps)
 {
-    std::string body =
-        sentence("<h1>Speed against error</h1>\n<p>", escaped(results.driver), ", ", escaped(results.processor), ", ",
-                 results.cores, " cores, load ", number(results.load), " at the start. Pictures of ", results.width,
-                 " x ", results.height, " pixels; medians of ", results.rounds,
-                 " rounds in turns. Errors are against the double-precision reference renderer, which "
-                 "shares no code with what it measures.</p>\n");
+    std::string body = sentence("<h1>Speed against error</h1>\n<p>SHVR ", escaped(results.version),
+                                results.commit.empty() ? "" : ", commit " + escaped(results.commit.substr(0, 12)), "; ",
+                                escaped(results.driver), ", ", escaped(results.processor), ", ", results.cores,
+                                " cores, load ", number(results.load), " at the start. Pictures of ", results.width,
+                                " x ", results.height, " pixels; medians of ", results.rounds,
+                                " rounds in turns. Errors are against the double-precision reference renderer, which "
+                                "shares no code with what it measures.</p>\n");
     body += sentences_of(results.left_out);
     if (!results.scenes.empty()) body += report::svg_of(plot_of_qualities(results));
     const std::string equal_errors = equal_error_csv(results), equal_times = equal_time_csv(results);
@@ -190,7 +210,9 @@ std::string page_of(const Results& results, const std::vector<Pictures>& picture
         body += sentence("<h2>", escaped(scene.name), "</h2>\n<p>", escaped(scene.what), "; ", escaped(scene.volume),
                          "</p>\n", report::svg_of(plot_of(scene, Metric::rmse)),
                          report::svg_of(plot_of(scene, Metric::flip)));
-        if (i < pictures.size()) body += "<div>" + insets_of(pictures[i]) + "</div>\n";
+        if (i < pictures.size()) body += "<div>" + pictures_of(pictures[i]) + "</div>\n";
+        if (const std::optional<std::string> busy = why_times_tell_little(scene))
+            body += "<p><b>" + escaped(*busy) + "</b></p>\n";
         body += sentences_of(scene.notes) + peer_table_of(results, scene.name) + table_of(scene);
         body += "<details><summary>Equal error: the fastest of each knob</summary>" +
                 table_of_csv(equal_errors, scene.name) + "</details>\n";
@@ -221,6 +243,10 @@ std::vector<std::string> write_files(const Results& results, const std::vector<P
     write("equal_peer.csv", equal_peer_csv(results));
     write("front.csv", front_csv(results));
     write_plot("pareto", plot_of_qualities(results));
+    if (!pictures.empty()) {
+        write_png(output / "insets.png", sheet_of(results, pictures));
+        written.push_back((output / "insets.png").string());
+    }
     for (const SceneResult& scene : results.scenes) write_plot("pareto-" + scene.name, plot_of(scene, Metric::rmse));
     for (const Sweep& sweep : sweeps) {
         write(sentence("sweep-", sweep.name, ".csv"), csv_of(sweep));
@@ -230,16 +256,19 @@ std::vector<std::string> write_files(const Results& results, const std::vector<P
     return written;
 }
 
-std::string text_of(const std::vector<Change>& changes)
+std::string text_of(const Comparison& comparison)
 {
     std::string text;
-    for (const Change& change : changes) {
+    for (const std::string& sentence : comparison.beside) text += sentence + "\n";
+    for (const Change& change : comparison.changes) {
         text += sentence(change.is_regression ? "worse   " : "changed ", change.scene, ", ", change.run, ": ",
                          change.what, " ", std::setprecision(6), change.a, " -> ", change.b);
         if (change.noise > 0.0) text += sentence(" (noise ", std::setprecision(3), change.noise, ")");
+        if (change.machine != 1.0)
+            text += sentence(", where the machine took ", std::setprecision(3), change.machine, " times as long");
         text += "\n";
     }
-    return text.empty() ? "nothing changed\n" : text;
+    return comparison.changes.empty() ? text + "nothing changed\n" : text;
 }
 
 }  // namespace shvr::bench

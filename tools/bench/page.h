@@ -13,10 +13,10 @@ report::Plot plot_of(const SceneResult& scene, Metric metric);
 /// The qualities of all scenes by what they read: one series for each scene.
 report::Plot plot_of_qualities(const Results& results);
 std::string page_of(const Results& results, const std::vector<Pictures>& pictures, const std::vector<Sweep>& sweeps);
-/// bench.json, bench.csv, front.csv, equal_error.csv, equal_time.csv, equal_peer.csv, pareto*.svg and .png, sweep-*.csv
-/// and .svg, report.html. Returns their paths.
+/// bench.json, bench.csv, front.csv, equal_error.csv, equal_time.csv, equal_peer.csv, pareto*.svg and .png, insets.png,
+/// sweep-*.csv and .svg, report.html. Returns their paths.
 std::vector<std::string> write_files(const Results& results, const std::vector<Pictures>& pictures,
                                      const std::vector<Sweep>& sweeps, const std::filesystem::path& output);
-std::string text_of(const std::vector<Change>& changes);
+std::string text_of(const Comparison& comparison);
 
 }  // namespace shvr::bench

@@ -8,14 +8,13 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <cstring>
-#include <sstream>
 
 #include <nlohmann/json.hpp>
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/file.h"
 #include "engine/base/text.h"
+#include "tools/golden/light.h"
 
 namespace shvr::bench {
 
@@ -27,7 +26,7 @@ constexpr const char* FAMILY = "VTK";
 constexpr const char* CAMERA = "bench";
 constexpr int64_t PADDING = 2;  // voxels: VTK's volume ends at the middles of its outermost, and so do its gradients
 constexpr int PATIENCE_S = 300;
-constexpr int64_t MAX_PICTURE_BYTES = int64_t{1} << 30, MAX_COMPLAINT_BYTES = 1 << 20;
+constexpr int64_t MAX_COMPLAINT_BYTES = 1 << 20;
 
 Json numbers(const glm::dvec3& vector)
 {
@@ -103,28 +102,6 @@ void write_session(const Session& session, const VolumeInfo& info, const Camera&
                       {"upper", numbers(glm::min(session.cut.upper, glm::dvec3(info.size)))}}}};
     const std::string text = json.dump(1);
     write_file_atomically(folder / "session.json", std::as_bytes(std::span(text)));
-}
-
-/// A portable float map of three channels, rows from the bottom.
-ImageF read_pfm(const std::filesystem::path& path)
-{
-    const std::vector<std::byte> bytes = read_file(path, MAX_PICTURE_BYTES);
-    const auto* const text = reinterpret_cast<const char*>(bytes.data());
-    std::istringstream head(std::string(text, std::min<size_t>(bytes.size(), 64)));
-    std::string magic;
-    int width = 0, height = 0;
-    double scale = 0.0;
-    head >> magic >> width >> height >> scale;
-    const size_t values = width > 0 && height > 0 ? size_t(width) * size_t(height) * 3 : 0;
-    if (magic != "PF" || values == 0 || bytes.size() < values * sizeof(float))
-        fail(path.string(), ": is no picture in linear light; expected a portable float map");
-    const std::byte* const data = bytes.data() + bytes.size() - values * sizeof(float);
-    ImageF image{width, height, std::vector<float>(size_t(width) * size_t(height) * 4, 1.0f)};
-    for (size_t i = 0; i < values; ++i) {
-        const size_t pixel = i / 3, x = pixel % size_t(width), y = size_t(height) - 1 - pixel / size_t(width);
-        std::memcpy(&image.rgba[4 * (y * size_t(width) + x) + i % 3], data + i * sizeof(float), sizeof(float));
-    }
-    return image;
 }
 
 }  // namespace
@@ -270,7 +247,7 @@ ImageF Peer::picture(const PeerRun& run)
 {
     const std::filesystem::path path = folder_ / "picture.pfm";
     ask(run, path);
-    return read_pfm(path);
+    return golden::read_light(path);
 }
 
 }  // namespace shvr::bench

@@ -120,7 +120,7 @@ std::vector<double> ambient_shares(const reference::Scene& scene, const Occlusio
                     const double value = reference::occlusion_defined(
                         [&](const glm::dvec3& voxel) { return field.at(voxel); }, asked, {x, y, z},
                         side_at(scene, centre, asked.voxels_per_unit), OCCLUSION_DIRECTIONS, OCCLUSION_STEPS);
-                    const double curved = std::pow(std::clamp(value, 1e-4, 1.0), settings.curve);
+                    const double curved = seen_of(settings, std::clamp(value, 1e-4, 1.0));
                     shares[size_t(x) + size_t(scene.size.x) * (size_t(y) + size_t(scene.size.y) * size_t(z))] =
                         1.0 - settings.strength * (1.0 - curved);
                 }

@@ -11,6 +11,7 @@
 #include "engine/base/file.h"
 #include "engine/base/text.h"
 #include "tools/bench/peer.h"
+#include "tools/report/noise.h"
 
 namespace shvr::bench {
 
@@ -21,7 +22,6 @@ constexpr int64_t MAX_BENCH_BYTES = int64_t{64} << 20;
 constexpr int SCHEMA = 1;
 constexpr double ERROR_MARGIN = 1.01;
 constexpr double LEAST_ERROR = 1e-7;  // of a float
-constexpr double EQUAL_ERRORS[] = {1e-2, 3e-3, 1e-3, 3e-4, 1e-4};
 
 Json json_of(const Measured& run)
 {
@@ -38,9 +38,13 @@ Json json_of(const Measured& run)
               {"psnr_db", error.psnr_db ? Json(*error.psnr_db) : Json(nullptr)},
               {"ssim", error.ssim},
               {"flip_mean", error.flip_mean},
-              {"flip_p99", error.flip_p99}}},
+              {"flip_p99", error.flip_p99},
+              {"fraction_over_1", error.fraction_over_1},
+              {"fraction_over_4", error.fraction_over_4}}},
             {"min_ms", run.time.min_ms},
             {"median_ms", run.time.median_ms},
+            {"median_low_ms", run.time.low_ms},
+            {"median_high_ms", run.time.high_ms},
             {"p95_ms", run.time.p95_ms},
             {"first_ms", run.first_ms},
             {"work", work},
@@ -59,9 +63,13 @@ Measured measured_of(const Json& json)
                  .psnr_db = {},
                  .ssim = error.at("ssim"),
                  .flip_mean = error.at("flip_mean"),
-                 .flip_p99 = error.at("flip_p99")};
+                 .flip_p99 = error.at("flip_p99"),
+                 .fraction_over_1 = error.value("fraction_over_1", 0.0),
+                 .fraction_over_4 = error.value("fraction_over_4", 0.0)};
     if (!error.at("psnr_db").is_null()) run.error.psnr_db = error.at("psnr_db").get<double>();
     run.time = {json.at("min_ms"), json.at("median_ms"), json.at("p95_ms")};
+    run.time.low_ms = json.value("median_low_ms", run.time.min_ms);
+    run.time.high_ms = json.value("median_high_ms", run.time.p95_ms);
     run.first_ms = json.at("first_ms");
     for (const auto& [name, value] : json.at("work").items()) run.work.emplace_back(name, value.get<uint64_t>());
     run.device_bytes = json.at("device_bytes");
@@ -69,63 +77,103 @@ Measured measured_of(const Json& json)
     return run;
 }
 
-/// Quoted, since names may hold commas.
-std::string cell(const std::string& text)
+/// What a comparison of two files looks at.
+struct Looked {
+    size_t a_rounds = 0, b_rounds = 0;
+    bool at_work = false, at_times = false;
+};
+
+/// Of the median, in milliseconds; nothing where there were too few rounds.
+std::optional<double> noise_of(const Time& time, size_t rounds)
 {
-    std::string quoted = "\"";
-    for (const char character : text) quoted += character == '"' ? std::string("\"\"") : std::string(1, character);
-    return quoted + "\"";
+    return report::noise_of(time.min_ms, time.p95_ms, rounds);
 }
 
-template <class Accept, class Better>
-const Measured* best(const SceneResult& scene, const std::string& family, const Accept& accept, const Better& better)
+/// `time` as a machine would have taken it on which the yardstick takes 1 / machine of its time.
+Time scaled(const Time& time, double machine)
 {
-    const Measured* found = nullptr;
-    for (const Measured& run : scene.runs)
-        if (run.family == family && accept(run) && (!found || better(run, *found))) found = &run;
-    return found;
+    return {time.min_ms / machine, time.median_ms / machine, time.p95_ms / machine, time.low_ms / machine,
+            time.high_ms / machine};
 }
 
-uint64_t counted(const Measured& run, const char* name)
+void compare_times(const SceneResult& of_a, const Measured& a, const SceneResult& of_b, const Measured& b,
+                   const Looked& looked, std::vector<Change>& changes)
 {
-    const auto found = std::ranges::find(run.work, name, &std::pair<std::string, uint64_t>::first);
-    return found == run.work.end() ? 0 : found->second;
+    double machine = 1.0, of_yardsticks = 0.0;
+    if (of_a.yardstick && of_b.yardstick && of_a.yardstick->median_ms > 0.0 && of_b.yardstick->median_ms > 0.0) {
+        machine = of_b.yardstick->median_ms / of_a.yardstick->median_ms;
+        const auto relative = [](const Time& time, size_t rounds) {
+            return noise_of(time, rounds).value_or(0.0) / time.median_ms;
+        };
+        of_yardsticks =
+            std::hypot(relative(*of_a.yardstick, looked.a_rounds), relative(*of_b.yardstick, looked.b_rounds));
+    }
+    const Time as_in_a = scaled(b.time, machine);
+    const std::optional<double> noise =
+        report::noise_of_both(noise_of(a.time, looked.a_rounds), noise_of(as_in_a, looked.b_rounds));
+    if (!noise) return;
+    const double all = std::hypot(*noise, of_yardsticks * a.time.median_ms);
+    if (std::abs(as_in_a.median_ms - a.time.median_ms) <= all) return;
+    changes.push_back({of_a.name, a.name, "median_ms", a.time.median_ms, b.time.median_ms, all,
+                       as_in_a.median_ms > a.time.median_ms, machine});
 }
 
-std::vector<std::string> families_of(const SceneResult& scene)
+void compare_runs(const SceneResult& of_a, const Measured& a, const SceneResult& of_b, const Measured& b,
+                  const Looked& looked, std::vector<Change>& changes)
 {
-    std::vector<std::string> families;
-    for (const Measured& run : scene.runs)
-        if (std::ranges::find(families, run.family) == families.end()) families.push_back(run.family);
-    return families;
-}
-
-void compare_runs(const std::string& scene, const Measured& a, const Measured& b, bool with_work, bool with_times,
-                  std::vector<Change>& changes)
-{
-    const auto add = [&](const std::string& what, double from, double to, double noise, bool is_worse) {
-        if (from != to) changes.push_back({scene, a.name, what, from, to, noise, is_worse});
+    const auto add = [&](const std::string& what, double from, double to, bool is_worse) {
+        if (from != to) changes.push_back({of_a.name, a.name, what, from, to, 0.0, is_worse});
     };
     const auto error = [&](const char* what, double from, double to) {
         if (to > from * ERROR_MARGIN + LEAST_ERROR || from > to * ERROR_MARGIN + LEAST_ERROR)
-            add(what, from, to, 0.0, to > from);
+            add(what, from, to, to > from);
     };
     error("rmse", a.error.rmse, b.error.rmse);
     error("max_abs", a.error.max_abs, b.error.max_abs);
     for (const auto& [name, value] : b.work) {
         const auto before = std::ranges::find(a.work, name, &std::pair<std::string, uint64_t>::first);
-        if (before == a.work.end() || !with_work) continue;
+        if (before == a.work.end() || !looked.at_work) continue;
         // Bricks that are skipped and rays that end early are work that is saved.
         const bool saves = name == "bricks_skipped" || name == "rays_terminated_early" || name == "leaps";
-        add(name, double(before->second), double(value), 0.0, !saves && value > before->second);
+        add(name, double(before->second), double(value), !saves && value > before->second);
     }
-    if (!with_times) return;
-    const double noise = std::hypot(a.time.noise_ms(), b.time.noise_ms());
-    if (std::abs(b.time.median_ms - a.time.median_ms) > noise)
-        add("median_ms", a.time.median_ms, b.time.median_ms, noise, b.time.median_ms > a.time.median_ms);
+    if (looked.at_times) compare_times(of_a, a, of_b, b, looked, changes);
+}
+
+/// The run of `scene` that was drawn with the same settings; null where there is none.
+const Measured* same_run(const SceneResult& scene, const Measured& run)
+{
+    const auto found = std::ranges::find(scene.runs, run.name, &Measured::name);
+    return found != scene.runs.end() && found->settings == run.settings ? &*found : nullptr;
+}
+
+/// "only A has tubes; tissue: step 4": what is in `a` alone.
+std::optional<std::string> only_in(const Results& a, const Results& b, const char* name)
+{
+    std::string found;
+    for (const SceneResult& scene : a.scenes) {
+        const auto other = std::ranges::find(b.scenes, scene.name, &SceneResult::name);
+        std::string runs;
+        if (other != b.scenes.end())
+            for (const Measured& run : scene.runs)
+                if (!same_run(*other, run)) runs += (runs.empty() ? "" : ", ") + run.name;
+        if (other != b.scenes.end() && runs.empty()) continue;
+        found += (found.empty() ? "" : "; ") + scene.name + (runs.empty() ? "" : ": " + runs);
+    }
+    if (found.empty()) return std::nullopt;
+    return sentence("only ", name, " has ", found);
 }
 
 }  // namespace
+
+std::optional<std::string> why_times_tell_little(const SceneResult& scene)
+{
+    constexpr double BUSY = 1.5;
+    if (!scene.yardstick || scene.yardstick->p95_ms <= BUSY * scene.yardstick->min_ms) return std::nullopt;
+    return sentence("The machine was busy: the same work of the processor took ", std::setprecision(2),
+                    scene.yardstick->min_ms, " to ", scene.yardstick->p95_ms,
+                    " ms. Times of this scene, and what is on its front, tell little; errors and work are exact.");
+}
 
 void find_front(std::vector<Measured>& runs)
 {
@@ -144,14 +192,23 @@ Json json_of(const Results& results)
     for (const SceneResult& scene : results.scenes) {
         Json runs = Json::array();
         for (const Measured& run : scene.runs) runs.push_back(json_of(run));
+        Json yardstick;
+        if (const auto& time = scene.yardstick)
+            yardstick = {{"min_ms", time->min_ms}, {"median_ms", time->median_ms}, {"p95_ms", time->p95_ms}};
         scenes.push_back({{"name", scene.name},
                           {"what", scene.what},
                           {"volume", scene.volume},
                           {"reference_seconds", scene.reference_seconds},
                           {"notes", scene.notes},
+                          {"yardstick", yardstick},
                           {"runs", runs}});
     }
+    Json environment = Json::object();
+    for (const auto& [name, value] : results.environment) environment[name] = value;
     return {{"shvr_bench", SCHEMA},
+            {"version", results.version},
+            {"commit", results.commit.empty() ? Json(nullptr) : Json(results.commit)},
+            {"environment", environment},
             {"device", results.device},
             {"driver", results.driver},
             {"processor", results.processor},
@@ -172,6 +229,12 @@ Results read_results(const std::filesystem::path& file)
     try {
         Results results{.device = json.at("device"), .driver = json.at("driver"), .processor = json.at("processor")};
         results.instructions = json.at("instructions");
+        results.version = json.value("version", "");
+        if (const auto commit = json.find("commit"); commit != json.end() && commit->is_string())
+            results.commit = commit->get<std::string>();
+        const Json environment = json.value("environment", Json::object());
+        for (const auto& [name, value] : environment.items())
+            results.environment.emplace_back(name, value.get<std::string>());
         results.cores = json.at("cores");
         results.load = json.at("load");
         results.rounds = json.at("rounds");
@@ -181,6 +244,9 @@ Results read_results(const std::filesystem::path& file)
             results.scenes.push_back(
                 {scene.at("name"), scene.at("what"), scene.at("volume"), scene.at("reference_seconds"), {}});
             results.scenes.back().notes = scene.value("notes", std::vector<std::string>());
+            if (const auto yardstick = scene.find("yardstick"); yardstick != scene.end() && yardstick->is_object())
+                results.scenes.back().yardstick =
+                    Time{yardstick->at("min_ms"), yardstick->at("median_ms"), yardstick->at("p95_ms")};
             for (const Json& run : scene.at("runs")) results.scenes.back().runs.push_back(measured_of(run));
         }
         results.left_out = json.value("left_out", std::vector<std::string>());
@@ -190,145 +256,34 @@ Results read_results(const std::filesystem::path& file)
     }
 }
 
-std::string csv_of(const Results& results)
+Comparison compare(const Results& a, const Results& b, bool with_times)
 {
-    std::string text =
-        "scene,run,family,settings,scale,rmse,max_abs,psnr_db,ssim,flip_mean,flip_p99,min_ms,median_ms,"
-        "p95_ms,first_ms,device_bytes,on_front";
-    std::vector<std::string> names;
-    for (const SceneResult& scene : results.scenes)
-        for (const Measured& run : scene.runs)
-            for (const auto& [name, value] : run.work)
-                if (std::ranges::find(names, name) == names.end()) names.push_back(name);
-    for (const std::string& name : names) text += "," + name;
-    text += "\n";
-    for (const SceneResult& scene : results.scenes)
-        for (const Measured& run : scene.runs) {
-            std::string settings;
-            for (const std::string& setting : run.settings) settings += (settings.empty() ? "" : " ") + setting;
-            const Error& error = run.error;
-            text +=
-                sentence(cell(scene.name), ",", cell(run.name), ",", cell(run.family), ",", cell(settings), ",",
-                         digits_of(run.scale), ",", digits_of(error.rmse), ",", digits_of(error.max_abs), ",",
-                         error.psnr_db ? digits_of(*error.psnr_db) : std::string(), ",", digits_of(error.ssim), ",",
-                         digits_of(error.flip_mean), ",", digits_of(error.flip_p99), ",", digits_of(run.time.min_ms),
-                         ",", digits_of(run.time.median_ms), ",", digits_of(run.time.p95_ms), ",",
-                         digits_of(run.first_ms), ",", run.device_bytes, ",", run.on_front ? 1 : 0);
-            for (const std::string& name : names) {
-                const auto found = std::ranges::find(run.work, name, &std::pair<std::string, uint64_t>::first);
-                text += found == run.work.end() ? "," : sentence(",", found->second);
-            }
-            text += "\n";
-        }
-    return text;
-}
-
-std::string front_csv(const Results& results)
-{
-    std::string text = "scene,run,family,settings,samples,reads,rmse\n";
-    for (const SceneResult& scene : results.scenes)
-        for (const Measured& run : scene.runs) {
-            if (is_peer(run.family)) continue;  // whether it is there differs, and its work is not known
-            std::string settings;
-            for (const std::string& setting : run.settings) settings += (settings.empty() ? "" : " ") + setting;
-            text += sentence(cell(scene.name), ",", cell(run.name), ",", cell(run.family), ",", cell(settings), ",",
-                             counted(run, "samples"), ",", counted(run, "density_reads"), ",", std::setprecision(5),
-                             run.error.rmse, "\n");
-        }
-    return text;
-}
-
-std::string equal_error_csv(const Results& results)
-{
-    std::string text = "scene,rmse_at_most,family,run,median_ms,rmse\n";
-    for (const SceneResult& scene : results.scenes)
-        for (const double limit : EQUAL_ERRORS)
-            for (const std::string& family : families_of(scene)) {
-                const Measured* run = best(
-                    scene, family, [&](const Measured& r) { return r.error.rmse <= limit; },
-                    [](const Measured& a, const Measured& b) { return a.time.median_ms < b.time.median_ms; });
-                if (run)
-                    text += sentence(cell(scene.name), ",", limit, ",", cell(family), ",", cell(run->name), ",",
-                                     digits_of(run->time.median_ms), ",", digits_of(run->error.rmse), "\n");
-            }
-    return text;
-}
-
-std::string equal_time_csv(const Results& results)
-{
-    std::string text = "scene,quality,ms_at_most,family,run,median_ms,rmse\n";
-    for (const SceneResult& scene : results.scenes)
-        for (const Measured& quality : scene.runs) {
-            if (quality.family != "quality") continue;
-            for (const std::string& family : families_of(scene)) {
-                const Measured* run = best(
-                    scene, family, [&](const Measured& r) { return r.time.median_ms <= quality.time.median_ms; },
-                    [](const Measured& a, const Measured& b) { return a.error.rmse < b.error.rmse; });
-                if (run)
-                    text += sentence(cell(scene.name), ",", cell(quality.name), ",", digits_of(quality.time.median_ms),
-                                     ",", cell(family), ",", cell(run->name), ",", digits_of(run->time.median_ms), ",",
-                                     digits_of(run->error.rmse), "\n");
-            }
-        }
-    return text;
-}
-
-std::vector<AtPeersError> at_peers_errors(const Results& results)
-{
-    std::vector<AtPeersError> rows;
-    for (const SceneResult& scene : results.scenes)
-        for (const Measured& peer : scene.runs) {
-            if (!is_peer(peer.family)) continue;
-            AtPeersError row{.scene = scene.name, .peer = &peer};
-            for (const Measured& run : scene.runs) {
-                if (is_peer(run.family)) continue;
-                const bool is_near = run.error.rmse <= peer.error.rmse;
-                if (is_near && (!row.fastest || run.time.median_ms < row.fastest->time.median_ms)) row.fastest = &run;
-                // "step 0.5" of "VTK step 0.5".
-                if (run.family == "step" && peer.name.ends_with(" " + run.name)) row.same_step = &run;
-            }
-            rows.push_back(row);
-        }
-    return rows;
-}
-
-std::string equal_peer_csv(const Results& results)
-{
-    std::string text =
-        "scene,peer,peer_ms,peer_rmse,run,median_ms,rmse,time_ratio,same_step_ms,same_step_rmse,same_step_ratio\n";
-    for (const AtPeersError& row : at_peers_errors(results)) {
-        const double peer_ms = row.peer->time.median_ms;
-        text += sentence(cell(row.scene), ",", cell(row.peer->name), ",", digits_of(peer_ms), ",",
-                         digits_of(row.peer->error.rmse), ",", cell(row.fastest ? row.fastest->name : "none"));
-        for (const Measured* const run : {row.fastest, row.same_step}) {
-            const double ms = run ? run->time.median_ms : 0.0;
-            text += run ? sentence(",", digits_of(ms), ",", digits_of(run->error.rmse), ",",
-                                   peer_ms > 0.0 ? digits_of(ms / peer_ms) : std::string())
-                        : ",,,";
-        }
-        text += "\n";
-    }
-    return text;
-}
-
-std::vector<Change> compare(const Results& a, const Results& b, bool with_times)
-{
-    std::vector<Change> changes;
+    Comparison found;
     size_t common = 0;
-    const bool with_work = a.driver == b.driver && a.instructions == b.instructions;
+    Looked looked{.a_rounds = size_t(std::max(a.rounds, 0)),
+                  .b_rounds = size_t(std::max(b.rounds, 0)),
+                  .at_work = a.driver == b.driver && a.instructions == b.instructions,
+                  .at_times = with_times};
+    if (with_times && std::min(looked.a_rounds, looked.b_rounds) < report::FEWEST_TIMES) {
+        looked.at_times = false;
+        found.beside.push_back(
+            sentence("times are not compared: fewer than ", report::FEWEST_TIMES, " rounds tell no noise (--rounds)"));
+    }
     for (const SceneResult& scene : a.scenes) {
         const auto other = std::ranges::find(b.scenes, scene.name, &SceneResult::name);
         if (other == b.scenes.end()) continue;
         for (const Measured& run : scene.runs) {
-            const auto found = std::ranges::find(other->runs, run.name, &Measured::name);
-            if (found == other->runs.end() || found->settings != run.settings) continue;
+            const Measured* const same = same_run(*other, run);
+            if (!same) continue;
             ++common;
-            compare_runs(scene.name, run, *found, with_work, with_times, changes);
+            compare_runs(scene, run, *other, *same, looked, found.changes);
         }
     }
     if (common == 0) fail("the two files have no run of a scene in common; expected results of the same scenes");
-    std::ranges::stable_sort(changes, std::greater<>(), &Change::is_regression);
-    return changes;
+    for (const auto& alone : {only_in(a, b, "A"), only_in(b, a, "B")})
+        if (alone) found.beside.push_back(*alone);
+    std::ranges::stable_sort(found.changes, std::greater<>(), &Change::is_regression);
+    return found;
 }
 
 }  // namespace shvr::bench

@@ -19,13 +19,13 @@ struct Error {
     double rmse = 0.0, max_abs = 0.0;
     std::optional<double> psnr_db;  ///< nothing where the 8-bit pictures are equal
     double ssim = 1.0, flip_mean = 0.0, flip_p99 = 0.0;
+    double fraction_over_1 = 0.0, fraction_over_4 = 0.0;  ///< of the pixels, off by more levels of 255
 };
 
 /// Milliseconds from submission to completion.
 struct Time {
     double min_ms = 0.0, median_ms = 0.0, p95_ms = 0.0;
-    /// What a difference of medians must exceed: half of the way from the minimum to the 95th percentile.
-    double noise_ms() const { return 0.5 * (p95_ms - min_ms); }
+    double low_ms = 0.0, high_ms = 0.0;  ///< where the median lies with 95 %, as drawing from the same times tells
 };
 
 struct Measured {
@@ -46,11 +46,17 @@ struct SceneResult {
     double reference_seconds = 0.0;  ///< 0: it was kept from before
     std::vector<Measured> runs;
     std::vector<std::string> notes = {};  ///< sentences: why another program is not among the runs
+    /// Of fixed work of the processor (yardstick.h), in the same rounds; nothing where a GPU drew.
+    std::optional<Time> yardstick = {};
 };
 
 struct Results {
     std::string device, driver, processor;
     std::string instructions;  ///< of the processor, those that change rounding
+    std::string version;       ///< of SHVR
+    std::string commit;        ///< of the tree that the program lies in; empty where it lies in none
+    /// What drivers and SHVR look at: names that begin with LP_, GALLIVM_, MESA_, VK_, SHVR_ and their like.
+    std::vector<std::pair<std::string, std::string>> environment = {};
     int cores = 0;
     double load = 0.0;  ///< of the machine when it began
     int rounds = 0;
@@ -58,6 +64,10 @@ struct Results {
     std::vector<SceneResult> scenes;
     std::vector<std::string> left_out = {};  ///< sentences: scenes whose data is not there
 };
+
+/// A sentence where the machine was so busy that medians of few rounds are those of what else it did: its yardstick's
+/// 95th percentile is over one and a half times its minimum.
+std::optional<std::string> why_times_tell_little(const SceneResult& scene);
 
 /// Sets `on_front`.
 void find_front(std::vector<Measured>& runs);
@@ -89,13 +99,19 @@ std::string equal_peer_csv(const Results& results);
 
 /// What is worse in `b` than in `a`: an error by more than 1 % (a picture's error is the same in every run of one
 /// machine), a counter at all (where driver and instructions agree: elsewhere a ray may end a sample later), a median
-/// by more than both runs' noise, put together as the sides of a right angle.
+/// by more than the noise of both (tools/report/noise.h), after both were measured by their yardsticks: a machine that
+/// is busier is no slower program.
 struct Change {
     std::string scene, run, what;  ///< "rmse", "samples", "median_ms"
     double a = 0.0, b = 0.0, noise = 0.0;
     bool is_regression = false;
+    double machine = 1.0;  ///< of times: how much longer the yardstick took in `b`
 };
-/// All that differ; regressions first. Fails where the two have no run in common. `with_times`: times, too.
-std::vector<Change> compare(const Results& a, const Results& b, bool with_times);
+struct Comparison {
+    std::vector<Change> changes;      ///< all that differ; regressions first
+    std::vector<std::string> beside;  ///< sentences: runs that only one of them has, times that tell nothing
+};
+/// Fails where the two have no run in common. `with_times`: times, too.
+Comparison compare(const Results& a, const Results& b, bool with_times);
 
 }  // namespace shvr::bench

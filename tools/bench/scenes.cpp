@@ -1,7 +1,10 @@
 #include "tools/bench/scenes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <numeric>
+#include <random>
 
 #include <nlohmann/json.hpp>
 
@@ -16,9 +19,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* FAMILIES[] = {"quality",    "step",   "pre-integrated", "opacity limit",  "sampling",
-                                    "resolution", "coarse", "skipping",       "occlusion rays", "budget",
-                                    "detail",     "VTK",    "VTK OpenGL"};
+constexpr const char* FAMILIES[] = {"quality", "step",      "pre-integrated", "opacity limit", "sampling", "resolution",
+                                    "coarse",  "skipping",  "occlusion rays", "budget",        "detail",   "mixed",
+                                    "VTK",     "VTK OpenGL"};
 constexpr int64_t MAX_SESSION_BYTES = 1 << 20;
 /// Shading without highlights that does not fade where there is no surface: other programs define it in the same way.
 Json matt()
@@ -104,7 +107,8 @@ Scene example_scene(const Example& example, bool is_matt, const SceneChoice& cho
 Scene painted_scene(const Json& session, int64_t side)
 {
     Scene scene = scene_of("painted", "painted groups in translucent tissue", session);
-    const double middle = 0.5 * double(side), radius = 0.3 * double(side);
+    constexpr double MOST = 127.0;  // voxels that a brush reaches
+    const double middle = 0.5 * double(side), radius = std::min(0.3 * double(side), MOST);
     const auto stroke = [&](int group, double x) {
         return line_of_script(Json{{"op", "paint"},
                                    {"brush", "fill"},
@@ -275,6 +279,34 @@ std::vector<Run> runs_of(const Scene& scene, bool quick)
         for (const uint64_t mib : {16, 48})
             runs.push_back({sentence("budget ", mib, " MiB"), "budget", {}, 1.0, mib << 20});
     if (text.find("\"paging\"") != std::string::npos) sweep("detail", "render.detail", {0.25, 0.5, 1, 2, 4}, {0.5, 2});
+    return runs;
+}
+
+std::vector<Run> mixed_runs(int count)
+{
+    // A Latin hypercube: of each knob every one of `count` equal parts of its range is used once.
+    std::mt19937 random(1);
+    const auto places = [&] {
+        std::vector<int> order(size_t(std::max(count, 0)));
+        std::iota(order.begin(), order.end(), 0);
+        for (size_t i = order.size(); i-- > 1;) std::swap(order[i], order[random() % (i + 1)]);
+        return order;
+    };
+    const std::vector<int> steps = places(), scales = places(), limits = places(), tables = places(), taps = places();
+    std::vector<Run> runs;
+    for (size_t i = 0; i < steps.size(); ++i) {
+        const auto share = [&](const std::vector<int>& order) { return (order[i] + 0.5) / count; };
+        const auto rounded = [](double value, double to) { return std::round(value * to) / to; };
+        const double step = rounded(std::exp2(std::lerp(2.0, -4.0, share(steps))), 1000.0);
+        const double limit = 1.0 - std::pow(10.0, std::lerp(-1.0, -4.0, share(limits)));
+        runs.push_back({sentence("mixed ", i + 1),
+                        "mixed",
+                        {sentence("render.step_voxels=", digits_of(step)),
+                         sentence("render.opacity_limit=", digits_of(rounded(limit, 1e5))),
+                         sentence("render.preintegration=", share(tables) < 0.5 ? "false" : "true"),
+                         sentence("render.sampling=", share(taps) < 0.5 ? "exact" : "hardware")},
+                        rounded(std::lerp(0.35, 1.0, share(scales)), 100.0)});
+    }
     return runs;
 }
 

@@ -48,6 +48,9 @@ struct Run {
 
 /// The runs of a scene: those whose knob has something to turn.
 std::vector<Run> runs_of(const Scene& scene, bool quick);
+/// Settings that turn step, resolution, opacity limit, pre-integration and sampling at once, spread evenly over all of
+/// them (a Latin hypercube); equal counts give equal settings.
+std::vector<Run> mixed_runs(int count);
 /// The names of all families, the qualities first.
 std::span<const char* const> families();
 

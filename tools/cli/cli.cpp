@@ -9,6 +9,7 @@
 #include "engine/live/previewer.h"
 #include "engine/session/kept_settings.h"
 #include "engine/session/lasting_settings.h"
+#include "engine/tasks/task_options.h"
 #include "engine/volume/unit.h"
 #include "tools/golden/blessing.h"
 
@@ -48,6 +49,16 @@ void add_belief_option(CLI::App& command, Common& common)
             "journal")
         ->type_name("files|journal")
         ->check(CLI::IsMember({"files", "journal"}));
+}
+
+void add_incomplete_option(CLI::App& command, bool& allows_incomplete, const std::string& does)
+{
+    command.add_flag("--allow-incomplete", allows_incomplete, does);
+}
+
+void add_incomplete_option(CLI::App& command, Common& common, const std::string& does)
+{
+    add_incomplete_option(command, common.allows_incomplete.emplace(false), does);
 }
 
 void add_version_option(CLI::App& command, std::optional<OmeZarrVersion>& version, const std::string& otherwise)
@@ -93,6 +104,12 @@ void add_input_options(CLI::App& command, Common& common)
     };
     text("--channel", "volume.channel", "NAME|N",
          "What to take from a file with channels: red, green, ... or 1, 2, ...");
+    command
+        .add_option_function<int>(
+            "--level", [&common](int level) { common.settings.push_back(sentence("volume.level=", level)); },
+            "Which size to take from a file with several, as a volume of its own: 0 the finest, 1, 2, ...")
+        ->type_name("N")
+        ->check(CLI::Range(0, 23));
     text("--frame", "volume.frame", "N", "Which time point to take from a file with several: 1, 2, ...");
     add_spacing_options(
         command,
@@ -229,12 +246,24 @@ void take_settings(Session& session, const Work& left, const std::vector<std::st
     set_kept_settings(session, without_overridden(left.kept_settings(), overridden));
 }
 
+/// A volume that perhaps cannot be read whole, with what it needs.
+struct Readable {
+    Readable(std::shared_ptr<const VolumeSource> whole, std::shared_ptr<Gaps> what_is_not)
+        : base(std::move(whole)), gaps(std::move(what_is_not)), source(*base, *gaps)
+    {}
+    std::shared_ptr<const VolumeSource> base;
+    std::shared_ptr<Gaps> gaps;
+    GapSource source;
+};
+
 }  // namespace
 
 Opened open(const std::string& path, const Common& common, LongWork& work, Work::Opening opening)
 {
     std::unique_ptr<Renderer> renderer;
-    OpeningOptions options{.measure = {.progress = work.begin("opening " + path)}};
+    std::shared_ptr<Gaps> gaps;
+    if (common.allows_incomplete) gaps.reset(new Gaps(gaps_of(*common.allows_incomplete, OptionNames::command_line)));
+    OpeningOptions options{.measure = {.progress = work.begin("opening " + path), .gaps = gaps.get()}};
     options.before_reading = [&](const Session& session, const VolumeSource& source) {
         const char* validation = std::getenv("SHVR_VALIDATION");
         renderer = std::make_unique<Renderer>(
@@ -251,13 +280,19 @@ Opened open(const std::string& path, const Common& common, LongWork& work, Work:
                   std::move(session.warnings),
                   std::move(renderer),
                   nullptr,
-                  {}};
+                  {},
+                  gaps};
     for (const std::string& warning : opened.source->info().warnings) opened.warnings.push_back(warning);
     warn(opened.warnings, common);
     warn_of_losses(session.losses);
     if (opening.only_look) warn_of_holder(opened.session.journal_path, common);
+    if (gaps) {
+        const auto readable = std::make_shared<Readable>(opened.source, gaps);
+        opened.source = std::shared_ptr<const VolumeSource>(readable, &readable->source);
+    }
     opened.renderer->load(opened.source, session.statistics, opened.session.render,
                           shows_occlusion(opened.session.light), work.begin("loading " + path));
+    warn_of_gaps(opened, path, common);
     opened.annotator = std::make_unique<Annotator>(*opened.renderer);
     opening.belief = common.belief;
     const bool is_picture = !session.pictured.empty();
@@ -276,6 +311,16 @@ Opened open(const std::string& path, const Common& common, LongWork& work, Work:
     opened.renderer->scene().show_surfaces(opened.session.surfaces, opened.annotator->document().trace,
                                            opened.session.groups);
     return opened;
+}
+
+void warn_of_gaps(Opened& opened, const std::string& path, const Common& common)
+{
+    const std::string words = opened.is_whole() ? std::string() : sentence(path, ": ", opened.gaps->in_words());
+    if (words == opened.gaps_told) return;
+    std::erase(opened.warnings, opened.gaps_told);
+    opened.gaps_told = words;
+    opened.warnings.push_back(words);
+    warn({words}, common);
 }
 
 Json bytes_of(Renderer& renderer)

@@ -15,6 +15,7 @@
 #include "engine/projects/import_volume.h"
 #include "engine/session/session.h"
 #include "engine/tasks/task_output.h"
+#include "engine/volume/gaps.h"
 #include "tools/cli/long_work.h"
 
 namespace shvr::cli {
@@ -29,6 +30,7 @@ struct Common {
     int threads = 0;
     bool quiet = false;
     bool json = false;
+    std::optional<bool> allows_incomplete;  ///< nothing: the command has no such option
     Belief belief = Belief::ask;
 };
 
@@ -43,6 +45,9 @@ void add_device_options(CLI::App& command, Common& common);
 void add_version_option(CLI::App& command, std::optional<OmeZarrVersion>& version, const std::string& otherwise);
 /// --believe, for commands that open annotation.
 void add_belief_option(CLI::App& command, Common& common);
+/// --allow-incomplete, for commands whose result needs all voxels.
+void add_incomplete_option(CLI::App& command, bool& allows_incomplete, const std::string& does);
+void add_incomplete_option(CLI::App& command, Common& common, const std::string& does);
 /// --json, --quiet: every command has them.
 void add_output_options(CLI::App& command, Common& common);
 
@@ -71,10 +76,18 @@ struct Opened {
     std::vector<std::string> warnings;
     std::unique_ptr<Renderer> renderer;
     std::unique_ptr<Annotator> annotator;
-    std::filesystem::path project;  ///< its session's file; empty for a bare volume
+    std::filesystem::path project;     ///< its session's file; empty for a bare volume
+    std::shared_ptr<const Gaps> gaps;  ///< grows while bricks are read; null: the command needs every voxel
+    std::string gaps_told{};           ///< by `warn_of_gaps`
+
+    bool is_whole() const { return !gaps || gaps->empty(); }
+    int64_t voxels_not_read() const { return gaps ? gaps->voxels() : 0; }
 };
-/// Refuses what is too large for the budgets before it reads voxels.
+/// Refuses what is too large for the budgets before it reads voxels, and what cannot be read unless
+/// `common.allows_incomplete`.
 Opened open(const std::string& path, const Common& common, LongWork& work, Work::Opening opening = {.only_look = true});
+/// Says what could not be read since the last time: bricks are read while pictures are drawn.
+void warn_of_gaps(Opened& opened, const std::string& path, const Common& common);
 
 /// {device, host, by_resource}
 Json bytes_of(Renderer& renderer);

@@ -1,12 +1,15 @@
 // shvr bench: time against error, each way of drawing measured against the reference renderer.
 
 #include <iostream>
+#include <sstream>
 #include <thread>
 
 #include "engine/base/file.h"
+#include "engine/base/text.h"
 #include "tools/bench/page.h"
 #include "tools/cli/cli.h"
 #include "tools/cli/haptics_report.h"
+#include "tools/report/html.h"
 
 namespace shvr::cli {
 
@@ -24,6 +27,7 @@ struct ErrorBenchOptions {
     std::vector<uint32_t> size;  ///< of pictures; empty: 48 x 36 where quick, otherwise 120 x 90
     bool quick = false, ignores_time = false;
     int rounds = 0;  ///< 0: 3 where quick, otherwise 7
+    int mixed = 0;
 };
 
 void print_out(const std::string& text)
@@ -57,6 +61,25 @@ std::filesystem::path in_tree(const std::filesystem::path& path)
     const auto program = std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();
     const std::filesystem::path found = std::filesystem::weakly_canonical(program / "../.." / path, unknown);
     return std::filesystem::exists(found, unknown) ? found : std::filesystem::path();
+}
+
+/// What the tree stands at now, which is what the program was built of unless something was changed since.
+std::string commit_of_tree()
+{
+    const std::filesystem::path folder = in_tree(".git");
+    const auto line_of = [](const std::filesystem::path& path) {
+        return is_file(path) ? std::string(trimmed(read_text(path, MAX_SWEEP_BYTES))) : std::string();
+    };
+    if (folder.empty()) return {};
+    const std::string head = line_of(folder / "HEAD");
+    constexpr std::string_view REFERENCE = "ref: ";
+    if (!head.starts_with(REFERENCE)) return head;
+    const std::string name = head.substr(REFERENCE.size());
+    if (const std::string commit = line_of(folder / name); !commit.empty()) return commit;
+    std::istringstream packed(line_of(folder / "packed-refs"));
+    for (std::string line; std::getline(packed, line);)
+        if (line.ends_with(" " + name)) return line.substr(0, line.find(' '));
+    return {};
 }
 
 bench::Sweep proxy_sweep(const std::filesystem::path& output, LongWork& work)
@@ -118,6 +141,7 @@ void run_scenes(const ErrorBenchOptions& options)
 {
     if (options.output.empty())
         throw UsageError("--output is missing; expected the folder for bench.json and the report");
+    check_output_folder(options.output);
     golden::set_environment(options.common.device);
     const glm::uvec2 pixels = !options.size.empty() ? glm::uvec2(options.size.at(0), options.size.at(1))
                               : options.quick       ? glm::uvec2(48, 36)
@@ -125,11 +149,13 @@ void run_scenes(const ErrorBenchOptions& options)
     const auto [scenes, left_out] = scenes_of(options, pixels);
     for (const std::string& sentence : left_out) say(options.common, sentence);
     const std::filesystem::path output = options.output;
-    std::filesystem::create_directories(output);
+    report::make_folder(output);
 
     LongWork work(options.common.quiet);
     bench::Results results = bench::who_measures(options.common.device);
     results.rounds = options.rounds > 0 ? options.rounds : options.quick ? 3 : 7;
+    results.version = SHVR_VERSION;
+    results.commit = commit_of_tree();
     results.width = pixels.x;
     results.height = pixels.y;
     results.left_out = left_out;
@@ -138,6 +164,7 @@ void run_scenes(const ErrorBenchOptions& options)
         const Progress progress = work.begin(scene.name);
         bench::MeasuredScene measured = bench::measure_scene(scene, {.device = options.common.device,
                                                                      .quick = options.quick,
+                                                                     .mixed = options.mixed,
                                                                      .rounds = results.rounds,
                                                                      .threads = threads_of(options),
                                                                      .peer = peer_of(options),
@@ -155,6 +182,7 @@ void run_scenes(const ErrorBenchOptions& options)
     std::string text;
     for (const bench::SceneResult& scene : results.scenes) {
         text += scene.name + "\n";
+        if (const std::optional<std::string> busy = bench::why_times_tell_little(scene)) text += "  " + *busy + "\n";
         for (const std::string& note : scene.notes) text += "  " + note + "\n";
         for (const bench::Measured& run : scene.runs) {
             if (run.on_front) pareto.push_back(pareto_row(scene, run));
@@ -173,8 +201,9 @@ void run_scenes(const ErrorBenchOptions& options)
 
 void compare_files(const ErrorBenchOptions& options)
 {
-    const std::vector<bench::Change> changes = bench::compare(
+    const bench::Comparison comparison = bench::compare(
         bench::read_results(options.compared[0]), bench::read_results(options.compared[1]), !options.ignores_time);
+    const std::vector<bench::Change>& changes = comparison.changes;
     Json rows = Json::array();
     size_t regressions = 0;
     for (const bench::Change& change : changes) {
@@ -185,12 +214,13 @@ void compare_files(const ErrorBenchOptions& options)
                         {"a", change.a},
                         {"b", change.b},
                         {"noise", change.noise},
+                        {"machine", change.machine},
                         {"regression", change.is_regression}});
     }
     if (options.common.json)
-        print({{"changes", rows}, {"regressions", regressions}});
+        print({{"changes", rows}, {"regressions", regressions}, {"beside", comparison.beside}});
     else
-        print_out(bench::text_of(changes));
+        print_out(bench::text_of(comparison));
     if (regressions > 0)
         throw GateError(sentence(regressions, " of ", changes.size(), " changes are regressions, the first: ",
                                  changes.front().scene, ", ", changes.front().run, ": ", changes.front().what));
@@ -233,12 +263,17 @@ void add_bench(CLI::App& program)
     command->add_option("--examples", options->examples,
                         "Folder of the scans; that of tools/fetch_example, unless given");
     command->add_flag("--quick", options->quick, "Small volumes, few runs: seconds a scene");
+    command
+        ->add_option(
+            "--mixed", options->mixed,
+            "So many more runs that turn step, resolution, opacity limit, pre-integration and sampling at once")
+        ->check(CLI::Range(0, 1024));
     command->add_option("--rounds", options->rounds, "Timed pictures of each run, in turns")
         ->check(CLI::Range(1, 1000));
-    command->add_option(
-        "-o,--output", options->output,
-        "Folder for bench.json, bench.csv, equal_*.csv, pareto*.svg and .png, sweep-*, report.html; references are "
-        "kept there, too");
+    command->add_option("-o,--output", options->output,
+                        "Folder for bench.json, bench.csv, equal_*.csv, pareto*.svg and .png, insets.png, sweep-*, "
+                        "report.html; references are "
+                        "kept there, too");
     command->add_option("--compare", options->compared, "Two bench.json instead: exit 3 where the second is worse")
         ->expected(2);
     command->add_flag("--ignore-time", options->ignores_time, "With --compare: errors and exact work alone");

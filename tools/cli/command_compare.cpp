@@ -70,6 +70,7 @@ void check_gates(const ImageDifference& difference, const CompareCommandOptions&
 void run_compare(const CompareCommandOptions& options)
 {
     check_output("--diff", options.difference, {".png"});
+    for (const std::string& picture : {options.a, options.b}) check_output_is_not(picture, options.difference);
     LongWork work(options.common.quiet);
     static_cast<void>(work.begin("reading pictures"));
     const Image8 a = read_png(options.a);
@@ -77,8 +78,7 @@ void run_compare(const CompareCommandOptions& options)
     if (a.width != b.width || a.height != b.height)
         fail(options.a, " has ", a.width, " x ", a.height, " pixels, ", options.b, " has ", b.width, " x ", b.height,
              "; expected the same size");
-    static_cast<void>(work.begin("comparing pictures"));
-    const ImageDifference difference = compare(a, b);
+    const ImageDifference difference = compare(a, b, work.begin("comparing pictures"));
     if (!options.difference.empty()) static_cast<void>(work.begin("writing " + options.difference));
     if (!options.difference.empty()) write_png(options.difference, difference_picture(a, b, DIFFERENCE_GAIN));
     work.stop_if_asked();

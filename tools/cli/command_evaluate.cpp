@@ -77,6 +77,8 @@ Json to_json(const EvaluateResult& evaluated)
                    {"topological_errors", nullptr},
                    {"centreline_rms_um", nullptr},
                    {"unit", evaluated.space ? Json(evaluated.space->unit) : Json(nullptr)},
+                   {"complete", evaluated.voxels_not_read == 0},
+                   {"voxels_not_read", evaluated.voxels_not_read},
                    {"warnings", evaluated.warnings}};
     if (evaluated.dice) add_dice(*evaluated.dice, result);
     if (evaluated.nodes) add_balls("node", *evaluated.nodes, result);
@@ -130,6 +132,8 @@ void add_evaluate(CLI::App& program)
         ->add_option("--slack", options->task.slack,
                      "How far apart two balls may be and still count as touching; the longest side of a voxel")
         ->check(CLI::NonNegativeNumber);
+    add_incomplete_option(*command, options->task.allows_incomplete,
+                          "Take voxels of masks that cannot be read for unpainted, with a warning, instead of failing");
     add_input_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer(

@@ -56,10 +56,15 @@ void run_export(const ExportCommandOptions& options)
     // Its annotations are in it, but empty files would be written.
     if (const std::string archived = archived_project(options.project); !archived.empty()) fail(archived);
     LongWork long_work(options.common.quiet);
+    Gaps gaps;  // annotation is exported whatever has become of the scan
     const OpenedSession opened =
         open_session(options.project, options.common.settings,
-                     {.measure = {.progress = long_work.begin("measuring " + options.project)}});
+                     {.measure = {.progress = long_work.begin("measuring " + options.project), .gaps = &gaps}});
     warn(opened.source->info().warnings, options.common);
+    if (!gaps.empty())
+        warn({sentence(options.project, ": ", gaps.in_words(),
+                       "; whether the annotation is of this volume was not checked")},
+             options.common);
     warn_of_losses(opened.losses);
     warn_of_holder(opened.session.journal_path, options.common);
     const VolumeInfo& volume = opened.source->info();
@@ -76,6 +81,7 @@ void run_export(const ExportCommandOptions& options)
                                     .groups = opened.session.groups,
                                     .volume_hash = opened.session.volume_hash,
                                     .project = options.project,
+                                    .volume_path = opened.session.volume_path,
                                     .trace_path = opened.session.trace_path};
     const ExportResult result = run(task, annotation, long_work, [&](const ExportResult& so_far) {
         // The trace is the first that is written.

@@ -10,6 +10,7 @@
 #include "tools/cli/cli.h"
 #include "tools/golden/calibrate.h"
 #include "tools/golden/run.h"
+#include "tools/report/html.h"
 
 namespace shvr::cli {
 
@@ -23,7 +24,8 @@ struct GoldenCommandOptions {
     std::string folder = "golden";
     std::string output = "golden-results";
     std::string reason;
-    bool only_failed = false;
+    std::string table;  ///< of calibrate; empty: none
+    bool only_failed = false, keeps_light = false;
 };
 
 golden::StudioOptions studio_options(const Common& common)
@@ -57,7 +59,7 @@ std::string lines_of(const golden::Outcome& outcome)
         text += sentence(spelled(result.status), "  ", result.golden.name);
         if (!result.reason.empty()) text += ": " + result.reason;
         text += "\n";
-        if (golden::is_failure(result.status))
+        if (golden::can_be_blessed(result.status))
             text += "  if it is meant: " + golden::bless_command(result.golden) + "\n";
     }
     return text + outcome.report.string() + "\n";
@@ -65,14 +67,17 @@ std::string lines_of(const golden::Outcome& outcome)
 
 void run_goldens(const GoldenCommandOptions& options)
 {
+    check_output_folder(options.output);
     const std::vector<golden::Golden> goldens = golden::goldens_in(options.folder, options.pattern);
     LongWork work(options.common.quiet);
     const Progress progress = work.begin("drawing goldens");
-    const golden::Outcome outcome = golden::run_all(goldens, options.output, studio_options(options.common),
-                                                    [&](const golden::Golden&, double fraction) {
-                                                        work.stop_if_asked();
-                                                        tell(progress, fraction);
-                                                    });
+    const golden::Outcome outcome = golden::run_all(
+        goldens, options.output, studio_options(options.common),
+        [&](const golden::Golden&, double fraction) {
+            work.stop_if_asked();
+            tell(progress, fraction);
+        },
+        options.keeps_light);
     clear_progress();
     if (options.common.json)
         print(outcome_json(outcome));
@@ -98,6 +103,7 @@ std::vector<golden::Golden> chosen(const GoldenCommandOptions& options)
 void bless(const GoldenCommandOptions& options)
 {
     if (options.reason.empty()) throw UsageError("--reason is missing; expected why the pictures change");
+    check_output_folder(options.folder);
     LongWork work(options.common.quiet);
     const Progress progress = work.begin("blessing goldens");
     Json rows = Json::array();
@@ -125,8 +131,8 @@ void bless(const GoldenCommandOptions& options)
 /// `shvr golden run` in a process of its own: drivers read their environment once.
 void run_variant(const GoldenCommandOptions& options, const golden::Variant& variant, const fs::path& output)
 {
-    std::vector<std::string> arguments{"shvr",         "golden", "run",           options.pattern, "--folder",
-                                       options.folder, "-o",     output.string(), "--quiet",       "--json"};
+    std::vector<std::string> arguments{"shvr", "golden",        "run",     options.pattern, "--folder", options.folder,
+                                       "-o",   output.string(), "--quiet", "--json",        "--light"};
     if (!options.common.device.empty()) arguments.insert(arguments.end(), {"--device", options.common.device});
     std::vector<std::string> environment;
     for (char** entry = environ; *entry; ++entry) {
@@ -155,16 +161,26 @@ void run_variant(const GoldenCommandOptions& options, const golden::Variant& var
         fail("goldens could not be drawn as ", variant.name, "; expected exit status 0 or 3 of shvr golden run");
 }
 
-Json spread_json(const PixelDifference& difference)
+Json spread_json(const golden::Moved& moved)
 {
-    return {{"max_abs", difference.max_abs},
-            {"rmse", difference.rmse},
-            {"mean_error", difference.mean_error},
-            {"fraction_over_1", difference.fraction_over_1}};
+    return {{"max_abs", moved.pixels.max_abs},
+            {"rmse", moved.pixels.rmse},
+            {"mean_error", moved.pixels.mean_error},
+            {"fraction_over_1", moved.pixels.fraction_over_1},
+            {"light", moved.light}};
+}
+
+/// As a person types it.
+std::string calibrate_command(const GoldenCommandOptions& options)
+{
+    return sentence("shvr golden calibrate", options.pattern == "*" ? "" : " '" + options.pattern + "'", " --folder ",
+                    options.folder, " --table ", options.table);
 }
 
 void calibrate(const GoldenCommandOptions& options)
 {
+    check_output_folder(options.output);
+    if (!options.table.empty()) check_output("--table", options.table, {".md"});
     const std::vector<golden::Golden> goldens = golden::goldens_in(options.folder, options.pattern);
     LongWork work(options.common.quiet);
     const Progress progress = work.begin("drawing goldens in every way");
@@ -179,9 +195,9 @@ void calibrate(const GoldenCommandOptions& options)
     std::string text;
     for (const golden::Spread& spread : spreads) {
         Json by_variant = Json::object();
-        for (const auto& [name, difference] : spread.by_variant) by_variant[name] = spread_json(difference);
+        for (const auto& [name, moved] : spread.by_variant) by_variant[name] = spread_json(moved);
         const std::string verdict = !spread.holds           ? "too strict: the driver alone moves it by more than half"
-                                    : spread.could_be_exact ? "holds; nothing moves it"
+                                    : spread.could_be_exact ? "holds; no pixel moves"
                                                             : "holds";
         rows.push_back({{"name", spread.golden.name},
                         {"class", spelled(spread.golden.strictness)},
@@ -191,9 +207,11 @@ void calibrate(const GoldenCommandOptions& options)
                         {"variants", by_variant}});
         if (!spread.holds) failed.push_back(spread.golden.name);
         text += sentence(spread.golden.name, " (", spelled(spread.golden.strictness), "): ", verdict, "; at most ",
-                         spread.most.max_abs, " levels, ", 100.0 * spread.most.fraction_over_1,
-                         " % of pixels by more than 1\n");
+                         spread.most.pixels.max_abs, " levels, ", 100.0 * spread.most.pixels.fraction_over_1,
+                         " % of pixels by more than 1, ", spread.most.light, " in linear light\n");
     }
+    if (!options.table.empty())
+        report::write_text(options.table, golden::table_of(spreads, calibrate_command(options)));
     clear_progress();
     if (options.common.json)
         print({{"goldens", rows}, {"failed", failed}});
@@ -206,6 +224,7 @@ void calibrate(const GoldenCommandOptions& options)
 
 void report_again(const GoldenCommandOptions& options)
 {
+    check_output_folder(options.output);
     LongWork work(options.common.quiet);
     static_cast<void>(work.begin("writing the report"));
     const golden::Outcome outcome = golden::read_run(options.output, options.pattern);
@@ -243,7 +262,8 @@ void add_golden(CLI::App& program)
         program.add_subcommand("golden", "Regression pictures: draws sessions and compares them with what was blessed");
     command->require_subcommand(1);
     add_part(*command, options, "run", "Draws them and compares; exit 3 where one fails",
-             "shvr golden run 'tubes_*' --folder golden -o golden-results", run_goldens);
+             "shvr golden run 'tubes_*' --folder golden -o golden-results", run_goldens)
+        ->add_flag("--light", options->keeps_light, "NAME.actual.pfm, too: the picture in linear light, 32-bit floats");
     CLI::App* accept =
         add_part(*command, options, "bless", "Accepts what is drawn now as correct; on lavapipe alone, never in CI",
                  "shvr golden bless overview --reason \"The light comes from the left\"", bless);
@@ -253,7 +273,8 @@ void add_golden(CLI::App& program)
         *command, options, "calibrate",
         "How far vector width, threads, instruction set and poisoned memory move them; exit 3 where a class is too "
         "strict",
-        "shvr golden calibrate --folder golden", calibrate);
+        "shvr golden calibrate --folder golden --table golden/CALIBRATION.md", calibrate)
+        ->add_option("--table", options->table, "Table to write (.md), to be kept beside the goldens");
     add_part(*command, options, "report", "Writes report.html and junit.xml of the last run again",
              "shvr golden report -o golden-results", report_again);
     command->footer(

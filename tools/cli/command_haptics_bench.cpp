@@ -161,6 +161,8 @@ Json run_servo(const std::vector<uint8_t>& scene, double seconds, LongWork& work
 
 void run_bench(const BenchCommandOptions& options)
 {
+    check_output("--sweep", options.sweep, {".csv"});
+    check_output("--plot", options.plot, {".svg"});
     LongWork work(options.common.quiet);
     if (!options.sweep.empty()) {
         static_cast<void>(work.begin("timing the proxy"));

@@ -142,6 +142,11 @@ void add_import(CLI::App& program)
         [options](const std::string& unit) { options->task.choice.unit = unit; });
     command->add_option("--channel", options->task.choice.channel, "What to take from a file with channels")
         ->type_name("NAME|N");
+    command
+        ->add_option("--level", options->task.choice.level,
+                     "Which size to take from a file with several: 0 the finest, 1, 2, ...")
+        ->type_name("N")
+        ->check(CLI::Range(0, 23));
     command->add_option("--frame", options->task.choice.frame, "Which time point to take from a file with several")
         ->type_name("N");
     add_version_option(*command, options->task.version, "0.4 unless given");

@@ -14,6 +14,7 @@ struct InfoCommandOptions {
     Common common;
     std::string input;
     bool exact = false;
+    bool allows_incomplete = false;
 };
 
 /// How the statistics came about.
@@ -53,6 +54,8 @@ Json to_json(const DescribeResult& described, const std::string& input)
             {"measured_level", statistics.measured_level},
             {"voxels", voxels},
             {"voxels_not_finite", statistics.not_finite},
+            {"voxels_not_read", described.voxels_not_read},
+            {"complete", described.voxels_not_read == 0},
             {"bytes", uint64_t(voxels) * bytes_of(info.type)},
             {"levels", described.levels},
             {"histogram", statistics.histogram},
@@ -114,7 +117,12 @@ void print_text(const DescribeResult& described)
 void run_info(const InfoCommandOptions& options)
 {
     LongWork work(options.common.quiet);
-    const DescribeResult described = run(DescribeTask{options.input, options.exact, options.common.settings}, work);
+    const DescribeResult described = run(DescribeTask{.input = options.input,
+                                                      .exact = options.exact,
+                                                      .allows_incomplete = options.allows_incomplete,
+                                                      .settings = options.common.settings,
+                                                      .names = OptionNames::command_line},
+                                         work);
     warn_of_losses(described.losses);
     clear_progress();
     warn(described.warnings, options.common);
@@ -133,6 +141,8 @@ void add_info(CLI::App& program)
     command->add_option("INPUT", options->input, "Volume, session (.json) or project folder")->required();
     command->add_flag("--exact", options->exact,
                       "Go through all voxels, also of volumes so large that a sample or a coarser level would do");
+    add_incomplete_option(*command, options->allows_incomplete,
+                          "Leave out voxels that cannot be read, with a warning, instead of failing");
     add_input_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer("Example:\n  shvr info scan.nhdr --json");

@@ -25,7 +25,7 @@ void run_label(const LabelCommandOptions& options)
     LongWork work(options.common.quiet);
     const UnmeasuredSession opened = open_unmeasured_session(options.volume, options.common.settings);
     const VolumeInfo info = opened.source->info();
-    check(task, *opened.source);
+    check(task, *opened.source, opened.session.volume_path);
     warn(info.warnings, options.common);
     warn_of_losses(opened.losses);
     warn_of_holder(opened.session.journal_path, options.common);
@@ -34,6 +34,7 @@ void run_label(const LabelCommandOptions& options)
     warn(notices, options.common);
     const std::shared_ptr<const VolumeSource> source = with_offsets(opened.source, offsets);
     const LabelResult result = run(task, *source, options.volume, work);
+    warn(result.warnings, options.common);
     const Components::Counts& counts = result.counts;
     if (!options.common.json) {
         say(options.common, sentence(counts.found, " components of ", counts.foreground_voxels,
@@ -41,6 +42,8 @@ void run_label(const LabelCommandOptions& options)
                                      counts.kept_voxels, "; ", result.seconds, " s"));
         return;
     }
+    std::vector<std::string> warnings = info.warnings;
+    warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
     Json largest = Json::array();
     for (const Components::Component& component : counts.largest)
         largest.push_back({{"label", component.label}, {"voxels", component.voxels}});
@@ -62,7 +65,9 @@ void run_label(const LabelCommandOptions& options)
            {"provisional_labels", counts.provisional},
            {"run_file_bytes", counts.run_file_bytes},
            {"voxels_with_offset", offsets.voxels()},
-           {"warnings", info.warnings}});
+           {"complete", result.voxels_not_read == 0},
+           {"voxels_not_read", result.voxels_not_read},
+           {"warnings", warnings}});
 }
 
 }  // namespace
@@ -84,6 +89,8 @@ void add_label(CLI::App& program)
     command->add_option("-o,--output", options->output,
                         "The labels, from 1 in the order of first voxels (.zarr: OME-Zarr labels; .nrrd, .tif; .mask)");
     add_version_option(*command, options->task.version, "unless given, as the image or the labels there are, or 0.4");
+    add_incomplete_option(*command, options->task.allows_incomplete,
+                          "Take voxels that cannot be read for dark ones, with a warning, instead of failing");
     command->add_option("--threads", options->common.threads, "Worker threads; 0: one per core")
         ->check(CLI::Range(0, 1024));
     add_belief_option(*command, options->common);

@@ -15,7 +15,6 @@ namespace {
 struct RenderCommandOptions {
     Common common;
     std::string input, output, size, camera, transfer_function;
-    bool allows_incomplete = false;
     bool with_session = false;
 };
 
@@ -37,10 +36,10 @@ Json detail_of(const Renderer& renderer, const RenderSettings& render)
 }
 
 /// Draws all parts. Fails, and leaves the old file as it was, where the picture lacks something or is stopped.
-Picture draw(PictureFile& file, const RenderCommandOptions& options, LongWork& work)
+Picture draw(PictureFile& file, const Opened& opened, const RenderCommandOptions& options, LongWork& work)
 {
     try {
-        while (!file.is_drawn() && (file.is_complete() || options.allows_incomplete)) {
+        while (!file.is_drawn() && (file.is_complete() || *options.common.allows_incomplete)) {
             work.stop_if_asked();
             file.step();
         }
@@ -49,9 +48,9 @@ Picture draw(PictureFile& file, const RenderCommandOptions& options, LongWork& w
         fail(options.output, ": stopped at ", int(100.0 * file.progress()), " %; not written");
     }
     Picture picture = file.take();
-    if (!picture.complete && !options.allows_incomplete)
+    if (!picture.complete && !*options.common.allows_incomplete)
         fail(options.input, ": the picture is incomplete and not written: ", why_incomplete(picture),
-             "; --allow-incomplete writes it nevertheless");
+             opened.gaps->has_refused() ? "" : "; --allow-incomplete writes it nevertheless");
     file.commit();
     return picture;
 }
@@ -59,6 +58,7 @@ Picture draw(PictureFile& file, const RenderCommandOptions& options, LongWork& w
 void run_render(RenderCommandOptions options)
 {
     check_output("--output", options.output, {".png", ".pfm"});
+    check_output_is_not(options.input, options.output);
     if (!options.size.empty()) {
         const glm::uvec2 size = parse_size(options.size);
         options.common.settings.push_back(sentence("render.size=[", size.x, ",", size.y, "]"));
@@ -84,8 +84,9 @@ void run_render(RenderCommandOptions options)
                      options.with_session
                          ? texts_of_picture(opened.session, camera, options.output, opened.project, kept_probe)
                          : PictureTexts());
-    const Picture picture = draw(file, options, work);
+    const Picture picture = draw(file, opened, options, work);
     check_validation(opened);
+    warn_of_gaps(opened, options.input, options.common);
     warn(picture.warnings, options.common);
     for (const std::string& warning : picture.warnings) opened.warnings.push_back(warning);
     if (!options.common.json) return say(options.common, options.output);
@@ -96,7 +97,8 @@ void run_render(RenderCommandOptions options)
     const glm::uvec2 size = opened.session.render.size;
     print({{"output", options.output},
            {"size", {size.x, size.y}},
-           {"complete", picture.complete},
+           {"complete", picture.complete && opened.is_whole()},
+           {"voxels_not_read", opened.voxels_not_read()},
            {"detail", detail_of(*opened.renderer, opened.session.render)},
            {"device", opened.renderer->device().traits().name},
            {"passes", passes},
@@ -127,8 +129,8 @@ void add_render(CLI::App& program)
         "Transfer function: a preset (bundles, haze, heat, layers, surface), or a JSON file with its points");
     command->add_flag("--with-session", options->with_session,
                       "Keep the session in the .png, so that it can be rendered again, as the window's pictures do");
-    command->add_flag("--allow-incomplete", options->allows_incomplete,
-                      "Write a picture that lacks something, with a warning, instead of failing");
+    add_incomplete_option(*command, options->common,
+                          "Write a picture that lacks something, with a warning, instead of failing");
     add_belief_option(*command, options->common);
     add_device_options(*command, options->common);
     add_output_options(*command, options->common);

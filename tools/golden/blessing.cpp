@@ -157,6 +157,7 @@ Drawn drawn_by(Studio& studio)
 {
     const Picture picture = studio.draw_counted();
     return {.image = to_image8(picture.image),
+            .light = picture.image,
             .maker = maker_of(studio.renderer()),
             .work = counters_of(picture),
             // Which bricks a paged volume has when a pass begins depends on the disk and on threads.

@@ -26,6 +26,7 @@ std::vector<std::pair<std::string, uint64_t>> counters_of(const Picture& picture
 /// What was drawn.
 struct Drawn {
     Image8 image;
+    ImageF light;  ///< the same, before it was rounded to 8 bits
     Maker maker;
     std::vector<std::pair<std::string, uint64_t>> work;  ///< exact counters by name, summed over passes
     bool work_is_exact = true;                           ///< false: paged, where counters depend on the disk

@@ -4,8 +4,10 @@
 
 #include <functional>
 #include <map>
+#include <optional>
+#include <string>
 
-#include "tools/golden/golden.h"
+#include "tools/golden/run.h"
 
 namespace shvr::golden {
 
@@ -16,19 +18,29 @@ struct Variant {
 };
 const std::vector<Variant>& variants();
 
-/// Draws the goldens into `output` in a process with that environment. Throws where it could not.
+/// Draws the goldens into `output`, in linear light, too, in a process with that environment. Throws where it cannot.
 using DrawAll = std::function<void(const Variant& variant, const std::filesystem::path& output)>;
+
+/// How far a picture is from the first variant's.
+struct Moved {
+    PixelDifference pixels;  ///< in 8 bits, of 255
+    double light = 0.0;      ///< at most, in linear light: shows that a variant does change the arithmetic
+};
 
 struct Spread {
     Golden golden;
-    std::map<std::string, PixelDifference> by_variant;  ///< to the first variant's picture
-    PixelDifference most;                               ///< of each metric
-    bool holds = false;                                 ///< the class allows twice as much
-    bool could_be_exact = false;                        ///< no variant changes a bit
+    std::optional<Maker> maker;  ///< who drew the first variant
+    std::map<std::string, Moved> by_variant;
+    Moved most;                   ///< of each metric
+    bool holds = false;           ///< the class allows twice as much
+    bool could_be_exact = false;  ///< no variant changes an 8-bit picture
 };
 /// Pictures are left in `output`/VARIANT.
 std::vector<Spread> calibrate(const std::vector<Golden>& goldens, const std::filesystem::path& output,
                               const DrawAll& draw_all);
+
+/// The spreads as a page of Markdown, for version control. `command`: what makes it.
+std::string table_of(const std::vector<Spread>& spreads, const std::string& command);
 
 /// Whether `strictness` allows twice `most`.
 bool allows_twice(const PixelDifference& most, Strictness strictness);

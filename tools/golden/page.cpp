@@ -17,15 +17,13 @@ namespace {
 
 using report::escaped;
 
-constexpr const char* STYLE = R"(body{font:14px/1.4 sans-serif;margin:1em auto;max-width:1400px;color:#222}
-h2{margin:1.2em 0 .2em}.passed{color:#14632b}.failed,.missing,.broken{color:#a3161b}.informative{color:#8a5a00}
-figure{display:inline-block;margin:.3em .6em .3em 0;vertical-align:top}figcaption{font-size:12px;color:#555}
-img,.pair{image-rendering:pixelated;width:320px;border:1px solid #bbb;background:
+constexpr const char* STYLE = R"(.passed{color:var(--good)}.failed,.missing,.broken{color:var(--bad)}
+.informative{color:var(--perhaps)}
+img,.pair{image-rendering:pixelated;width:320px;border:1px solid var(--line);background:
 repeating-conic-gradient(#ddd 0 25%,#fff 0 50%) 0/16px 16px}
 .pair{position:relative;display:inline-block}.pair img{border:0;display:block;width:100%}
 .pair .over{position:absolute;left:0;top:0}.blink .over{visibility:hidden}input[type=range]{width:320px;display:block}
-table{border-collapse:collapse}td,th{padding:.1em .8em .1em 0;text-align:left}td+td{text-align:right}
-code{background:#eee;padding:.1em .3em;user-select:all}.pixel{font:12px monospace;height:1.3em})";
+.pixel{font:12px monospace;height:1.3em}pre{overflow-x:auto})";
 
 // A slider shows how much of the actual picture covers the expected one; key b, or the box, blinks between them.
 constexpr const char* SCRIPT = R"(<script>
@@ -128,8 +126,9 @@ std::string section_of(const Result& result)
         if (result.maker)
             markup += sentence("<p>Drawn by ", escaped(result.maker->driver), " on ", escaped(result.maker->processor),
                                " (", escaped(result.maker->instructions), ")</p>\n");
-        markup += sentence("<p>If it is meant, look at it and accept it: <code>", escaped(bless_command(golden)),
-                           "</code></p>\n");
+        if (can_be_blessed(result.status))
+            markup += sentence("<p>If it is meant, look at it and accept it: <code>", escaped(bless_command(golden)),
+                               "</code></p>\n");
     }
     if (!result.side_car.empty())
         markup += "<details><summary>who blessed it</summary><pre>" + escaped(result.side_car) + "</pre></details>\n";
@@ -169,7 +168,8 @@ std::string junit_of(const std::vector<Result>& results)
                         result.seconds, "\">");
         if (is_failure(result.status))
             xml += sentence("<failure type=\"", spelled(result.status), "\" message=\"", escaped(result.reason), "\">",
-                            escaped(bless_command(result.golden)), "</failure>");
+                            can_be_blessed(result.status) ? escaped(bless_command(result.golden)) : std::string(),
+                            "</failure>");
         else if (result.status == Status::informative)
             xml += "<skipped message=\"" + escaped(result.reason) + "\"/>";
         xml += "</testcase>\n";

@@ -26,6 +26,7 @@ void judge(Result& result, const StudioOptions& options)
     Studio studio(golden, options);
     Drawn drawn = drawn_by(studio);
     result.actual = drawn.image;
+    result.light = drawn.light;
     result.maker = drawn.maker;
     if (const std::vector<std::string> messages = studio.take_validation_messages(); !messages.empty())
         fail(golden.file().string(), ": ", messages.size(), " validation messages, the first: ", messages.front());
@@ -109,16 +110,19 @@ Result run(const Golden& golden, const StudioOptions& options)
 }
 
 Outcome run_all(const std::vector<Golden>& goldens, const fs::path& output, const StudioOptions& options,
-                const std::function<void(const Golden&, double)>& tell)
+                const std::function<void(const Golden&, double)>& tell, bool keeps_light)
 {
-    fs::create_directories(output);
+    report::make_folder(output);
     Outcome outcome{.report = output / "report.html"};
     report::write_text(outcome.report,
                        report::page("SHVR goldens", "", "<h1>The run did not end: it crashed or was stopped.</h1>\n"));
     for (const Golden& golden : goldens) {
         if (tell) tell(golden, double(outcome.results.size()) / double(goldens.size()));
         outcome.results.push_back(run(golden, options));
-        write_pictures(outcome.results.back(), output);
+        Result& result = outcome.results.back();
+        write_pictures(result, output);
+        if (keeps_light && result.light) write_pfm(output / (golden.name + ".actual.pfm"), *result.light);
+        result.light.reset();
     }
     outcome.failed = failures_of(outcome.results);
     Json rows = Json::array();

@@ -31,6 +31,12 @@ constexpr bool is_failure(Status status)
     return status != Status::passed && status != Status::informative;
 }
 
+/// Whether `shvr golden bless` helps: not where nothing was drawn, nor on a device that may not bless.
+constexpr bool can_be_blessed(Status status)
+{
+    return status == Status::failed || status == Status::missing;
+}
+
 /// Of one golden. Pictures are null where there are none.
 struct Result {
     Golden golden;
@@ -38,6 +44,7 @@ struct Result {
     std::string reason;  ///< why it did not pass, in a sentence
     double seconds = 0.0;
     std::optional<Image8> expected, actual;
+    std::optional<ImageF> light;  ///< of the actual picture; not of a run that was read again
     std::optional<ImageDifference> difference;
     std::optional<Maker> maker;
     std::string side_car;  ///< its JSON
@@ -47,14 +54,14 @@ struct Result {
 Result run(const Golden& golden, const StudioOptions& options);
 
 /// All of them. Before the first is drawn, the report says that the run did not end, so that a crash shows. `output` is
-/// made. `tell` is called before each.
+/// made. `tell` is called before each. `keeps_light`: NAME.actual.pfm, too, the picture in 32-bit floats.
 struct Outcome {
     std::vector<Result> results;
     std::vector<std::string> failed;
     std::filesystem::path report;
 };
 Outcome run_all(const std::vector<Golden>& goldens, const std::filesystem::path& output, const StudioOptions& options,
-                const std::function<void(const Golden&, double)>& tell = {});
+                const std::function<void(const Golden&, double)>& tell = {}, bool keeps_light = false);
 
 /// The reports again, of a run whose results.json and pictures lie in `output`.
 Outcome read_run(const std::filesystem::path& output, const std::string& pattern);

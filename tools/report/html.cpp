@@ -6,6 +6,23 @@
 
 namespace shvr::report {
 
+namespace {
+
+/// What all pages have in common, in light and in dark.
+constexpr const char* COMMON_STYLE = R"(:root{color-scheme:light dark;--paper:#fff;--ink:#222;--faint:#5a5f66;
+--line:#d8dadd;--field:#eef0f2;--good:#14632b;--bad:#a3161b;--perhaps:#8a5a00;--link:#0b57a4}
+@media (prefers-color-scheme:dark){:root{--paper:#17191c;--ink:#dcdfe3;--faint:#9aa1a9;--line:#3a3f45;--field:#262a2f;
+--good:#6fcf8b;--bad:#ff8b8b;--perhaps:#e9b44c;--link:#7db7f0}}
+body{font:14px/1.45 sans-serif;margin:1em auto;max-width:1500px;padding:0 1em;background:var(--paper);color:var(--ink)}
+a{color:var(--link)}h2{margin:1.4em 0 .3em}svg{max-width:100%;height:auto}
+table{border-collapse:collapse;margin:.5em 0}td,th{padding:.15em .8em;text-align:right;border-bottom:1px solid
+var(--line)}td:first-child,th:first-child{text-align:left;white-space:nowrap}
+figure{display:inline-block;margin:.3em .6em .3em 0;vertical-align:top}figcaption{font-size:12px;color:var(--faint)}
+code{background:var(--field);padding:.1em .3em;user-select:all}summary{cursor:pointer}
+)";
+
+}  // namespace
+
 std::string escaped(std::string_view text)
 {
     std::string markup;
@@ -42,7 +59,15 @@ std::string source_of(const Image8& image)
 std::string page(std::string_view title, std::string_view style, std::string_view body)
 {
     return sentence("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>", escaped(title),
-                    "</title>\n<style>\n", style, "</style>\n</head>\n<body>\n", body, "</body>\n</html>\n");
+                    "</title>\n<meta name=\"viewport\" content=\"width=device-width\">\n<style>\n", COMMON_STYLE, style,
+                    "</style>\n</head>\n<body>\n", body, "</body>\n</html>\n");
+}
+
+void make_folder(const std::filesystem::path& path)
+{
+    std::error_code error;
+    std::filesystem::create_directories(path, error);
+    if (error) fail(path.string(), ": cannot be created: ", error.message(), "; expected a folder to write into");
 }
 
 void write_text(const std::filesystem::path& path, std::string_view text)

@@ -17,8 +17,11 @@ std::string escaped(std::string_view text);
 std::string base64(std::span<const std::byte> bytes);
 /// A picture as the value of `src`.
 std::string source_of(const Image8& image);
-/// A whole page: head with `title` and `style`, then `body`, which is markup.
+/// A whole page: head with `title`, the style that all pages have, light or dark as the reader's system is, and `style`
+/// after it, then `body`, which is markup. Colours are variables: --ink, --faint, --line, --field, --good, --bad.
 std::string page(std::string_view title, std::string_view style, std::string_view body);
+/// With those above it, where they are missing. Fails in a sentence.
+void make_folder(const std::filesystem::path& path);
 /// Fails as write_file_atomically does.
 void write_text(const std::filesystem::path& path, std::string_view text);
 

@@ -104,7 +104,7 @@ public:
         const double wide = text_width(text) * (anchor == 2 ? 1.0 : anchor == 1 ? 0.5 : 0.0);
         for (size_t i = 0; i < text.size(); ++i)
             for (int column = 0; column < GLYPH_COLUMNS; ++column)
-                for (int row = 0; row < GLYPH_ROWS; ++row) {
+                for (int row = 0; row <= GLYPH_ROWS; ++row) {
                     if (!glyph_has(text[i], column, row)) continue;
                     const double along = double(i) * (GLYPH_COLUMNS + 1) + column - wide, up = GLYPH_ROWS - row;
                     // A texel of a letter is a pixel, or a little more.
@@ -162,7 +162,8 @@ private:
     std::vector<uint8_t> pixels_;
 };
 
-/// A logarithmic axis of whole decades, which begin and end a little inside it: no mark lies on the frame.
+/// A logarithmic axis from one tick to another, which lie a little inside it: no mark lies on the frame. Ticks are
+/// powers of 10, and below two decades their double and fivefold as well.
 struct Axis {
     double lower = 0.0, upper = 1.0;  ///< exponents of 10
     double begin = 0.0, end = 1.0;    ///< pixels
@@ -173,6 +174,20 @@ struct Axis {
     }
 };
 
+/// The next of 1, 2 and 5 times a power of 10 that is smaller, by a thousandth at least.
+double tick_at_most(double value)
+{
+    const double power = std::pow(10.0, std::floor(std::log10(value * 0.999)));
+    for (const double part : {5.0, 2.0})
+        if (part * power <= value * 0.999) return part * power;
+    return power;
+}
+
+double tick_at_least(double value)
+{
+    return 1.0 / tick_at_most(1.0 / value);
+}
+
 Axis axis_of(const Plot& plot, double PlotPoint::*value, double begin, double end)
 {
     double least = std::numeric_limits<double>::infinity(), most = 0.0;
@@ -180,32 +195,48 @@ Axis axis_of(const Plot& plot, double PlotPoint::*value, double begin, double en
         for (const PlotPoint& point : series.points)
             if (point.*value > 0.0) least = std::min(least, point.*value), most = std::max(most, point.*value);
     if (most == 0.0) least = most = 1.0;
-    Axis axis{std::floor(std::log10(least * 0.999)), std::ceil(std::log10(most * 1.001)), begin, end};
-    if (axis.upper <= axis.lower) axis.upper = axis.lower + 1.0;
-    return axis;
+    return {std::log10(tick_at_most(least)), std::log10(tick_at_least(most)), begin, end};
 }
 
-std::string power_text(int exponent)
+std::vector<double> ticks_of(const Axis& axis)
 {
-    if (exponent >= 0 && exponent <= 5) return sentence(int64_t(std::llround(std::pow(10.0, exponent))));
-    return exponent < 0 && exponent >= -3 ? sentence(std::pow(10.0, exponent)) : sentence("1e", exponent);
+    const auto ticks_with = [&](std::initializer_list<double> parts) {
+        std::vector<double> ticks;
+        for (int exponent = int(std::floor(axis.lower)); exponent <= int(std::ceil(axis.upper)); ++exponent)
+            for (const double part : parts) {
+                const double tick = part * std::pow(10.0, exponent), place = std::log10(tick);
+                if (place > axis.lower - 1e-9 && place < axis.upper + 1e-9) ticks.push_back(tick);
+            }
+        return ticks;
+    };
+    return axis.upper - axis.lower < 2.0 ? ticks_with({1.0, 2.0, 5.0}) : ticks_with({1.0});
+}
+
+std::string tick_text(double tick)
+{
+    const int exponent = int(std::floor(std::log10(tick * 1.0001)));
+    if (exponent >= 0 && exponent <= 5) return sentence(int64_t(std::llround(tick)));
+    const double part = std::round(tick / std::pow(10.0, exponent));
+    return exponent < 0 && exponent >= -3 ? sentence(part * std::pow(10.0, exponent)) : sentence(part, "e", exponent);
 }
 
 void draw_axes(Canvas& canvas, const Plot& plot, const Axis& x, const Axis& y)
 {
-    for (int exponent = int(x.lower); exponent <= int(x.upper); ++exponent) {
-        const double at = x.at(std::pow(10.0, exponent));
+    for (const double tick : ticks_of(x)) {
+        const double at = x.at(tick);
         canvas.line(at, y.begin, at, y.end, 1.0, GRID);
-        canvas.text(at, y.begin + 16, power_text(exponent), 1);
-        for (int part = 2; part < 10 && exponent < int(x.upper); ++part) {
-            const double minor = x.at(part * std::pow(10.0, exponent));
-            canvas.line(minor, y.begin, minor, y.begin - 4, 1.0, INK);
-        }
+        canvas.text(at, y.begin + 16, tick_text(tick), 1);
     }
-    for (int exponent = int(y.lower); exponent <= int(y.upper); ++exponent) {
-        const double at = y.at(std::pow(10.0, exponent));
+    for (int exponent = int(std::floor(x.lower)); exponent <= int(x.upper); ++exponent)
+        for (int part = 1; part < 10; ++part) {
+            const double minor = part * std::pow(10.0, exponent), place = std::log10(minor);
+            if (place > x.lower && place < x.upper)
+                canvas.line(x.at(minor), y.begin, x.at(minor), y.begin - 4, 1.0, INK);
+        }
+    for (const double tick : ticks_of(y)) {
+        const double at = y.at(tick);
         canvas.line(x.begin, at, x.end, at, 1.0, GRID);
-        canvas.text(x.begin - 6, at + 4, power_text(exponent), 2);
+        canvas.text(x.begin - 6, at + 4, tick_text(tick), 2);
     }
     canvas.line(x.begin, y.begin, x.end, y.begin, 1.2, INK);
     canvas.line(x.begin, y.begin, x.begin, y.end, 1.2, INK);
@@ -248,20 +279,22 @@ void draw(Canvas& canvas, const Plot& plot)
     const Axis y = axis_of(plot, &PlotPoint::y, plot.height - 54.0, 36.0);
     draw_axes(canvas, plot, x, y);
     draw_front(canvas, plot, x, y);
+    const auto color_of = [&](size_t i) { return plot.series[i].is_other ? INK : COLORS[i % COLORS.size()]; };
+    for (size_t i = 0; i < plot.series.size(); ++i)
+        if (plot.series[i].is_joined) draw_steps(canvas, plot.series[i], x, y, color_of(i));
+    // Marks that people look for are last: those with a name, of these the first series' on top.
+    for (const bool labelled : {false, true})
+        for (size_t i = plot.series.size(); i-- > 0;)
+            for (const PlotPoint& point : plot.series[i].points) {
+                if (!(point.x > 0.0) || !(point.y > 0.0) || point.label.empty() == labelled) continue;
+                const bool is_full = point.on_front || labelled || plot.series[i].is_joined || plot.series[i].is_other;
+                canvas.mark(x.at(point.x), y.at(point.y), int(i % MARKS), 4.5, color_of(i), is_full ? 1.0 : 0.45);
+                if (labelled) canvas.text(x.at(point.x) + 8, y.at(point.y) - 5, point.label, 0);
+            }
     double row = 48.0;
     for (size_t i = 0; i < plot.series.size(); ++i) {
-        const PlotSeries& series = plot.series[i];
-        const Color color = series.is_other ? INK : COLORS[i % COLORS.size()];
-        const int kind = int(i % MARKS);
-        if (series.is_joined) draw_steps(canvas, series, x, y, color);
-        for (const PlotPoint& point : series.points) {
-            if (!(point.x > 0.0) || !(point.y > 0.0)) continue;
-            canvas.mark(x.at(point.x), y.at(point.y), kind, 4.5, color,
-                        point.on_front || series.is_joined || series.is_other ? 1.0 : 0.45);
-            if (!point.label.empty()) canvas.text(x.at(point.x) + 8, y.at(point.y) - 5, point.label, 0);
-        }
-        canvas.mark(plot.width - legend, row - 4.0, kind, 4.5, color, 1.0);
-        canvas.text(plot.width - legend + 12.0, row, series.name, 0);
+        canvas.mark(plot.width - legend, row - 4.0, int(i % MARKS), 4.5, color_of(i), 1.0);
+        canvas.text(plot.width - legend + 12.0, row, plot.series[i].name, 0);
         row += 19.0;
     }
     if (!has_front(plot)) return;

@@ -12,7 +12,7 @@ namespace shvr::report {
 struct PlotPoint {
     double x = 1.0, y = 1.0;  ///< what is not above 0 is left out
     std::string label;        ///< beside the mark; empty: none
-    bool on_front = false;    ///< joined by a line; the others are paler
+    bool on_front = false;    ///< joined by a line; the others are paler, unless they have a label
 };
 
 struct PlotSeries {

@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
-#include <fstream>
+#include <iterator>
+#include <utility>
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/formats/open_volume.h"
+#include "ui/files/asked.h"
 
 namespace shvr::ui {
 
@@ -18,12 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Names that are looked at to tell what a folder holds.
-constexpr int SAMPLED_NAMES = 64;
 /// A completion of a path looks at no more names than that.
 constexpr size_t MAX_COMPLETED = 200'000;
-
-constexpr const char* ANNOTATION_ENDINGS[] = {".mask", ".offsets", ".graphml", ".swc", ".journal"};
 
 char lower(char c)
 {
@@ -42,68 +38,6 @@ std::string_view number_at(std::string_view text, size_t at)
     while (end < text.size() && is_digit(text[end])) ++end;
     while (at + 1 < end && text[at] == '0') ++at;
     return text.substr(at, end - at);
-}
-
-std::string local_time(fs::file_time_type time)
-{
-    const std::time_t seconds = std::chrono::system_clock::to_time_t(
-        std::chrono::time_point_cast<std::chrono::system_clock::duration>(std::chrono::file_clock::to_sys(time)));
-    std::tm parts{};
-    std::array<char, 32> text{};
-    if (!localtime_r(&seconds, &parts)) return {};
-    return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M", &parts)};
-}
-
-FileKind kind_of_folder(const fs::path& folder)
-{
-    std::error_code ignored;
-    if (fs::exists(folder / "shvr" / "session.json", ignored)) return FileKind::project;
-    for (const char* name : {".zattrs", "zarr.json", ".zgroup", ".zarray"})
-        if (fs::exists(folder / name, ignored)) return FileKind::zarr;
-    int seen = 0, tiffs = 0, dicoms = 0;
-    std::error_code error;
-    for (fs::directory_iterator each(folder, error); !error && each != fs::directory_iterator();
-         each.increment(error)) {
-        const std::string name = lower_case(each->path().filename().string());
-        tiffs += name.ends_with(".tif") || name.ends_with(".tiff");
-        dicoms += name.ends_with(".dcm");
-        if (++seen == SAMPLED_NAMES) break;
-    }
-    if (2 * dicoms > seen) return FileKind::dicom_series;
-    return tiffs >= 2 && 2 * tiffs > seen ? FileKind::tiff_series : FileKind::folder;
-}
-
-const char* text_of(FileKind kind)
-{
-    switch (kind) {
-        case FileKind::project: return "SHVR project";
-        case FileKind::zarr: return "OME-Zarr volume";
-        case FileKind::dicom_series: return "DICOM series";
-        case FileKind::tiff_series: return "TIFF slices";
-        case FileKind::folder: return "folder";
-        case FileKind::volume: return "volume";
-        case FileKind::session: return "SHVR session";
-        case FileKind::annotation: return "annotation";
-        case FileKind::other: break;
-    }
-    return "";
-}
-
-/// A session names itself at its beginning.
-bool begins_as_session(const fs::path& path)
-{
-    std::array<char, 256> head{};
-    std::ifstream file(path, std::ios::binary);
-    file.read(head.data(), head.size());
-    return std::string_view(head.data(), size_t(file.gcount())).find("\"shvr_session\"") != std::string_view::npos;
-}
-
-std::string reason(const std::error_code& error)
-{
-    return error == std::errc::permission_denied           ? "it may not be read"
-           : error == std::errc::no_such_file_or_directory ? "it is not there"
-           : error == std::errc::not_a_directory           ? "it is no folder"
-                                                           : error.message();
 }
 
 }  // namespace
@@ -130,34 +64,31 @@ bool is_naturally_before(std::string_view a, std::string_view b)
 
 // ---- A folder -------------------------------------------------------------------------------------------------------
 
-void FileList::enter(const fs::path& folder)
+void FileList::enter(const fs::path& folder, size_t at_once)
 {
     folder_ = folder;
     entries_.clear();
     rows_.clear();
     details_.clear();
     failure_.clear();
-    std::error_code error;
-    next_ = fs::directory_iterator(folder, error);
-    is_reading_ = !error;
-    if (error) failure_ = sentence(folder.string(), ": cannot be listed: ", reason(error));
+    unanswered_ = 0;
+    is_reading_ = true;
+    reader_ = std::make_unique<FolderReader>(folder, at_once);
+    reader_->wait(AT_ONCE);
+    read_on();
 }
 
-bool FileList::read_on(size_t most)
+bool FileList::read_on()
 {
-    if (!is_reading_) return false;
+    if (!reader_) return false;
     const size_t first = entries_.size();
-    std::error_code error, ignored;
-    for (; most > 0 && next_ != fs::directory_iterator(); --most) {
-        // The kind comes with the name on most file systems, except behind a link.
-        entries_.push_back({next_->path().filename().string(), next_->is_directory(ignored)});
-        next_.increment(error);
-        if (error) {
-            failure_ = sentence(folder_.string(), ": only part of it can be listed: ", reason(error));
-            next_ = {};
-        }
-    }
-    is_reading_ = next_ != fs::directory_iterator();
+    FolderReader::News news = reader_->take();
+    entries_.insert(entries_.end(), std::make_move_iterator(news.entries.begin()),
+                    std::make_move_iterator(news.entries.end()));
+    for (auto& [name, details] : news.details) details_[name] = std::move(details);
+    unanswered_ -= news.details.size();
+    failure_ = std::move(news.failure);
+    is_reading_ = news.is_reading;
     take(first);
     return is_reading_;
 }
@@ -199,8 +130,11 @@ void FileList::take(size_t first_new)
 
 const FileDetails& FileList::details(size_t row)
 {
-    const auto [found, is_new] = details_.try_emplace(rows_[row]);
-    if (is_new) found->second = details_of(folder_ / at(row).name);
+    const auto [found, is_new] = details_.try_emplace(at(row).name);
+    if (is_new) {
+        reader_->ask_about(at(row).name);
+        ++unanswered_;
+    }
     return found->second;
 }
 
@@ -218,31 +152,6 @@ std::optional<size_t> FileList::row_beginning(std::string_view text, size_t from
         if (begins_with(at(row).name, text)) return row;
     }
     return std::nullopt;
-}
-
-FileDetails details_of(const fs::path& path)
-{
-    FileDetails details;
-    std::error_code error;
-    const fs::file_time_type changed = fs::last_write_time(path, error);
-    if (!error) details.changed = local_time(changed);
-    const std::string name = lower_case(path.filename().string());
-    if (fs::is_directory(path, error)) {
-        details.kind = kind_of_folder(path);
-        details.kind_text = text_of(details.kind);
-        return details;
-    }
-    if (const uintmax_t bytes = fs::file_size(path, error); !error) details.bytes = int64_t(bytes);
-    const std::string_view format = format_of_name(name);
-    if (name.ends_with(".json") && begins_as_session(path))
-        details.kind = FileKind::session;
-    else if (!format.empty())
-        details.kind = FileKind::volume;
-    else if (name.ends_with(".mask.json") ||
-             std::ranges::any_of(ANNOTATION_ENDINGS, [&](const char* ending) { return name.ends_with(ending); }))
-        details.kind = FileKind::annotation;
-    details.kind_text = details.kind == FileKind::volume ? std::string(format) : text_of(details.kind);
-    return details;
 }
 
 std::string size_text(int64_t bytes)
@@ -300,6 +209,28 @@ std::string completed(const std::string& typed, const fs::path& folder)
     }
     if (matches == 0) return typed;
     return before + common + (matches == 1 && is_folder ? "/" : "");
+}
+
+Verdict verdict_on(const fs::path& path, Wanted wanted, bool enters_folders)
+{
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    const bool is_folder = fs::is_directory(status);
+    if (wanted == Wanted::scan) {
+        // What lies within an archive is no path of the file system.
+        if (!fs::exists(status) && !is_within_archive(path)) {
+            const bool is_gone = !error || error == std::errc::no_such_file_or_directory;
+            return {false,
+                    sentence(path.string(), ": ", is_gone ? "there is no such file or folder" : error.message())};
+        }
+        return {is_folder && !is_opened_whole(details_of(path).kind), {}};
+    }
+    if (is_folder && (enters_folders || wanted == Wanted::new_file)) return {true, {}};
+    if (wanted == Wanted::new_file && fs::exists(status))
+        return {false, sentence(path.string(), ": is there already; type another name")};
+    if (!fs::is_directory(path.parent_path(), error))
+        return {false, sentence(path.parent_path().string(), ": is no folder; choose one for the file")};
+    return {};
 }
 
 bool is_within_archive(const fs::path& path)

@@ -1,44 +1,31 @@
 #pragma once
 // What a file chooser shows: the files of a folder, what they are by their names, and what a typed path means. A folder
-// is read in parts, so that 100,000 slices do not stop the window; nothing is asked about a file until its row is
-// shown. Paths and names in UTF-8. Not thread-safe.
+// is read beside the main thread (folder_reader.h); nothing is asked about a file until its row is shown. Paths and
+// names in UTF-8. Not thread-safe.
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
 #include <vector>
 
+#include "ui/files/folder_reader.h"
+
 namespace shvr::ui {
-
-/// The folders before `other` are opened as a whole, as a volume or a project.
-enum class FileKind { project, zarr, dicom_series, tiff_series, folder, volume, session, annotation, other };
-inline bool is_opened_whole(FileKind kind)
-{
-    return kind < FileKind::folder;
-}
-
-struct FileDetails {
-    FileKind kind = FileKind::other;
-    std::string kind_text;         ///< "NRRD volume", "folder"
-    std::optional<int64_t> bytes;  ///< of a file
-    std::string changed;           ///< local time, "2026-11-22 17:49"; empty where it is not known
-};
 
 class FileList {
 public:
-    struct Entry {
-        std::string name;
-        bool is_folder = false;
-    };
-    static constexpr size_t READ_AT_ONCE = 4096;  ///< names; a few milliseconds
+    using Entry = FolderEntry;
 
-    /// Begins to list that folder; `read_on` does the work. Never throws: see `failure`.
-    void enter(const std::filesystem::path& folder);
-    /// Lists more names. Returns whether there are yet more.
-    bool read_on(size_t most = READ_AT_ONCE);
+    /// Begins to list that folder, and waits for it as long as nobody notices (AT_ONCE). See `failure`.
+    void enter(const std::filesystem::path& folder, size_t at_once = FolderReader::READ_AT_ONCE);
+    /// Takes what has been read meanwhile. Returns whether there is more.
+    bool read_on();
     bool is_reading() const { return is_reading_; }
+    /// Something has been asked that was not answered yet.
+    bool is_waiting() const { return is_reading_ || unanswered_ > 0; }
     const std::filesystem::path& folder() const { return folder_; }
     /// Why the folder, or the rest of it, cannot be listed, as a sentence; empty: it can.
     const std::string& failure() const { return failure_; }
@@ -49,7 +36,8 @@ public:
     size_t size() const { return rows_.size(); }
     const Entry& at(size_t row) const { return entries_[rows_[row]]; }
     size_t left_out() const { return entries_.size() - rows_.size(); }
-    /// Asks the file system at the first call for a row, and keeps the answer.
+    /// Asks the file system at the first call for a row, and keeps the answer, which a later `read_on` brings; until
+    /// then nothing is known.
     const FileDetails& details(size_t row);
 
     std::optional<size_t> row_of(std::string_view name) const;
@@ -62,18 +50,17 @@ private:
     void take(size_t first_new);
 
     std::filesystem::path folder_;
-    std::filesystem::directory_iterator next_;
+    std::unique_ptr<FolderReader> reader_;
+    size_t unanswered_ = 0;
     bool is_reading_ = false, shows_all_files_ = false, shows_hidden_ = false;
     std::string failure_;
     std::vector<Entry> entries_;  ///< as they were read
     std::vector<uint32_t> rows_;  ///< their numbers, in order
-    std::unordered_map<uint32_t, FileDetails> details_;
+    std::unordered_map<std::string, FileDetails> details_;
 };
 
 /// Numbers within names count as numbers; the case of letters decides last.
 bool is_naturally_before(std::string_view a, std::string_view b);
-/// By its name, and for a folder by a few names in it. Asks the file system.
-FileDetails details_of(const std::filesystem::path& path);
 std::string size_text(int64_t bytes);  ///< "1.4 GB": 1000 bytes are 1 kB
 
 /// $HOME, or the root where it is not known.
@@ -83,6 +70,19 @@ std::filesystem::path home_folder();
 std::filesystem::path typed_path(std::string_view typed, const std::filesystem::path& folder);
 /// The typed text, continued as far as all names agree that begin so; a folder that is the only one ends in "/".
 std::string completed(const std::string& typed, const std::filesystem::path& folder);
+
+enum class Wanted {
+    scan,      ///< something that SHVR opens
+    new_file,  ///< the name of a file that is not there yet
+    any,       ///< a file or a folder, there or not
+};
+/// Whether a path can be taken as what is wanted.
+struct Verdict {
+    bool enters = false;  ///< it is a folder to look into instead
+    std::string failure;  ///< why not, as a sentence; empty: it can
+};
+/// `enters_folders`: any folder is looked into, unless it is opened as a whole. Asks the file system.
+Verdict verdict_on(const std::filesystem::path& path, Wanted wanted, bool enters_folders);
 
 /// Whether it leads into a zipped volume, as scan.ozx/0 does.
 bool is_within_archive(const std::filesystem::path& path);

@@ -9,6 +9,7 @@
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>
 
+#include "ui/panels/field_keys.h"
 #include "ui/panels/look/color_field.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/action_rows.h"
@@ -116,8 +117,10 @@ bool settings_popup(uint8_t group, const Model& model, GroupSettings& settings, 
     if (!ImGui::BeginPopupContextItem("settings")) return false;
     bool changed = false;
     ImGui::SetNextItemWidth(12.0f * ImGui::GetFontSize());
-    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    static FieldKeys keys;
+    keys.before_field(ImGui::IsWindowAppearing());
     changed = ImGui::InputText("Name", &settings.name);
+    keys.after_field();
     if (ImGui::IsItemDeactivatedAfterEdit()) ImGui::CloseCurrentPopup();
     if (ImGui::MenuItem("Belongs to no group", nullptr, false, settings.parent != 0))
         set_parent(group, 0, model, actions);
@@ -330,10 +333,12 @@ void rename_button(const Model& model, Actions& actions)
     ImGui::EndDisabled();
     hint("Gives the active group another name.");
     if (!ImGui::BeginPopup("rename")) return;
-    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    static FieldKeys keys;
+    keys.before_field(ImGui::IsWindowAppearing());
     std::string name = group_of(model.session.groups, group).name;
     ImGui::SetNextItemWidth(14.0f * ImGui::GetFontSize());
     if (ImGui::InputText("##name", &name)) set(actions, model, [&](Session& s) { s.groups[group].name = name; });
+    keys.after_field();
     if (ImGui::IsItemDeactivatedAfterEdit()) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
 }

@@ -209,6 +209,7 @@ void paint_menu(const Model& model, Actions& actions)
     if (!begin_menu("Paint", model.is_open)) return;
     for (const BrushRow& row : BRUSHES) brush_item(row, model, actions);
     shortcut_item("next_brush", model, actions);
+    shortcut_item("threshold_here", model, actions);
     ImGui::Separator();
     shortcut_item("tool_paint", model, actions, model.tool() == Tool::paint);
     shortcut_item("tool_erase", model, actions, model.tool() == Tool::erase);

@@ -7,6 +7,7 @@
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>
 
+#include "ui/panels/field_keys.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/lists/palette.h"
@@ -101,12 +102,14 @@ void palette_window(const Model& model, Actions& actions)
                                    ImGuiWindowFlags_NoNavInputs;
     if (palette.takes_keys) ImGui::SetNextWindowFocus();
     ImGui::Begin("Find anything", nullptr, flags);
-    if (std::exchange(palette.takes_keys, false)) ImGui::SetKeyboardFocusHere();
+    static FieldKeys keys;
+    keys.before_field(std::exchange(palette.takes_keys, false));
     ImGui::SetNextItemWidth(-1.0f);
     const std::string before = palette.text;
     const bool is_entered = ImGui::InputTextWithHint(
         "##text", "a name, an action (look_from camera=top) or a setting (light.ambient=0.4)", &palette.text,
         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackAlways, put_cursor_behind);
+    keys.after_field();
     if (before != palette.text) palette.chosen = 0;
     const std::vector<PaletteEntry> entries = palette_entries(model, palette.text);
     if (was_pressed(ImGuiKey_DownArrow)) ++palette.chosen;

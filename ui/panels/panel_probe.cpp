@@ -77,9 +77,11 @@ bool threshold(const Model& model, BrushSettings& brush, Actions& actions)
 {
     label("Paint threshold");
     const bool changed = intensity_slider("##threshold", model, *brush.threshold);
-    hint(
-        "In the file's intensities: only voxels at or above it are painted. The line \"paint\" in the transfer "
-        "function.");
+    hint(sentence(
+             "In the file's intensities: only voxels at or above it are painted. The line \"paint\" in the transfer "
+             "function. ",
+             name_with_key("threshold_here", model.keymap), ".")
+             .c_str());
     return !resets("probe.paint_threshold", actions) && changed;
 }
 

@@ -57,6 +57,7 @@ void sight_items(const Model& model, Actions& actions)
     ImGui::Separator();
     shortcut_item("scale_bar", model, actions, interaction.scale_bar);
     shortcut_item("axes", model, actions, interaction.axes);
+    shortcut_item("group_legend", model, actions, interaction.group_legend);
     shortcut_item("probe_label", model, actions, interaction.probe_label);
     shortcut_item("auto_contrast", model, actions);
 }

@@ -65,7 +65,8 @@ void sight_items(const Model& model, Actions& actions);
 void new_nodes(const Model& model, Actions& actions);
 /// The file chooser, while the model says that it is asked what to open.
 void open_dialog(const Model& model, Actions& actions);
-/// Whether keys are for a file chooser; and whether one wants another frame, since it is reading a folder.
+/// Whether keys are for a file chooser; and whether one, or a dialog of a task, wants another frame, since it waits for
+/// the disk.
 bool choosers_have_keys();
 bool choosers_are_busy();
 /// Shows the dialog that asks for another name to go on under, from the next frame on.
@@ -73,6 +74,8 @@ void ask_for_name(const Model& model);
 void save_as_dialog(Actions& actions);
 /// Items of the menu File for exporting, importing, labelling and comparing; and the dialogs that they show.
 void task_menu(const Model& model);
+/// Whether one of these dialogs, as it was drawn last, waits for what the disk says of its files.
+bool task_dialog_waits();
 /// Shows the dialog that makes a project of that volume, from the next frame on.
 void ask_to_import(const std::filesystem::path& volume);
 /// Items of the menu File for opening with options and for correcting the spacing; and their dialogs.

@@ -131,14 +131,36 @@ bool covers(const glm::dvec2& at)
     return false;
 }
 
-void hint(const char* text)
+namespace {
+
+/// Wrapped to a readable width.
+void tooltip(const char* text)
 {
-    if (!ImGui::IsItemHovered() || ImGui::IsItemActive()) return;  // it would cover what is being dragged
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(24.0f * ImGui::GetFontSize());
     ImGui::TextUnformatted(text);
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
+}
+
+}  // namespace
+
+void hint(const char* text)
+{
+    if (!ImGui::IsItemHovered() || ImGui::IsItemActive()) return;  // it would cover what is being dragged
+    tooltip(text);
+}
+
+void hint_beside(const char* text)
+{
+    if (!ImGui::IsItemHovered() || ImGui::IsItemActive()) return;
+    const ImVec2 lower = ImGui::GetItemRectMin(), upper = ImGui::GetItemRectMax();
+    const ImGuiViewport& screen = *ImGui::GetMainViewport();
+    const bool is_left = lower.x - screen.Pos.x > screen.Pos.x + screen.Size.x - upper.x;
+    const float gap = 0.5f * ImGui::GetFontSize();
+    ImGui::SetNextWindowPos({is_left ? lower.x - gap : upper.x + gap, lower.y}, ImGuiCond_Always,
+                            {is_left ? 1.0f : 0.0f, 0.0f});
+    tooltip(text);
 }
 
 }  // namespace shvr::ui

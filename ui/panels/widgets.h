@@ -19,6 +19,8 @@ inline constexpr ThemeColor WARNING{ColorRole::warning}, ERROR_TEXT{ColorRole::e
 
 /// A tooltip for the widget drawn last, wrapped to a readable width.
 void hint(const char* text);
+/// The same beside a widget that one looks at while one reads: to the left or the right, where there is more room.
+void hint_beside(const char* text);
 
 /// Labels form one column at the left, with their text or framed widget beside them.
 void text_label(const char* text);

@@ -222,8 +222,13 @@ std::string why(const Model& model, const SaveAs&)
     return model.is_saving ? IS_SAVING : why_not_edited(model);
 }
 
-std::string why(const Model&, const ExportTask& task)
+/// Asked in each frame of its dialog, so by what is known without the disk; the task itself asks that.
+std::string why(const Model& model, const ExportTask& task)
 {
+    if ((!task.trace.empty() || !task.mesh.empty()) && model.trace.nodes().empty())
+        return "nothing is traced yet, so there is neither a trace nor a mesh to write";
+    if (task.labels && model.volume.format != "ome-zarr")
+        return "labels are written into a project, and this scan is none: import it as one, or name a mask";
     const bool has_file =
         std::ranges::any_of(std::array{&task.mask, &task.offset, &task.trace, &task.mesh, &task.metrics},
                             [](const auto* path) { return !path->empty(); });

@@ -5,9 +5,17 @@
 #include <cstdint>
 #include <ctime>
 #include <deque>
+#include <exception>
+#include <new>
 #include <string>
 
 namespace shvr::ui {
+
+/// What went wrong, as a person is told.
+inline std::string told_of(const std::exception& error)
+{
+    return dynamic_cast<const std::bad_alloc*>(&error) ? "host memory is exhausted" : error.what();
+}
 
 enum class Weight {
     done,     ///< what an action did

@@ -74,7 +74,7 @@ bool Workbench::apply(const Action& action)
     } catch (const DeviceLost&) {
         throw;
     } catch (const std::exception& error) {
-        say(error.what(), Weight::error);
+        say(told_of(error), Weight::error);
         return false;
     }
 }
@@ -154,7 +154,7 @@ void Workbench::attempt(Attempt& state, Part part)
     } catch (const DeviceLost&) {
         throw;
     } catch (const std::exception& error) {
-        note_failure(state, error.what());
+        note_failure(state, told_of(error));
     }
 }
 

@@ -355,6 +355,9 @@ private:
     void select_segment();
     void note_cut(std::optional<std::pair<uint32_t, uint32_t>> ends);
     std::string keys_of(const char* shortcut) const;
+    /// "; Ctrl + T sets that"; empty where the shortcut has no key.
+    std::string with_key(const char* before, const char* shortcut, const char* after) const;
+    std::string how_to_reach_this() const;
     void move_probe(const glm::dvec3& point, bool jumps);
     void lift();
     void log_instead(std::initializer_list<Action> actions);

@@ -1,4 +1,5 @@
-// Long work beside the loop: each job makes its result on a worker; what is done with it happens here.
+// Long work beside the loop: each job makes its result on a worker; what is done with it happens here. Names and
+// folders are checked by the job, too: that asks the disk.
 
 #include "ui/workbench/workbench.h"
 
@@ -40,9 +41,8 @@ void Workbench::act(const ExportTask& task)
                               .groups = document.session.groups,
                               .volume_hash = document.session.volume_hash,
                               .project = document.session.volume_path,
+                              .volume_path = document.session.volume_path,
                               .trace_path = document.session.trace_path};
-    check(task);
-    check(task, view);
     auto snapshot = std::make_shared<AnnotationSnapshot>(view);
     std::vector<std::string> names;
     for (const std::filesystem::path& path : {task.mask, task.offset, task.trace, task.mesh, task.metrics})
@@ -62,7 +62,6 @@ void Workbench::act(const ExportTask& task)
 /// The project is opened when it is there.
 void Workbench::act(const ImportTask& task)
 {
-    check(task);
     const auto import = [this, task](ProgressReporter& reporter) -> Jobs::Completion {
         ImportTask wanted = task;
         wanted.program = "shvr view";
@@ -77,13 +76,15 @@ void Workbench::act(const ImportTask& task)
 
 void Workbench::act(const LabelTask& task)
 {
-    check(task);
     const std::shared_ptr<const VolumeSource> source = document_->source;
-    check(task, *source);
+    const std::filesystem::path path = document_->session.volume_path;
     const std::string name = document_->volume().name;
-    const auto label = [this, task, source, name](ProgressReporter& reporter) -> Jobs::Completion {
-        const Components::Counts counts = run(task, *source, name, reporter).counts;
-        return [this, counts, task] {
+    const auto label = [this, task, source, path, name](ProgressReporter& reporter) -> Jobs::Completion {
+        check(task, *source, path);
+        const LabelResult result = run(task, *source, name, reporter);
+        return [this, result, task] {
+            const Components::Counts& counts = result.counts;
+            for (const std::string& warning : result.warnings) say(warning, Weight::warning);
             say(sentence(counts.found, " connected parts at or above ", task.threshold, ", the largest of ",
                          counts.largest_voxels, " voxels",
                          task.output.empty() ? "" : "; labels are in " + task.output.string()));
@@ -94,7 +95,6 @@ void Workbench::act(const LabelTask& task)
 
 void Workbench::act(const EvaluateTask& task)
 {
-    check(task);
     jobs_.start("comparing with the reference", [this, task](ProgressReporter& reporter) -> Jobs::Completion {
         const EvaluateResult result = run(task, reporter);
         return [this, result] {

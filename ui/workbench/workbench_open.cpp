@@ -383,6 +383,8 @@ void Workbench::end_opening(std::exception_ptr failure)
     std::string why = "an error of an unknown kind";
     try {
         std::rethrow_exception(failure);
+    } catch (const std::bad_alloc& error) {
+        why = sentence(ended->path.string(), ": ", told_of(error), "; close other programs, and open it again");
     } catch (const std::exception& error) {
         why = error.what();
     } catch (...) {

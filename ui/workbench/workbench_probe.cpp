@@ -177,8 +177,21 @@ void Workbench::stroke_ended()
 {
     const StrokeResult& result = document_->annotator.last_stroke();
     const bool is_as_meant = result.taken_from.empty() && result.kept_by_locks() == 0;
-    say(sentence_of(result, [&](uint8_t group) { return group_of(document_->session.groups, group).name; }),
-        is_as_meant ? Weight::done : Weight::warning);
+    std::string said =
+        sentence_of(result, [&](uint8_t group) { return group_of(document_->session.groups, group).name; });
+    const bool found_nothing =
+        is_as_meant && result.voxels() == 0 && result.kept_painted == 0 && !result.stroke.erases();
+    if (found_nothing) said += how_to_reach_this();
+    say(said, is_as_meant && !found_nothing ? Weight::done : Weight::warning);
+}
+
+/// Where what is under the probe is below the paint threshold: what it is, and the key that changes that.
+std::string Workbench::how_to_reach_this() const
+{
+    const Model now = model();
+    const Reading& here = now.reading;
+    if (!here.is_inside || !here.intensity || *here.intensity + here.offset >= now.paint_threshold()) return {};
+    return "; here is " + value_in_words(here) + with_key(", and ", "threshold_here", " sets the threshold from it");
 }
 
 /// Requests the preview while it is shown and no stroke is running: a stroke shows its own effect.

@@ -72,6 +72,24 @@ std::string sentence_about(const TransferFunction& was, const TransferFunction& 
     return sentence("Transfer function of ", is.points().size(), " points, from ", is.lower(), " to ", is.upper());
 }
 
+/// How the light that arrives is mapped to what is seen.
+std::string sentence_about(const OcclusionSettings& was, const OcclusionSettings& is)
+{
+    const auto &before = was.mapping, &after = is.mapping;
+    const std::string off = is.strength > 0.0 ? "" : "; occlusion is off, its strength is 0";
+    if (after.empty()) return "Occlusion curve: a power again" + off;
+    if (before.size() != after.size())
+        return sentence("Occlusion curve: ",
+                        before.empty()                 ? "points from now on"
+                        : before.size() < after.size() ? "a point added"
+                                                       : "a point removed",
+                        ", ", after.size(), " of them", off);
+    const auto [old, moved] = std::ranges::mismatch(before, after);
+    const auto percent = [](double share) { return sentence(std::round(100.0 * share), " %"); };
+    return sentence("Occlusion curve, point ", moved - after.begin() + 1, ": where ", percent(moved->arrives),
+                    " of the light arrives, ", percent(moved->seen), " is seen", off);
+}
+
 /// Empty where only numbers changed, which say enough themselves.
 std::string sentence_about(const FeelSettings& was, const FeelSettings& is)
 {
@@ -134,11 +152,22 @@ std::string special_sentence(const Session& was, const Session& is)
         return sentence_about(was.transfer_function, is.transfer_function);
     if (const auto quality = quality_of(is.render); quality && was.render != is.render)
         return sentence("Render quality: ", quality->name);
+    if (was.light.occlusion.mapping != is.light.occlusion.mapping)
+        return sentence_about(was.light.occlusion, is.light.occlusion);
     if (was.light.shaded != is.light.shaded) return is.light.shaded ? "Shading on" : "Shading off";
     if (was.render.preintegration != is.render.preintegration)
         return is.render.preintegration ? "Narrow peaks on: none is missed between samples"
                                         : "Narrow peaks off: samples may miss them";
     return {};
+}
+
+/// Whether pictures of the volume are the same: these settings are drawn over them, or not at all.
+bool look_the_same(Session before, const Session& after)
+{
+    before.probe = after.probe;  // which is drawn by itself, as distances are
+    before.measurements = after.measurements;
+    if (!shows_occlusion(before.light) && !shows_occlusion(after.light)) before.light.occlusion = after.light.occlusion;
+    return before == after;
 }
 
 }  // namespace
@@ -188,9 +217,22 @@ void Workbench::take_session(Session session)
         throw;
     }
     note_edit();
-    before.probe = after.probe;  // which is drawn by itself, as distances are
-    before.measurements = after.measurements;
-    if (before != after) look_again();
+    if (!look_the_same(std::move(before), after)) look_again();
+}
+
+/// Updates the window's data about the trace; the annotator passes changes to the scene itself.
+void Workbench::show_changes(const Command& command)
+{
+    Document& document = *document_;
+    const bool is_traced = std::ranges::any_of(
+        command.changes, [](const Change& change) { return std::holds_alternative<TraceChange>(change); });
+    if (is_traced) document.drags_node = false;
+    const bool is_set = std::ranges::any_of(
+        command.changes, [](const Change& change) { return std::holds_alternative<SettingChange>(change); });
+    if (!is_set) return;
+    const Session before = document.session;
+    document.take_settings();
+    if (!look_the_same(before, document.session)) look_again();
 }
 
 /// What follows from settings beside another picture.

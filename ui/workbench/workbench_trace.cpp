@@ -144,6 +144,12 @@ std::string Workbench::keys_of(const char* shortcut) const
     return keymap_.text_of(*found);
 }
 
+std::string Workbench::with_key(const char* before, const char* shortcut, const char* after) const
+{
+    const std::string keys = keys_of(shortcut);
+    return keys.empty() ? keys : before + keys + after;
+}
+
 void Workbench::act(const MendCut&)
 {
     if (!document_->is_cut()) fail("the last deletion cut nothing in two; expected two nodes to link again");
@@ -190,8 +196,11 @@ void Workbench::act(const NodeAt& action)
     trace(NodeOp{.at = voxel, .radius_voxels = {}, .group = {}});
     if (goes_inside && !ball)
         say(messages_.last() + "; on what is seen, for nothing there has a middle at the paint threshold " +
-                sentence(*document_->brush().threshold),
+                sentence(*document_->brush().threshold, with_key("; ", "threshold_here", " sets that from here")),
             Weight::warning);
+    if (ball && ball->is_held)
+        say(messages_.last() +
+            "; the middle of that lies further aside than the probe's ball reaches, and a larger one finds it");
     move_probe(voxel * document_->volume().spacing, false);
     log_instead({NodeOp{.at = voxel, .radius_voxels = {}, .group = {}}, PlaceProbe{voxel}});
 }

@@ -34,20 +34,6 @@ void Workbench::act(const RedoOp& action)
     step(action.count, "Redone", "Nothing to redo", [](Annotator& annotator) { return annotator.redo(); });
 }
 
-/// Updates the window's data about the trace; the annotator passes changes to the scene itself.
-void Workbench::show_changes(const Command& command)
-{
-    Document& document = *document_;
-    const bool is_traced = std::ranges::any_of(
-        command.changes, [](const Change& change) { return std::holds_alternative<TraceChange>(change); });
-    if (is_traced) document.drags_node = false;
-    const bool is_set = std::ranges::any_of(
-        command.changes, [](const Change& change) { return std::holds_alternative<SettingChange>(change); });
-    if (!is_set) return;
-    document.take_settings();
-    look_again();
-}
-
 void Workbench::act(const RevertOp&)
 {
     record_settings();

@@ -8,16 +8,12 @@
 
 namespace shvr {
 
-namespace {
-
 bool is_label_image(const std::filesystem::path& path)
 {
     const std::filesystem::path plain = path.has_filename() ? path : path.parent_path();
     const std::string form = lower_case(plain.extension().string());
     return form == ".zarr" || (form.empty() && plain.parent_path().filename() == "labels");
 }
-
-}  // namespace
 
 bool is_mask_export(const std::filesystem::path& path)
 {

@@ -13,6 +13,8 @@
 
 namespace shvr {
 
+/// Whether what is written there is a folder, of a label image.
+bool is_label_image(const std::filesystem::path& path);
 bool is_mask_export(const std::filesystem::path& path);
 
 /// Replaces an old file (or label image) atomically. `volume`, of the mask's size, gives the voxels' positions; `image`

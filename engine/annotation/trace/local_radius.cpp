@@ -10,6 +10,8 @@ namespace shvr {
 namespace {
 
 constexpr size_t DIRECTIONS = 200;  ///< about 9 degrees apart
+/// Less than a thousandth more is the noise of directions, not a larger place.
+constexpr double NOTICEABLE = 1.001;
 
 /// Evenly spread over the sphere: a Fibonacci lattice.
 const std::array<glm::dvec3, DIRECTIONS>& directions()
@@ -68,48 +70,70 @@ private:
     double most_, step_;
 };
 
-}  // namespace
-
-std::optional<LocalBall> local_ball(const DensityAt& density_at, double threshold, const glm::dvec3& voxel,
-                                    const glm::dvec3& spacing, double most)
+/// Climbs from `point` to where the ball is largest, as long as it contains the point and `may_be` allows its middle,
+/// in steps that become smaller. The middle in the unit of the spacing.
+template <class MayBe>
+std::optional<LocalBall> largest_ball(const Structure& structure, const glm::dvec3& point, double most,
+                                      const MayBe& may_be)
 {
-    const Structure structure(density_at, threshold, spacing, most);
-    const glm::dvec3 point = voxel * spacing;
     glm::dvec3 center = point;
     double radius = structure.depth_of(center);
     if (radius <= 0.0) return std::nullopt;
-    // Climbs to where the ball is largest, as long as it contains the point, in steps that become smaller.
     const double finest = structure.finest();
+    bool is_held = false;
     for (double step = std::max(0.5 * radius, finest); step > 0.05 * finest && radius < most;) {
         glm::dvec3 better = center;
         double larger = radius;
+        bool is_refused = false;
         for (int i = 0; i < 27; ++i) {
             const glm::dvec3 way(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
             if (i == 13) continue;
             const glm::dvec3 tried = center + step * glm::normalize(way);
             if (glm::distance(tried, point) > larger + step) continue;
             const double depth = structure.depth_of(tried);
-            if (depth > larger && glm::distance(tried, point) < depth) {
-                better = tried;
-                larger = depth;
+            if (depth <= larger || glm::distance(tried, point) >= depth) continue;
+            if (!may_be(tried)) {
+                is_refused |= depth > NOTICEABLE * radius;
+                continue;
             }
+            better = tried;
+            larger = depth;
         }
-        // Less than a thousandth more is the noise of directions, not a larger place.
-        if (larger > 1.001 * radius) {
+        if (larger > NOTICEABLE * radius) {
             center = better;
             radius = larger;
+            is_held = false;
         } else {
             step *= 0.5;
         }
+        is_held |= is_refused;
     }
-    return radius < most ? std::optional(LocalBall{center / spacing, radius}) : std::nullopt;
+    return radius < most ? std::optional(LocalBall{center, radius, is_held}) : std::nullopt;
+}
+
+std::optional<LocalBall> in_voxels(std::optional<LocalBall> ball, const glm::dvec3& spacing)
+{
+    if (ball) ball->middle /= spacing;
+    return ball;
+}
+
+}  // namespace
+
+std::optional<LocalBall> local_ball(const DensityAt& density_at, double threshold, const glm::dvec3& voxel,
+                                    const glm::dvec3& spacing, double most)
+{
+    const Structure structure(density_at, threshold, spacing, most);
+    return in_voxels(largest_ball(structure, voxel * spacing, most, [](const glm::dvec3&) { return true; }), spacing);
 }
 
 std::optional<LocalBall> ball_behind(const DensityAt& density_at, double threshold, const glm::dvec3& voxel,
-                                     const glm::dvec3& way, const glm::dvec3& spacing, double most)
+                                     const glm::dvec3& way, const glm::dvec3& spacing, double most, double aside)
 {
     const Structure structure(density_at, threshold, spacing, most);
     const glm::dvec3 from = voxel * spacing, direction = glm::normalize(way);
+    const auto is_near_sight = [&](const glm::dvec3& point) {
+        return glm::length(point - from - glm::dot(point - from, direction) * direction) <= aside;
+    };
     // What is seen is the steepest place of a wall, whose middle may lie a voxel before it. A grain of noise, thinner
     // than a voxel, is nothing that one enters.
     double begin = -2.0 * structure.finest();
@@ -120,7 +144,7 @@ std::optional<LocalBall> ball_behind(const DensityAt& density_at, double thresho
         if (end - begin > 2.0 * most) return std::nullopt;
         const double middle = 0.5 * (begin + end - structure.step());
         if (begin <= most && end - begin > structure.finest())
-            return local_ball(density_at, threshold, (from + middle * direction) / spacing, spacing, most);
+            return in_voxels(largest_ball(structure, from + middle * direction, most, is_near_sight), spacing);
         begin = end + structure.step();
     }
     return std::nullopt;

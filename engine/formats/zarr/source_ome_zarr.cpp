@@ -394,9 +394,18 @@ std::unique_ptr<VolumeSource> open_group(const ZarrPlace& place, const ZarrNode&
     return open_image(inner, *image, options);
 }
 
-/// The usual mistake: the folder was zipped, not what is in it.
+/// The usual mistakes: the folder was zipped, not what is in it, or the archive holds something else.
 [[noreturn]] void refuse_archive(const fs::path& path, const ZarrPlace& place)
 {
+    std::string first;
+    const bool has_no_zarr = place.prefix.empty() && place.store->list({}, [&](std::string_view key) {
+        if (first.empty()) first = key;
+        const std::string_view name = key.substr(key.rfind('/') + 1);
+        return name != "zarr.json" && name != ".zattrs" && name != ".zgroup" && name != ".zarray";
+    });
+    if (has_no_zarr && !first.empty())
+        fail(path.string(), ": has no zarr.json at its root; it holds ", first,
+             " and no OME-Zarr: unpack it, and open what is in it");
     fail(path.string(), ": has no zarr.json ", place.prefix.empty() ? "at its root" : "here",
          "; expected a zipped OME-Zarr: zip the content of its folder, not the folder");
 }

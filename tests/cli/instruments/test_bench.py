@@ -11,7 +11,7 @@ import unittest
 import xml.etree.ElementTree
 from pathlib import Path
 
-from harness import CliTest
+from harness import ENVIRONMENT, SHVR, CliTest
 
 ROOT = Path(__file__).resolve().parents[3]
 HAS_VTK = bool(shutil.which("xvfb-run") or os.environ.get("DISPLAY")) and subprocess.run(
@@ -31,7 +31,8 @@ for line in sys.stdin:
         open(asked["output"], "wb").write(f"PF\\n{{width}} {{height}}\\n-1.0\\n".encode() + array("f", [0] * 3 * width * height).tobytes())
     print(json.dumps({{"ms": 1000 * asked["step"]}}), flush=True)
 """
-RUN_KEYS = ["name", "family", "settings", "error", "min_ms", "median_ms", "p95_ms", "work", "device_bytes", "on_front"]
+RUN_KEYS = ["name", "family", "settings", "error", "min_ms", "median_ms", "median_low_ms", "median_high_ms", "p95_ms", "work",
+            "device_bytes", "on_front"]
 
 
 class Bench(CliTest):
@@ -63,6 +64,13 @@ class Bench(CliTest):
                 self.assert_keys(run, RUN_KEYS)
                 self.assertLessEqual(run["min_ms"], run["median_ms"])
                 self.assertLessEqual(run["median_ms"], run["p95_ms"])
+                self.assertLessEqual(run["min_ms"], run["median_low_ms"])
+                self.assertLessEqual(run["median_low_ms"], run["median_ms"])
+                self.assertLessEqual(run["median_ms"], run["median_high_ms"])
+                self.assertLessEqual(run["error"]["fraction_over_4"], run["error"]["fraction_over_1"])
+            if scene == 1:  # in fog no pixel is off by a level
+                self.assertGreater(runs["draft"]["error"]["fraction_over_1"],
+                                   runs["reference"]["error"]["fraction_over_1"])
             self.assertEqual(runs["skipping off"]["error"], runs["step 0.5"]["error"])
         # On the front: no run of the scene is better in both.
         for row in told["pareto"]:
@@ -95,7 +103,7 @@ class Bench(CliTest):
         told = self.bench()
         names = sorted(path.split("/")[-1] for path in told["written"])
         self.assertEqual(names, ["bench.csv", "bench.json", "equal_error.csv", "equal_peer.csv", "equal_time.csv", "front.csv",
-                                 "pareto-fog.png", "pareto-fog.svg", "pareto.png", "pareto.svg", "report.html"])
+                                 "insets.png", "pareto-fog.png", "pareto-fog.svg", "pareto.png", "pareto.svg", "report.html"])
         with open(self.output / "bench.csv", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual([row["run"] for row in rows], list(self.runs()))
@@ -114,8 +122,34 @@ class Bench(CliTest):
         self.assertEqual(struct.unpack(">II", header), (720, 480))
         page = (self.output / "report.html").read_text()
         self.assertNotRegex(page, r'(src|href)="(?!data:)')
-        for word in ("Equal error", "Equal time", "reference renderer", "difference, 16 times", "FLIP"):
+        for word in ("Equal error", "Equal time", "reference renderer", "difference, 16 times", "FLIP",
+                     "errs most", "draft: RMSE here "):
             self.assertIn(word, page)
+        # A row for the scene; the truth and the four qualities in it.
+        width, height = struct.unpack(">II", (self.output / "insets.png").read_bytes()[16:24])
+        self.assertEqual(width, 8 + 5 * (176 + 8))
+        self.assertEqual(height, 8 + 132 + 34 + 8)
+
+    def test_who_measured_is_in_the_file(self):
+        subprocess.run([SHVR, "bench", "--scenes", "fog", "--quick", "--rounds", "1", "--peer", "none", "--mixed", "4",
+                        "-o", self.folder / "bench"], check=True, capture_output=True, timeout=300,
+                       env={**ENVIRONMENT, "LP_NUM_THREADS": "1", "SECRET": "not this"})
+        found = json.loads((self.folder / "bench/bench.json").read_text())
+        self.assertEqual(found["environment"]["LP_NUM_THREADS"], "1")
+        self.assertNotIn("SECRET", found["environment"])
+        self.assertRegex(found["version"], r"^\d+\.\d+\.\d+$")
+        tree = Path(SHVR).resolve().parents[2]
+        head = subprocess.run(["git", "rev-parse", "HEAD"], cwd=tree, capture_output=True, text=True, check=False)
+        expected = head.stdout.strip() if head.returncode == 0 and (tree / ".git").is_dir() else None
+        self.assertEqual(found["commit"], expected)
+        # All knobs at once, each in another part of its range.
+        mixed = [run for run in found["scenes"][0]["runs"] if run["family"] == "mixed"]
+        self.assertEqual([run["name"] for run in mixed], [f"mixed {i}" for i in (1, 2, 3, 4)])
+        steps = sorted(float(run["settings"][0].split("=")[1]) for run in mixed)
+        for step, expected in zip(steps, (0.105, 0.297, 0.841, 2.378)):
+            self.assertAlmostEqual(step, expected, delta=0.002)
+        self.assertEqual(sorted(run["scale"] for run in mixed), [0.43, 0.59, 0.76, 0.92])
+        self.assertEqual(sum("render.preintegration=true" in run["settings"] for run in mixed), 2)
 
     def test_references_are_kept_and_errors_and_work_repeat(self):
         self.bench()
@@ -286,7 +320,7 @@ class Bench(CliTest):
         for key, value in keys.items():
             place = run["error"] if key in run["error"] else run["work"] if key in run["work"] else run
             place[key] = value
-        return {"shvr_bench": 1, "device": "d", "driver": "d", "processor": "p", "instructions": "fma", "cores": 2, "load": 0.0, "rounds": 3,
+        return {"shvr_bench": 1, "device": "d", "driver": "d", "processor": "p", "instructions": "fma", "cores": 2, "load": 0.0, "rounds": 20,
                 "size": [4, 3], "scenes": [{"name": "s", "what": "w", "volume": "v", "reference_seconds": 0.0,
                                             "runs": [run]}]}
 
@@ -297,7 +331,7 @@ class Bench(CliTest):
         return json.loads(result.stdout)
 
     def test_what_is_a_regression(self):
-        self.assertEqual(self.compare(0), {"changes": [], "regressions": 0})
+        self.assertEqual(self.compare(0), {"changes": [], "regressions": 0, "beside": []})
         # Error: more than 1 %.
         self.assertEqual(self.compare(0, rmse=1.005e-3)["changes"], [])
         self.assertEqual(self.compare(3, rmse=1.02e-3)["changes"][0]["what"], "rmse")
@@ -314,6 +348,48 @@ class Bench(CliTest):
         self.assertEqual(self.compare(0, "--ignore-time", median_ms=11.5)["changes"], [])
         self.assertEqual(self.compare(0, median_ms=5.0)["regressions"], 0)
 
+    def compare_times(self, status, rounds=20, yardsticks=(None, None), median_ms=11.5):
+        a, b = self.result(), self.result(median_ms=median_ms)
+        for result, yardstick in zip((a, b), yardsticks):
+            result["rounds"] = rounds
+            if yardstick:
+                result["scenes"][0]["yardstick"] = {"min_ms": 0.99 * yardstick, "median_ms": yardstick,
+                                                    "p95_ms": 1.01 * yardstick}
+        result = self.check("bench", "--compare", self.write_json("a.json", a), self.write_json("b.json", b), "--json",
+                            status=status)
+        return json.loads(result.stdout)
+
+    def test_few_rounds_tell_less_and_two_tell_no_time_at_all(self):
+        self.compare_times(3)
+        self.assertEqual(self.compare_times(0, rounds=5)["changes"], [])
+        few = self.compare_times(0, rounds=2, median_ms=100.0)
+        self.assertEqual((few["changes"], len(few["beside"])), ([], 1))
+        self.assertIn("fewer than 3 rounds", few["beside"][0])
+
+    def test_a_busier_machine_is_no_slower_program(self):
+        # Everything takes twice as long, the yardstick, too.
+        self.assertEqual(self.compare_times(0, yardsticks=(3.0, 6.0), median_ms=20.0)["changes"], [])
+        self.compare_times(3, yardsticks=(3.0, 3.0), median_ms=20.0)
+        # Where the machine is twice as fast, the same time is a program that is twice as slow.
+        found = self.compare_times(3, yardsticks=(6.0, 3.0), median_ms=10.0)["changes"][0]
+        self.assertEqual((found["what"], found["machine"], found["regression"]), ("median_ms", 0.5, True))
+
+    def test_what_only_one_of_them_has_is_said(self):
+        a, b = self.result(), self.result()
+        b["scenes"].append({**copy.deepcopy(b["scenes"][0]), "name": "t"})
+        a["scenes"][0]["runs"].append({**copy.deepcopy(a["scenes"][0]["runs"][0]), "name": "step 2"})
+        files = self.write_json("a.json", a), self.write_json("b.json", b)
+        told = json.loads(self.check("bench", "--compare", *files, "--json").stdout)
+        self.assertEqual(told["beside"], ["only A has s: step 2", "only B has t"])
+        self.assertIn("only A has s: step 2\nonly B has t\n", self.check("bench", "--compare", *files).stdout)
+
+    def test_the_yardstick_is_measured_in_the_same_rounds(self):
+        self.bench(rounds=3)
+        yardstick = json.loads((self.output / "bench.json").read_text())["scenes"][0]["yardstick"]
+        self.assertGreater(yardstick["min_ms"], 0.1)
+        self.assertLessEqual(yardstick["min_ms"], yardstick["median_ms"])
+        self.assertLessEqual(yardstick["median_ms"], yardstick["p95_ms"])
+
     def test_files_that_cannot_be_compared(self):
         a = self.write_json("a.json", self.result())
         other = copy.deepcopy(self.result())
@@ -323,6 +399,7 @@ class Bench(CliTest):
         self.check_refused("bench", "--compare", a, self.write_json("d.json", {"shvr_bench": 1}),
                            says=["is not what shvr bench writes"])
         self.check_refused("bench", status=2, says=["--output is missing"])
+        self.check_refused("bench", "--scenes", "fog", "-o", "/proc/none", says=["/proc/none: cannot be created"])
 
 
 if __name__ == "__main__":

@@ -20,6 +20,16 @@ def blocks(language):
     return dict(re.findall(rf"^```{language} (\S+)\n(.*?)^```", PAGE, re.M | re.S))
 
 
+VARIANTS = ["without-fma", "vectors-128", "vectors-512", "threads-0", "threads-1", "threads-7", "poisoned"]
+
+
+def calibrated(text):
+    """{golden: {column: cell}} of the table that shvr golden calibrate writes."""
+    lines = [[cell.strip() for cell in line.strip("|\n").split("|")] for line in text.splitlines()
+             if line.startswith("| ")]
+    return {row[0]: dict(zip(lines[0], row)) for row in lines[1:]}
+
+
 class Golden(CliTest):
     def setUp(self):
         super().setUp()
@@ -174,16 +184,46 @@ class Golden(CliTest):
         broken = self.golden("run", "bad", status=3)["goldens"][0]
         self.assertEqual(broken["status"], "broken")
         self.assertIn("gone.json", broken["reason"])
+        # To bless what cannot be drawn is no help.
+        text = subprocess.run([str(Path(SHVR).resolve()), "golden", "run", "bad"], text=True, capture_output=True,
+                              timeout=300, cwd=self.folder, env=AT_HOME, check=False).stdout
+        self.assertIn("broken  bad", text)
+        for said in (text, (self.folder / "golden-results/report.html").read_text(),
+                     (self.folder / "golden-results/junit.xml").read_text()):
+            self.assertNotIn("shvr golden bless", said)
+        self.golden("run", "-o", "/proc/none", status=1)
+        self.assertIn("/proc/none: cannot be created", self.errors)
 
     def test_calibration_tells_how_far_the_driver_moves_a_picture(self):
-        result = self.golden("calibrate", "spheres", status=0)
+        result = self.golden("calibrate", "spheres", "--table", "calibration.md", status=0)
         self.assertEqual(result["failed"], [])
         one = result["goldens"][0]
         self.assertTrue(one["holds"])
-        self.assertEqual(sorted(one["variants"]), ["poisoned", "threads-0", "threads-1", "threads-7", "vectors-128",
-                                                   "without-fma"])
+        self.assertEqual(sorted(one["variants"]), sorted(VARIANTS))
         for name in ("threads-0", "threads-1", "threads-7", "poisoned"):
-            self.assertEqual(one["variants"][name]["max_abs"], 0, name)
+            self.assertEqual((one["variants"][name]["max_abs"], one["variants"][name]["light"]), (0, 0), name)
+        text = (self.folder / "calibration.md").read_text()
+        self.assertIn("\n    shvr golden calibrate 'spheres' --folder golden --table calibration.md\n", text)
+        [(name, row)] = calibrated(text).items()
+        self.assertEqual((name, row["class"], row["holds"]), ("spheres", "tight", "yes"))
+        self.assertEqual([row[variant] == "0" for variant in VARIANTS],
+                         [one["variants"][variant]["light"] == 0 for variant in VARIANTS])
+        self.golden("calibrate", "--table", "calibration.txt", status=2)
+
+    def test_every_golden_of_the_tree_is_calibrated_in_its_class(self):
+        folder = Path(__file__).resolve().parents[2] / "golden"
+        rows = calibrated((folder / "CALIBRATION.md").read_text())
+        classes = {path.stem: json.loads(path.read_text()).get("class", "tight") for path in folder.glob("*.json")
+                   if not path.name.endswith(".blessed.json")}
+        self.assertEqual({name: row["class"] for name, row in rows.items()}, classes)
+        for name, row in rows.items():
+            self.assertEqual(row["holds"], "yes", name)
+            self.assertEqual(list(row)[3:], VARIANTS)
+            for variant in VARIANTS:
+                levels = float(row[variant].split(";")[0])
+                self.assertLessEqual(2 * levels, {"exact": 0, "tight": 2, "edge": 255}[row["class"]], (name, variant))
+        # Other instructions do round otherwise, so that the variants are no idle ones.
+        self.assertTrue(any(row["without-fma"] != "0" for row in rows.values()))
 
 
 if __name__ == "__main__":

@@ -1,15 +1,95 @@
 """shvr profile: times, traces, tables and graphs."""
+import copy
 import csv
 import json
+import re
 import shutil
+import tempfile
 import unittest
 import xml.etree.ElementTree
+from pathlib import Path
 
 from harness import CliTest, run
 
 KEYS = ["passes", "first_frame", "frame_median_ms", "sum_median_ms", "counters", "bytes", "device", "driver"]
-PASS_KEYS = ["name", "count", "min_ms", "median_ms", "p95_ms", "max_ms", "bytes", "dispatches", "barrier"]
+PASS_KEYS = ["name", "count", "min_ms", "median_ms", "p95_ms", "max_ms", "record_min_ms", "record_median_ms",
+             "record_p95_ms", "bytes", "dispatches", "barrier"]
 FRAMES = 5
+# What ui.perfetto.dev and chrome://tracing need of an event of each phase (the trace event format), and its type.
+NUMBER = (int, float)
+EVENT_KEYS = {"M": {"name": str, "pid": int, "tid": int, "args": dict},
+              "X": {"name": str, "cat": str, "pid": int, "tid": int, "ts": NUMBER, "dur": NUMBER, "args": dict},
+              "C": {"name": str, "pid": int, "ts": NUMBER, "args": dict},
+              "s": {"name": str, "cat": str, "id": int, "pid": int, "tid": int, "ts": NUMBER},
+              "f": {"name": str, "cat": str, "id": int, "pid": int, "tid": int, "ts": NUMBER, "bp": str}}
+SAME = 1e-3  # microseconds, of rounding
+
+
+def trace_errors(trace):
+    """What is wrong with a trace: keys and types, order, spans that cross, arrows that begin or end nowhere, rows and
+    processes without a name."""
+    errors, spans, arrows, named, last = [], {}, {}, set(), None
+    if set(trace) - {"traceEvents", "displayTimeUnit", "otherData"} or trace.get("displayTimeUnit") not in ("ms", "ns"):
+        errors.append("keys of the trace")
+    for event in trace["traceEvents"]:
+        keys = EVENT_KEYS.get(event.get("ph"), {})
+        wrong = [key for key, kind in keys.items() if not isinstance(event.get(key), kind)]
+        if not keys or wrong or set(event) - set(keys) - {"ph"}:
+            errors.append(f"event {event}: {wrong}")
+            continue
+        if event["ph"] == "M":
+            named.add((event["name"], event["pid"], event["tid"] if event["name"] == "thread_name" else None))
+            if last is not None or not isinstance(event["args"].get("name"), str):
+                errors.append(f"{event} is not a name before all events")
+            continue
+        if last is not None and event["ts"] < last:
+            errors.append(f"{event} is earlier than the event before")
+        last = event["ts"]
+        if event["ph"] == "X":
+            spans.setdefault((event["pid"], event["tid"]), []).append(event)
+            if event["dur"] < 0:
+                errors.append(f"{event} ends before it begins")
+        elif event["ph"] == "C":
+            if not event["args"] or not all(isinstance(value, NUMBER) for value in event["args"].values()):
+                errors.append(f"{event} counts what is no number")
+        else:
+            arrows.setdefault((event["cat"], event["id"]), []).append(event)
+    for row, events in spans.items():
+        if ("thread_name", *row) not in named or ("process_name", row[0], None) not in named:
+            errors.append(f"row {row} has no name")
+        open_until = []
+        for event in sorted(events, key=lambda event: (event["ts"], -event["dur"])):
+            while open_until and open_until[-1] <= event["ts"] + SAME:
+                open_until.pop()
+            end = event["ts"] + event["dur"]
+            if open_until and end > open_until[-1] + SAME:
+                errors.append(f"{event} crosses the end of what it is in")
+            open_until.append(end)
+    for key, events in arrows.items():
+        if [event["ph"] for event in events] != ["s", "f"]:
+            errors.append(f"arrow {key}: {events}")
+        for event in events:
+            within = spans.get((event["pid"], event["tid"]), [])
+            if not any(one["ts"] <= event["ts"] + SAME and event["ts"] <= one["ts"] + one["dur"] + SAME
+                       for one in within):
+                errors.append(f"{event} is at no span")
+    return errors
+
+
+def contrast(a, b):
+    """Of two colours #rrggbb or #rgb, from 1 to 21 (WCAG 2)."""
+    def luminance(color):
+        digits = color[1:] if len(color) == 7 else "".join(2 * digit for digit in color[1:])
+        parts = [int(digits[i:i + 2], 16) / 255 for i in (0, 2, 4)]
+        linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+    dark, light = sorted((luminance(a), luminance(b)))
+    return (light + 0.05) / (dark + 0.05)
+
+
+def grouped(number):
+    """As pages write integers: three digits, a narrow space."""
+    return f"{number:,}".replace(",", "\u202f")
 
 
 class Profile(CliTest):
@@ -56,13 +136,32 @@ class Profile(CliTest):
         self.assertEqual(profile["written"], [str(path)])
         page = path.read_text()
         self.assertNotRegex(page, r'(src|href)="(?!data:)')
+        # In the chart of all frames and, enlarged, in that of the median one.
         for one in profile["passes"]:
-            self.assertEqual(page.count(f"<title>{one['name']}, frame "), one["count"], one["name"])
+            self.assertEqual(page.count(f"<title>{one['name']}, frame "), one["count"] + 1, one["name"])
+            self.assertEqual(page.count(f"<title>recording {one['name']}, frame "), one["count"] + 1, one["name"])
             self.assertAlmostEqual(one["gb_per_s"], one["bytes"] / one["median_ms"] / 1e6)
-        self.assertEqual(page.count("<title>frame "), FRAMES)
+        self.assertEqual(page.count("<title>frame "), FRAMES + 1)
         for name in profile["bytes"]["by_resource"]:
             self.assertIn(f"<td>{name}</td>", page)
         self.assertIn("<polyline", page)
+        # A colour of its own for each pass, in the table as in the charts, and words that can be read on it.
+        colors = re.findall(r'swatch" style="background:(#[0-9a-f]{6})', page)
+        self.assertEqual(len(set(colors)), len(profile["passes"]))
+        self.assertGreaterEqual(len(colors), 2)
+        for color, one in zip(colors, profile["passes"]):
+            self.assertEqual(page.count(f'fill="{color}"><title>{one["name"]}, frame '), one["count"] + 1)
+        written = re.findall(r'fill="(#[0-9a-f]{6})"><title>[^<]*</title></rect>\n<text class="on" style="fill:(#\w+)',
+                             page)
+        self.assertIn((colors[0], "#fff"), written)
+        for color, ink in written:
+            self.assertGreaterEqual(contrast(color, ink), 4.5, (color, ink))
+        self.assertIn(f"prepares: {len(profile['first_frame'])} passes", page)
+        self.assertGreater(len(profile["first_frame"]), len(profile["passes"]))
+        for one in profile["first_frame"]:
+            self.assertIn(f"<td>{one['name']}</td>", page)
+        self.assertIn(f"<td>{grouped(profile['invocations']['raycast'])}</td>", page)
+        self.assertIn(f"<td>device, budget</td><td>{grouped(profile['memory']['device_budget'])}</td>", page)
         self.check_refused("profile", self.write_session(), "--html", self.folder / "a.txt", status=2, says=["--html"])
 
     def test_invocations_are_the_threads_of_whole_groups(self):
@@ -80,32 +179,88 @@ class Profile(CliTest):
         picture = self.check_json("render", session, "-o", self.folder / "a.png")
         self.assertEqual(self.profile()["counters"], picture["counters"])
 
-    def test_the_trace_is_monotone_and_its_spans_nest(self):
+    def test_the_trace_is_one_that_perfetto_reads(self):
         path = self.folder / "trace.json"
         profile = self.profile("--trace", path)
         self.assertEqual(profile["written"], [str(path)])
-        events = json.loads(path.read_text())["traceEvents"]
+        trace = json.loads(path.read_text())
+        self.assertEqual(trace_errors(trace), [])
+        events = trace["traceEvents"]
         self.assertEqual({event["ph"] for event in events}, {"M", "X", "C", "s", "f"})
-        timed = [event for event in events if event["ph"] != "M"]
-        self.assertEqual([event["ts"] for event in timed], sorted(event["ts"] for event in timed))
         names = {event["args"]["name"] for event in events if event["name"] == "process_name"}
         self.assertEqual(len(names), 2)
 
-        ends = {}
-        for event in events:
-            if event["ph"] != "X":
-                continue
-            row = (event["pid"], event["tid"])
-            self.assertGreaterEqual(event["dur"], 0)
-            self.assertGreaterEqual(event["ts"], ends.get(row, 0) - 1e-3, event)  # nothing on a row overlaps
-            ends[row] = event["ts"] + event["dur"]
-            self.assertIsInstance(event["args"], dict)
+        def spans(category):
+            return [event["name"] for event in events if event["ph"] == "X" and event["cat"] == category]
+        passes = [one["name"] for one in profile["passes"]]
+        self.assertEqual(spans("pass"), passes * FRAMES)
+        # In each frame the host records what the device then does.
+        self.assertEqual(spans("frame"), [name for frame in range(FRAMES)
+                                          for name in [f"frame {frame}", *(f"record {one}" for one in passes)]])
+        self.assertEqual(sum(event["ph"] == "s" for event in events), FRAMES)
 
-        passes = [event["name"] for event in events if event["ph"] == "X" and event["cat"] == "pass"]
-        self.assertEqual(passes, [one["name"] for one in profile["passes"]] * FRAMES)
-        self.assertEqual(sum(event.get("cat") == "frame" for event in events), FRAMES)
-        starts = [event["id"] for event in events if event["ph"] == "s"]
-        self.assertEqual(starts, [event["id"] for event in events if event["ph"] == "f"])
+    def test_recording_is_timed_beside_the_device(self):
+        path = self.folder / "times.csv"
+        profile = self.profile("--csv", path)
+        with open(path, newline="") as file:
+            rows = list(csv.DictReader(file))
+        for one in profile["passes"]:
+            self.assertGreater(one["record_min_ms"], 0)
+            self.assertLessEqual(one["record_min_ms"], one["record_median_ms"])
+            self.assertLessEqual(one["record_median_ms"], one["record_p95_ms"])
+            records = sorted(float(row["record_ms"]) for row in rows if row["pass"] == one["name"])
+            self.assertAlmostEqual(records[FRAMES // 2], one["record_median_ms"], places=6)
+            # A descriptor set and a few commands, not the work itself.
+            self.assertLess(one["record_min_ms"], 0.5 * profile["frame_median_ms"] + 0.5)
+
+    def test_passes_that_overlap_have_rows_of_their_own_and_a_sum_above_their_frame(self):
+        # A layer whose clock goes on by 2000 ns for each group of threads, and starts passes 300000 ns early.
+        path = self.folder / "trace.json"
+        session = self.write_session(render={"size": [64, 48], "saturation": 0.3},
+                                     surfaces=[{"from": [8, 8, 8], "to": [20, 20, 20], "radius": 3, "color": "#ff4020"}])
+        done = run("profile", session, "--frames", 2, "--trace", path, "--json",
+                   environment={"VK_INSTANCE_LAYERS": "VK_LAYER_SHVR_clocks", "SHVR_CLOCKS": "2000",
+                                "SHVR_CLOCKS_EARLY": "300000"})
+        self.assertEqual(done.returncode, 0, done.stderr)
+        profile = json.loads(done.stdout)
+        self.assertEqual([(one["name"], round(one["median_ms"], 6)) for one in profile["passes"]],
+                         [("surfaces", 0.396), ("raycast", 0.396), ("saturation", 0.396), ("read back color", 0.3)])
+        self.assertAlmostEqual(profile["sum_median_ms"], 3 * 0.396 + 0.3)
+        trace = json.loads(path.read_text())
+        self.assertEqual(trace_errors(trace), [])
+        rows = {}
+        for event in trace["traceEvents"]:
+            if event["ph"] == "X" and event["pid"] == 2:
+                rows.setdefault(event["name"], []).append(event)
+        self.assertEqual([len({event["tid"] for event in events}) for events in rows.values()], [1] * 4)
+        self.assertEqual(len({events[0]["tid"] for events in rows.values()}), 4)
+        first = [events[0] for events in rows.values()]
+        whole = first[-1]["ts"] + first[-1]["dur"] - first[0]["ts"]
+        self.assertAlmostEqual(whole, 3 * 96 + 300, places=3)  # less than the sum of 1488
+
+    def test_a_trace_that_is_wrong_is_found_to_be(self):
+        path = self.folder / "trace.json"
+        self.profile("--trace", path)
+        good = json.loads(path.read_text())
+
+        def broken(change):
+            trace = json.loads(json.dumps(good))
+            change(trace["traceEvents"])
+            return trace_errors(trace)
+
+        def of(events, phase):
+            return next(event for event in events if event["ph"] == phase)
+        self.assertTrue(broken(lambda events: of(events, "X").pop("dur")))
+        self.assertTrue(broken(lambda events: of(events, "X").update(ts="1")))
+        def cross(events):  # what is recorded in a frame ends after it
+            frame = next(event for event in events if event["name"] == "frame 0")
+            next(event for event in events if event["name"].startswith("record ")).update(dur=frame["dur"] + 1)
+        self.assertTrue(broken(cross))
+        self.assertTrue(broken(lambda events: events.remove(of(events, "f"))))
+        self.assertTrue(broken(lambda events: of(events, "s").update(ts=-50)))
+        self.assertTrue(broken(lambda events: events.pop(1)))
+        self.assertTrue(broken(lambda events: events.reverse()))
+        self.assertTrue(broken(lambda events: of(events, "C").update(args={"bytes": "many"})))
 
     def test_the_table_has_a_row_per_frame_and_pass(self):
         path = self.folder / "times.csv"
@@ -247,6 +402,9 @@ class SessionOfWork(CliTest):
             self.assertGreaterEqual(one["sharp_ms"], one["sketch_ms"])
             self.assertGreaterEqual(one["end_ms"] - one["begin_ms"], one["sharp_ms"])
             self.assertGreater(one["submits"], 0, one)
+        # A sketch comes before the sharp picture, and each action has its own submissions: undoing takes fewer than turning.
+        self.assertTrue(any(one["sketch_ms"] < one["sharp_ms"] for one in actions))
+        self.assertLess(actions[2]["submits"], actions[0]["submits"])
         for key in ("submits", "allocations", "uploads", "evictions", "voxels_painted"):
             self.assertEqual(profile["totals"][key], sum(one[key] for one in actions), key)
         sharp = sorted(one["sharp_ms"] for one in actions)
@@ -259,15 +417,87 @@ class SessionOfWork(CliTest):
         self.assertEqual([int(row["submits"]) for row in rows], [one["submits"] for one in actions])
         self.assertEqual([row["paint_ms"] == "" for row in rows], [one["paint_ms"] is None for one in actions])
         events = json.loads(paths["trace"].read_text())["traceEvents"]
+        self.assertEqual(trace_errors(json.loads(paths["trace"].read_text())), [])
         spans = [event for event in events if event["ph"] == "X"]
-        self.assertEqual([event["args"] for event in spans], actions)
-        for before, after in zip(spans, spans[1:]):
-            self.assertLessEqual(before["ts"] + before["dur"], after["ts"] + 1e-3)
+        self.assertEqual([event["args"] for event in spans],
+                         [{key: value for key, value in one.items() if key != "over_replays"} for one in actions])
+        self.assertEqual(sum(event["ph"] == "C" for event in events), len(actions))
         page = paths["html"].read_text()
         self.assertNotRegex(page, r'(src|href)="(?!data:)')
         for one in actions:
             self.assertIn(f"<title>{one['line']}: {one['action']}, sharp after ", page)
-            self.assertIn(f"<td>{one['device_bytes']}</td>", page)
+            self.assertIn(f"<td>{grouped(one['device_bytes'])}</td>", page)
+        self.assertIn("<polyline", page)
+        self.assertIn("Done once", page)
+
+    def test_replays_begin_with_the_same_work_and_leave_that_of_one(self):
+        project, script = self.write_work()
+        script.write_text("".join(json.dumps(line) + "\n" for line in self.LINES[:2]))
+        trace, table, page = self.folder / "trace.json", self.folder / "work.csv", self.folder / "work.html"
+        before = set(Path(tempfile.gettempdir()).glob("shvr-replays-*"))
+        profile = self.check_json("profile", project, "--script", script, "--replays", 3, "--trace", trace, "--csv",
+                                  table, "--html", page)
+        self.assertEqual(set(Path(tempfile.gettempdir()).glob("shvr-replays-*")), before)
+        self.assertEqual(profile["replays"], 3)
+        self.assertEqual([one["voxels_painted"] for one in profile["actions"]], self.PAINTED[:2])
+        with open(table, newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([(row["replay"], row["action"]) for row in rows],
+                         [(str(replay), line["op"]) for replay in (1, 2, 3) for line in self.LINES[:2]])
+        # Each paints all of it: none saw what the others had done.
+        self.assertEqual([int(row["voxels_painted"]) for row in rows], self.PAINTED[:2] * 3)
+        for at, one in enumerate(profile["actions"]):
+            for key in ("sketch_ms", "sharp_ms"):
+                times = sorted(float(row[key]) for row in rows[at::2])
+                spread = one["over_replays"][key]
+                self.assertEqual([spread["min"], spread["median"], spread["max"]], times)
+                self.assertEqual(one[key], times[1])
+        sums = sorted(sum(float(row["sharp_ms"]) for row in rows[at:at + 2]) for at in (0, 2, 4))
+        for found, expected in zip((profile["whole"]["sharp_ms"][key] for key in ("min", "median", "max")), sums):
+            self.assertAlmostEqual(found, expected)
+        self.assertEqual(trace_errors(json.loads(trace.read_text())), [])
+        events = json.loads(trace.read_text())["traceEvents"]
+        self.assertEqual(sorted(event["tid"] for event in events if event["ph"] == "X"), [1, 1, 2, 2, 3, 3])
+        self.assertIn("Done 3 times", page.read_text())
+        # The work has it once, in its journal: there is one step to take back.
+        shown = self.check_json("profile", project, "--script", self.write_script("undo.jsonl", [{"op": "undo"}]))
+        self.assertEqual(shown["actions"][0]["voxels_painted"], -136)
+
+    def test_a_script_that_fails_in_a_replay_leaves_the_work_as_it_was(self):
+        project, script = self.write_work()
+        script.write_text(json.dumps(self.LINES[1]) + '\n{"op":"look_from","camera":"nowhere"}\n')
+        said = self.check_refused("profile", project, "--script", script, "--replays", 2, says=["work.jsonl:2", "nowhere"])
+        self.assertIn("in a replay on a copy", said)
+        shown = self.check_json("profile", project, "--script", self.write_script("orbit.jsonl", self.LINES[:1]))
+        self.assertEqual(shown["totals"]["voxels_painted"], 0)
+        self.assertFalse((project / "shvr/session.journal").exists())
+
+    def with_times(self, profile, name, ms):
+        """A profile as of a machine on which everything took so long, and a tenth more at most."""
+        spread = {"min": ms, "median": 1.05 * ms, "p95": 1.1 * ms, "max": 1.1 * ms}
+        timed = copy.deepcopy(profile)
+        for times in [*(one["over_replays"] for one in timed["actions"]), timed["whole"]]:
+            times.update({key: dict(spread) for key, found in times.items() if found is not None})
+        path = self.folder / name
+        path.write_text(json.dumps(timed))
+        return path
+
+    def test_a_diff_of_sessions_tells_what_changed_beyond_the_noise(self):
+        project, script = self.write_work()
+        profile = self.check_json("profile", project, "--script", script, "--replays", 3)
+        before, after, almost = (self.with_times(profile, name, ms)
+                                 for name, ms in (("before", 10), ("after", 20), ("almost", 11)))
+        diff = self.check_json("profile", "diff", before, after)
+        self.assertEqual([one["action"] for one in diff["actions"]], [line["op"] for line in self.LINES])
+        self.assertEqual(diff["actions"][0]["sharp_ms"]["verdict"], "slower")
+        self.assertEqual({row["name"]: row["verdict"] for row in diff["session"]}["to sharp"], "slower")
+        text = self.check("profile", "diff", before, after).stdout
+        self.assertRegex(text, r"(?m)^1: orbit to sharp .* slower$")
+        self.assertRegex(self.check("profile", "diff", after, before).stdout, r"(?m)^1: orbit to sharp .* faster$")
+        same = self.check_json("profile", "diff", before, almost)
+        verdicts = {one[key]["verdict"] for one in same["actions"] for key in ("paint_ms", "sketch_ms", "sharp_ms")}
+        self.assertEqual(verdicts | {row["verdict"] for row in same["session"]}, {"same"})
+        self.assertEqual({row["delta"] for row in same["counters"] + same["memory"]}, {0})
 
     def test_people_read_a_table_of_actions(self):
         project, script = self.write_work()
@@ -278,6 +508,7 @@ class SessionOfWork(CliTest):
     def test_wrong_scripts_are_refused(self):
         project, script = self.write_work()
         self.check_refused("profile", project, "--script", script, "--graph", self.folder / "a.dot", status=2)
+        self.check_refused("profile", project, "--replays", 2, status=2, says=["--script"])
         script.write_text("\n")
         self.check_refused("profile", project, "--script", script, says=["holds no action"])
         script.write_text('{"op":"look_from","camera":"nowhere"}\n')
@@ -285,11 +516,12 @@ class SessionOfWork(CliTest):
 
 
 class Diff(CliTest):
-    def write_profile(self, name, passes, frame=10.0, samples=100):
-        rows = [{"name": one, "median_ms": median, "min_ms": None if median is None else median - noise,
+    def write_profile(self, name, passes, frame=10.0, samples=100, frames=20):
+        rows = [{"name": one, "count": frames, "median_ms": median, "min_ms": None if median is None else median - noise,
                  "p95_ms": None if median is None else median + noise} for one, median, noise in passes]
-        return self.write_json(name, {"passes": rows, "frame_median_ms": frame, "frame_min_ms": frame - 0.1,
-                                      "frame_p95_ms": frame + 0.1, "counters": {"samples": samples}})
+        return self.write_json(name, {"passes": rows, "frames": frames, "frame_median_ms": frame,
+                                      "frame_min_ms": frame - 0.1, "frame_p95_ms": frame + 0.1,
+                                      "counters": {"samples": samples}, "bytes": {"device": samples * 1000}})
 
     def test_every_verdict(self):
         a = self.write_profile("a.json", [("steady", 5.0, 0.3), ("sped", 4.0, 0.1), ("slowed", 2.0, 0.1),
@@ -306,15 +538,29 @@ class Diff(CliTest):
         self.assertAlmostEqual(rows["sped"]["noise_ms"], 0.02 ** 0.5)
         self.assertEqual(diff["frame"]["verdict"], "faster")
         self.assertEqual(diff["counters"], [{"name": "samples", "a": 100, "b": 90, "delta": -10}])
+        self.assertEqual(diff["memory"], [{"name": "device", "a": 100000, "b": 90000, "delta": -10000}])
         text = self.check("profile", "diff", a, b).stdout
         for word in ("faster", "slower", "gone", "new", "same"):
             self.assertIn(word, text)
 
+    def test_few_frames_have_more_noise_and_two_have_none(self):
+        def verdict(frames):
+            a = self.write_profile("a.json", [("pass", 4.0, 0.1)], frames=frames)
+            b = self.write_profile("b.json", [("pass", 4.3, 0.1)], frames=frames)
+            row = self.check_json("profile", "diff", a, b)["passes"][0]
+            return row["verdict"], row["noise_ms"]
+        self.assertEqual(verdict(20)[0], "slower")
+        self.assertEqual(verdict(3)[0], "same")
+        self.assertGreater(verdict(3)[1], 5 * verdict(20)[1])
+        self.assertEqual(verdict(2), ("unknown", None))
+        text = self.check("profile", "diff", self.folder / "a.json", self.folder / "b.json").stdout
+        self.assertIn("fewer than 3 times", text)
+
     def test_a_profile_does_not_differ_from_itself(self):
         profile = self.folder / "a.json"
-        profile.write_text(self.check("profile", self.write_session(), "--frames", "2", "--json").stdout)
+        profile.write_text(self.check("profile", self.write_session(), "--frames", "3", "--json").stdout)
         diff = self.check_json("profile", "diff", profile, profile)
-        self.assertEqual({row["verdict"] for row in diff["passes"] + [diff["frame"]]}, {"same"})
+        self.assertEqual({row["verdict"] for row in diff["passes"] + diff["recording"] + [diff["frame"]]}, {"same"})
         self.assertEqual({row["delta"] for row in diff["counters"]}, {0})
 
     def test_what_is_no_profile_is_refused(self):
@@ -325,6 +571,18 @@ class Diff(CliTest):
                             ("number.json", {"passes": [{"name": "a", "median_ms": "fast"}]})]:
             self.check_refused("profile", "diff", good, self.write_json(name, value), says=[name])
         self.check_refused("profile", "diff", good, self.folder / "none.json", says=["none.json"])
+        # Of a session: whole or not at all, and never beside frames.
+        action = {"line": 1, "action": "orbit", "over_replays": {}}
+        self.check_refused("profile", "diff", good, self.write_json("s.json", {"actions": []}),
+                           says=["s.json", "expected two of one kind"])
+        for name, value, says in [("list.json", {"actions": 3}, "'actions' is no list"),
+                                  ("bare.json", {"actions": [action]}, "'replays' is not a number"),
+                                  ("lacks.json", {"actions": [action], "replays": 3}, "'paint_ms' is missing"),
+                                  ("nameless.json", {"actions": [{}]}, "'action' is missing")]:
+            path = self.write_json(name, value)
+            self.check_refused("profile", "diff", path, path, says=[name, says])
+        other = self.write_json("other.json", {"actions": [{**action, "action": "paint"}], "replays": 3})
+        self.check_refused("profile", "diff", self.folder / "lacks.json", other, says=["expected profiles of one script"])
         self.check_refused("profile", "diff", good, status=2)
 
     def test_deep_nesting_is_refused_in_one_sentence(self):

@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include <doctest/doctest.h>
 
+#include "engine/base/image_file.h"
 #include "engine/base/image_metrics.h"
 #include "tests/gpu/wrong_kernels.h"
 #include "tests/support/gpu.h"
+#include "tools/golden/run.h"
 
 using namespace shvr;
 using namespace shvr::test;
@@ -66,6 +69,16 @@ private:
     std::optional<Renderer> renderer_;
 };
 
+/// Of all passes that the golden's picture takes.
+std::vector<std::string> kernels_in(const golden::Golden& one)
+{
+    golden::Studio studio(one);
+    std::set<std::string> kernels;
+    for (const gpu::PassReport& pass : studio.draw_counted().passes)
+        if (!pass.kernel.empty()) kernels.insert(pass.kernel);
+    return {kernels.begin(), kernels.end()};
+}
+
 }  // namespace
 
 TEST_CASE("a picture by a filter of 8 bits is close to the exact one")
@@ -78,6 +91,52 @@ TEST_CASE("a picture by a filter of 8 bits is close to the exact one")
     const ImageF exact = device.draw(volume, session, camera, Sampling::exact);
     CHECK(different_bits(filtered, exact) > 1000);  // it does round
     CHECK(compare_pixels(to_image8(filtered), to_image8(exact)).max_abs <= 2.0);
+}
+
+TEST_CASE("every golden is near its picture where a filter of 8 bits draws it")
+{
+    golden::set_environment();
+    size_t filtered = 0, other = 0;
+    for (golden::Golden one : golden::goldens_in("tests/golden")) {
+        CAPTURE(one.name);
+        one.settings.push_back("render.sampling=hardware");
+        const WrongKernels eight_bits(EIGHT_BITS, kernels_in(one));
+        filtered += eight_bits.count() > 0;
+        const Image8 seen = golden::Studio(one).draw(), expected = read_png(one.picture());
+        const PixelDifference difference = compare_pixels(seen, expected);
+        CHECK(difference.rmse <= 0.5);
+        other += difference.max_abs > 0.0;
+    }
+    CHECK(filtered > 20);
+    CHECK(other > 10);  // it does round
+}
+
+/// There are bands, of up to 12 levels, where the highlight is sharp; `render.sampling=exact` has none.
+TEST_CASE("light on a smooth field, magnified a hundred times, is near the exact one where a filter of 8 bits draws it")
+{
+    Filtering device(EIGHT_BITS, "raycast_filtered");
+    // A pixel is a hundredth of a voxel: weights of 8 bits are seen one by one.
+    const TestVolume volume = volume_of({12, 12, 12}, [](const glm::dvec3& voxel) {
+        return 65535.0 * std::exp(-0.02 * glm::dot(voxel - 6.0, voxel - 6.0));
+    });
+    Session session = plain_session({{30000.0, WHITE, 0.0}, {31000.0, WHITE, 1.0}, {65535.0, WHITE, 1.0}}, {128, 128});
+    session.light = {.shaded = true, .ambient = 0.1, .diffuse = 0.6, .specular = 0.4, .shininess = 32.0};
+    session.render.step_voxels = 0.25;
+    const Camera camera = camera_along(volume, {1, 2, 3}, 2.0);
+    const ImageF filtered = device.draw(volume, session, camera, Sampling::hardware);
+    const ImageF exact = device.draw(volume, session, camera, Sampling::exact);
+    double worst_step = 0.0, worst = 0.0;
+    for (int y = 0; y < 128; ++y)
+        for (int x = 1; x < 128; ++x) {
+            const size_t at = 4 * size_t(y * 128 + x);
+            const double here = double(filtered.rgba[at]) - double(exact.rgba[at]);
+            const double before = double(filtered.rgba[at - 4]) - double(exact.rgba[at - 4]);
+            worst_step = std::max(worst_step, std::abs(here - before));
+            worst = std::max(worst, std::abs(here));
+        }
+    CHECK(worst > 0.0);
+    CHECK(worst <= 0.06);
+    CHECK(worst_step <= 0.06);
 }
 
 TEST_CASE("an iso-surface is where it is by arithmetic, whatever the filter rounds")

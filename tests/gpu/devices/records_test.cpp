@@ -11,6 +11,7 @@
 
 #include "engine/base/image_metrics.h"
 #include "engine/device/device_mask.h"
+#include "engine/live/annotator.h"
 #include "engine/live/view.h"
 #include "engine/picture/picture_job.h"
 #include "tests/support/gpu.h"
@@ -84,6 +85,36 @@ TEST_CASE("a view wider than a 3-D image of the device can be comes to rest on t
     }
 }
 
+TEST_CASE("times are right where a clock of 36 bits begins again")
+{
+    // The layer's clock does so 0.08 ms after its first stamp, and every ten minutes and more from then on.
+    On intel("intel");
+    REQUIRE(intel->device().traits().timestamp_bits == 36);
+    double most_ms = 0.0;
+    for (int frame = 0; frame < 5; ++frame) {
+        FrameGraph graph;
+        std::vector<Resource> filled;
+        for (const uint32_t value : {1u, 2u, 3u}) {
+            filled.push_back(graph.fill(graph.create(sentence("filled ", value), buffer_desc(8 << 20)), value,
+                                        sentence("fill ", value)));
+            static_cast<void>(graph.read_back(filled.back()));
+        }
+        const gpu::FrameResult result = intel->executor().run(std::move(graph));
+        REQUIRE(result.passes.size() == 6);
+        double last_ms = 0.0;
+        for (const gpu::PassReport& pass : result.passes) {
+            CHECK(pass.timed);
+            CHECK(pass.start_ms >= last_ms);
+            CHECK(pass.gpu_ms <= result.wall_ms + 0.3);
+            CHECK(pass.start_ms + pass.gpu_ms <= result.wall_ms + 0.3);
+            last_ms = pass.start_ms;
+            most_ms = std::max(most_ms, pass.gpu_ms);
+        }
+        CHECK(result.gpu_ms <= result.wall_ms + 0.3);
+    }
+    CHECK(most_ms > 0.1);  // 8 MiB take longer than the clock needs to begin again
+}
+
 TEST_CASE("the automatic budget is what the device can spare")
 {
     const std::pair<const char*, uint64_t> expected[] = {
@@ -149,8 +180,100 @@ TEST_CASE("a GPU computes the light of many bricks at once, to the bits of a few
     CHECK(few == 8);
     CHECK(many == 1);
     // Paged bricks, too, may take more of it than of a CPU, whose memory is everybody's.
-    CHECK(Scene::most_atlas_bytes(plain.device().traits()) <= 2048 * MIB);
-    CHECK(Scene::most_atlas_bytes(device->device().traits()) > 2048 * MIB);
+    CHECK(Scene::most_atlas_bytes(plain.device().traits(), false) <= 2048 * MIB);
+    CHECK(Scene::most_atlas_bytes(device->device().traits(), true) > 2048 * MIB);
+}
+
+TEST_CASE("paged bricks fill more images than one, to the bits of bricks in one")
+{
+    Session session = plain_session({{0.0, RED, 0.002}, {255.0, BLUE, 0.01}}, {40, 30});  // rays come by all bricks
+    session.light.shaded = true;
+    session.render.detail = 0.0;
+    session.render.paging = Paging::always;
+    // 512 bricks, and coarser ones; the images of these devices hold 343 and 320.
+    const std::shared_ptr<const VolumeSource> source =
+        open_procedural({.kind = "tubes", .size = {250, 250, 250}, .seed = 5});
+    const Camera camera = camera_looking("right", source->info());
+    const PaintOp op{.brush = Brush::fill,
+                     .group = 3,
+                     .threshold = 60.0,
+                     .radius_voxels = 30.0,
+                     .path = {{70, 60, 60}, {180, 170, 200}}};
+    struct Drawn {
+        ImageF plain, painted, lit;
+        std::array<int64_t, 256> voxels{};
+    };
+    const auto drawn = [&](Renderer& renderer, bool is_stacked) {
+        renderer.load(source, BYTES, session.render);
+        Drawn made{.plain = renderer.render(session, camera).image, .painted = {}, .lit = {}};
+        const DeviceVolume::Counts counts = renderer.volume().counts().value();
+        CHECK(counts.resident > 512);
+        CHECK(counts.evictions == 0);
+        FrameGraph graph;
+        CHECK(renderer.volume().atlas(graph).more_atlases.empty() != is_stacked);
+        Session lit = session;
+        lit.light.occlusion = {.strength = 0.9, .radius = 6.0, .rays = 8};
+        const Picture picture = renderer.render(lit, camera);
+        for (const std::string& warning : picture.warnings) MESSAGE(warning);
+        if (picture.warnings.empty()) made.lit = picture.image;
+        Annotator annotator(renderer);
+        annotator.paint(op);
+        made.voxels = annotator.document().mask.voxels_by_group();
+        made.painted = renderer.render(session, camera).image;
+        return made;
+    };
+    for (const auto& [record, sampling] :
+         {std::pair{"minimum", Sampling::exact}, {"filters", Sampling::exact}, {"filters", Sampling::hardware}}) {
+        CAPTURE(std::string(record));
+        CAPTURE(int(sampling));
+        session.render.sampling = sampling;
+        Renderer plain({.device = {"", true}, .threads = 1});
+        const Drawn expected = drawn(plain, false);
+        CHECK(expected.voxels[3] > 1000);
+        CHECK(!expected.lit.rgba.empty());
+        On device(record);
+        const Drawn seen = drawn(*device, true);
+        // A filter is asked for other places of the texture.
+        const auto is_same = [&](const ImageF& a, const ImageF& b) {
+            return sampling == Sampling::exact ? different_bits(a, b) == 0
+                                               : compare_pixels(to_image8(a), to_image8(b)).max_abs <= 1.0;
+        };
+        CHECK(is_same(seen.plain, expected.plain));
+        CHECK(is_same(seen.painted, expected.painted));
+        CHECK(seen.voxels == expected.voxels);
+        CHECK(different_bits(seen.painted, seen.plain) > 0);
+        // The light's images are too large for the first device, which says so.
+        CHECK(seen.lit.rgba.empty() == (std::string(record) == "minimum"));
+        if (!seen.lit.rgba.empty()) CHECK(is_same(seen.lit, expected.lit));
+    }
+}
+
+TEST_CASE("a GPU unpacks bricks by kernels, all of a batch at once, to the bits of copies")
+{
+    Session session = plain_session({{0.0, RED, 0.05}, {255.0, BLUE, 0.3}}, {40, 30});
+    session.light.shaded = true;
+    const std::shared_ptr<const VolumeSource> source =
+        open_procedural({.kind = "tubes", .size = {131, 100, 70}, .seed = 5});
+    const Camera camera = camera_looking("front", source->info());
+    for (const Sampling sampling : {Sampling::exact, Sampling::hardware})
+        for (const Paging paging : {Paging::never, Paging::always}) {
+            CAPTURE(int(sampling));
+            CAPTURE(int(paging));
+            session.render.sampling = sampling;
+            session.render.paging = paging;
+            const auto drawn = [&](Renderer& renderer) {
+                renderer.load(source, BYTES, session.render);
+                return renderer.render(session, camera).image;
+            };
+            Renderer plain({.device = {"", true}, .threads = 1});
+            On device("nvidia");
+            // The place in the texture that a filter is asked for differs with its size.
+            const ImageF seen = drawn(*device), expected = drawn(plain);
+            if (sampling == Sampling::exact)
+                CHECK(different_bits(seen, expected) == 0);
+            else
+                CHECK(compare_pixels(to_image8(seen), to_image8(expected)).max_abs <= 1.0);
+        }
 }
 
 TEST_CASE("a GPU draws the next part of a picture while one is taken, to the bits of one part after the other")

@@ -6,6 +6,7 @@
 #include "tests/support/gpu.h"
 #include "tests/support/volume_files.h"
 #include "tests/support/workbench_state.h"
+#include "ui/workbench/bindings/shortcuts.h"
 
 using namespace shvr;
 using namespace shvr::test;
@@ -465,4 +466,49 @@ TEST_CASE_FIXTURE(OnDevice, "slices of a scan begin with a contrast in which the
     CHECK(*slices.black < 20.0);
     CHECK(*slices.white > 190.0);
     CHECK(on.bench.model().is_saved);  // which is no change that somebody made
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a stroke that finds nothing says what is there, and the threshold is taken from it")
+{
+    Plates on(renderer());
+    on.perform(Set{R"({"probe":{"paint_threshold":250}})"});
+    on.perform(PlaceProbe{{16.0, 10.0, 24.0}});
+    on.perform(Paint{true});
+    on.perform(Paint{false});
+    CHECK(!on.is_painted(16, 10));
+    const std::string said = on.bench.messages().last();
+    CHECK_MESSAGE(said.ends_with("; here is value 200, and Ctrl + T sets the threshold from it"), said);
+    on.perform(shortcut_named("threshold_here")->action(on.bench.model(), 1.0));
+    CHECK(on.bench.model().paint_threshold() == 150.0);  // 100 is the least that is drawn
+    on.perform(Paint{true});
+    on.perform(Paint{false});
+    CHECK(on.is_painted(16, 10));
+}
+
+TEST_CASE_FIXTURE(OnDevice, "a node that is clicked on something wide stays where the probe's ball is seen")
+{
+    TemporaryFolder folder;
+    folder.write("scan.json", R"({"shvr_session": 1, "volume": {"procedural": "sphere", "size": [64, 64, 64]},
+        "camera": "front", "cameras": {"front": {"projection": "orthographic", "eye": [32, -200, 32],
+        "target": [32, 32, 32], "up": [0, 0, 1], "height": 64}}, "render": {"size": [64, 64]},
+        "transfer_function": {"points": [{"intensity": 100, "opacity": 0}, {"intensity": 160, "opacity": 0.9},
+        {"intensity": 255, "opacity": 0.9}]}, "probe": {"radius_voxels": 3, "paint_threshold": 120}})");
+    Workbench bench(renderer(), {.has_servo = false});
+    bench.set_pixels({64, 64});
+    bench.open(folder.path / "scan.json", {});
+    settle(bench);
+    const auto clicked = [&] {
+        bench.perform(NodeAt{0, {42.0, 32.0}});
+        settle(bench);
+        glm::dvec3 last(0.0);
+        for (const auto& [number, node] : bench.model().trace.nodes()) last = node.position;
+        return last;
+    };
+    const glm::dvec3 held = clicked();
+    CHECK(held.x < 40.0);  // towards the middle, at 32
+    CHECK(held.x > 38.9);
+    CHECK_MESSAGE(bench.messages().last().find("further aside") != std::string::npos, bench.messages().last());
+    bench.perform(Set{R"({"probe":{"radius_voxels":12}})"});
+    CHECK(glm::distance(clicked(), glm::dvec3(32.0)) < 0.5);
+    CHECK(bench.messages().last().find("further aside") == std::string::npos);
 }

@@ -56,6 +56,21 @@ TEST_CASE_FIXTURE(OnDevice, "an export holds what was there when it was asked fo
     CHECK(after.find(char(5)) != std::string::npos);
 }
 
+TEST_CASE_FIXTURE(OnDevice, "what there is nothing of yet is not exported, and the reason is one of the work")
+{
+    Desk desk(renderer());
+    const std::string reason = "nothing is traced yet, so there is neither a trace nor a mesh to write";
+    CHECK(desk.bench.why_not(ExportTask{.trace = desk.path("t.swc")}) == reason);
+    CHECK(desk.bench.why_not(ExportTask{.mesh = desk.path("t.ply")}) == reason);
+    CHECK(desk.bench.why_not(ExportTask{.labels = true}) ==
+          "labels are written into a project, and this scan is none: import it as one, or name a mask");
+    desk.bench.perform(NodeOp{.at = {10, 12, 14}, .radius_voxels = 2.0, .group = uint8_t{2}});
+    CHECK(desk.bench.why_not(ExportTask{.trace = desk.path("t.swc")}) == "");
+    desk.bench.perform(ExportTask{.trace = desk.path("t.swc")});
+    settle(desk.bench);
+    CHECK(std::filesystem::exists(desk.path("t.swc")));
+}
+
 TEST_CASE_FIXTURE(OnDevice, "a job that is cancelled says so and leaves nothing")
 {
     Desk desk(renderer());

@@ -85,6 +85,7 @@ uint64_t play(uint32_t seed)
         const int number = below(bricks);
         const BrickKey key = brick(number);
         const size_t slot = model.slot_of(number);
+        BrickNeed before = BrickNeed::none;
         switch (below(6)) {
             case 0:
                 slots.tick();
@@ -95,8 +96,10 @@ uint64_t play(uint32_t seed)
                 if (slot > 0) model.slots[slot].used = model.now;
                 break;
             case 2:
+                before = model.need_of(number);
                 model.needs[number] = BrickNeed(below(3));
-                slots.needs_changed();
+                // What is needed more need not be said.
+                if (model.need_of(number) < before || below(2) == 0) slots.needs_changed();
                 break;
             case 3:
                 if (slot == 0) break;

@@ -115,3 +115,32 @@ TEST_CASE("a view of more leaves than there may be is taken with less detail")
     CHECK(tree.leaves.size() <= 1000);
     CHECK(tree.finest_level > 0);
 }
+
+TEST_CASE("the entries below any brick are those of the leaves in it")
+{
+    const VolumeInfo info{.name = "", .size = {700, 300, 1100}, .spacing = glm::dvec3(1.0)};
+    for (const double detail : {0.0, 1.0, 4.0}) {
+        CAPTURE(detail);
+        const PageTree tree = make_page_tree(info, 7, front(info, 200, detail), everything);
+        for (int level = 0; level < 7; ++level) {
+            const glm::ivec3 counts = brick_counts(size_of_level(info.size, level));
+            std::vector<int> seen(tree.entries.size());
+            for (int z = 0; z < counts.z; ++z)
+                for (int y = 0; y < counts.y; ++y)
+                    for (int x = 0; x < counts.x; ++x)
+                        for_each_entry_below(tree, {level, {x, y, z}}, [&](uint32_t entry, uint32_t leaf) {
+                            BrickKey above = tree.leaves.at(leaf).key;
+                            REQUIRE(above.level <= level);
+                            while (above.level < level) above = parent_of(above);
+                            REQUIRE(above == BrickKey{level, {x, y, z}});
+                            REQUIRE(tree.leaf_of_entry.at(entry) == leaf);
+                            ++seen.at(entry);
+                        });
+            for (uint32_t entry = 0; entry < seen.size(); ++entry) {
+                const uint32_t leaf = tree.leaf_of_entry[entry];
+                const bool is_below = leaf != PageTree::NO_LEAF && tree.leaves[leaf].key.level <= level;
+                REQUIRE(seen[entry] == int(is_below));
+            }
+        }
+    }
+}

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/formats/open_volume.h"
+#include "tests/support/bounds.h"
 #include "tests/support/volume_files.h"
 
 using namespace shvr;
@@ -79,7 +80,8 @@ TEST_CASE("64 bits: the last voxel of more than 2^32 is read from its own place"
     const Size3 size(2048, 2048, 1200);
     const fs::path raw = with_hole(folder, "many.raw", "", size.x * size.y * size.z - 2, "yz");
     const auto source = open_raw(raw, {.size = size});
-    CHECK(voxels_of_box(*source, {size - Size3(2, 1, 1), size}) == "yz");
+    test::check_below("differing voxels beyond 2^32",
+                      voxels_of_box(*source, {size - Size3(2, 1, 1), size}) == "yz" ? 0.0 : 1.0, 0.0);
     CHECK(voxels_of_box(*source, {{2046, 2047, 175}, {2048, 2048, 176}}) == std::string(2, '\0'));
 }
 

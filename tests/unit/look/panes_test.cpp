@@ -124,6 +124,7 @@ TEST_CASE("a slice's plane goes through the probe, half-way between the clip pla
                 const glm::dvec3 middle = camera.eye + depth * axes_of(camera).forward;
                 const double inside = std::clamp(probe[axis], 0.0, double(volume.size[axis]));
                 CHECK(middle[axis] == doctest::Approx(inside * volume.spacing[axis]));
+                CHECK(float(middle[axis] / volume.spacing[axis]) < float(volume.size[axis]));
                 CHECK(std::abs(axes_of(camera).forward[axis]) == doctest::Approx(1.0));
                 if (zoom > 1.0) {
                     const glm::dvec3 seen =

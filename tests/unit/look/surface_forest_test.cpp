@@ -103,6 +103,21 @@ struct Watched {
         return true;
     }
 
+    std::vector<KeyedSurface> all() const
+    {
+        std::vector<KeyedSurface> surfaces;
+        for (const auto& [key, look] : truth) surfaces.push_back({key, look});
+        return surfaces;
+    }
+
+    bool restyle(const std::vector<KeyedSurface>& surfaces)
+    {
+        if (!forest.restyle(surfaces, VOLUME)) return false;
+        truth.clear();
+        for (const KeyedSurface& surface : surfaces) truth[surface.key] = surface.look;
+        return true;
+    }
+
     void send()
     {
         const SurfaceForest::Written written = forest.take_written();
@@ -117,9 +132,7 @@ struct Watched {
         send();
         std::vector<gpu::SurfaceNode> nodes(sent_nodes.begin(), sent_nodes.begin() + ptrdiff_t(forest.nodes().size()));
         std::vector<gpu::Surface> found = found_in(nodes, sent_list);
-        std::vector<KeyedSurface> wanted;
-        for (const auto& [key, look] : truth) wanted.push_back({key, look});
-        std::vector<gpu::Surface> expected = surface_tree(wanted, VOLUME).list;
+        std::vector<gpu::Surface> expected = surface_tree(all(), VOLUME).list;
         std::ranges::sort(found, is_before);
         std::ranges::sort(expected, is_before);
         REQUIRE(found.size() == expected.size());
@@ -198,4 +211,51 @@ TEST_CASE("what would cost as much as a new forest is left to one, and what is r
     CHECK_THROWS_WITH_AS(watched.replace(gone, {broken}),
                          doctest::Contains("node 12: a radius is -1; expected more than 0"), Error);
     watched.check();
+}
+
+TEST_CASE("other colours and sizes are written where they are, and boxes fit them")
+{
+    Random random(74);  // seed 74
+    Watched watched(rods(5000, random));
+    std::vector<uint64_t> gone;
+    for (uint32_t i = 0; i < 40; ++i) gone.push_back(surface_key(SurfaceKind::node, 2 * i));
+    REQUIRE(watched.replace(gone, {{surface_key(SurfaceKind::node, 9000), random.rod()},
+                                   {surface_key(SurfaceKind::internode, 4001), random.rod()}}));
+    watched.check();
+
+    std::vector<KeyedSurface> all = watched.all();
+    for (size_t i = 0; i < all.size(); i += 5) all[i].look.color = glm::dvec3(0.25, 0.5, 2.0);
+    const size_t recoloured = (all.size() + 4) / 5;
+    REQUIRE(watched.restyle(all));
+    const SurfaceForest::Written written = SurfaceForest(watched.forest).take_written();
+    CHECK(written.list.size() <= recoloured + 2);  // the two of the small hierarchy are written together
+    CHECK(written.list.size() >= recoloured - 2);
+    CHECK(written.nodes.size() <= 3);
+    watched.check();
+
+    const std::vector<gpu::SurfaceNode> before = watched.forest.nodes();
+    for (size_t i = 0; i < all.size(); i += 7) all[i].look.radius_to *= i % 2 ? 3.0 : 0.25;
+    REQUIRE(watched.restyle(all));
+    watched.check();
+    size_t smaller = 0, larger = 0;
+    for (size_t i = 0; i < before.size(); ++i) {
+        smaller += glm::any(glm::greaterThan(watched.forest.nodes()[i].lower, before[i].lower));
+        larger += glm::any(glm::lessThan(watched.forest.nodes()[i].lower, before[i].lower));
+    }
+    CHECK(smaller > 50);
+    CHECK(larger > 50);
+    REQUIRE(watched.restyle(all));  // the same again
+    CHECK(watched.forest.take_written().list.empty());
+
+    std::vector<KeyedSurface> fewer = all;
+    fewer.pop_back();
+    CHECK(!watched.restyle(fewer));
+    std::vector<KeyedSurface> others = all;
+    others[2000].key = surface_key(SurfaceKind::session, 3);
+    CHECK(!watched.restyle(others));
+    all[100].look.color.x = 0.125;
+    all[4000].look.radius_from = -1.0;
+    CHECK_THROWS_WITH_AS(watched.restyle(all), doctest::Contains("a radius is -1; expected more than 0"), Error);
+    watched.check();
+    CHECK(!Watched(rods(100, random)).restyle(rods(100, random)));
 }

@@ -219,8 +219,11 @@ TEST_CASE("blur: each axis has its own sigma, also where it reaches beyond the v
     const Block block = random_block<float>(Size3(7, 5, 3), 3);
     for (const glm::dvec3& sigma :
          {glm::dvec3(2, 0, 0), glm::dvec3(0, 2, 0), glm::dvec3(0, 0, 2), glm::dvec3(0.8, 3, 5)}) {
-        CHECK(largest_difference(convolved(block, sigma),
-                                 prepared<float>(source_of<float>(block), blur(sigma.x, sigma.y, sigma.z))) < 1e-6);
+        CAPTURE(sigma.x);
+        test::check_below("floats",
+                          largest_difference(convolved(block, sigma),
+                                             prepared<float>(source_of<float>(block), blur(sigma.x, sigma.y, sigma.z))),
+                          1e-6);
     }
     const Block one{Size3(1), {0.25}};
     CHECK(prepared<float>(source_of<float>(one), blur(2, 2, 2)).values == one.values);
@@ -229,8 +232,11 @@ TEST_CASE("blur: each axis has its own sigma, also where it reaches beyond the v
 TEST_CASE("blur: a sigma of 0 changes nothing")
 {
     const Block block = random_block<uint16_t>(Size3(20, 9, 8), 4);
-    CHECK(prepared<uint16_t>(source_of<uint16_t>(block), blur(0, 0, 0)).values == block.values);
-    CHECK(prepared<uint16_t>(source_of<uint16_t>(block), blur(0.1, 0.1, 0.1)).values == block.values);
+    for (const double sigma : {0.0, 0.1}) {
+        CAPTURE(sigma);
+        const Block blurred = prepared<uint16_t>(source_of<uint16_t>(block), blur(sigma, sigma, sigma));
+        test::check_below("levels", largest_difference(block, blurred), 0.0);
+    }
 }
 
 TEST_CASE("blur: the response to one voxel is symmetric bit for bit under mirrors and exchanges of axes")
@@ -238,14 +244,13 @@ TEST_CASE("blur: the response to one voxel is symmetric bit for bit under mirror
     Block impulse{Size3(13), std::vector<double>(13 * 13 * 13)};
     impulse.values[impulse.index(6, 6, 6)] = 1.0;
     const Block response = prepared<float>(source_of<float>(impulse), blur(1.2, 1.2, 1.2));
+    int64_t differing = 0;
     impulse.for_each([&](int64_t x, int64_t y, int64_t z) {
-        const double value = response.at(x, y, z);
-        REQUIRE(response.at(12 - x, y, z) == value);
-        REQUIRE(response.at(x, 12 - y, z) == value);
-        REQUIRE(response.at(x, y, 12 - z) == value);
-        REQUIRE(response.at(y, x, z) == value);
-        REQUIRE(response.at(x, z, y) == value);
+        for (const double other : {response.at(12 - x, y, z), response.at(x, 12 - y, z), response.at(x, y, 12 - z),
+                                   response.at(y, x, z), response.at(x, z, y)})
+            differing += other != response.at(x, y, z);
     });
+    test::check_below("differing voxels", double(differing), 0.0);
 }
 
 TEST_CASE("blur: away from borders, two in a row are one of the root of the sum of squares")
@@ -255,10 +260,12 @@ TEST_CASE("blur: away from borders, two in a row are one of the root of the sum 
     const Block twice = prepared<float>(source_of<float>(once), blur(1.5, 1.5, 1.5));
     const double together = std::sqrt(1.0 + 2.25);
     const Block direct = prepared<float>(source_of<float>(block), blur(together, together, together));
+    double most = 0.0;
     block.for_each([&](int64_t x, int64_t y, int64_t z) {
         const int64_t to_border = std::min({x, y, z, 29 - x, 29 - y, 29 - z});
-        if (to_border >= 10) REQUIRE(std::abs(twice.at(x, y, z) - direct.at(x, y, z)) < 2e-3);
+        if (to_border >= 10) most = std::max(most, std::abs(twice.at(x, y, z) - direct.at(x, y, z)));
     });
+    test::check_below("of the range", most, 2e-3);
 }
 
 TEST_CASE("blur: slabs, bands, threads and blocks of the source do not matter, bit for bit")

@@ -134,7 +134,8 @@ TEST_CASE("names and folders are refused before anything is written, in the word
     AnnotationView bare{annotated.volume, nothing.mask, nothing.density, nothing.trace, annotated.groups};
     CHECK(error_of([&] { check(task, bare); }) == "the session: names no trace; expected the key annotation.trace");
     bare.trace_path = folder.path / "b.graphml";
-    CHECK(contains(error_of([&] { check(task, bare); }), "b.graphml: does not exist; expected the trace"));
+    CHECK(contains(error_of([&] { check(task, bare); }),
+                   "b.graphml: does not exist: nothing is traced; expected the trace"));
 }
 
 TEST_CASE("an export writes what is there and counts it")

@@ -2,8 +2,11 @@
 
 #include "ui/files/file_list.h"
 
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <future>
+#include <thread>
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -13,6 +16,7 @@
 #include "engine/base/error.h"
 #include "engine/formats/open_volume.h"
 #include "tests/support/volume_files.h"
+#include "ui/files/asked.h"
 
 using namespace shvr;
 using namespace shvr::test;
@@ -35,13 +39,21 @@ Names rows_of(const FileList& list)
     return names;
 }
 
+/// Names, and what was asked about them.
+void read_all(FileList& list)
+{
+    do {
+        std::this_thread::yield();
+        list.read_on();
+    } while (list.is_waiting());
+}
+
 Names listed(const std::filesystem::path& folder, bool all_files, bool hidden, size_t at_once = 4096)
 {
     FileList list;
     list.show(all_files, hidden);
-    list.enter(folder);
-    while (list.read_on(at_once)) {
-    }
+    list.enter(folder, at_once);
+    read_all(list);
     CHECK(list.failure() == "");
     return rows_of(list);
 }
@@ -64,7 +76,7 @@ TEST_CASE("a folder is listed with folders first, and numbers in names count as 
                                                    "slice2.tif", "slice10.tif"});
     FileList list;
     list.enter(folder.path);
-    list.read_on();
+    read_all(list);
     CHECK(list.left_out() == 4);
     CHECK(list.row_of("slice2.tif") == 7);
     CHECK_FALSE(list.row_of("notes.txt"));
@@ -155,19 +167,23 @@ TEST_CASE("a folder that cannot be listed says why in one sentence, and stays th
     const TemporaryFolder folder;
     FileList list;
     list.enter(folder.path / "gone");
+    read_all(list);
     CHECK(list.failure() == (folder.path / "gone").string() + ": cannot be listed: it is not there");
     CHECK_FALSE(list.read_on());
     CHECK(list.size() == 0);
     CHECK(list.folder() == folder.path / "gone");
     touch(folder.path / "file");
     list.enter(folder.path / "file");
+    read_all(list);
     CHECK(list.failure() == (folder.path / "file").string() + ": cannot be listed: it is no folder");
     list.enter(folder.path);
+    read_all(list);
     CHECK(list.failure() == "");
     if (geteuid() == 0) return;  // root may read everything
     std::filesystem::create_directory(folder.path / "closed");
     chmod((folder.path / "closed").c_str(), 0);
     list.enter(folder.path / "closed");
+    read_all(list);
     CHECK(list.failure() == (folder.path / "closed").string() + ": cannot be listed: it may not be read");
     chmod((folder.path / "closed").c_str(), 0700);
 }
@@ -179,22 +195,67 @@ TEST_CASE("a folder of many slices is read in parts, in order at all times, and 
     for (int i = 0; i < SLICES; ++i) touch(folder.path / ("slice" + std::to_string(i) + ".tif"), "");
     FileList list;
     list.enter(folder.path);
-    int parts = 1;
-    for (size_t had = 0; list.read_on(); ++parts) {
-        CHECK(list.size() == had + FileList::READ_AT_ONCE);
-        had = list.size();
+    while (list.is_reading()) {
         for (size_t row = 1; row < list.size(); row += 97)
             CHECK(is_naturally_before(list.at(row - 1).name, list.at(row).name));
+        list.read_on();
     }
-    CHECK(parts == 5);
     REQUIRE(list.size() == SLICES);
     for (int i = 0; i < SLICES; i += 999) CHECK(list.at(size_t(i)).name == "slice" + std::to_string(i) + ".tif");
     // A row is asked about when it is shown, once.
     std::filesystem::remove(folder.path / "slice0.tif");
     CHECK_FALSE(list.details(0).bytes);
+    CHECK_FALSE(list.details(1).bytes);  // not known yet
+    CHECK(list.is_waiting());
+    read_all(list);
+    CHECK_FALSE(list.details(0).bytes);
     CHECK(list.details(1).bytes == 0);
     touch(folder.path / "slice1.tif", "grown");
     CHECK(list.details(1).bytes == 0);
+    CHECK_FALSE(list.is_waiting());
+}
+
+TEST_CASE("a path is taken, looked into, or refused in a sentence, by what is wanted")
+{
+    const TemporaryFolder folder;
+    for (const char* name : {"scan.nrrd", "series/1.dcm", "series/2.dcm", "plain/in", "archive.ozx"})
+        touch(folder.path / name);
+    const auto verdict = [&](const char* name, Wanted wanted, bool enters = true) {
+        return verdict_on(folder.path / name, wanted, enters);
+    };
+    const auto said = [&](const char* name, const char* what) { return (folder.path / name).string() + ": " + what; };
+    CHECK(verdict("scan.nrrd", Wanted::scan).failure == "");
+    CHECK_FALSE(verdict("series", Wanted::scan).enters);
+    CHECK(verdict("plain", Wanted::scan, false).enters);
+    CHECK(verdict("gone.nrrd", Wanted::scan).failure == said("gone.nrrd", "there is no such file or folder"));
+    CHECK(verdict("archive.ozx/0", Wanted::scan).failure == "");
+    CHECK(verdict("plain", Wanted::new_file, false).enters);
+    CHECK(verdict("scan.nrrd", Wanted::new_file).failure == said("scan.nrrd", "is there already; type another name"));
+    CHECK(verdict("new.json", Wanted::new_file).failure == "");
+    CHECK(verdict("gone/new.json", Wanted::new_file).failure == said("gone", "is no folder; choose one for the file"));
+    CHECK(verdict("series", Wanted::any).enters);
+    CHECK_FALSE(verdict("series", Wanted::any, false).enters);
+}
+
+TEST_CASE("nobody waits for what does not answer: it is known later, or never")
+{
+    std::promise<void> goes_on;
+    const auto wait = goes_on.get_future().share();
+    Asked<int> asked([wait] {
+        wait.wait();
+        return 7;
+    });
+    CHECK(asked.is_pending());
+    CHECK_FALSE(asked.take(std::chrono::milliseconds(1)));
+    Asked<int> forgotten = asked;
+    forgotten = {};
+    CHECK_FALSE(forgotten.is_pending());
+    goes_on.set_value();
+    std::optional<int> answer;
+    while (!answer) answer = asked.take(std::chrono::milliseconds(100));
+    CHECK(answer == 7);
+    CHECK_FALSE(asked.is_pending());
+    CHECK_FALSE(asked.take());
 }
 
 TEST_CASE("a typed path leads from the folder that is shown")

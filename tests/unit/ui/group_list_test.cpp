@@ -102,3 +102,30 @@ TEST_CASE("numbers have separators")
     CHECK(with_separators(1234567) == "1,234,567");
     CHECK(with_separators(-123) == "-123");
 }
+
+TEST_CASE("a picture shows the groups that are painted or traced, and neither hidden nor clear")
+{
+    Session session;
+    session.groups[2].visible = false;
+    session.groups[3].parent = 2;
+    session.groups[4].opacity = 0.0;
+    session.groups[6].parent = 5;
+    std::array<int64_t, 256> painted{};
+    for (const size_t group : {1u, 2u, 3u, 4u, 5u, 6u}) painted[group] = 10;
+    TraceGraph trace;
+    trace.apply(TraceNodeChange{0, {}, TraceNode{{0, 0, 0}, 1.0, 9}}, Direction::forwards);
+    using Drawn = std::vector<uint8_t>;
+    CHECK(drawn_groups(session, painted, trace) == Drawn{1, 5, 6, 9});
+    session.view.solo = 5;
+    CHECK(drawn_groups(session, painted, trace) == Drawn{5, 6});
+    session.view.solo = 0;
+    CHECK(drawn_groups(session, painted, trace).empty());
+    session.view.solo.reset();
+    session.view.volume = false;  // the trace stays
+    CHECK(drawn_groups(session, painted, trace) == Drawn{9});
+    session.view.meshes = false;
+    CHECK(drawn_groups(session, painted, trace).empty());
+    painted[0] = 100;
+    session.view.volume = true;
+    CHECK(drawn_groups(session, painted, trace) == Drawn{1, 5, 6});
+}

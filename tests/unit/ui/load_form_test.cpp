@@ -14,6 +14,9 @@ TEST_CASE("a form states what was filled in, and nothing else")
     form.channel = "red";
     form.frame = "2";
     CHECK(settings_of(form) == "volume.channel=red\nvolume.frame=2");
+    form.level = 2;
+    CHECK(settings_of(form) == "volume.channel=red\nvolume.frame=2\nvolume.level=2");
+    form.level = 0;
     form.states_spacing = true;
     form.spacing = {0.5, 0.25, 2.0};
     CHECK(settings_of(form) == "volume.channel=red\nvolume.frame=2\nvolume.spacing=[0.5,0.25,2]");

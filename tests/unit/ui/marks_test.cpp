@@ -41,7 +41,7 @@ struct Panes {
         world.model.probe_voxel = {50.0, 50.0, 50.0};
         world.session.probe.brush.radius_voxels = 10.0;
         InteractionSettings& shown = world.session.interaction;
-        shown.axes = shown.scale_bar = shown.probe_label = false;
+        shown.axes = shown.scale_bar = shown.probe_label = shown.group_legend = false;
         world.trace.apply(TraceNodeChange{0, {}, TraceNode{{60.0, 100.0, 100.0}, 4.0, 1}}, Direction::forwards);
         world.trace.apply(TraceNodeChange{1, {}, TraceNode{{60.0, 100.0, 160.0}, 4.0, 1}}, Direction::forwards);
     }
@@ -125,7 +125,8 @@ TEST_CASE("Scale bar, axes and the probe's depth are drawn where they are wanted
     CHECK(Panes::says(marks, "25 % full, 12.5 mm deep"));
     panes.view.shot.camera.projection = Camera::Projection::perspective;
     const Marks deep = panes.over(panes.view);
-    CHECK(std::ranges::any_of(deep.labels, [](const Label& label) { return label.text.ends_with("middle's depth"); }));
+    CHECK(std::ranges::any_of(deep.labels,
+                              [](const Label& label) { return label.text.ends_with("at the middle of the view"); }));
 }
 
 TEST_CASE("The words at the probe lie at its left where there is no room at the right")
@@ -146,4 +147,29 @@ TEST_CASE("The words at the probe lie at its left where there is no room at the 
     CHECK(at_probe(10.0).at.x > 70.0);  // of the pane's 300 pixels
     CHECK(at_probe(50.0).anchor.x == 1.0);
     CHECK(at_probe(50.0).at.x < 150.0);
+}
+
+TEST_CASE("What is painted or traced is named beside its colour, in the first pane, as far as there is room")
+{
+    Panes panes;
+    panes.world.session.groups[1].name = "leaf trace";
+    panes.world.session.groups[7].name = std::string(31, 'a') + "\u00e4bc";
+    panes.world.session.groups[7].color = glm::dvec3(0.25, 0.5, 0.75);
+    panes.world.model.voxels_by_group[7] = 1;
+    CHECK(!Panes::says(panes.over(panes.view), "leaf trace"));
+    panes.world.session.interaction.group_legend = true;
+    const Marks marks = panes.over(panes.view);
+    CHECK(Panes::says(marks, "leaf trace"));
+    CHECK(Panes::says(marks, std::string(31, 'a') + "\u00e4..."));
+    CHECK(std::ranges::any_of(marks.strokes, [](const Stroke& stroke) {
+        return stroke.color == glm::dvec3(0.25, 0.5, 0.75) && stroke.width == 11.0 && stroke.to.x == 288.0;
+    }));
+    CHECK(!Panes::says(panes.over(panes.slice), "leaf trace"));
+    const Marks in_file = marks_of(panes.world.model, panes.view, 0, 1.0, MarksFor::picture);
+    CHECK(Panes::says(in_file, "leaf trace"));
+    panes.world.model.voxels_by_group.fill(1);
+    const Marks many = panes.over(panes.view);
+    CHECK(Panes::says(many, "group 8"));
+    CHECK(!Panes::says(many, "group 9"));  // 300 pixels have room for nine lines above the scale bar
+    CHECK(Panes::says(many, "and 247 more groups"));
 }

@@ -212,3 +212,9 @@ TEST_CASE("A click hits the nearest node under it, or else an internode, within 
     CHECK(trace_hit(trace, view, {40.0, 50.0}, info).depth == doctest::Approx(150.0));
     CHECK(!trace_hit(TraceGraph(), view, {20.0, 50.0}, info).node.has_value());
 }
+
+TEST_CASE("a threshold is taken half-way between what is drawn at all and what is here")
+{
+    CHECK(threshold_at(312.0, 188.0) == 250.0);
+    CHECK(threshold_at(100.0, 188.0) == 100.0);
+}

@@ -18,7 +18,8 @@ struct ProfileCommandOptions {
     Common common;
     std::string input, size, camera, trace, csv, graph, html, script;
     int frames = 20;
-    int warmup = 3;  ///< the first frames compile kernels and wake up the device
+    int replays = 1;  ///< of the script
+    int warmup = 3;   ///< the first frames compile kernels and wake up the device
     bool serialize = false;
     std::string a, b;  ///< of diff
 };
@@ -28,6 +29,15 @@ void print_text(const std::string& text)
     clear_progress();
     std::cout << text << std::flush;
     if (!std::cout) fail("standard output: cannot be written");
+}
+
+/// Frames that lack something take less time than they should.
+void expect_complete(const Picture& picture, const Opened& opened, const ProfileCommandOptions& options)
+{
+    if (picture.complete || *options.common.allows_incomplete) return;
+    fail(options.input, ": the picture is incomplete: ",
+         picture.warnings.empty() ? "not all bricks that rays visited could be drawn" : picture.warnings.front(),
+         opened.gaps->has_refused() ? "" : "; --allow-incomplete measures it nevertheless");
 }
 
 Profile measure_frames(const ProfileCommandOptions& options, Opened& opened, LongWork& work)
@@ -41,8 +51,7 @@ Profile measure_frames(const ProfileCommandOptions& options, Opened& opened, Lon
                     .driver = traits.driver,
                     .size = opened.session.render.size,
                     .warmup = options.warmup,
-                    .serialize = options.serialize,
-                    .warnings = opened.warnings};
+                    .serialize = options.serialize};
     if (traits.timestamp_bits == 0)
         profile.warnings.push_back(sentence(traits.name, " has no timestamp queries; passes are not timed"));
 
@@ -51,7 +60,7 @@ Profile measure_frames(const ProfileCommandOptions& options, Opened& opened, Lon
     using Milliseconds = std::chrono::duration<double, std::milli>;
     const auto started = std::chrono::steady_clock::now();
     const auto now = [&] { return Milliseconds(std::chrono::steady_clock::now() - started).count(); };
-    double measured_from = 0.0;
+    double measured_from = 0.0;  // milliseconds
     const std::optional<ProbeLook> probe = shown_probe(opened.session, *opened.renderer, *opened.annotator);
     const int frames = options.warmup + options.frames;
     const Progress progress = work.begin("drawing frames");
@@ -60,9 +69,17 @@ Profile measure_frames(const ProfileCommandOptions& options, Opened& opened, Lon
         const double begin = now();
         Picture picture = renderer.render(opened.session, camera, {.probe = probe, .serialize = options.serialize});
         const double end = now();
-        if (i == 0) profile.first_frame = picture.passes;
+        if (i == 0) {
+            profile.first_frame = picture.passes;
+            expect_complete(picture, opened, options);
+            profile.complete = picture.complete;
+        }
         if (i < options.warmup) continue;
-        if (i == options.warmup) measured_from = begin;
+        if (i == options.warmup) {
+            measured_from = begin;
+            profile.measured_from =
+                started + std::chrono::duration_cast<std::chrono::steady_clock::duration>(Milliseconds(begin));
+        }
         profile.frames.push_back({.begin_ms = begin - measured_from,
                                   .end_ms = end - measured_from,
                                   .wall_ms = picture.wall_ms,
@@ -71,6 +88,10 @@ Profile measure_frames(const ProfileCommandOptions& options, Opened& opened, Lon
         profile.graph = std::move(picture.graph);
     }
     profile.bytes = bytes_of(renderer);
+    warn_of_gaps(opened, options.input, options.common);
+    profile.complete = profile.complete && opened.is_whole();
+    profile.voxels_not_read = opened.voxels_not_read();
+    profile.warnings.insert(profile.warnings.begin(), opened.warnings.begin(), opened.warnings.end());
     profile.device_budget = renderer.memory().device_budget();
     profile.host_budget = renderer.host_budget();
     // Counting costs time, so it gets its own frame.
@@ -81,7 +102,7 @@ Profile measure_frames(const ProfileCommandOptions& options, Opened& opened, Lon
 
 void run_session(const ProfileCommandOptions& options)
 {
-    const SessionProfile profile = profile_session(options.input, options.script, options.common);
+    const SessionProfile profile = profile_session(options.input, options.script, options.replays, options.common);
     Json summary = summary_of(profile);
     summary["written"] = Json::array();
     const auto write = [&](const std::string& path, const auto& form) {
@@ -106,6 +127,8 @@ void run_profile(ProfileCommandOptions options)
     check_output("--csv", options.csv, {".csv"});
     check_output("--html", options.html, {".html"});
     check_output("--graph", options.graph, {".dot", ".svg", ".json"});
+    for (const std::string& output : {options.trace, options.csv, options.html, options.graph})
+        for (const std::string& input : {options.input, options.script}) check_output_is_not(input, output);
     if (!options.size.empty()) {
         const glm::uvec2 size = parse_size(options.size);
         options.common.settings.push_back(sentence("render.size=[", size.x, ",", size.y, "]"));
@@ -190,17 +213,25 @@ void add_profile(CLI::App& program)
     CLI::Option* const script = command->add_option("--script", options->script,
                                                     "Actions to time one by one instead of frames, as shvr view --log "
                                                     "writes them; the journal keeps what they paint");
-    for (const char* of_frames : {"--frames", "--warmup", "--camera", "--graph"})
-        script->excludes(command->get_option(of_frames));
     command->add_flag("--serialize", options->serialize, "A full barrier between passes: times that do not overlap");
-    script->excludes(command->get_option("--serialize"));
+    add_incomplete_option(*command, options->common, "Measure pictures that lack something, instead of failing");
+    for (const char* of_frames : {"--frames", "--warmup", "--camera", "--graph", "--serialize", "--allow-incomplete"})
+        script->excludes(command->get_option(of_frames));
+    command
+        ->add_option("--replays", options->replays,
+                     "How often the script is done; from 3 on a diff knows the noise. All but the last are done on "
+                     "copies of the work, which are removed")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str()
+        ->needs(script);
     add_belief_option(*command, options->common);
     add_device_options(*command, options->common);
     add_output_options(*command, options->common);
     add_diff(*command, options);
     command->footer(
         "Example:\n  shvr profile scan.nhdr --frames 100 --json > before.json\n"
-        "  shvr profile diff before.json after.json");
+        "  shvr profile diff before.json after.json\n"
+        "  shvr profile copy/ --script session.jsonl --replays 5 --html session.html");
     command->callback([options, command] {
         if (!command->got_subcommand("diff")) run_profile(*options);
     });

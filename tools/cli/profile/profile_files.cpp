@@ -1,11 +1,8 @@
-#include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <iomanip>
 #include <sstream>
 
@@ -13,6 +10,7 @@
 #include "engine/base/file.h"
 #include "engine/graph/graph_text.h"
 #include "tools/cli/profile/profile_report.h"
+#include "tools/cli/profile/temporary_folder.h"
 
 extern char** environ;
 
@@ -45,56 +43,36 @@ Json span_event(const std::string& name, int process, size_t thread, double begi
             {"args", std::move(args)}};
 }
 
-/// Passes of a frame that overlap get separate lanes: spans in one lane must not cross.
-class Lanes {
-public:
-    size_t take(double begin_ms, double end_ms)
-    {
-        size_t lane = 0;
-        while (lane < free_from_.size() && free_from_[lane] > begin_ms) ++lane;
-        if (lane == free_from_.size()) free_from_.push_back(0.0);
-        free_from_[lane] = end_ms;
-        return lane + 1;
-    }
-    size_t count() const { return free_from_.size(); }
-    double end() const { return free_from_.empty() ? 0.0 : *std::max_element(free_from_.begin(), free_from_.end()); }
-
-private:
-    std::vector<double> free_from_;
-};
-
-void add_passes(Json& events, const ProfiledFrame& frame, size_t index, Lanes& lanes)
+void add_pass(Json& events, const Profile& profile, const PlacedPass& placed)
 {
-    // The clocks of host and device are independent, so the passes are drawn to end with their frame.
-    const double origin = std::max({lanes.end(), frame.begin_ms, frame.end_ms - frame.wall_ms});
-    bool first = true;
-    for (const gpu::PassReport& pass : frame.passes) {
-        if (!pass.timed) continue;
-        const double begin = origin + pass.start_ms;
-        const size_t lane = lanes.take(begin, begin + pass.gpu_ms);
-        events.push_back(span_event(pass.name, DEVICE, lane, begin, pass.gpu_ms,
-                                    {{"frame", index},
-                                     {"kernel", pass.kernel},
-                                     {"dispatches", pass.dispatches},
-                                     {"bytes", pass.bytes},
-                                     {"barrier", pass.barrier}}));
-        if (std::exchange(first, false))
-            events.push_back({{"ph", "f"},
-                              {"bp", "e"},
-                              {"name", "submit"},
-                              {"cat", "submit"},
-                              {"id", index},
-                              {"pid", DEVICE},
-                              {"tid", lane},
-                              {"ts", microseconds(begin)}});
-    }
+    const gpu::PassReport& pass = profile.frames[placed.frame].passes[placed.pass];
+    const size_t lane = placed.lane + 1;
+    events.push_back(span_event(pass.name, DEVICE, lane, placed.begin_ms, pass.gpu_ms,
+                                {{"frame", placed.frame},
+                                 {"kernel", pass.kernel},
+                                 {"dispatches", pass.dispatches},
+                                 {"bytes", pass.bytes},
+                                 {"barrier", pass.barrier}}));
+    if (placed.is_first)
+        events.push_back({{"ph", "f"},
+                          {"bp", "e"},
+                          {"name", "submit"},
+                          {"cat", "submit"},
+                          {"id", placed.frame},
+                          {"pid", DEVICE},
+                          {"tid", lane},
+                          {"ts", microseconds(placed.begin_ms)}});
 }
 
-void add_frame(Json& events, const ProfiledFrame& frame, size_t index)
+void add_frame(Json& events, const Profile& profile, const ProfiledFrame& frame, size_t index)
 {
     const double begin_us = microseconds(frame.begin_ms);
     events.push_back(span_event(sentence("frame ", index), HOST, 1, frame.begin_ms, frame.end_ms - frame.begin_ms,
                                 {{"submit_to_done_ms", frame.wall_ms}}));
+    const std::vector<std::pair<double, double>> recorded = recorded_in(profile, frame);
+    for (size_t i = 0; i < recorded.size(); ++i)
+        events.push_back(span_event("record " + frame.passes[i].name, HOST, 1, recorded[i].first, recorded[i].second,
+                                    {{"frame", index}}));
     events.push_back({{"ph", "s"},
                       {"name", "submit"},
                       {"cat", "submit"},
@@ -125,28 +103,9 @@ std::string field(const std::string& text)
     return quoted + "\"";
 }
 
-/// A folder for one run of `dot`.
-struct TemporaryFolder {
-    std::filesystem::path path;
-
-    TemporaryFolder()
-    {
-        std::string name = (std::filesystem::temp_directory_path() / "shvr-graph-XXXXXX").string();
-        if (!::mkdtemp(name.data())) fail(name, ": cannot be created: ", reason_of(errno));
-        path = name;
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    ~TemporaryFolder()
-    {
-        std::error_code ignored;  // files that cannot be removed stay in the temporary folder
-        std::filesystem::remove_all(path, ignored);
-    }
-};
-
 std::string svg_of(const std::string& graphviz)
 {
-    const TemporaryFolder folder;
+    const TemporaryFolder folder("shvr-graph");
     std::string input = (folder.path / "graph.dot").string(), output = (folder.path / "graph.svg").string();
     write_text(input, graphviz);
     std::string program = "dot", format = "-Tsvg", option = "-o";
@@ -166,19 +125,56 @@ std::string svg_of(const std::string& graphviz)
 
 }  // namespace
 
+std::vector<std::pair<double, double>> recorded_in(const Profile& profile, const ProfiledFrame& frame)
+{
+    std::vector<std::pair<double, double>> spans;
+    double end = frame.begin_ms;
+    for (const gpu::PassReport& pass : frame.passes) {
+        const std::chrono::duration<double, std::milli> since = pass.recorded - profile.measured_from;
+        const double begin = std::clamp(since.count(), end, frame.end_ms);
+        end = std::min(begin + pass.record_ms, frame.end_ms);
+        spans.emplace_back(begin, end - begin);
+    }
+    return spans;
+}
+
+std::vector<PlacedPass> placed_passes(const Profile& profile)
+{
+    std::vector<PlacedPass> placed;
+    std::vector<double> free_from;  // of each lane: spans in one lane must not cross
+    for (size_t index = 0; index < profile.frames.size(); ++index) {
+        const ProfiledFrame& frame = profile.frames[index];
+        const double busy_until = free_from.empty() ? 0.0 : *std::max_element(free_from.begin(), free_from.end());
+        const double origin = std::max({busy_until, frame.begin_ms, frame.end_ms - frame.wall_ms});
+        bool is_first = true;
+        for (size_t i = 0; i < frame.passes.size(); ++i) {
+            const gpu::PassReport& pass = frame.passes[i];
+            if (!pass.timed) continue;
+            const double begin = origin + pass.start_ms;
+            size_t lane = 0;
+            while (lane < free_from.size() && free_from[lane] > begin) ++lane;
+            free_from.resize(std::max(free_from.size(), lane + 1));
+            free_from[lane] = begin + pass.gpu_ms;
+            placed.push_back({index, i, begin, lane, std::exchange(is_first, false)});
+        }
+    }
+    return placed;
+}
+
 std::string trace_of(const Profile& profile)
 {
     Json spans = Json::array();
-    Lanes lanes;
-    for (size_t i = 0; i < profile.frames.size(); ++i) {
-        add_frame(spans, profile.frames[i], i);
-        add_passes(spans, profile.frames[i], i, lanes);
+    for (size_t i = 0; i < profile.frames.size(); ++i) add_frame(spans, profile, profile.frames[i], i);
+    size_t lanes = 0;
+    for (const PlacedPass& placed : placed_passes(profile)) {
+        add_pass(spans, profile, placed);
+        lanes = std::max(lanes, placed.lane + 1);
     }
     std::stable_sort(spans.begin(), spans.end(),
                      [](const Json& a, const Json& b) { return a["ts"].get<double>() < b["ts"].get<double>(); });
     Json events = Json::array({name_event("process_name", HOST, 1, "CPU"), name_event("thread_name", HOST, 1, "frames"),
                                name_event("process_name", DEVICE, 1, "GPU: " + profile.device)});
-    for (size_t lane = 1; lane <= lanes.count(); ++lane)
+    for (size_t lane = 1; lane <= lanes; ++lane)
         events.push_back(name_event("thread_name", DEVICE, int(lane), sentence("passes ", lane)));
     for (Json& span : spans) events.push_back(std::move(span));
     const Json trace = {{"traceEvents", events},
@@ -195,7 +191,7 @@ std::string trace_of(const Profile& profile)
 std::string csv_of(const Profile& profile)
 {
     std::ostringstream text;
-    text << "frame,step,pass,kernel,start_ms,gpu_ms,dispatches,bytes,barrier,frame_ms\n";
+    text << "frame,step,pass,kernel,start_ms,gpu_ms,dispatches,bytes,barrier,frame_ms,record_ms\n";
     text << std::setprecision(9);
     for (size_t i = 0; i < profile.frames.size(); ++i)
         for (size_t step = 0; step < profile.frames[i].passes.size(); ++step) {
@@ -206,7 +202,7 @@ std::string csv_of(const Profile& profile)
             else
                 text << ',';
             text << ',' << pass.dispatches << ',' << pass.bytes << ',' << field(pass.barrier) << ','
-                 << profile.frames[i].wall_ms << '\n';
+                 << profile.frames[i].wall_ms << ',' << pass.record_ms << '\n';
         }
     return text.str();
 }

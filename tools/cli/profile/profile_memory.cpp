@@ -101,7 +101,10 @@ Json frame_memory_of(const FrameGraph& graph)
     }
     const uint64_t sum = std::accumulate(transients.begin(), transients.end(), uint64_t(0),
                                          [](uint64_t bytes, const Need& need) { return bytes + need.bytes; });
+    Json names = Json::array();
+    for (size_t step = 0; step < compiled.steps.size(); ++step) names.push_back(pass_at(step));
     return {{"steps", compiled.steps.size()},
+            {"step_names", names},
             {"resources", resources},
             {"transient_bytes", sum},
             {"transient_taken", taken},

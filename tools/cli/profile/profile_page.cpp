@@ -1,7 +1,10 @@
-// The page of a profile: its frames and passes along one axis of time, memory below it, and the table.
+// The page of a profile: its frames and passes along one axis of time, memory below it, and the tables.
 
 #include <algorithm>
+#include <cmath>
+#include <iomanip>
 
+#include "tools/cli/profile/chart.h"
 #include "tools/cli/profile/profile_report.h"
 #include "tools/report/html.h"
 
@@ -9,139 +12,186 @@ namespace shvr::cli {
 
 namespace {
 
-constexpr double CHART_WIDTH = 1400.0, LANE = 22.0, MEMORY_HEIGHT = 80.0, LEFT = 70.0;
-constexpr const char* PASS_COLORS[] = {"#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9", "#8a7d18"};
-constexpr const char* PAGE_STYLE = R"(body{font:14px/1.4 sans-serif;margin:1em auto;max-width:1500px;color:#222}
-table{border-collapse:collapse}td,th{padding:.15em .8em;text-align:right;border-bottom:1px solid #ddd}
-td:first-child,th:first-child{text-align:left}svg{background:#fff;border:1px solid #ccc}rect:hover{stroke:#000})";
+using report::escaped;
 
-/// The same colour for a pass wherever it is.
-std::string color_of_pass(const std::string& name)
+constexpr double NAMES = 110.0, NAMES_OF_RESOURCES = 330.0;
+constexpr const char *FRAME_COLOR = "#8b9096", *RECORD_COLOR = "#b07aa1", *OWN_COLOR = "#0072b2",
+                     *LASTING_COLOR = "#9aa0a6";
+
+std::string ms_text(double ms)
 {
-    uint32_t hash = 2166136261u;
-    for (const char character : name) hash = (hash ^ uint8_t(character)) * 16777619u;
-    return PASS_COLORS[hash % std::size(PASS_COLORS)];
+    return sentence(std::setprecision(4), ms, " ms");
 }
 
-std::string bar_of(double x, double width, double y, const std::string& color, const std::string& text)
+std::string about(const gpu::PassReport& pass, size_t frame)
 {
-    return sentence("<rect x=\"", x, "\" y=\"", y, "\" width=\"", std::max(width, 0.5), "\" height=\"", LANE - 4.0,
-                    "\" fill=\"", color, "\"><title>", report::escaped(text), "</title></rect>\n");
+    return sentence(pass.name, ", frame ", frame, ": ", ms_text(pass.gpu_ms), ", ", pass.dispatches,
+                    pass.dispatches == 1 ? " dispatch" : " dispatches",
+                    pass.barrier.empty() ? "" : ", after a barrier " + pass.barrier);
 }
 
-/// Passes end with their frame, as in the trace: host and device have no clock in common.
-std::string bars_of(const Profile& profile, double per_ms)
+PassColors colors_of(const Json& summary)
 {
-    std::string bars;
-    size_t number = 0;
-    for (const ProfiledFrame& frame : profile.frames) {
-        bars += bar_of(LEFT + frame.begin_ms * per_ms, (frame.end_ms - frame.begin_ms) * per_ms, 20.0, "#999",
-                       sentence("frame ", number, ": ", frame.end_ms - frame.begin_ms, " ms"));
-        double end = 0.0;
-        for (const gpu::PassReport& pass : frame.passes) end = std::max(end, pass.start_ms + pass.gpu_ms);
-        for (const gpu::PassReport& pass : frame.passes)
-            if (pass.timed)
-                bars += bar_of(LEFT + (frame.end_ms - end + pass.start_ms) * per_ms, pass.gpu_ms * per_ms, 20.0 + LANE,
-                               color_of_pass(pass.name),
-                               sentence(pass.name, ", frame ", number, ": ", pass.gpu_ms, " ms, ", pass.dispatches,
-                                        " dispatches", pass.barrier.empty() ? "" : ", after a barrier ", pass.barrier));
-        ++number;
+    std::vector<std::string> names;
+    for (const Json& pass : summary["passes"]) names.push_back(pass["name"]);
+    return PassColors(names);
+}
+
+/// Some frames, from `begin_ms` of the frames' clock on.
+void add_frames(Chart& chart, const Profile& profile, const PassColors& colors, size_t first, size_t end,
+                double begin_ms)
+{
+    chart.begin_row("host: frames");
+    for (size_t i = first; i < end; ++i) {
+        const ProfiledFrame& frame = profile.frames[i];
+        chart.bar(frame.begin_ms - begin_ms, frame.end_ms - frame.begin_ms, FRAME_COLOR,
+                  sentence("frame ", i, ": ", ms_text(frame.end_ms - frame.begin_ms), ", of these ",
+                           ms_text(frame.wall_ms), " from submission to the end"),
+                  sentence("frame ", i));
     }
-    return bars;
+    chart.begin_row("host: recording");
+    for (size_t i = first; i < end; ++i) {
+        const ProfiledFrame& frame = profile.frames[i];
+        const std::vector<std::pair<double, double>> recorded = recorded_in(profile, frame);
+        for (size_t pass = 0; pass < recorded.size(); ++pass)
+            chart.bar(recorded[pass].first - begin_ms, recorded[pass].second, RECORD_COLOR,
+                      sentence("recording ", frame.passes[pass].name, ", frame ", i, ": ",
+                               ms_text(frame.passes[pass].record_ms)));
+    }
+    chart.begin_row("device: passes");
+    for (const PlacedPass& placed : placed_passes(profile)) {
+        if (placed.frame < first || placed.frame >= end) continue;
+        const gpu::PassReport& pass = profile.frames[placed.frame].passes[placed.pass];
+        chart.bar(placed.begin_ms - begin_ms, pass.gpu_ms, colors.of(pass.name), about(pass, placed.frame), pass.name,
+                  placed.lane);
+    }
 }
 
-std::string memory_of(const Profile& profile, double per_ms)
+std::string all_frames(const Profile& profile, const PassColors& colors)
 {
-    uint64_t most = 1;
-    for (const ProfiledFrame& frame : profile.frames) most = std::max(most, frame.device_bytes);
-    const double bottom = 30.0 + 2.0 * LANE + MEMORY_HEIGHT;
-    std::string line;
-    for (const ProfiledFrame& frame : profile.frames)
-        line += sentence(LEFT + frame.end_ms * per_ms, ",",
-                         bottom - MEMORY_HEIGHT * double(frame.device_bytes) / double(most), " ");
-    return sentence("<polyline fill=\"none\" stroke=\"#0072b2\" stroke-width=\"2\" points=\"", line,
-                    "\"><title>device memory</title></polyline>\n<text x=\"4\" y=\"", bottom - MEMORY_HEIGHT + 10.0,
-                    "\">", most >> 20, " MiB</text>\n<text x=\"4\" y=\"", bottom, "\">0</text>\n");
+    double end = 0.0;
+    uint64_t most = 0;
+    std::vector<std::pair<double, double>> memory;
+    for (const ProfiledFrame& frame : profile.frames) {
+        end = std::max(end, frame.end_ms);
+        most = std::max(most, frame.device_bytes);
+        memory.emplace_back(frame.end_ms, double(frame.device_bytes));
+    }
+    Chart chart(NAMES, end);
+    add_frames(chart, profile, colors, 0, profile.frames.size(), 0.0);
+    chart.line("device memory", memory, bytes_text(most));
+    return chart.svg();
 }
 
-std::string chart_of(const Profile& profile)
+/// The frame in the middle, enlarged.
+std::string median_frame(const Profile& profile, const PassColors& colors)
 {
-    double end = 1e-3;
-    for (const ProfiledFrame& frame : profile.frames) end = std::max(end, frame.end_ms);
-    const double per_ms = (CHART_WIDTH - LEFT - 10.0) / end;
-    return sentence("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"", CHART_WIDTH, "\" height=\"",
-                    40.0 + 2.0 * LANE + MEMORY_HEIGHT,
-                    "\" font-size=\"12\" font-family=\"sans-serif\">\n<text x=\"4\" y=\"34\">host</text>\n"
-                    "<text x=\"4\" y=\"56\">device</text>\n<text x=\"",
-                    CHART_WIDTH - 110.0, "\" y=\"14\">", end, " ms</text>\n", bars_of(profile, per_ms),
-                    memory_of(profile, per_ms), "</svg>\n");
+    std::vector<size_t> order(profile.frames.size());
+    for (size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::ranges::sort(order, {}, [&](size_t i) { return profile.frames[i].wall_ms; });
+    const size_t middle = order[(order.size() - 1) / 2];
+    const ProfiledFrame& frame = profile.frames[middle];
+    Chart chart(NAMES, frame.end_ms - frame.begin_ms);
+    add_frames(chart, profile, colors, middle, middle + 1, frame.begin_ms);
+    return sentence("<h2>The median frame: frame ", middle, "</h2>\n", chart.svg());
 }
 
+/// "-" for null, digits of integers in groups.
 std::string cell_of(const Json& value)
 {
-    return value.is_string()         ? report::escaped(value.get<std::string>())
-           : value.is_number_float() ? number_text(value)
-           : value.is_null()         ? "-"
-                                     : value.dump();
+    return value.is_string()           ? escaped(value.get<std::string>())
+           : value.is_number_float()   ? number_text(value)
+           : value.is_number_integer() ? grouped_text(value.get<int64_t>())
+                                       : "-";
 }
 
-std::string passes_table(const Json& summary)
+std::string passes_table(const Json& summary, const PassColors& colors)
 {
-    constexpr const char* COLUMNS[] = {"name",   "count", "min_ms",   "median_ms",  "p95_ms",
-                                       "max_ms", "bytes", "gb_per_s", "dispatches", "barrier"};
-    std::string rows = "<tr>";
-    for (const char* column : COLUMNS) rows += sentence("<th>", column, "</th>");
-    rows += "</tr>\n";
+    constexpr std::pair<const char*, const char*> COLUMNS[] = {
+        {"count", "frames"},      {"min_ms", "min ms"},         {"median_ms", "median ms"},
+        {"p95_ms", "p95 ms"},     {"max_ms", "max ms"},         {"record_median_ms", "recording ms"},
+        {"bytes", "bytes bound"}, {"gb_per_s", "GB/s at most"}, {"dispatches", "dispatches"},
+        {"barrier", "barrier"}};
+    std::string rows = "<tr><th>pass</th><th>share</th>";
+    for (const auto& [key, words] : COLUMNS) rows += sentence("<th>", words, "</th>");
+    rows += "<th>threads</th></tr>\n";
     for (const Json& pass : summary["passes"]) {
-        rows += "<tr>";
-        for (const char* column : COLUMNS) rows += "<td>" + cell_of(pass[column]) + "</td>";
-        rows += "</tr>\n";
+        const std::string name = pass["name"];
+        const bool has_share = pass["median_ms"].is_number() && summary["sum_median_ms"].is_number() &&
+                               summary["sum_median_ms"].get<double>() > 0.0;
+        rows += sentence("<tr><td><span class=\"swatch\" style=\"background:", colors.of(name), "\"></span>",
+                         escaped(name), "</td><td>",
+                         has_share ? sentence(std::lround(100.0 * pass["median_ms"].get<double>() /
+                                                          summary["sum_median_ms"].get<double>()),
+                                              " %")
+                                   : std::string("-"),
+                         "</td>");
+        for (const auto& [key, words] : COLUMNS) rows += "<td>" + cell_of(pass[key]) + "</td>";
+        rows += "<td>" + cell_of(summary["invocations"].value(name, Json())) + "</td></tr>\n";
     }
     return "<table>\n" + rows + "</table>\n";
+}
+
+/// What is done once: uploads, the leap grid, ambient occlusion.
+std::string first_frame_table(const Json& summary)
+{
+    std::string rows = "<tr><th>pass</th><th>ms</th></tr>\n";
+    for (const Json& pass : summary["first_frame"])
+        rows += "<tr><td>" + escaped(pass["name"].get<std::string>()) + "</td><td>" + cell_of(pass["gpu_ms"]) +
+                "</td></tr>\n";
+    return sentence("<details><summary>The first frame, which also prepares: ", summary["first_frame"].size(),
+                    " passes</summary>\n<table>\n", rows, "</table>\n</details>\n");
 }
 
 std::string pairs_table(const Json& object)
 {
     std::string rows;
     for (const auto& [name, value] : object.items())
-        rows += "<tr><td>" + report::escaped(name) + "</td><td>" + cell_of(value) + "</td></tr>\n";
+        rows += "<tr><td>" + escaped(name) + "</td><td>" + cell_of(value) + "</td></tr>\n";
     return "<table>\n" + rows + "</table>\n";
 }
 
-/// A bar for each resource, from its first step to its last, and the budgets and sums in words.
+/// A bar for each resource, from its first step to its last.
 std::string lifetimes_of(const Json& memory)
 {
-    constexpr double NAMES = 300.0;
-    const Json& resources = memory["resources"];
-    const double per_step = (CHART_WIDTH - NAMES) / std::max(1.0, memory["steps"].get<double>());
-    std::string rows;
-    double y = 4.0;
-    for (const Json& one : resources) {
+    const double steps = memory["steps"];
+    Chart chart(NAMES_OF_RESOURCES, steps);
+    for (const Json& one : memory["resources"]) {
         const bool lasting = one["lasting"].get<bool>();
         const double first = lasting ? 0.0 : one["first_step"].get<double>();
-        const double end = lasting ? memory["steps"].get<double>() : one["last_step"].get<double>() + 1.0;
+        const double end = lasting ? steps : one["last_step"].get<double>() + 1.0;
         const std::string name = one["name"].get<std::string>();
-        rows += sentence(
-            "<text x=\"4\" y=\"", y + 14.0, "\">", report::escaped(name), ", ", one["bytes"].dump(), " bytes</text>\n",
-            bar_of(NAMES + first * per_step, (end - first) * per_step, y, lasting ? "#bbb" : "#0072b2",
-                   sentence(name, lasting ? ": outlives the frame, used from " : ": from ",
-                            one["first_pass"].get<std::string>(), " to ", one["last_pass"].get<std::string>())));
-        y += LANE;
+        chart.begin_row(sentence(name, ", ", bytes_text(one["bytes"].get<uint64_t>())));
+        chart.bar(first, end - first, lasting ? LASTING_COLOR : OWN_COLOR,
+                  sentence(name, lasting ? ": outlives the frame, used from " : ": from ",
+                           one["first_pass"].get<std::string>(), " to ", one["last_pass"].get<std::string>()),
+                  lasting
+                      ? std::string()
+                      : sentence(one["first_pass"].get<std::string>(), " to ", one["last_pass"].get<std::string>()));
     }
-    return sentence(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"", CHART_WIDTH, "\" height=\"", y,
-        "\" font-size=\"12\" font-family=\"sans-serif\">\n", rows,
-        "</svg>\n<p>Blue: what this frame alone needs, from its first pass to its last. Grey: what outlives "
-        "it.</p>\n");
+    std::string list;
+    for (const Json& step : memory["step_names"]) list += (list.empty() ? "" : ", ") + step.get<std::string>();
+    return chart.svg("", 1.0) +
+           sentence(
+               "<p>Blue: what this frame alone needs, from its first pass to its last. Grey: what outlives it. "
+               "Steps, from 0: ",
+               escaped(list), ".</p>\n");
 }
 
-/// The numbers of a memory section.
+/// The numbers of a memory section, in words.
 Json totals_of(const Json& summary)
 {
-    Json totals = summary["memory"];
-    totals.erase("resources");
-    for (const char* key : {"device", "peak_device", "host", "peak_host"}) totals[key] = summary["bytes"][key];
-    return totals;
+    const Json &bytes = summary["bytes"], &memory = summary["memory"];
+    return {{"device, now", bytes["device"]},
+            {"device, at most", bytes["peak_device"]},
+            {"device, budget", memory["device_budget"]},
+            {"host, now", bytes["host"]},
+            {"host, at most", bytes["peak_host"]},
+            {"host, budget", memory["host_budget"]},
+            {"what this frame alone needs: each resource by itself", memory["transient_bytes"]},
+            {"with equal ones in the same memory, as it is done", memory["transient_taken"]},
+            {"packed as one block", memory["transient_packed"]},
+            {"what one of its steps needs, and no sharing goes below", memory["transient_most_at_once"]}};
 }
 
 }  // namespace
@@ -149,13 +199,22 @@ Json totals_of(const Json& summary)
 std::string page_of(const Profile& profile)
 {
     const Json summary = summary_of(profile);
+    const PassColors colors = colors_of(summary);
+    std::string warnings;
+    for (const std::string& warning : profile.warnings) warnings += "<p>" + escaped(warning) + "</p>\n";
     return report::page(
-        "SHVR profile", PAGE_STYLE,
-        sentence("<h1>Where a frame's time goes</h1>\n<p>", report::escaped(profile.input), ", ", profile.size.x, " x ",
+        "SHVR profile", CHART_STYLE,
+        sentence("<h1>Where a frame's time goes</h1>\n<p>", escaped(profile.input), ", ", profile.size.x, " x ",
                  profile.size.y, " pixels, ", profile.frames.size(), " frames after ", profile.warmup, " to warm up; ",
-                 report::escaped(profile.driver), "</p>\n", chart_of(profile),
-                 "<p>Grey: a frame on the host. Colours: passes on the device. Line: device memory.</p>\n",
-                 passes_table(summary), "<h2>Work of one frame</h2>\n", pairs_table(summary["counters"]),
+                 escaped(profile.driver), profile.serialize ? "; a full barrier between passes" : "", "</p>\n",
+                 warnings, passes_table(summary, colors), "<p>A frame takes ", number_text(summary["frame_median_ms"]),
+                 " ms from its submission to its end (median; ", number_text(summary["frame_min_ms"]), " to ",
+                 number_text(summary["frame_p95_ms"]), ", p95), its passes together ",
+                 number_text(summary["sum_median_ms"]), " ms.</p>\n", first_frame_table(summary),
+                 "<h2>All frames</h2>\n", all_frames(profile, colors),
+                 "<p>Host and device have clocks of their own: passes are drawn to end with their frame. What is under "
+                 "the pointer says what it is.</p>\n",
+                 median_frame(profile, colors), "<h2>Work of one frame</h2>\n", pairs_table(summary["counters"]),
                  "<h2>Device memory by resource, bytes</h2>\n", pairs_table(summary["bytes"]["by_resource"]),
                  "<h2>Memory of one frame, step by step</h2>\n", lifetimes_of(summary["memory"]),
                  "<h2>Memory against its budgets, bytes</h2>\n", pairs_table(totals_of(summary))));

@@ -1,6 +1,7 @@
 #pragma once
 // The measurements of `shvr profile` and their output forms: a summary, a trace for Perfetto, a table, a graph.
 
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -22,12 +23,15 @@ struct Profile {
     glm::uvec2 size{0};
     int warmup = 0;
     bool serialize = false;
-    std::vector<gpu::PassReport> first_frame;  ///< the frame that also prepares: uploads, leap grid
-    std::vector<ProfiledFrame> frames;         ///< after the warm-up
-    std::vector<gpu::PassReport> counted;      ///< one more frame, with work counters
+    std::chrono::steady_clock::time_point measured_from{};  ///< where the frames' clock begins
+    std::vector<gpu::PassReport> first_frame;               ///< the frame that also prepares: uploads, leap grid
+    std::vector<ProfiledFrame> frames;                      ///< after the warm-up
+    std::vector<gpu::PassReport> counted;                   ///< one more frame, with work counters
     Json bytes;
     uint64_t device_budget = 0, host_budget = 0;  ///< bytes
     FrameGraph graph;                             ///< of the last frame
+    bool complete = true;                         ///< the pictures lack nothing
+    int64_t voxels_not_read = 0;                  ///< which count as the lowest of the volume's type
     std::vector<std::string> warnings;
 };
 
@@ -59,7 +63,22 @@ void write_graph(const std::filesystem::path& path, const FrameGraph& graph);
 
 void write_text(const std::filesystem::path& path, const std::string& text);
 
-/// Two summaries side by side: {"frame", "passes", "counters"}. Names are those of the files.
+/// A timed pass where it is drawn. The clocks of host and device are independent, so passes end with their frame; those
+/// that overlap have lanes of their own.
+struct PlacedPass {
+    size_t frame = 0, pass = 0;  ///< indices
+    double begin_ms = 0.0;       ///< of the frames' clock
+    size_t lane = 0;
+    bool is_first = false;  ///< of its frame
+};
+/// In the order in which they ran.
+std::vector<PlacedPass> placed_passes(const Profile& profile);
+
+/// When the host recorded the passes of a frame, and for how long: milliseconds of the frames' clock, one after the
+/// other, within the frame.
+std::vector<std::pair<double, double>> recorded_in(const Profile& profile, const ProfiledFrame& frame);
+
+/// Two summaries side by side, of frames or of sessions: README.md lists the keys. Names are those of the files.
 Json difference_of(const Json& a, const std::string& a_name, const Json& b, const std::string& b_name);
 std::string difference_text(const Json& difference);
 

@@ -2,8 +2,10 @@
 
 #include <chrono>
 #include <numeric>
+#include <ranges>
 
 #include "engine/annotation/script/script.h"
+#include "tools/cli/profile/temporary_folder.h"
 #include "ui/workbench/workbench.h"
 
 namespace shvr::cli {
@@ -32,10 +34,14 @@ bool shows_at_least_a_sketch(ui::Workbench& bench)
     return true;
 }
 
-/// Turns until nothing is left to do, and notes when what was reached.
-void settle(ui::Workbench& bench, ProfiledAction& action, const std::function<double()>& now_ms)
+/// Turns until nothing is left to do, and notes when what was reached. `poll` may throw. What fails ends it, since the
+/// workbench would try it again for ever.
+void settle(ui::Workbench& bench, ProfiledAction& action, const std::function<double()>& now_ms,
+            const std::function<void()>& poll)
 {
     const auto& annotator = bench.document().annotator;
+    const auto errors = [&] { return bench.messages().unread(ui::Weight::error); };
+    const uint64_t errors_before = errors();
     for (;;) {
         const double since = now_ms() - action.begin_ms;
         if (!action.paint_ms && !annotator.stroke_is_running()) action.paint_ms = since;
@@ -43,85 +49,161 @@ void settle(ui::Workbench& bench, ProfiledAction& action, const std::function<do
         if (action.paint_ms && !action.sharp_ms && !bench.is_stirring() && bench.screen().complete())
             action.sharp_ms = since;
         if (!bench.has_work() || annotator.stroke_is_open()) return;
+        poll();
         bench.advance();
+        if (errors() > errors_before)
+            for (const ui::Message& message : std::views::reverse(bench.messages().all()))
+                if (message.weight == ui::Weight::error) fail(message.text);
     }
 }
 
-}  // namespace
+using Lines = std::vector<std::pair<int, ui::Action>>;
 
-SessionProfile profile_session(const std::string& input, const std::string& script, const Common& common)
+Renderer::Options renderer_options(const Common& common)
 {
-    std::vector<std::pair<int, ui::Action>> actions;
-    for_each_line(script,
-                  [&](const JsonNode& line, int number) { actions.emplace_back(number, ui::read_action(line)); });
-    if (actions.empty()) fail(script, ": holds no action; expected one JSON object a line, as shvr view --log writes");
-    LongWork work(common.quiet);
-    const char* validation = std::getenv("SHVR_VALIDATION");
-    Renderer renderer({.device = {common.device, validation && *validation == '1'},
-                       .budget = {common.budget_device_mib << 20, common.budget_host_mib << 20},
-                       .threads = common.threads});
-    ui::Workbench bench(renderer, {.has_servo = false});
-    static_cast<void>(work.begin("opening " + input));
-    bench.open(input, common.settings);
-    if (bench.document().only_looks())
-        fail(input, ": is open for writing in ", bench.document().holder, "; expected it to be closed there first");
-    const gpu::DeviceTraits& traits = renderer.device().traits();
-    SessionProfile profile{.input = input,
-                           .script = script,
-                           .device = traits.name,
-                           .driver = traits.driver,
-                           .size = bench.document().session.render.size};
-    bench.set_pixels(profile.size);
-    bench.set_hand_down(true);  // the script says where a step of settings ends
+    const char* const validation = std::getenv("SHVR_VALIDATION");
+    return {.device = {common.device, validation && *validation == '1'},
+            .budget = {common.budget_device_mib << 20, common.budget_host_mib << 20},
+            .threads = common.threads};
+}
+
+/// A device and a workbench with the work open, as one replay needs them.
+class Stage {
+public:
+    Stage(const std::filesystem::path& input, const Common& common)
+        : renderer(renderer_options(common)), bench(renderer, {.has_servo = false})
+    {
+        bench.open(input, common.settings);
+        if (bench.document().only_looks())
+            fail(input.string(), ": is open for writing in ", bench.document().holder,
+                 "; expected it to be closed there first");
+    }
+    /// Until the picture is there, which is not the first action's.
+    void set_up(const std::function<void()>& poll)
+    {
+        bench.set_pixels(bench.document().session.render.size);
+        bench.set_hand_down(true);  // the script says where a step of settings ends
+        ProfiledAction opening;
+        bench.advance();
+        settle(
+            bench, opening, [] { return 0.0; }, poll);
+    }
+    /// Puts what was done into the journal, and fails where a stroke was not painted or the device was misused.
+    void finish(const std::string& script)
+    {
+        const std::string unpainted = bench.finish_stroke();
+        if (!unpainted.empty()) fail(script, ": the last stroke was not painted: ", unpainted);
+        bench.perform(ui::EndStep{});
+        bench.flush();
+        const std::vector<std::string> messages = renderer.device().take_validation_messages();
+        if (!messages.empty()) fail(messages.size(), " validation messages, the first: ", messages.front());
+    }
+
+    Renderer renderer;
+    ui::Workbench bench;
+};
+
+ProfiledAction profiled(Stage& stage, int line, const ui::Action& action, const std::function<double()>& now_ms,
+                        const std::function<void()>& poll)
+{
+    ui::Workbench& bench = stage.bench;
+    ProfiledAction one{.line = line, .action = Json::parse(ui::line_of(action)).at("op").get<std::string>()};
+    const SessionCounts before(bench, stage.renderer);
+    one.begin_ms = now_ms();
+    bench.perform(action);
+    if (bench.has_work() && !bench.document().annotator.stroke_is_open()) bench.advance();
+    settle(bench, one, now_ms, poll);
+    one.end_ms = now_ms();
+    const SessionCounts after(bench, stage.renderer);
+    one.submits = after.submits - before.submits;
+    one.allocations = after.allocations - before.allocations;
+    one.uploads = after.uploads - before.uploads;
+    one.evictions = after.evictions - before.evictions;
+    one.voxels_painted = after.painted - before.painted;
+    if (one.voxels_painted == 0) one.paint_ms.reset();
+    one.device_bytes = stage.renderer.memory().device_bytes();
+    return one;
+}
+
+/// `tell` is given the share of this replay that is done; it and `poll` may throw. `of_copy`: the work is a copy,
+/// without what was done before.
+Replayed replay(Stage& stage, const std::string& script, const Lines& lines, bool of_copy,
+                const std::function<void(double)>& tell, const std::function<void()>& poll)
+{
+    stage.set_up(poll);
     const auto started = std::chrono::steady_clock::now();
     const auto now_ms = [&] {
         return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
     };
-    ProfiledAction opening;  // the first picture is not the first action's
-    bench.advance();
-    settle(bench, opening, now_ms);
-
-    static_cast<void>(work.begin("replaying " + script));
-    const double origin = now_ms();
-    const auto since_origin = [&] { return now_ms() - origin; };
-    for (const auto& [number, action] : actions) {
-        work.show(double(profile.actions.size()) / double(actions.size()), {}, -1.0);
-        work.stop_if_asked();
-        ProfiledAction one{.line = number, .action = Json::parse(ui::line_of(action)).at("op").get<std::string>()};
-        const SessionCounts before(bench, renderer);
-        const uint64_t openings = bench.openings();
-        one.begin_ms = since_origin();
+    const uint64_t openings = stage.bench.openings();
+    Replayed done;
+    for (const auto& [line, action] : lines) {
+        tell(double(done.size()) / double(lines.size()));
         try {
-            bench.perform(action);
-            if (bench.has_work() && !bench.document().annotator.stroke_is_open()) bench.advance();
-            settle(bench, one, since_origin);
+            done.push_back(profiled(stage, line, action, now_ms, poll));
         } catch (const DeviceLost&) {
             throw;
+        } catch (const Stopped&) {
+            throw;
         } catch (const Error& error) {
-            fail(script, ":", number, ": ", error.what());
+            fail(script, ":", line, ": ", error.what(),
+                 of_copy ? " (in a replay on a copy of the work, which begins without its history)" : "");
         }
-        if (bench.openings() != openings)
-            fail(script, ":", number, ": opens another volume; expected actions on ", input, " alone");
-        one.end_ms = since_origin();
-        const SessionCounts after(bench, renderer);
-        one.submits = after.submits - before.submits;
-        one.allocations = after.allocations - before.allocations;
-        one.uploads = after.uploads - before.uploads;
-        one.evictions = after.evictions - before.evictions;
-        one.voxels_painted = after.painted - before.painted;
-        if (one.voxels_painted == 0) one.paint_ms.reset();
-        one.device_bytes = renderer.memory().device_bytes();
-        profile.actions.push_back(std::move(one));
+        if (stage.bench.openings() != openings)
+            fail(script, ":", line, ": opens another volume; expected actions on the input alone");
     }
-    const std::string unpainted = bench.finish_stroke();
-    if (!unpainted.empty()) fail(script, ": the last stroke was not painted: ", unpainted);
-    bench.perform(ui::EndStep{});
-    bench.flush();
-    const std::vector<std::string> messages = renderer.device().take_validation_messages();
-    if (!messages.empty()) fail(messages.size(), " validation messages, the first: ", messages.front());
-    profile.bytes = bytes_of(renderer);
-    profile.device_budget = renderer.memory().device_budget();
-    profile.host_budget = renderer.host_budget();
+    stage.finish(script);
+    return done;
+}
+
+/// Files of the work as it is now, one set for each of so many replays.
+std::vector<std::filesystem::path> copies_of(const std::string& input, const Common& common,
+                                             const std::filesystem::path& folder, int count)
+{
+    const Stage stage(input, common);
+    std::vector<std::filesystem::path> copies;
+    for (int number = 1; number <= count; ++number) {
+        const std::filesystem::path place = folder / sentence("replay-", number);
+        std::filesystem::create_directory(place);
+        copies.push_back(stage.bench.document().copier(place / "session.json")());
+    }
+    return copies;
+}
+
+}  // namespace
+
+SessionProfile profile_session(const std::string& input, const std::string& script, int replays, const Common& common)
+{
+    Lines lines;
+    for_each_line(script, [&](const JsonNode& line, int number) { lines.emplace_back(number, ui::read_action(line)); });
+    if (lines.empty()) fail(script, ": holds no action; expected one JSON object a line, as shvr view --log writes");
+    LongWork work(common.quiet);
+    SessionProfile profile{.input = input, .script = script};
+    const auto replayed = [&](Stage& stage, bool of_copy) {
+        static_cast<void>(work.begin("replaying " + script));
+        const auto tell = [&](double share) {
+            work.show((double(profile.replays.size()) + share) / double(replays), {}, -1.0);
+            work.stop_if_asked();
+        };
+        profile.replays.push_back(replay(stage, script, lines, of_copy, tell, [&] { work.stop_if_asked(); }));
+    };
+    static_cast<void>(work.begin("opening " + input));
+    // Copies first: a script that fails has then done nothing to the work itself.
+    const TemporaryFolder folder("shvr-replays");
+    if (replays > 1)
+        for (const std::filesystem::path& copy : copies_of(input, common, folder.path, replays - 1)) {
+            Stage stage(copy, common);
+            replayed(stage, true);
+        }
+    Stage stage(input, common);
+    replayed(stage, false);
+    const gpu::DeviceTraits& traits = stage.renderer.device().traits();
+    profile.device = traits.name;
+    profile.driver = traits.driver;
+    profile.size = stage.bench.document().session.render.size;
+    profile.bytes = bytes_of(stage.renderer);
+    profile.device_budget = stage.renderer.memory().device_budget();
+    profile.host_budget = stage.renderer.host_budget();
     return profile;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// `shvr profile --script`: a session of work, action by action, on the workbench that the window uses.
+// `shvr profile --script`: a session of work, action by action, on the workbench that the window uses; several times,
+// where the noise is to be known.
 
 #include "tools/cli/profile/profile_report.h"
 
@@ -19,17 +20,26 @@ struct ProfiledAction {
     int64_t voxels_painted = 0;           ///< more in groups than before; below 0: less
     uint64_t device_bytes = 0;
 };
+using Replayed = std::vector<ProfiledAction>;  ///< the whole script, done once
 
 struct SessionProfile {
     std::string input, script, device, driver;
     glm::uvec2 size{0};
-    std::vector<ProfiledAction> actions;
+    std::vector<Replayed> replays;  ///< at least one, all of the same actions; the last one is the input's own
     Json bytes;
     uint64_t device_budget = 0, host_budget = 0;
 };
 
-/// Does what the script says, as `shvr annotate --actions` does: what it paints is kept in the journal.
-SessionProfile profile_session(const std::string& input, const std::string& script, const Common& common);
+/// Of the whole script, in the section "whole", as people read them.
+inline constexpr std::pair<const char*, const char*> WHOLE_SCRIPT[] = {{"paint_ms", "to paint, all actions"},
+                                                                       {"sketch_ms", "to sketch, all actions"},
+                                                                       {"sharp_ms", "to sharp, all actions"},
+                                                                       {"session_ms", "from begin to end"}};
+
+/// Does what the script says, as `shvr annotate --actions` does: what it paints is kept in the journal. Of `replays`
+/// all but the last are done on copies of the work, so that each begins with the same. Every one has a device of its
+/// own.
+SessionProfile profile_session(const std::string& input, const std::string& script, int replays, const Common& common);
 
 /// README.md lists the keys.
 Json summary_of(const SessionProfile& profile);

@@ -1,10 +1,9 @@
-// The profile of a session of work as text, table, trace and page.
+// The profile of a session of work as JSON, text, table and trace.
 
 #include <algorithm>
 #include <sstream>
 
 #include "tools/cli/profile/profile_session.h"
-#include "tools/report/html.h"
 
 namespace shvr::cli {
 
@@ -41,22 +40,72 @@ std::string session_cell(const Json& value)
     return value.is_string() ? value.get<std::string>() : value.is_number_integer() ? value.dump() : number_text(value);
 }
 
+Json spread_json(const std::vector<double>& values)
+{
+    const std::optional<Spread> spread = spread_of(values);
+    if (!spread) return nullptr;
+    return {{"min", spread->minimum}, {"median", spread->median}, {"p95", spread->p95}, {"max", spread->maximum}};
+}
+
 Json spread_json(const Json& actions, const char* key)
 {
     std::vector<double> values;
     for (const Json& one : actions)
         if (one[key].is_number()) values.push_back(one[key].get<double>());
-    const std::optional<Spread> spread = spread_of(values);
-    if (!spread) return nullptr;
-    return {{"min", spread->minimum}, {"median", spread->median}, {"p95", spread->p95}, {"max", spread->maximum}};
+    return spread_json(values);
+}
+
+constexpr std::pair<const char*, std::optional<double> ProfiledAction::*> TIMES_OF_ACTION[] = {
+    {"paint_ms", &ProfiledAction::paint_ms},
+    {"sketch_ms", &ProfiledAction::sketch_ms},
+    {"sharp_ms", &ProfiledAction::sharp_ms}};
+
+/// Of an action over all replays: its times, where it has them in each.
+Json over_replays(const SessionProfile& profile, size_t index)
+{
+    Json spreads = Json::object();
+    for (const auto& [key, time] : TIMES_OF_ACTION) {
+        std::vector<double> values;
+        for (const Replayed& replayed : profile.replays)
+            if (const auto& value = replayed[index].*time) values.push_back(*value);
+        spreads[key] = values.size() == profile.replays.size() ? spread_json(values) : Json(nullptr);
+    }
+    return spreads;
+}
+
+/// Of the whole script over all replays: times of its actions together, and how long it took.
+Json whole_of(const SessionProfile& profile)
+{
+    Json whole = Json::object();
+    for (const auto& [key, time] : TIMES_OF_ACTION) {
+        std::vector<double> sums;
+        for (const Replayed& replayed : profile.replays) {
+            double sum = 0.0;
+            for (const ProfiledAction& one : replayed) sum += (one.*time).value_or(0.0);
+            sums.push_back(sum);
+        }
+        whole[key] = spread_json(sums);
+    }
+    std::vector<double> lengths;
+    for (const Replayed& replayed : profile.replays) lengths.push_back(replayed.back().end_ms);
+    whole["session_ms"] = spread_json(lengths);
+    return whole;
 }
 
 }  // namespace
 
 Json summary_of(const SessionProfile& profile)
 {
+    // Counts and places in time are those of the last replay, the input's own; times are medians over all.
+    const Replayed& own = profile.replays.back();
     Json actions = Json::array();
-    for (const ProfiledAction& one : profile.actions) actions.push_back(action_json(one));
+    for (size_t i = 0; i < own.size(); ++i) {
+        Json one = action_json(own[i]);
+        one["over_replays"] = over_replays(profile, i);
+        for (const auto& [key, time] : TIMES_OF_ACTION)
+            if (const Json& spread = one["over_replays"][key]; !spread.is_null()) one[key] = spread["median"];
+        actions.push_back(std::move(one));
+    }
     Json totals = Json::object();
     for (const char* key : {"submits", "allocations", "uploads", "evictions", "voxels_painted"}) {
         int64_t sum = 0;
@@ -68,10 +117,12 @@ Json summary_of(const SessionProfile& profile)
             {"device", profile.device},
             {"driver", profile.driver},
             {"size", {profile.size.x, profile.size.y}},
+            {"replays", profile.replays.size()},
             {"actions", actions},
             {"paint_ms", spread_json(actions, "paint_ms")},
             {"sketch_ms", spread_json(actions, "sketch_ms")},
             {"sharp_ms", spread_json(actions, "sharp_ms")},
+            {"whole", whole_of(profile)},
             {"totals", totals},
             {"bytes", profile.bytes},
             {"device_budget", profile.device_budget},
@@ -92,31 +143,51 @@ std::string session_text(const Json& summary)
         for (const char* value : {"min", "median", "p95", "max"})
             times.back().push_back(summary[key].is_null() ? "-" : number_text(summary[key][value]));
     }
+    const size_t replays = summary["replays"];
+    std::vector<std::vector<std::string>> whole{
+        {sentence("the whole script, ", replays, replays == 1 ? " time" : " times"), "min ms", "median ms", "p95 ms",
+         "max ms"}};
+    for (const auto& [key, words] : WHOLE_SCRIPT) {
+        whole.push_back({words});
+        for (const char* value : {"min", "median", "p95", "max"})
+            whole.back().push_back(number_text(summary["whole"][key][value]));
+    }
     std::vector<std::vector<std::string>> totals{{"in all", ""}};
     for (const auto& [name, value] : summary["totals"].items()) totals.push_back({name, value.dump()});
-    return table_text(rows) + "\n" + table_text(times) + "\n" + table_text(totals);
+    return table_text(rows) + "\n" + table_text(times) + "\n" + table_text(whole) + "\n" + table_text(totals);
 }
 
 std::string trace_of(const SessionProfile& profile)
 {
     Json events =
-        Json::array({{{"ph", "M"}, {"name", "process_name"}, {"pid", 1}, {"tid", 1}, {"args", {{"name", "session"}}}},
-                     {{"ph", "M"}, {"name", "thread_name"}, {"pid", 1}, {"tid", 1}, {"args", {{"name", "actions"}}}}});
-    for (const ProfiledAction& one : profile.actions) {
-        events.push_back({{"ph", "X"},
-                          {"name", one.action},
-                          {"cat", "action"},
+        Json::array({{{"ph", "M"}, {"name", "process_name"}, {"pid", 1}, {"tid", 1}, {"args", {{"name", "session"}}}}});
+    Json timed = Json::array();
+    for (size_t number = 1; number <= profile.replays.size(); ++number) {
+        events.push_back({{"ph", "M"},
+                          {"name", "thread_name"},
                           {"pid", 1},
-                          {"tid", 1},
-                          {"ts", one.begin_ms * 1000.0},
-                          {"dur", (one.end_ms - one.begin_ms) * 1000.0},
-                          {"args", action_json(one)}});
-        events.push_back({{"ph", "C"},
-                          {"name", "device memory"},
-                          {"pid", 1},
-                          {"ts", one.end_ms * 1000.0},
-                          {"args", {{"bytes", one.device_bytes}}}});
+                          {"tid", number},
+                          {"args", {{"name", sentence("actions, replay ", number)}}}});
+        for (const ProfiledAction& one : profile.replays[number - 1]) {
+            timed.push_back({{"ph", "X"},
+                             {"name", one.action},
+                             {"cat", "action"},
+                             {"pid", 1},
+                             {"tid", number},
+                             {"ts", one.begin_ms * 1000.0},
+                             {"dur", (one.end_ms - one.begin_ms) * 1000.0},
+                             {"args", action_json(one)}});
+            if (number == profile.replays.size())
+                timed.push_back({{"ph", "C"},
+                                 {"name", "device memory"},
+                                 {"pid", 1},
+                                 {"ts", one.end_ms * 1000.0},
+                                 {"args", {{"bytes", one.device_bytes}}}});
+        }
     }
+    std::stable_sort(timed.begin(), timed.end(),
+                     [](const Json& a, const Json& b) { return a["ts"].get<double>() < b["ts"].get<double>(); });
+    for (Json& event : timed) events.push_back(std::move(event));
     const Json trace = {{"traceEvents", events},
                         {"displayTimeUnit", "ms"},
                         {"otherData", {{"input", profile.input}, {"device", profile.device}}}};
@@ -125,58 +196,20 @@ std::string trace_of(const SessionProfile& profile)
 
 std::string csv_of(const SessionProfile& profile)
 {
-    std::string text = "begin_ms,end_ms";
+    std::string text = "replay,begin_ms,end_ms";
     for (const char* column : SESSION_COLUMNS) text += sentence(",", column);
     text += "\n";
-    for (const ProfiledAction& one : profile.actions) {
-        const Json row = action_json(one);
-        text += row["begin_ms"].dump() + "," + row["end_ms"].dump();
-        for (const char* column : SESSION_COLUMNS)
-            text += "," + (row[column].is_string() ? row[column].get<std::string>()
-                           : row[column].is_null() ? std::string()
-                                                   : row[column].dump());
-        text += "\n";
-    }
+    for (size_t number = 1; number <= profile.replays.size(); ++number)
+        for (const ProfiledAction& one : profile.replays[number - 1]) {
+            const Json row = action_json(one);
+            text += sentence(number, ",", row["begin_ms"].dump(), ",", row["end_ms"].dump());
+            for (const char* column : SESSION_COLUMNS)
+                text += "," + (row[column].is_string() ? row[column].get<std::string>()
+                               : row[column].is_null() ? std::string()
+                                                       : row[column].dump());
+            text += "\n";
+        }
     return text;
-}
-
-std::string page_of(const SessionProfile& profile)
-{
-    constexpr double WIDTH = 1400.0, ROW = 22.0, NAMES = 160.0;
-    const double end = std::max(1e-3, profile.actions.back().end_ms), per_ms = (WIDTH - NAMES) / end;
-    std::string bars, rows = "<tr>";
-    double y = 4.0;
-    const auto bar = [&](double begin, double length, const char* color, const std::string& title) {
-        bars += sentence("<rect x=\"", NAMES + begin * per_ms, "\" y=\"", y, "\" width=\"",
-                         std::max(0.5, length * per_ms), "\" height=\"", ROW - 4.0, "\" fill=\"", color, "\"><title>",
-                         report::escaped(title), "</title></rect>\n");
-    };
-    for (const char* column : SESSION_COLUMNS) rows += sentence("<th>", column, "</th>");
-    rows += "</tr>\n";
-    for (const ProfiledAction& one : profile.actions) {
-        const std::string name = sentence(one.line, ": ", one.action);
-        bars += sentence("<text x=\"4\" y=\"", y + 14.0, "\">", report::escaped(name), "</text>\n");
-        if (one.sharp_ms)
-            bar(one.begin_ms, *one.sharp_ms, "#56b4e9", sentence(name, ", sharp after ", *one.sharp_ms, " ms"));
-        if (one.sketch_ms)
-            bar(one.begin_ms, *one.sketch_ms, "#0072b2", sentence(name, ", sketch after ", *one.sketch_ms, " ms"));
-        y += ROW;
-        const Json row = action_json(one);
-        rows += "<tr>";
-        for (const char* column : SESSION_COLUMNS)
-            rows += "<td>" + report::escaped(session_cell(row[column])) + "</td>";
-        rows += "</tr>\n";
-    }
-    return report::page(
-        "SHVR profile of a session",
-        "body{font:14px/1.4 sans-serif;margin:1em auto;max-width:1500px;color:#222}table{border-collapse:collapse}"
-        "td,th{padding:.15em .8em;text-align:right;border-bottom:1px solid #ddd}svg{border:1px solid #ccc}",
-        sentence("<h1>A session of work</h1>\n<p>", report::escaped(profile.input), ", ",
-                 report::escaped(profile.script), ", ", profile.size.x, " x ", profile.size.y, " pixels, ",
-                 report::escaped(profile.driver), "</p>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"", WIDTH,
-                 "\" height=\"", y, "\" font-size=\"12\" font-family=\"sans-serif\">\n", bars,
-                 "</svg>\n<p>Dark: until a sketch shows the action. Light: until the picture is sharp. All: ", end,
-                 " ms.</p>\n<table>\n", rows, "</table>\n"));
 }
 
 }  // namespace shvr::cli

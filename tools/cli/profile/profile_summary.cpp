@@ -11,7 +11,7 @@ namespace {
 
 /// All reports of the pass of one name, over the frames. A frame that did not run it has none.
 struct PassHistory {
-    std::vector<double> times;
+    std::vector<double> times, records;
     size_t count = 0;
     gpu::PassReport last;
 };
@@ -25,6 +25,7 @@ std::vector<PassHistory> histories_of(const std::vector<ProfiledFrame>& frames)
                                       [&](const PassHistory& history) { return history.last.name == report.name; });
             if (found == histories.end()) found = histories.emplace(histories.end());
             if (report.timed) found->times.push_back(report.gpu_ms);
+            found->records.push_back(report.record_ms);
             ++found->count;
             found->last = report;
         }
@@ -38,7 +39,7 @@ Json or_null(const std::optional<Spread>& spread, double Spread::*member)
 
 Json pass_summary(const PassHistory& history)
 {
-    const std::optional<Spread> spread = spread_of(history.times);
+    const std::optional<Spread> spread = spread_of(history.times), record = spread_of(history.records);
     return {{"name", history.last.name},
             {"kernel", history.last.kernel},
             {"count", history.count},
@@ -46,6 +47,9 @@ Json pass_summary(const PassHistory& history)
             {"median_ms", or_null(spread, &Spread::median)},
             {"p95_ms", or_null(spread, &Spread::p95)},
             {"max_ms", or_null(spread, &Spread::maximum)},
+            {"record_min_ms", or_null(record, &Spread::minimum)},
+            {"record_median_ms", or_null(record, &Spread::median)},
+            {"record_p95_ms", or_null(record, &Spread::p95)},
             {"bytes", history.last.bytes},
             {"gb_per_s", spread && spread->median > 0.0 ? Json(double(history.last.bytes) / (spread->median * 1e6))
                                                         : Json(nullptr)},
@@ -145,6 +149,8 @@ Json summary_of(const Profile& profile)
             {"warmup", profile.warmup},
             {"serialize", profile.serialize},
             {"timed", sum.has_value()},
+            {"complete", profile.complete},
+            {"voxels_not_read", profile.voxels_not_read},
             {"passes", passes},
             {"first_frame", first_frame},
             {"frame_min_ms", or_null(wall, &Spread::minimum)},
@@ -187,12 +193,13 @@ std::string table_text(const std::vector<std::vector<std::string>>& rows)
 
 std::string text_of(const Json& summary)
 {
-    std::vector<std::vector<std::string>> rows{
-        {"pass", "count", "min ms", "median ms", "p95 ms", "max ms", "MiB bound", "dispatches", "barrier"}};
+    std::vector<std::vector<std::string>> rows{{"pass", "count", "min ms", "median ms", "p95 ms", "max ms", "record us",
+                                                "MiB bound", "dispatches", "barrier"}};
     for (const Json& pass : summary["passes"])
         rows.push_back({pass["name"], pass["count"].dump(), number_text(pass["min_ms"]), number_text(pass["median_ms"]),
-                        number_text(pass["p95_ms"]), number_text(pass["max_ms"]), mebibytes_text(pass["bytes"]),
-                        pass["dispatches"].dump(), pass["barrier"]});
+                        number_text(pass["p95_ms"]), number_text(pass["max_ms"]),
+                        sentence(std::fixed, std::setprecision(1), 1000.0 * pass["record_median_ms"].get<double>()),
+                        mebibytes_text(pass["bytes"]), pass["dispatches"].dump(), pass["barrier"]});
     rows.push_back({"sum of passes", "", "", number_text(summary["sum_median_ms"])});
     rows.push_back({"frame", summary["frames"].dump(), number_text(summary["frame_min_ms"]),
                     number_text(summary["frame_median_ms"]), number_text(summary["frame_p95_ms"]),

@@ -29,8 +29,30 @@ FileChooser chooser({.title = "Choose a file or a folder",
                      .wanted = FileChooser::Wanted::any});
 ImGuiID chooser_of = 0;
 
+constexpr float NAME_COLUMN = 9.0f, VALUE_WIDTH = 26.0f;  ///< in font sizes
+
+/// The name at the left; then comes the widget, whose own label is only an id.
+std::string begin_row(std::string_view name)
+{
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(title_of(name).c_str());
+    ImGui::SameLine(NAME_COLUMN * ImGui::GetFontSize());
+    ImGui::SetNextItemWidth(VALUE_WIDTH * ImGui::GetFontSize());
+    return "##" + std::string(name);
+}
+
+/// The first ending that a key's meaning lists: ".swc" of "nodes: .swc, .txt"; empty: none.
+std::string first_ending(std::string_view meaning)
+{
+    const size_t at = meaning.find(": .");
+    if (at == std::string_view::npos) return {};
+    const std::string_view listed = meaning.substr(at + 2);
+    return std::string(listed.substr(0, listed.find_first_of(", ")));
+}
+
 class Widgets : public Fields {
 public:
+    explicit Widgets(const std::filesystem::path& beside) : beside_(beside) {}
     using Fields::choice;
     using Fields::color;
     using Fields::number;
@@ -39,36 +61,42 @@ public:
     void any_flag(std::string_view name, std::optional<bool>& value, const About& about) override
     {
         bool is_set = value.value_or(false);
-        if (ImGui::Checkbox(title_of(name).c_str(), &is_set)) value = is_set;
+        if (ImGui::Checkbox(begin_row(name).c_str(), &is_set)) value = is_set;
         tell(about);
+        words_beside(about, VALUE_WIDTH - 2.0f);
     }
     void number(std::string_view name, std::optional<double>& value, const NumberRange&, const About& about) override
     {
         double shown = value.value_or(0.0);
-        if (ImGui::InputDouble(title_of(name).c_str(), &shown, 0.0, 0.0, value ? "%.6g" : "")) value = shown;
+        if (ImGui::InputDouble(begin_row(name).c_str(), &shown, 0.0, 0.0, value ? "%.6g" : "")) value = shown;
         tell(about);
     }
     void any_whole(std::string_view name, std::optional<int64_t>& value, int64_t lower, int64_t upper,
                    const About& about) override
     {
         int64_t shown = value.value_or(lower);
-        if (ImGui::InputScalar(title_of(name).c_str(), ImGuiDataType_S64, &shown))
+        if (ImGui::InputScalar(begin_row(name).c_str(), ImGuiDataType_S64, &shown))
             value = std::clamp(shown, lower, upper);
         tell(about);
     }
     void choice(std::string_view name, std::string& value, const std::vector<std::string_view>& names,
                 const About& about) override
     {
-        if (ImGui::BeginCombo(title_of(name).c_str(), value.c_str())) {
+        constexpr float WIDTH = 8.0f;
+        const std::string id = begin_row(name);
+        ImGui::SetNextItemWidth(WIDTH * ImGui::GetFontSize());
+        if (ImGui::BeginCombo(id.c_str(), value.c_str())) {
             for (const std::string_view each : names)
                 if (ImGui::Selectable(std::string(each).c_str(), each == value)) value = each;
             ImGui::EndCombo();
         }
         tell(about);
+        words_beside(about, VALUE_WIDTH - WIDTH - 0.5f);
     }
     void text(std::string_view name, std::string& value, const About& about) override
     {
-        ImGui::InputTextWithHint(title_of(name).c_str(), words_for(about, ImGui::CalcItemWidth()).c_str(), &value);
+        const std::string id = begin_row(name);
+        ImGui::InputTextWithHint(id.c_str(), words_for(about, VALUE_WIDTH * ImGui::GetFontSize()).c_str(), &value);
         tell(about);
     }
     void path(std::string_view name, std::filesystem::path& value, const About& about) override
@@ -76,8 +104,9 @@ public:
         std::string shown = value.string();
         want_glyphs(shown);
         ImGui::PushID(std::string(name).c_str());
+        begin_row(name);
         const float button = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x;
-        const float width = ImGui::CalcItemWidth() - button;
+        const float width = VALUE_WIDTH * ImGui::GetFontSize() - button;
         ImGui::SetNextItemWidth(width);
         if (ImGui::InputTextWithHint("##path", words_for(about, width).c_str(), &shown)) value = shown;
         tell(about);
@@ -85,13 +114,12 @@ public:
         const ImGuiID id = ImGui::GetID("##path");
         if (ImGui::Button("...", {ImGui::GetFrameHeight(), 0.0f})) {
             chooser_of = id;
-            chooser.ask(value, places(value, {}));
+            const std::filesystem::path begin = value.empty() ? new_file(name, about) : value;
+            chooser.ask(begin, places(begin, {}));
         }
         // A chooser is drawn by the field that asked for it.
         if (chooser_of == id)
             if (const auto path = chooser.draw()) value = *path;
-        ImGui::SameLine(0.0f, ImGui::GetStyle().ItemInnerSpacing.x);
-        ImGui::TextUnformatted(title_of(name).c_str());
         ImGui::PopID();
     }
     void color(std::string_view, std::optional<glm::dvec4>&, bool, const About&) override {}
@@ -99,7 +127,7 @@ public:
                 const About& about) override
     {
         glm::dvec3 shown = value.value_or(glm::dvec3(0.0));
-        if (ImGui::InputScalarN(title_of(name).c_str(), ImGuiDataType_Double, &shown.x, 3, nullptr, nullptr, "%.6g"))
+        if (ImGui::InputScalarN(begin_row(name).c_str(), ImGuiDataType_Double, &shown.x, 3, nullptr, nullptr, "%.6g"))
             value = shown;
         tell(about);
     }
@@ -107,7 +135,7 @@ public:
     void wholes(std::string_view name, std::vector<int64_t>& value, int64_t lower, int64_t upper,
                 const About& about) override
     {
-        if (ImGui::InputScalarN(title_of(name).c_str(), ImGuiDataType_S64, value.data(), int(value.size())))
+        if (ImGui::InputScalarN(begin_row(name).c_str(), ImGuiDataType_S64, value.data(), int(value.size())))
             for (int64_t& each : value) each = std::clamp(each, lower, upper);
         tell(about);
     }
@@ -128,12 +156,25 @@ public:
     {}
     bool has(std::string_view name, bool is_set) override
     {
-        ImGui::Checkbox(title_of(name).c_str(), &is_set);
+        ImGui::Checkbox(begin_row(name).c_str(), &is_set);
         return is_set;
     }
     void mention(std::string_view, const About& about) override { tell(about); }
 
 private:
+    /// "/scans/spike-trace.swc", for a key that names a file to be written.
+    std::filesystem::path new_file(std::string_view name, const About& about) const
+    {
+        const std::string ending = name == "project" ? "" : first_ending(about.meaning);
+        if (beside_.empty() || (ending.empty() && name != "project")) return beside_.parent_path();
+        return beside_.string() + "-" + std::string(name) + ending;
+    }
+    /// What a widget that holds no text is for, right of it.
+    static void words_beside(const About& about, float fonts)
+    {
+        ImGui::SameLine();
+        ImGui::TextDisabled("%s", shortened(about.meaning, fonts * ImGui::GetFontSize()).c_str());
+    }
     /// What an empty field is for, as far as there is room.
     static std::string words_for(const About& about, float width)
     {
@@ -146,17 +187,17 @@ private:
         if (*about.standard) text += sentence("\nUsually: ", about.standard);
         if (!text.empty()) hint(text.c_str());
     }
+
+    std::filesystem::path beside_;
 };
 
 }  // namespace
 
-bool draw_fields(const Fields::Visit& visit)
+bool draw_fields(const Fields::Visit& visit, const std::filesystem::path& beside)
 {
     const bool has_chooser = chooser.is_open();
-    Widgets widgets;
-    ImGui::PushItemWidth(22.0f * ImGui::GetFontSize());
+    Widgets widgets(beside);
     visit(widgets);
-    ImGui::PopItemWidth();
     return has_chooser;
 }
 

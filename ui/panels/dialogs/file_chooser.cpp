@@ -1,6 +1,7 @@
 #include "ui/panels/dialogs/file_chooser.h"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include <imgui/imgui.h>
@@ -39,13 +40,23 @@ std::string with_slash(const fs::path& folder)
     return text.ends_with('/') ? text : text + "/";
 }
 
-/// Tab completes the path in a field.
+/// Tab completes the path in a field, where that is known soon.
+struct Completion {
+    fs::path folder;
+    bool has_answered = true;
+};
 int complete(ImGuiInputTextCallbackData* data)
 {
-    const auto& folder = *static_cast<const fs::path*>(data->UserData);
-    const std::string text = completed(std::string(data->Buf, size_t(data->BufTextLen)), folder);
+    constexpr std::chrono::milliseconds SOON{100};
+    auto& completion = *static_cast<Completion*>(data->UserData);
+    Asked<std::string> asked([typed = std::string(data->Buf, size_t(data->BufTextLen)), folder = completion.folder] {
+        return completed(typed, folder);
+    });
+    const std::optional<std::string> text = asked.take(SOON);
+    completion.has_answered = text.has_value();
+    if (!text) return 0;
     data->DeleteChars(0, data->BufTextLen);
-    data->InsertChars(0, text.c_str());
+    data->InsertChars(0, text->c_str());
     return 0;
 }
 
@@ -53,7 +64,7 @@ int complete(ImGuiInputTextCallbackData* data)
 
 bool FileChooser::has_keys()
 {
-    return is_recent(open_in_frame);
+    return open_in_frame == ImGui::GetFrameCount();
 }
 
 bool FileChooser::is_busy()
@@ -67,16 +78,16 @@ void FileChooser::ask(const fs::path& begin, std::vector<Place> places)
     is_asked_for_ = true;
     closes_ = false;
     failure_.clear();
+    forget_questions();
     const std::string kept = text_;
     if (begin.empty() && !list_.folder().empty()) {
         enter(list_.folder());  // anew, since it may have changed
         text_ = kept;
     } else {
-        std::error_code ignored;
         const fs::path whole = begin.empty() ? home_folder() : fs::absolute(begin).lexically_normal();
-        if (fs::is_directory(whole, ignored)) return enter(whole);
         enter(whole.parent_path());
         text_ = whole.string();
+        follow(whole);
     }
     if (const fs::path path = typed_path(text_, list_.folder()); path.parent_path() == list_.folder())
         wanted_name_ = path.filename().string();
@@ -93,6 +104,7 @@ void FileChooser::ask_again(const fs::path& path, std::vector<Place> places, std
 
 void FileChooser::enter(const fs::path& folder)
 {
+    forget_questions();
     list_.enter(folder);
     text_ = with_slash(folder);
     failure_.clear();
@@ -102,8 +114,26 @@ void FileChooser::enter(const fs::path& folder)
     ++field_number_;
 }
 
+void FileChooser::forget_questions()
+{
+    verdict_ = {};
+    is_folder_ = {};
+}
+
+/// Lists that path, if it is a folder, as soon as that is known.
+void FileChooser::follow(const fs::path& folder)
+{
+    followed_ = folder;
+    is_folder_ = Asked<bool>([folder] {
+        std::error_code ignored;
+        return fs::is_directory(folder, ignored);
+    });
+    settle(AT_ONCE);
+}
+
 void FileChooser::select(size_t row)
 {
+    forget_questions();
     selected_ = row;
     text_ = with_slash(list_.folder()) + list_.at(row).name;
     failure_.clear();
@@ -111,41 +141,60 @@ void FileChooser::select(size_t row)
     ++field_number_;
 }
 
-/// Takes the path, or enters it, or says why not.
+/// Takes the path, or enters it, or says why not; as soon as that is known.
 void FileChooser::accept(const std::string& typed, bool enters_folders)
 {
-    const fs::path path = typed_path(typed, list_.folder());
-    std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    const bool is_folder = fs::is_directory(status);
+    forget_questions();
     failure_.clear();
-    if (question_.wanted == Wanted::scan) {
-        // What lies within an archive is no path of the file system.
-        if (!fs::exists(status) && !is_within_archive(path))
-            failure_ =
-                sentence(path.string(), ": ",
-                         error && error != std::errc::no_such_file_or_directory ? error.message()
-                                                                                : "there is no such file or folder");
-        else if (is_folder && !is_opened_whole(details_of(path).kind))
-            return enter(path);
-    } else if (is_folder && (enters_folders || question_.wanted == Wanted::new_file)) {
-        return enter(path);
-    } else if (question_.wanted == Wanted::new_file && fs::exists(status)) {
-        failure_ = sentence(path.string(), ": is there already; type another name");
-    } else if (!fs::is_directory(path.parent_path(), error)) {
-        failure_ = sentence(path.parent_path().string(), ": is no folder; choose one for the file");
+    judged_ = typed_path(typed, list_.folder());
+    verdict_ = Asked<Verdict>([path = judged_, wanted = question_.wanted, enters_folders] {
+        return verdict_on(path, wanted, enters_folders);
+    });
+    settle(AT_ONCE);
+}
+
+/// Does what waited for an answer.
+void FileChooser::settle(std::chrono::milliseconds patience)
+{
+    if (const std::optional<bool> is_folder = is_folder_.take(patience); is_folder && *is_folder) {
+        list_.enter(followed_);
+        if (text_ == followed_.string()) text_ = with_slash(followed_);
+        selected_.reset();
+        wanted_name_.clear();
+        scrolls_ = true;
     }
+    const std::optional<Verdict> verdict = verdict_.take(patience);
+    if (!verdict) return;
+    if (verdict->enters) return enter(judged_);
+    failure_ = verdict->failure;
     if (!failure_.empty()) {
         field_wants_keys_ = true;
         return;
     }
     // Asked again, it shows the folder that a typed path led to.
-    if (path.parent_path() != list_.folder()) {
-        enter(path.parent_path());
-        wanted_name_ = path.filename().string();
+    if (judged_.parent_path() != list_.folder()) {
+        enter(judged_.parent_path());
+        wanted_name_ = judged_.filename().string();
     }
-    text_ = path.string();
-    accepted_ = path;
+    text_ = judged_.string();
+    accepted_ = judged_;
+}
+
+/// For what it waits so long that a person notices; empty: for nothing.
+std::string FileChooser::waits_in_words()
+{
+    constexpr double NOTICED_S = 0.5;
+    const bool waits_for_names = list_.is_reading() && list_.size() == 0;
+    if (!verdict_.is_pending() && !is_folder_.is_pending() && !waits_for_names) {
+        waiting_since_.reset();
+        return {};
+    }
+    if (!waiting_since_) waiting_since_ = ImGui::GetTime();
+    const double waited_s = ImGui::GetTime() - *waiting_since_;
+    if (waited_s < NOTICED_S) return {};
+    const fs::path& path = verdict_.is_pending() ? judged_ : is_folder_.is_pending() ? followed_ : list_.folder();
+    return sentence("Waiting for ", path.string(), ", which has not answered for ", int(waited_s),
+                    " s. Choose another place, or cancel.");
 }
 
 std::optional<fs::path> FileChooser::draw()
@@ -161,8 +210,8 @@ std::optional<fs::path> FileChooser::draw()
     accepted_.reset();
     is_open_ = ImGui::BeginPopupModal(question_.title, nullptr, ImGuiWindowFlags_NoSavedSettings);
     if (!is_open_) return std::nullopt;
-    open_in_frame = ImGui::GetFrameCount();
     auto result = contents();
+    if (is_open_) open_in_frame = ImGui::GetFrameCount();
     ImGui::EndPopup();
     return result;
 }
@@ -173,7 +222,9 @@ std::optional<fs::path> FileChooser::contents()
     want_glyphs(failure_);
     list_.show(all_files_, hidden_);
     list_.read_on();
-    if (list_.is_reading()) reading_in_frame = ImGui::GetFrameCount();
+    settle();
+    if (list_.is_waiting() || verdict_.is_pending() || is_folder_.is_pending())
+        reading_in_frame = ImGui::GetFrameCount();
     if (!wanted_name_.empty()) {
         if (const auto row = list_.row_of(wanted_name_)) {
             selected_ = row;
@@ -192,7 +243,8 @@ std::optional<fs::path> FileChooser::contents()
     ImGui::SameLine();
     file_table(height);
 
-    const std::string& why = failure_.empty() ? list_.failure() : failure_;
+    const std::string waits = waits_in_words();
+    const std::string& why = !waits.empty() ? waits : failure_.empty() ? list_.failure() : failure_;
     if (why.empty()) {
         ImGui::TextDisabled("%s", question_.note);
     } else {
@@ -212,8 +264,10 @@ std::optional<fs::path> FileChooser::contents()
         selected_.reset();
     }
     ImGui::SameLine();
-    const std::string count =
-        sentence(list_.size(), " shown, ", list_.left_out(), " left out", list_.is_reading() ? ", reading..." : "");
+    const bool is_empty = list_.size() == 0 && list_.left_out() == 0 && !list_.is_reading();
+    const std::string count = is_empty ? "nothing is in this folder"
+                                       : sentence(list_.size(), " shown, ", list_.left_out(), " left out",
+                                                  list_.is_reading() ? ", reading..." : "");
     ImGui::TextDisabled("%s", count.c_str());
 
     const ImVec2 button{7.0f * ImGui::GetFontSize(), 0.0f};
@@ -233,16 +287,19 @@ void FileChooser::path_field()
     ImGui::SameLine();
     ImGui::PushID(field_number_);
     ImGui::SetNextItemWidth(-1.0f);
-    if (std::exchange(field_wants_keys_, false)) ImGui::SetKeyboardFocusHere();
-    fs::path folder = list_.folder();
+    field_keys_.before_field(std::exchange(field_wants_keys_, false));
+    Completion completion{list_.folder()};
     const bool entered =
         ImGui::InputText("##path", &text_,
                          ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion |
                              (question_.wanted == Wanted::new_file ? 0 : ImGuiInputTextFlags_AutoSelectAll),
-                         complete, &folder);
-    field_has_keys_ = ImGui::IsItemActive() || entered;
+                         complete, &completion);
+    field_keys_.after_field();
+    field_has_keys_ = ImGui::IsItemActive() || entered || field_keys_.are_awaited();
+    if (!completion.has_answered) failure_ = "The path cannot be completed: its folder does not answer";
     if (ImGui::IsItemEdited()) {
         failure_.clear();
+        forget_questions();
         follow_typed();
     }
     ImGui::PopID();
@@ -253,12 +310,7 @@ void FileChooser::path_field()
 void FileChooser::follow_typed()
 {
     if (!text_.ends_with('/') || !(text_.starts_with('/') || text_.starts_with('~'))) return;
-    const fs::path folder = typed_path(text_, list_.folder());
-    std::error_code ignored;
-    if (folder == list_.folder() || !fs::is_directory(folder, ignored)) return;
-    list_.enter(folder);
-    selected_.reset();
-    scrolls_ = true;
+    if (const fs::path folder = typed_path(text_, list_.folder()); folder != list_.folder()) follow(folder);
 }
 
 /// Up and Down go from the field into the list; there letters jump, Backspace goes up, and / or ~ begins a path.
@@ -279,8 +331,9 @@ void FileChooser::keys()
     if (is_pressed(ImGuiKey_Backspace)) return enter(list_.folder().parent_path());
     if (enter_is_pressed()) return accept(text_, true);
     for (const ImWchar typed : ImGui::GetIO().InputQueueCharacters) {
-        if (typed == '/' || typed == '~') {
-            text_ = typed == '/' ? "/" : "~/";
+        if (field_wants_keys_ || typed == '/' || typed == '~') {
+            if (!field_wants_keys_) text_.clear();
+            field_keys_.type(typed);
             field_wants_keys_ = true;
         } else if (typed > ' ' && typed < 127) {
             const char text = char(typed);

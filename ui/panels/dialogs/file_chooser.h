@@ -1,21 +1,21 @@
 #pragma once
 // A dialog that asks for a file or a folder of this machine: places, a list, and a field for a typed path. Why a path
-// cannot be taken is said in it, and the path stays. Between Window::begin_ui and Window::present, main thread.
+// cannot be taken is said in it, and the path stays. The file system is asked beside the frames (asked.h): what answers
+// at once is there at once, and for what does not, the dialog says that it waits. Between Window::begin_ui and
+// Window::present, main thread.
 
 #include <optional>
 #include <string>
 
+#include "ui/files/asked.h"
 #include "ui/files/file_list.h"
+#include "ui/panels/field_keys.h"
 
 namespace shvr::ui {
 
 class FileChooser {
 public:
-    enum class Wanted {
-        scan,      ///< something that SHVR opens
-        new_file,  ///< the name of a file that is not there yet
-        any,       ///< a file or a folder, there or not
-    };
+    using Wanted = ui::Wanted;
     struct Question {
         const char* title = "";
         const char* verb = "Open";
@@ -43,6 +43,10 @@ private:
     void select(size_t row);
     void path_field();
     void follow_typed();
+    void follow(const std::filesystem::path& folder);
+    void settle(std::chrono::milliseconds patience = {});
+    void forget_questions();
+    std::string waits_in_words();
     void place_list();
     void file_table(float height);
     void keys();
@@ -56,8 +60,14 @@ private:
     std::optional<size_t> selected_;
     std::string wanted_name_;  ///< to be selected as soon as it is listed
     std::optional<std::filesystem::path> accepted_;
+    Asked<Verdict> verdict_;  ///< on `judged_`
+    std::filesystem::path judged_;
+    Asked<bool> is_folder_;  ///< whether `followed_`, which may be one, is to be listed
+    std::filesystem::path followed_;
+    std::optional<double> waiting_since_;  ///< of Dear ImGui's clock
     bool all_files_ = false, hidden_ = false;
     bool is_asked_for_ = false, is_open_ = false, closes_ = false;
+    FieldKeys field_keys_;
     bool field_wants_keys_ = false, field_has_keys_ = false, scrolls_ = false;
     int field_number_ = 0;  ///< another field forgets that it was being edited
 };

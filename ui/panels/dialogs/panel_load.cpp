@@ -30,6 +30,7 @@ struct LoadDialog {
     LoadForm form;
     std::string path;
     std::vector<Choice> choices;  ///< that the file was found to offer
+    int levels = 0;               ///< that the file was found to have; 0: not known
     bool is_asked_for = false;
 };
 LoadDialog loading;
@@ -63,6 +64,21 @@ bool choice_field(const char* label, const char* key, std::string& value)
     }
     ImGui::EndCombo();
     return is_changed;
+}
+
+/// Which of its sizes, where a file has several.
+bool level_field(int& level)
+{
+    if (loading.levels < 2) return false;
+    const auto title = [](int of) {
+        return of == 0 ? std::string("0  the finest") : sentence(of, "  voxels ", int64_t{1} << of, " times as wide");
+    };
+    if (!ImGui::BeginCombo("size", title(level).c_str())) return false;
+    const int before = level;
+    for (int each = 0; each < loading.levels; ++each)
+        if (ImGui::Selectable(title(each).c_str(), each == level)) level = each;
+    ImGui::EndCombo();
+    return level != before;
 }
 
 struct SpacingDialog {
@@ -150,6 +166,9 @@ void load_dialog(const Model& model, Actions& actions)
         hint("Of a file or folder with several: red, green, blue, alpha, a name in it, or a number from 1.");
         is_changed |= choice_field("time point", "frame", form.frame);
         hint("Of a file with several: a number from 1.");
+        is_changed |= level_field(form.level);
+        if (loading.levels > 1)
+            hint("A coarser size is opened as a volume of its own: it takes less memory, and its paint fits it alone.");
     }
     is_changed |= ImGui::Checkbox("State the spacing", &form.states_spacing);
     hint("Instead of what the file states, or where it states none.");
@@ -158,6 +177,8 @@ void load_dialog(const Model& model, Actions& actions)
     const std::string settings = settings_of(form);
     const Candidate* const candidate = model.candidate;
     const bool is_current = candidate && candidate->settings == settings && candidate->path == loading.path;
+    if (is_current && !candidate->is_being_read && candidate->failure.empty())
+        loading.levels = candidate->levels + form.level;
     if (is_changed || !is_current) actions.push_back(LookAtFile{loading.path, settings});
     ImGui::Separator();
     if (candidate) about(*candidate);
@@ -238,6 +259,7 @@ void load_dialogs(const Model& model, Actions& actions)
             loading.choices.clear();
             loading.form.channel.clear();
             loading.form.frame.clear();
+            loading.form.level = loading.levels = 0;
         }
         loading.is_asked_for = true;
     }

@@ -103,7 +103,7 @@ bool choosers_have_keys()
 
 bool choosers_are_busy()
 {
-    return FileChooser::is_busy();
+    return FileChooser::is_busy() || task_dialog_waits();
 }
 
 void open_dialog(const Model& model, Actions& actions)

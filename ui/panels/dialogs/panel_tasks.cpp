@@ -1,12 +1,17 @@
 // Long work: the dialogs in which it is asked for, and how far it is.
 
+#include <chrono>
 #include <cmath>
+#include <exception>
+#include <filesystem>
+#include <optional>
+#include <type_traits>
 #include <utility>
 
 #include <imgui/imgui.h>
 
-#include "engine/base/error.h"
 #include "engine/base/progress.h"
+#include "ui/files/asked.h"
 #include "ui/panels/dialogs/field_widgets.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
@@ -30,6 +35,28 @@ std::string replacement(const Task& task)
                : names + (count == 1 ? " is there already and is replaced" : " are there already and are replaced");
 }
 
+/// What the disk says of a task.
+struct Verdict {
+    std::string refusal;      ///< why it cannot be; empty: nothing is in its way
+    std::string replacement;  ///< what it replaces
+};
+
+template <class Task>
+Verdict verdict_on(const Task& task)
+{
+    try {
+        check(task);
+    } catch (const std::exception& error) {
+        return {error.what(), {}};
+    }
+    return {{}, replacement(task)};
+}
+
+template <class Task>
+constexpr bool WRITES_FILES = !std::is_same_v<Task, EvaluateTask>;
+
+int waits_in_frame = -1;  ///< the last in which a dialog waited for the disk
+
 /// A dialog with the options of a task. They stay as they were left for the next time with the same scan.
 template <class Task>
 struct TaskDialog {
@@ -41,11 +68,11 @@ struct TaskDialog {
         if (std::exchange(is_asked_for, false)) ImGui::OpenPopup(Task::TITLE);
         ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
         if (!ImGui::BeginPopupModal(Task::TITLE, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
-        const bool has_chooser = draw_fields([&](Fields& f) { fields(f, task); });
+        const bool has_chooser = draw_fields([&](Fields& f) { fields(f, task); }, beside(model));
         const std::string why = refusal(model);
-        if (const std::string replaced = why.empty() ? replacement(task) : ""; !replaced.empty()) {
+        if (why.empty() && !known_.replacement.empty()) {
             ImGui::PushStyleColor(ImGuiCol_Text, WARNING);
-            ImGui::TextUnformatted(replaced.c_str());
+            ImGui::TextUnformatted(known_.replacement.c_str());
             ImGui::PopStyleColor();
         } else {
             ImGui::TextDisabled("%s", why.empty() ? " " : why.c_str());
@@ -65,15 +92,49 @@ struct TaskDialog {
     }
 
 private:
-    std::string refusal(const Model& model) const
+    /// What is written is called after the scan, beside its session or its file. What is compared is there already.
+    static std::filesystem::path beside(const Model& model)
     {
-        try {
-            check(task);
-            return why_not(model, Action(task));
-        } catch (const Error& error) {
-            return error.what();
-        }
+        if (!model.is_open || !WRITES_FILES<Task>) return {};
+        std::filesystem::path path = model.session_path;
+        if (path.parent_path().filename() == "shvr") path = path.parent_path().parent_path();  // of a project
+        path.replace_extension();
+        for (const char* half : {".session", ".nii", ".ome"})  // of scan.nii.gz and scan.ome.tif
+            if (path.extension() == half) path.replace_extension();
+        return path;
     }
+    std::string refusal(const Model& model)
+    {
+        const std::string why = why_not(model, Action(task));
+        if (!why.empty()) return why;
+        ask_disk();
+        if (is_known_) return known_.refusal;
+        return asked_.is_pending() ? "Waiting for the disk" : "";
+    }
+    /// Asked beside the window: of each change at once, and again now and then, since files come and go.
+    void ask_disk()
+    {
+        constexpr double AGAIN_S = 1.0;
+        const std::string now = line_of(Action(task));
+        const bool is_other = now != asked_of_;
+        if (is_other || (!asked_.is_pending() && ImGui::GetTime() - asked_s_ > AGAIN_S)) {
+            asked_ = Asked<Verdict>([task = task] { return verdict_on(task); });
+            asked_of_ = now;
+            asked_s_ = ImGui::GetTime();
+            is_known_ = is_known_ && !is_other;
+        }
+        if (std::optional<Verdict> verdict = asked_.take(is_other ? AT_ONCE : std::chrono::milliseconds())) {
+            known_ = std::move(*verdict);
+            is_known_ = true;
+        }
+        if (asked_.is_pending()) waits_in_frame = ImGui::GetFrameCount();
+    }
+
+    Asked<Verdict> asked_;
+    Verdict known_;
+    bool is_known_ = false;  ///< of the task as it is now
+    std::string asked_of_;
+    double asked_s_ = 0.0;
 };
 
 struct Dialogs {
@@ -127,6 +188,11 @@ void task_dialogs(const Model& model, Actions& actions)
     dialogs.importing.draw(model, "Import", actions);
     dialogs.labelling.draw(model, "Label", actions);
     dialogs.evaluating.draw(model, "Compare", actions);
+}
+
+bool task_dialog_waits()
+{
+    return waits_in_frame == ImGui::GetFrameCount();
 }
 
 void jobs_window(const Model& model, const glm::vec2& lower_middle, Actions& actions)

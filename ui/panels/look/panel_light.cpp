@@ -49,7 +49,7 @@ bool light_ball(glm::dvec3& direction, bool& is_reset, Actions& actions)
     const ImVec2 middle{corner.x + 0.5f * side, corner.y + 0.5f * side};
     ImGui::InvisibleButton("light ball", {side, side});
     const bool is_dragged = ImGui::IsItemActive();
-    hint("Drag the light over the ball: the volume is lit as this ball is, from the viewer's side.");
+    hint_beside("Drag the light over the ball: the volume is lit as this ball is, from the viewer's side.");
     is_reset |= resets("light.direction", actions);
     if (is_dragged) {
         const ImVec2 mouse = ImGui::GetIO().MousePos;

@@ -1,13 +1,142 @@
-// Local ambient occlusion: how much of the ambient light reaches a place.
+// Local ambient occlusion: how much of the ambient light reaches a place, and how that is mapped to what is seen.
+
+#include <algorithm>
 
 #include <imgui/imgui.h>
 
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/appearance/hints.h"
+#include "ui/workbench/curves/occlusion_curve.h"
 #include "ui/workbench/edit.h"
 
 namespace shvr::ui {
+
+namespace {
+
+/// The point that numbers are of, and whether the mouse has it.
+size_t chosen_point = 0;
+bool drags_point = false;
+
+void send(OcclusionPoints points, const Model& model, Actions& actions)
+{
+    set(actions, model, [&](Session& s) { s.light.occlusion.mapping = std::move(points); });
+}
+
+void draw_curve(const OcclusionSettings& settings, const ImVec2& begin, const ImVec2& end)
+{
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const auto at = [&](double x, double y) {
+        return ImVec2(begin.x + float(x) * (end.x - begin.x), end.y - float(y) * (end.y - begin.y));
+    };
+    list.AddRectFilled(begin, end, ImGui::GetColorU32(ImGuiCol_FrameBg));
+    for (const double share : {0.25, 0.5, 0.75}) {
+        list.AddLine(at(share, 0.0), at(share, 1.0), ImGui::GetColorU32(ImGuiCol_Border));
+        list.AddLine(at(0.0, share), at(1.0, share), ImGui::GetColorU32(ImGuiCol_Border));
+    }
+    constexpr int STEPS = 128;
+    const ImU32 ink = ImGui::GetColorU32(ImGuiCol_Text);
+    for (int i = 0; i < STEPS; ++i) {
+        const double from = double(i) / STEPS, to = double(i + 1) / STEPS;
+        list.AddLine(at(from, seen_of(settings, from)), at(to, seen_of(settings, to)), ink, 1.5f);
+    }
+    const float radius = 0.3f * ImGui::GetFontSize();
+    for (size_t i = 0; i < settings.mapping.size(); ++i) {
+        const ImVec2 place = at(settings.mapping[i].arrives, settings.mapping[i].seen);
+        list.AddCircleFilled(place, radius, ImGui::GetColorU32(ImGuiCol_WindowBg));
+        list.AddCircle(place, radius, ink, 0, i == chosen_point ? 3.0f : 1.5f);
+    }
+}
+
+/// The square: a double click adds a point, a drag moves one, a right click removes it.
+void curve_field(const OcclusionSettings& settings, const Model& model, Actions& actions)
+{
+    label("");
+    const ImVec2 begin = ImGui::GetCursorScreenPos();
+    const ImVec2 size{std::max(ImGui::GetContentRegionAvail().x, 40.0f), 6.0f * ImGui::GetFontSize()};
+    const ImVec2 end{begin.x + size.x, begin.y + size.y};
+    ImGui::InvisibleButton("curve", size, ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+    hint_beside(
+        "From the light that arrives (left to right) to the light that is seen (upwards): darker where the curve is "
+        "below the diagonal. Double click: a point; drag: moves it; right click: removes it.");
+    const ImVec2 mouse = ImGui::GetMousePos();
+    const glm::dvec2 place((mouse.x - begin.x) / size.x, (end.y - mouse.y) / size.y);
+    const double reach = 0.7 * double(ImGui::GetFontSize());
+    const std::optional<size_t> under =
+        point_under(settings.mapping, place, {reach / double(size.x), reach / double(size.y)});
+    OcclusionPoints points = settings.mapping;
+    if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0) && !under) {
+        if (points.empty()) points = points_of_power(settings.curve);
+        chosen_point = add(points, {place.x, place.y});
+        drags_point = true;
+        send(std::move(points), model, actions);
+    } else if (ImGui::IsItemClicked(0)) {
+        drags_point = under.has_value();
+        if (under) chosen_point = *under;
+    } else if (ImGui::IsItemClicked(1) && under) {
+        send(without(std::move(points), *under), model, actions);
+    } else if (drags_point && ImGui::IsItemActive() && ImGui::IsMouseDragging(0, 0.0f) &&
+               chosen_point < points.size()) {
+        send(moved(std::move(points), chosen_point, {place.x, place.y}), model, actions);
+    }
+    if (!ImGui::IsMouseDown(0)) drags_point = false;
+    draw_curve(settings, begin, end);
+}
+
+/// The same in numbers, for hands that use no mouse.
+void curve_numbers(const OcclusionSettings& settings, const Model& model, Actions& actions)
+{
+    const OcclusionPoints& points = settings.mapping;
+    chosen_point = std::min(chosen_point, points.size() - 1);
+    row("Point");
+    int number = int(chosen_point) + 1;
+    const int first = 1, last = int(points.size());
+    if (slider_scalar("##point", ImGuiDataType_S32, &number, &first, &last, "%d"))
+        chosen_point = size_t(std::clamp(number, first, last)) - 1;
+    hint("The point whose numbers these are.");
+    OcclusionPoint point = points[chosen_point];
+    bool is_other = slider("Arrives", point.arrives, 0.0, 1.0, "%.2f");
+    hint("The share of the light that arrives.");
+    is_other |= slider("Seen", point.seen, 0.0, 1.0, "%.2f");
+    hint("The share of it that is seen.");
+    if (is_other) send(moved(points, chosen_point, point), model, actions);
+    label("");
+    ImGui::BeginDisabled(points.size() == MAX_OCCLUSION_POINTS);
+    if (ImGui::Button("Add a point")) {
+        OcclusionPoints more = points;
+        chosen_point = add(more, in_widest_gap(points));
+        send(std::move(more), model, actions);
+    }
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    ImGui::BeginDisabled(points.size() <= 2);
+    if (ImGui::Button("Remove it")) send(without(points, chosen_point), model, actions);
+    ImGui::EndDisabled();
+    label("");
+    if (ImGui::Button("Back to a power")) send({}, model, actions);
+    hint("The curve follows a power again, and its points are given up. Undo brings them back.");
+}
+
+void curve_rows(const OcclusionSettings& settings, const Model& model, Actions& actions)
+{
+    if (settings.mapping.empty()) {
+        double power = settings.curve;
+        const bool is_other = slider("Curve", power, 0.25, 4.0, "%.2f", ImGuiSliderFlags_Logarithmic);
+        hint("Power of the light that arrives: above 1, half-dark places get darker.");
+        if (!resets("light.occlusion.curve", actions) && is_other)
+            set(actions, model, [&](Session& s) { s.light.occlusion.curve = power; });
+    } else {
+        text_label("Curve");
+        ImGui::TextUnformatted("of points");
+    }
+    curve_field(settings, model, actions);
+    if (!settings.mapping.empty()) return curve_numbers(settings, model, actions);
+    label("");
+    if (ImGui::Button("As points")) send(points_of_power(settings.curve), model, actions);
+    hint("Goes on with a curve of points, for instance to brighten what is bright and darken what is dark.");
+}
+
+}  // namespace
 
 void occlusion_panel(const Model& model, Actions& actions)
 {
@@ -20,9 +149,6 @@ void occlusion_panel(const Model& model, Actions& actions)
         slider("Radius", settings.radius, 1.0, MAX_OCCLUSION_RADIUS, "%.0f voxels", ImGuiSliderFlags_Logarithmic);
     hint("How far away an object may be and still block light.");
     is_reset |= resets("light.occlusion.radius", actions);
-    is_other |= slider("Curve", settings.curve, 0.25, 4.0, "%.2f", ImGuiSliderFlags_Logarithmic);
-    hint("Exponent of the light that arrives: above 1, half-dark places get darker.");
-    is_reset |= resets("light.occlusion.curve", actions);
     const uint32_t fewest = 4, most = 256;
     row("Rays");
     is_other |=
@@ -37,9 +163,11 @@ void occlusion_panel(const Model& model, Actions& actions)
                   ".")
              .c_str());
     if (is_other && !is_reset) set(actions, model, [&](Session& s) { s.light.occlusion = settings; });
-    if (settings.automatic || settings.strength == 0.0) return;
-    ImGui::SameLine();
-    if (ImGui::Button("Update")) actions.push_back(UpdateOcclusion{});
+    if (!settings.automatic && settings.strength != 0.0) {
+        ImGui::SameLine();
+        if (ImGui::Button("Update")) actions.push_back(UpdateOcclusion{});
+    }
+    curve_rows(model.session.light.occlusion, model, actions);
 }
 
 }  // namespace shvr::ui

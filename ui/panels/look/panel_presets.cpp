@@ -6,6 +6,7 @@
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>
 
+#include "ui/panels/field_keys.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/action_rows.h"
 #include "ui/workbench/edit.h"
@@ -93,9 +94,11 @@ std::string why_not_named(const Model& model)
 void name_dialog(const Model& model, Actions& actions)
 {
     if (!ImGui::BeginPopupModal(ASK_NAME, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
-    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    static FieldKeys keys;
+    keys.before_field(ImGui::IsWindowAppearing());
     ImGui::SetNextItemWidth(18.0f * ImGui::GetFontSize());
     const bool is_entered = ImGui::InputText("##name", &asked.name, ImGuiInputTextFlags_EnterReturnsTrue);
+    keys.after_field();
     const std::string why = why_not_named(model);
     const auto is_own = [](const TransferPreset& preset) { return preset.is_own && preset.name == asked.name; };
     const bool replaces = asked.renamed.empty() && std::ranges::any_of(model.presets, is_own);

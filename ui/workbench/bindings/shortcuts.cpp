@@ -7,6 +7,7 @@
 #include "ui/workbench/edit.h"
 #include "ui/workbench/lists/group_steps.h"
 #include "ui/workbench/preferences.h"
+#include "ui/workbench/sight/gestures.h"
 #include "ui/workbench/touch/hand_view.h"
 #include "ui/workbench/trace_ops.h"
 
@@ -97,6 +98,15 @@ Action next_brush(const Model& model, double)
     return edited(model.session, [](Session& s) {
         Brush& brush = s.probe.brush.brush;
         brush = BRUSHES[(size_t(brush) + 1) % BRUSHES.size()].brush;
+    });
+}
+
+Action threshold_here(const Model& model, double)
+{
+    return edited(model.session, [&](Session& s) {
+        const Reading& here = model.reading;
+        if (here.is_inside && here.intensity)
+            s.probe.brush.threshold = threshold_at(*here.intensity + here.offset, s.transfer_function.lower());
     });
 }
 
@@ -326,7 +336,7 @@ constexpr Shortcut SHORTCUTS[] = {
      Mode::tap,
      [](const Model&, double) -> Action { return Screenshot{true}; },
      {"Shift+F12", "Ctrl+P"}},
-    both("screenshot_marks", WORK_KEYS, "Scale bar, axes and distances in screenshots", Mode::tap,
+    both("screenshot_marks", WORK_KEYS, "Scale bar, axes, groups in screenshots", Mode::tap,
          toggle_drawn<&InteractionSettings::screenshot_marks>, ""),
     both("update_occlusion", WORK_KEYS, "Update ambient occlusion", Mode::tap, plain<UpdateOcclusion>, "F8"),
     {"help",
@@ -382,6 +392,8 @@ constexpr Shortcut SHORTCUTS[] = {
     both("axes", VIEWS_KEYS, "Axes", Mode::tap, toggle_drawn<&InteractionSettings::axes>, ""),
     both("probe_label", VIEWS_KEYS, "Depth and filling at the probe", Mode::tap,
          toggle_drawn<&InteractionSettings::probe_label>, ""),
+    both("group_legend", VIEWS_KEYS, "Names of the groups", Mode::tap, toggle_drawn<&InteractionSettings::group_legend>,
+         ""),
     both("auto_contrast", VIEWS_KEYS, "Automatic contrast of the slices", Mode::tap, plain<AutoContrast>, "B"),
     {"copy_measurements", VIEWS_KEYS, "Copy the distances", Mode::tap, plain<CopyMeasurements>, {"Ctrl+C", ""}},
     both("clear_measurements", VIEWS_KEYS, "Remove the distances", Mode::tap, plain<ClearMeasurements>, ""),
@@ -423,6 +435,12 @@ constexpr Shortcut SHORTCUTS[] = {
     both("next_group", PAINTING_KEYS, "Next group", Mode::tap, neighbour_group<1>, "Alt+PageDown"),
     both("previous_group", PAINTING_KEYS, "Previous group", Mode::tap, neighbour_group<-1>, "Alt+PageUp"),
     both("new_group", PAINTING_KEYS, "New group", Mode::tap, plain<NewGroup>, "Ctrl+G"),
+    {"threshold_here",
+     PAINTING_KEYS,
+     "Paint threshold from what is under the probe",
+     Mode::tap,
+     threshold_here,
+     {"Ctrl+T", ""}},
     both("next_brush", PAINTING_KEYS, "Next brush", Mode::tap, next_brush, "End"),
     both("larger_brush", PAINTING_KEYS, "Larger brush", Mode::hold, scale_probe<1>, "]"),
     both("smaller_brush", PAINTING_KEYS, "Smaller brush", Mode::hold, scale_probe<-1>, "["),
@@ -440,7 +458,7 @@ constexpr Shortcut SHORTCUTS[] = {
         "select_nearest", TRACING_KEYS, "Select the nearest node, then its internode", Mode::tap,
         [](const Model& model, double) -> Action { return nearest_selection(model); }, "."),
     both("select_segment", TRACING_KEYS, "Select the whole segment", Mode::tap, plain<SelectSegmentOp>, "Shift+."),
-    both("deselect", TRACING_KEYS, "Deselect", Mode::tap, plain<DeselectOp>, "/"),
+    both("deselect", TRACING_KEYS, "Deselect", Mode::tap, plain<DeselectOp>, "/ Ctrl+Shift+A"),
     both(
         "next_node", TRACING_KEYS, "Look at the next node", Mode::tap,
         [](const Model&, double) -> Action { return StepNode{false}; }, "G"),

@@ -303,8 +303,9 @@ std::optional<LocalBall> Document::ball_at(const glm::dvec3& voxel, const std::o
                            Size3(glm::clamp(glm::ceil(about + reach), glm::dvec3(1.0), size))};
         const DensityBox densities = densities_in(*source, annotator.document().density, box);
         const auto density_at = [&](const glm::dvec3& at) { return densities.at(at); };
-        const auto found = way ? ball_behind(density_at, *brush().threshold, voxel, *way, info.spacing, most)
-                               : local_ball(density_at, *brush().threshold, voxel, info.spacing, most);
+        const auto found =
+            way ? ball_behind(density_at, *brush().threshold, voxel, *way, info.spacing, most, probe_radius())
+                : local_ball(density_at, *brush().threshold, voxel, info.spacing, most);
         if (found) return found;
     }
     return {};
@@ -315,9 +316,10 @@ TraceMarks Document::trace_marks() const
     if (!session.view.meshes) return {};
     const glm::dvec3& spacing = volume().spacing;
     const double least = 0.5 * std::min({spacing.x, spacing.y, spacing.z});
-    return shvr::trace_marks(annotator.document().trace,
-                             session.probe.tool == Tool::trace ? nearby_node() : std::nullopt, least,
-                             drags_node ? std::optional(tool_point()) : std::nullopt);
+    const bool is_traced = session.probe.tool == Tool::trace;
+    constexpr size_t SHOWN_LINKS = 64;  // about what fits on a screen
+    return shvr::trace_marks(annotator.document().trace, is_traced ? nearby_node() : std::nullopt, least,
+                             drags_node ? std::optional(tool_point()) : std::nullopt, is_traced ? SHOWN_LINKS : 0);
 }
 
 }  // namespace shvr::ui

@@ -93,7 +93,8 @@ struct Document {
     /// The cut can still be mended: both of its ends exist, and nothing links them.
     bool is_cut() const;
     /// The largest ball in what lies at a place, above the paint threshold; with `way`, in what a line of sight enters
-    /// there (local_radius.h). Null where that cannot be told. Reads 30^3 voxels, up to 124^3 where it is wide.
+    /// there, no further aside than the probe's ball reaches (local_radius.h). Null where that cannot be told. Reads
+    /// 30^3 voxels, up to 124^3 where it is wide.
     std::optional<LocalBall> ball_at(const glm::dvec3& voxel, const std::optional<glm::dvec3>& way = {}) const;
     /// The probe's ball, of at least one voxel of the volume.
     VoxelBox voxels_around_probe() const;

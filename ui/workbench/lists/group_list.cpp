@@ -1,6 +1,7 @@
 #include "ui/workbench/lists/group_list.h"
 
 #include <algorithm>
+#include <bitset>
 #include <cctype>
 #include <set>
 
@@ -103,6 +104,26 @@ std::vector<uint8_t> groups_in(const std::array<TracedGroup, 256>& traced)
     for (size_t group = 1; group < traced.size(); ++group)
         if (traced[group].nodes + traced[group].internodes > 0) groups.push_back(uint8_t(group));
     return groups;
+}
+
+std::vector<uint8_t> drawn_groups(const Session& session, const std::array<int64_t, 256>& voxels,
+                                  const TraceGraph& trace)
+{
+    std::bitset<256> traced;
+    if (session.view.meshes) {
+        for (const auto& [number, node] : trace.nodes()) traced.set(node.group);
+        for (const auto& [number, internode] : trace.internodes()) traced.set(internode.group);
+    }
+    const std::optional<uint8_t> solo = session.view.solo;
+    std::vector<uint8_t> drawn;
+    for (size_t each = 1; each < voxels.size(); ++each) {
+        const auto group = uint8_t(each);
+        const ColorGroup look = group_of(session.groups, group);
+        const bool shows_paint = voxels[each] > 0 && session.view.volume && look.opacity > 0.0;
+        if (!look.visible || (!shows_paint && !traced.test(each))) continue;
+        if (!solo || (*solo != 0 && is_within(session.groups, group, *solo))) drawn.push_back(group);
+    }
+    return drawn;
 }
 
 std::string with_separators(int64_t count)

@@ -8,6 +8,7 @@
 
 #include "engine/annotation/trace/tracing.h"
 #include "engine/look/groups.h"
+#include "engine/session/session.h"
 
 namespace shvr::ui {
 
@@ -40,6 +41,10 @@ struct TracedGroup {
 std::array<TracedGroup, 256> traced_groups(const TraceGraph& trace);
 /// Those that have a node or an internode.
 std::vector<uint8_t> groups_in(const std::array<TracedGroup, 256>& traced);
+
+/// Those that a picture shows: painted or traced, and neither hidden, nor left out by `view.solo`, nor clear.
+std::vector<uint8_t> drawn_groups(const Session& session, const std::array<int64_t, 256>& voxels,
+                                  const TraceGraph& trace);
 
 /// 1234567 as "1,234,567"
 std::string with_separators(int64_t count);

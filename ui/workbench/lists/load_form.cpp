@@ -13,6 +13,7 @@ std::string settings_of(const LoadForm& form)
             form.is_big_endian ? ":big:" : ":little:", form.offset_bytes);
     if (!form.is_bare && !form.channel.empty()) add("volume.channel=", form.channel);
     if (!form.is_bare && !form.frame.empty()) add("volume.frame=", form.frame);
+    if (!form.is_bare && form.level > 0) add("volume.level=", form.level);
     if (form.states_spacing) add("volume.spacing=[", form.spacing.x, ",", form.spacing.y, ",", form.spacing.z, "]");
     if (form.states_spacing && !form.unit.empty()) add("volume.unit=", form.unit);
     return lines;

@@ -9,6 +9,7 @@ namespace shvr::ui {
 
 struct LoadForm {
     std::string channel, frame;   ///< empty: the file has one alone
+    int level = 0;                ///< 0 the finest
     bool states_spacing = false;  ///< otherwise the file's, or 1 voxel
     glm::dvec3 spacing{1.0};
     std::string unit;      ///< empty: the file's

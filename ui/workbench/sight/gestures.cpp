@@ -21,4 +21,9 @@ ValueRange dragged_contrast(const ValueRange& contrast, const ValueRange& range,
     return {middle - 0.5 * width, middle + 0.5 * width};
 }
 
+double threshold_at(double value, double least_drawn)
+{
+    return value > least_drawn ? 0.5 * (value + least_drawn) : value;
+}
+
 }  // namespace shvr::ui

@@ -19,4 +19,8 @@ bool is_jump(const glm::dvec2& way_pixels, const glm::uvec2& pane_pixels);
 /// `range`: of the volume, whose thousandth is the least distance.
 ValueRange dragged_contrast(const ValueRange& contrast, const ValueRange& range, const glm::dvec2& heights);
 
+/// The paint threshold for what has this value: half-way to the least that is drawn, where the wall between them lies;
+/// of what is not drawn, its own value.
+double threshold_at(double value, double least_drawn);
+
 }  // namespace shvr::ui

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "ui/workbench/lists/group_list.h"
 #include "ui/workbench/sight/hits.h"
 #include "ui/workbench/sight/words.h"
 
@@ -16,6 +17,17 @@ constexpr glm::dvec3 DARK(0.02), LIGHT(0.95), LINK(1.0, 0.83, 0.02), MEASURED(0.
 constexpr std::array<glm::dvec3, 3> AXES{glm::dvec3(0.95, 0.12, 0.08), glm::dvec3(0.1, 0.75, 0.15),
                                          glm::dvec3(0.15, 0.4, 1.0)};
 constexpr double DASH = 6.0, GAP = 5.0;
+
+/// Of at most so many characters, whole ones of UTF-8.
+std::string shortened_name(const std::string& name)
+{
+    constexpr size_t MOST = 32;
+    const auto begins = [](char c) { return (uint8_t(c) & 0xc0) != 0x80; };
+    size_t characters = 0;
+    for (size_t at = 0; at < name.size(); ++at)
+        if (begins(name[at]) && ++characters > MOST) return name.substr(0, at) + "...";
+    return name;
+}
 
 class Drawing {
 public:
@@ -43,6 +55,7 @@ public:
         if (is_for_screen_) pivot();
         if (model_.session.interaction.axes) axes();
         if (model_.session.interaction.scale_bar) scale();
+        if (model_.session.interaction.group_legend) groups();
         title();
         if (is_for_screen_ && is_main() && model_.session.interaction.probe_label) probe_label();
         return std::move(marks_);
@@ -233,7 +246,30 @@ private:
                                    std::pair(end - tick, end + tick)};
         for (const auto& [from, to] : bar_lines) marks_.strokes.push_back({from, to, DARK, 7.0 * units_});
         for (const auto& [from, to] : bar_lines) marks_.strokes.push_back({from, to, LIGHT, 3.0 * units_});
-        label(end - 1.5 * tick, {1.0, 1.0}, bar.text + (is_perspective ? " in the middle's depth" : ""));
+        label(end - 1.5 * tick, {1.0, 1.0}, bar.text + (is_perspective ? " at the middle of the view" : ""));
+    }
+
+    /// Names and colours of what is painted or traced, in the upper right corner of the first pane: the colour stands
+    /// right of its name, so that no name need be measured.
+    void groups()
+    {
+        if (index_ != 0 || pane_.kind == Pane::Kind::map || pane_.shot.right_eye) return;
+        constexpr double LINE = 20.0, SQUARE = 11.0, EDGE = 12.0;
+        const std::vector<uint8_t> drawn = drawn_groups(model_.session, model_.voxels_by_group, model_.trace);
+        const double free_height = double(pixels_.y) / units_ - 2.0 * EDGE - 90.0;  // axes and scale bar lie below
+        const size_t most = size_t(std::max(free_height / LINE, 0.0));
+        if (most < 2 && drawn.size() > most) return;
+        const size_t named = drawn.size() <= most ? drawn.size() : most - 1;
+        glm::dvec2 at(double(pixels_.x) - EDGE * units_, (EDGE + 0.5 * SQUARE) * units_);
+        const glm::dvec2 square(SQUARE * units_, 0.0), next(0.0, LINE * units_);
+        for (size_t i = 0; i < named; ++i, at += next) {
+            const ColorGroup look = group_of(model_.session.groups, drawn[i]);
+            const glm::dvec2 rim(units_, 0.0);
+            marks_.strokes.push_back({at - square - rim, at + rim, DARK, (SQUARE + 2.0) * units_});
+            marks_.strokes.push_back({at - square, at, look.color, SQUARE * units_});
+            label(at - square - glm::dvec2(6.0 * units_, 0.0), {1.0, 0.5}, shortened_name(look.name));
+        }
+        if (named < drawn.size()) label(at, {1.0, 0.5}, "and " + std::to_string(drawn.size() - named) + " more groups");
     }
 
     /// What the pane shows, in its upper left corner; of a slice also what is under the pointer.

@@ -1,7 +1,8 @@
 #pragma once
 // Lines and words that the window draws over a pane: the brush's ring and the trace in slices, the link that a new node
-// would get, distances, a scale bar, directions of the axes, and what the pane shows. Pictures in files have those that
-// are no help for the hand, where that is wanted (figure.h). Pure; the main thread, while the model lives.
+// would get, distances, a scale bar, directions of the axes, the groups, and what the pane shows. Pictures in files
+// have those that are no help for the hand, where that is wanted (figure.h). Pure; the main thread, while the model
+// lives.
 
 #include <string>
 #include <vector>

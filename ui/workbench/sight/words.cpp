@@ -78,8 +78,9 @@ std::string value_in_words(const Reading& reading)
 std::string in_words(const Reading& reading, const VolumeInfo& volume, const std::string& group_name)
 {
     std::string text = place_in_words(reading.voxel, volume) + ": " + value_in_words(reading);
-    if (reading.is_inside && reading.group > 0) text += sentence(", group ", int(reading.group), " ", group_name);
-    return text;
+    if (!reading.is_inside || reading.group == 0) return text;
+    const std::string group = sentence("group ", int(reading.group));  // which is also what it is called unnamed
+    return text + ", " + (group_name == group ? group : group + " " + group_name);
 }
 
 std::string slice_in_words(int axis, const glm::dvec3& voxel, const VolumeInfo& volume)

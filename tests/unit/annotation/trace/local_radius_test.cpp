@@ -113,3 +113,33 @@ TEST_CASE("A density box interpolates linearly between the middles of voxels, an
     CHECK(box.at({9.0, 0.5, 0.5}) == 30.0);
     CHECK(box.at({-9.0, 0.5, 0.5}) == 10.0);
 }
+
+TEST_CASE("A click on something wide stays near its line of sight, and says that the middle lies elsewhere")
+{
+    DensityBox ball{.lower = {0, 0, 0}, .size = {64, 64, 64}};
+    const glm::dvec3 middle(32.0), towards(0.0, 0.0, 1.0);
+    const double radius = 20.0;
+    for (int z = 0; z < 64; ++z)
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 64; ++x)
+                ball.values.push_back(
+                    200.0 * std::clamp(0.5 + radius - glm::distance(glm::dvec3(x, y, z) + 0.5, middle), 0.0, 1.0));
+    const auto density_at = [&](const glm::dvec3& at) { return ball.at(at); };
+    const auto clicked = [&](double beside, double aside) {
+        const glm::dvec3 voxel = middle + glm::dvec3(beside, 0.0, -std::sqrt(radius * radius - beside * beside));
+        return ball_behind(density_at, 100.0, voxel, towards, glm::dvec3(1.0), 24.0, aside);
+    };
+    const auto held = clicked(15.0, 4.0);
+    REQUIRE(held.has_value());
+    CHECK(held->is_held);
+    CHECK(std::abs(held->middle.x - 47.0) < 4.01);  // where the click was
+    CHECK(std::abs(held->middle.x - 43.0) < 0.3);   // as near to the middle as it may go
+    CHECK(std::abs(held->radius - 9.0) < 0.3);
+    const auto near = clicked(3.0, 4.0), free = clicked(15.0, 24.0);
+    REQUIRE(near.has_value());
+    REQUIRE(free.has_value());
+    CHECK(!near->is_held);
+    CHECK(!free->is_held);
+    CHECK(glm::distance(near->middle, middle) < 0.5);
+    CHECK(glm::distance(free->middle, middle) < 0.5);
+}

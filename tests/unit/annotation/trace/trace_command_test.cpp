@@ -263,6 +263,21 @@ TEST_CASE("the selected node is marked yellow where it is or where it is dragged
     CHECK(trace_marks(work.trace(), std::nullopt, 1.0).lines.size() == 2);
 }
 
+TEST_CASE("internodes about the selected node are lines over the picture, nearest first, where that is wanted")
+{
+    Tracing work;
+    for (const double x : {10.0, 20.0, 30.0, 40.0}) work.perform(work.node_at({x, 10, 10}));
+    const auto lines = [&](size_t most) { return trace_marks(work.trace(), std::nullopt, 1.0, {}, most).lines; };
+    CHECK(lines(0).empty());
+    REQUIRE(lines(64).size() == 3);
+    for (const OverlayScene::Line& line : lines(64)) CHECK(line.color == LINKED_COLOR);
+    REQUIRE(lines(1).size() == 1);
+    CHECK(lines(1)[0].from == work.trace().node(2).position);
+    CHECK(lines(1)[0].to == work.trace().node(3).position);
+    work.perform(DeselectOp{});
+    CHECK(lines(64).empty());
+}
+
 TEST_CASE("a node may lie outside the volume by its radius and a voxel, and is refused beyond")
 {
     Tracing work;

@@ -97,7 +97,8 @@ TEST_CASE("zip: what is no zipped OME-Zarr is refused in words")
         "has no zarr.json at its root; expected a zipped OME-Zarr: zip the content of its folder, not the folder"));
     CHECK(is_chirality_phantom(*open_volume(DATA / "zip_in_a_folder.ozx/scan.zarr")));
     CHECK(contains(refusal_of(DATA / "zip_empty.ozx"), "has no zarr.json at its root"));
-    CHECK(contains(refusal_of(DATA / "zip_no_zarr.zip"), "has no zarr.json at its root"));
+    CHECK(contains(refusal_of(DATA / "zip_no_zarr.zip"), "has no zarr.json at its root; it holds "));
+    CHECK(contains(refusal_of(DATA / "zip_no_zarr.zip"), " and no OME-Zarr: unpack it, and open what is in it"));
     CHECK(contains(refusal_of(DATA / "zip_encrypted.ozx"),
                    "zarr.json: is encrypted; expected no encryption: make the archive without a password"));
     CHECK(contains(refusal_of(DATA / "zip_bzip2.ozx"),

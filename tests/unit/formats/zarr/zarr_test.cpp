@@ -404,6 +404,25 @@ TEST_CASE("ome-zarr: levels count where they lie on level 0 as they should, othe
         CHECK(warns_of(*flat, "is left out: level \"1\" has 3 voxels along z, not 2"));
     }
     const Copy broken("image_04");
+    for (const int level : {1, 2}) {
+        const auto whole = open_volume(DATA / "image_04"), coarse = open_volume(DATA / "image_04", {.level = level});
+        CHECK(coarse->levels() == 3 - level);
+        CHECK(coarse->info().size == size_of_level(whole->info().size, level));
+        const VoxelBox box{Size3(0), coarse->info().size};
+        CHECK(level_of(*coarse, 0, box) == level_of(*whole, level, box));
+        const double wider = std::ldexp(1.0, level);
+        CHECK(coarse->info().spacing == wider * whole->info().spacing);
+        // The middle of its first voxel is that of those that it covers.
+        const glm::dvec3 apart = coarse->info().origin - whole->info().origin;
+        const glm::dvec3 expected = whole->info().directions * (0.5 * (wider - 1.0) * whole->info().spacing);
+        CHECK(glm::length(apart - expected) < 1e-12);
+        CHECK(warns_of(*coarse, "is opened: its voxels are"));
+    }
+    CHECK_THROWS_WITH(
+        open_volume(DATA / "image_04", {.level = 3}),
+        ((DATA / "image_04").string() + ": has no level 3; expected one from 0, the finest, to 2").c_str());
+    CHECK(open_volume(DATA / "image_04", {.level = 1, .spacing = glm::dvec3(3.0), .unit = "mm"})->info().spacing ==
+          glm::dvec3(3.0));
     fs::remove(broken.root / "1/.zarray");
     CHECK(open_volume(broken.root)->levels() == 1);
     CHECK(warns_of(*open_volume(broken.root),

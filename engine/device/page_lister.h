@@ -1,0 +1,164 @@
+#pragma once
+// Lists the bricks that a view needs, on a thread of its own: at 10^5 bricks that takes 10 ms, which the thread that
+// draws must not wait for while a camera moves. The lister has a copy of what is known of the bricks, and is told every
+// change; a list is as of the changes that were told before it was asked for, and whoever takes it makes up for the
+// rest, of which it keeps account. A few lists are kept, for panes that take turns.
+//
+// One thread asks, and is told nothing while it asks; the lister owns the other.
+
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include "engine/bricks/brick_builder.h"
+#include "engine/bricks/brick_map.h"
+#include "engine/bricks/page_tree.h"
+#include "engine/passes/brick_leap.h"
+
+namespace shvr {
+
+/// What a picture shows, as far as its bricks depend on it.
+struct PageSight {
+    PageView view;
+    Visibility visibility;
+};
+
+struct BrickEvent {
+    enum class Kind : uint8_t {
+        placed,   ///< on the device now; `number`: its packed slot
+        gone,     ///< and now no longer
+        read,     ///< `number`: its range, as KnownBricks keeps it
+        unread,   ///< its voxels have changed
+        painted,  ///< `number`: painted bricks of level 0 in it
+        other,    ///< something that concerns this brick alone, and that is known elsewhere
+    };
+    BrickKey key;
+    Kind kind = Kind::other;
+    uint32_t number = 0;
+};
+
+/// What is known of a volume's paged bricks: which are on the device and where, the ranges of those that were read,
+/// which are painted. From it follows what a view needs, and what is drawn in the place of a brick. Changes are plain
+/// data, so that two threads can each have a copy. One thread for each.
+class KnownBricks {
+public:
+    KnownBricks(const VolumeInfo& info, int levels, const IntensityWindow& window,
+                std::shared_ptr<const VolumeSource> source)
+        : info_(info), levels_(levels), window_(window), source_(std::move(source))
+    {}
+
+    const VolumeInfo& info() const { return info_; }
+    int levels() const { return levels_; }
+    void apply(const BrickEvent& change);
+
+    static BrickEvent placed(const BrickKey& key, uint32_t packed_slot)
+    {
+        return {key, BrickEvent::Kind::placed, packed_slot};
+    }
+    static BrickEvent read(const BrickKey& key, const BrickTexels::Range& range)
+    {
+        return {key, BrickEvent::Kind::read, range.minimum | uint32_t{range.maximum} << 16};
+    }
+    std::optional<BrickTexels::Range> range_of(const BrickKey& key) const;
+    /// Painted bricks of level 0 in it.
+    uint32_t painted_in(const BrickKey& key) const { return painted_.find(key).value_or(0); }
+
+    /// Whether paint may show in it, be it that of a brick beside it.
+    bool is_painted(const PageSight& sight, const BrickKey& key) const;
+    /// Whether anything in it, or in the bricks below it, may be visible, by what the file says.
+    bool may_show(const PageSight& sight, const BrickKey& key) const;
+    /// Whether it was read and shows nothing.
+    bool is_empty(const PageSight& sight, const BrickKey& key) const;
+    /// What the directory (shaders/pages.h) shows in the place of a leaf: nothing, its brick, or the finest one above
+    /// it that is there.
+    uint32_t entry_of(const PageSight& sight, const BrickKey& leaf) const;
+
+private:
+    bool is_always_shown(const PageView& view, const BrickKey& key) const;
+
+    VolumeInfo info_;
+    int levels_;
+    IntensityWindow window_;
+    std::shared_ptr<const VolumeSource> source_;
+    BrickMap slots_, ranges_, painted_;
+};
+
+/// What a view needs, ready to be drawn with.
+struct PageList {
+    PageSight sight;
+    std::shared_ptr<const PageTree> tree;
+    BrickMap leaves;                ///< the number of each leaf of the tree
+    std::vector<uint32_t> entries;  ///< the directory of shaders/pages.h
+    uint64_t changes = 0;           ///< it is as after so many of them
+    bool has_entries = true;        ///< false: its entries are to be made
+};
+
+class PageLister {
+public:
+    /// `known`: of no brick yet. Its source must be readable by any thread.
+    explicit PageLister(KnownBricks known);
+    ~PageLister();
+    PageLister(const PageLister&) = delete;
+
+    void note(const BrickEvent& change);
+    /// Changes noted so far, and the later ones of them; null where that is too long ago.
+    uint64_t changes() const { return first_ + log_.size(); }
+    std::optional<std::span<const BrickEvent>> changes_since(uint64_t changes) const;
+
+    /// Whether take() would not wait. If not, it begins with the list unless it is busy with another.
+    bool get_ready(const PageView& view, const Visibility& visibility);
+    /// Waits for the list. Fails as the source does.
+    std::shared_ptr<PageList> take(const PageView& view, const Visibility& visibility);
+    /// Keeps a list that was taken.
+    void keep(std::shared_ptr<PageList> list);
+    /// All lists are out of date, because the source or the paint has changed.
+    void forget();
+
+    /// Lists made, and how often take() had to wait for one.
+    uint64_t lists_made() const { return lists_made_; }
+    uint64_t waits() const { return waits_; }
+
+private:
+    static constexpr size_t MAX_LISTS = 3;  ///< each takes up to 10 MB
+    static constexpr size_t MAX_CHANGES = size_t{1} << 16;
+    struct Asked {
+        PageSight sight;
+        uint64_t changes = 0;
+        uint64_t outdated = 0;
+    };
+    struct Made {
+        std::shared_ptr<PageList> list;
+        std::exception_ptr failure;
+        uint64_t outdated = 0;
+    };
+    std::shared_ptr<PageList> find(const PageView& view, const Visibility& visibility) const;
+    void hand_over();
+    void collect();
+    void begin(const PageView& view, const Visibility& visibility);
+    void work(std::stop_token stop);
+
+    std::vector<BrickEvent> log_;
+    uint64_t first_ = 0;                           ///< changes before the log
+    uint64_t handed_over_ = 0;                     ///< changes that the other thread was told
+    uint64_t outdated_ = 0;                        ///< calls of forget()
+    std::deque<std::shared_ptr<PageList>> lists_;  ///< the last one is the latest
+    bool is_busy_ = false;
+    uint64_t lists_made_ = 0, waits_ = 0;
+
+    KnownBricks known_;  ///< of the other thread
+
+    std::mutex mutex_;  ///< of the next three
+    std::vector<BrickEvent> told_;
+    std::optional<Asked> asked_;
+    std::optional<Made> made_;
+    std::condition_variable_any work_, finished_;
+    std::jthread thread_;  ///< last, so that it stops before what it uses is destroyed
+};
+
+}  // namespace shvr

@@ -1,0 +1,16 @@
+#pragma once
+// A coarser level of a volume as a volume of its own. Any thread may call this.
+
+#include <filesystem>
+#include <memory>
+
+#include "engine/volume/source.h"
+
+namespace shvr {
+
+/// Level `level` of `source` and those above it, where voxels are 2^level times as wide; `source` itself for level 0.
+/// Fails if there is no such level. A warning says which it is.
+std::unique_ptr<VolumeSource> coarser(std::unique_ptr<VolumeSource> source, const std::filesystem::path& path,
+                                      int level);
+
+}  // namespace shvr

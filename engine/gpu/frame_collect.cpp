@@ -1,0 +1,135 @@
+// A graph on its way through the queue (frame_in_flight.h), and what it brings back.
+
+#include <chrono>
+#include <cstring>
+#include <utility>
+
+#include "engine/gpu/frame_in_flight.h"
+#include "engine/gpu/live_trace.h"
+
+namespace shvr::gpu {
+
+void Submission::Frame::submit()
+{
+    const TraceSpan span("submit");
+    Device& device = executor.device_;
+    started = std::chrono::steady_clock::now();
+    for (size_t i = 0; i < chunks.size(); ++i) {
+        const VkCommandBufferSubmitInfo commands{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                                 .commandBuffer = chunks[i]};
+        const VkSubmitInfo2 info{
+            .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &commands};
+        const bool last = i + 1 == chunks.size();
+        const VkResult result = vkQueueSubmit2(device.queue(), 1, &info, last ? objects->fence() : VK_NULL_HANDLE);
+        if (result < 0) {
+            device.wait_idle_or_lost();
+            if (i > 0) note_unknown_states();
+            device.check(result, "vkQueueSubmit2");
+        }
+        if (i == 0)
+            for (Memory::Object* image : transitioned) image->in_general_layout = true;
+    }
+    number = device.note_submission();
+    // Barriers are global, so they also affect imports that no kept pass uses.
+    for (uint32_t i = 0; i < compiled.final_states.size(); ++i)
+        if (compiled.used[i] || graph.resources()[i].imported) object(i).state = compiled.final_states[i];
+}
+
+/// A part of the frame ran, and nobody knows which.
+void Submission::Frame::note_unknown_states() const
+{
+    for (uint32_t i = 0; i < compiled.used.size(); ++i)
+        if (compiled.used[i]) object(i).state = UNKNOWN_STATE;
+}
+
+bool Submission::Frame::done() const
+{
+    if (number == 0 || number <= executor.device_.done()) return true;
+    // Says what vkGetFenceStatus says, and tells validation that the frame was waited for.
+    const VkFence fence = objects->fence();
+    const VkResult result = vkWaitForFences(executor.device_.handle(), 1, &fence, VK_TRUE, 0);
+    executor.device_.check(result, "vkWaitForFences");
+    if (result == VK_SUCCESS) executor.device_.note_done(number);
+    return result == VK_SUCCESS;
+}
+
+void Submission::Frame::wait() const
+{
+    if (number == 0) return;
+    const TraceSpan span("wait for the device");
+    const VkFence fence = objects->fence();
+    executor.device_.check(vkWaitForFences(executor.device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX),
+                           "vkWaitForFences");
+    executor.device_.note_done(number);
+}
+
+FrameResult Submission::Frame::collect()
+{
+    if (number == 0) return {};  // no step, nothing submitted
+    wait();
+    const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - started;
+    FrameResult result{.wall_ms = wall.count()};
+    result.read_backs.resize(read_backs.size());
+    for (const Step& step : compiled.steps) {
+        const PassData& data = pass(step);
+        if (data.kind != PassData::Kind::read_back) continue;
+        const uint64_t size = graph.resources()[data.bindings[0].resource].desc.bytes;
+        const std::span<const std::byte> bytes = read_backs[data.read_back]->mapped().first(size);
+        result.read_backs[data.read_back].assign(bytes.begin(), bytes.end());
+    }
+    const DeviceTraits& traits = executor.device_.traits();
+    std::vector<uint64_t> ticks(compiled.steps.size() * 2);
+    const auto results_of = [&](VkQueryPool queries, std::vector<uint64_t>& results) {
+        executor.device_.check(vkGetQueryPoolResults(executor.device_.handle(), queries, 0, uint32_t(results.size()),
+                                                     results.size() * sizeof(uint64_t), results.data(),
+                                                     sizeof(uint64_t), VK_QUERY_RESULT_64_BIT),
+                               "vkGetQueryPoolResults");
+    };
+    if (is_timed) results_of(objects->queries(), ticks);
+    std::vector<uint64_t> invocations(counted_steps.size());
+    if (!counted_steps.empty()) results_of(objects->statistics(), invocations);
+    const uint64_t mask = traits.timestamp_bits >= 64 ? ~uint64_t(0) : (uint64_t(1) << traits.timestamp_bits) - 1;
+    const auto milliseconds = [&](uint64_t from, uint64_t to) {
+        return double((to - from) & mask) * double(traits.nanoseconds_per_tick) * 1e-6;
+    };
+    if (is_timed) result.gpu_ms = milliseconds(ticks.front(), ticks.back());
+    if constexpr (IS_TRACED) {
+        std::vector<TracedPass> traced;
+        for (size_t i = 0; is_timed && i < compiled.steps.size(); ++i)
+            traced.push_back({pass(compiled.steps[i]).name, ticks[2 * i], ticks[2 * i + 1]});
+        trace_passes({reinterpret_cast<uint64_t>(executor.device_.handle()), double(traits.nanoseconds_per_tick), mask},
+                     traced);
+    }
+    for (size_t i = 0; i < compiled.steps.size(); ++i) {
+        const PassData& data = pass(compiled.steps[i]);
+        PassReport report{.name = data.name, .kernel = data.kernel};
+        report.dispatches = prepared[i].dispatches;
+        report.tiles = prepared[i].tiles;
+        report.submissions = prepared[i].submissions;
+        report.recorded = prepared[i].recorded;
+        report.record_ms = std::chrono::duration<double, std::milli>(prepared[i].recording).count();
+        if (is_timed) {
+            report.timed = true;
+            report.start_ms = milliseconds(ticks[0], ticks[2 * i]);
+            report.gpu_ms = milliseconds(ticks[2 * i], ticks[2 * i + 1]);
+        }
+        for (size_t query = 0; query < counted_steps.size() && !prepared[i].is_counted_in_part; ++query)
+            if (counted_steps[query] == i) report.invocations = report.invocations.value_or(0) + invocations[query];
+        // On a device without timestamps a pass takes no longer than all of them, and those before, did on the host's
+        // clock. A frame that merely was not timed teaches nothing: it may have waited long, in the queue and after.
+        if (prepared[i].kernel && (is_timed || traits.timestamp_bits == 0))
+            executor.costs_.learn(data.kernel, threads_of(data, *prepared[i].kernel),
+                                  is_timed ? report.gpu_ms : result.wall_ms);
+        for (const Binding& binding : data.bindings) report.bytes += graph.resources()[binding.resource].desc.bytes;
+        if (const auto& barrier = compiled.steps[i].barrier)
+            report.barrier = names_of(barrier->from) + " -> " + names_of(barrier->to);
+        if (prepared[i].kernel && prepared[i].kernel->interface().slot("counters")) {
+            report.counters.resize(COUNTERS);
+            std::memcpy(report.counters.data(), counters->mapped().data() + prepared[i].counters_offset, COUNTER_BYTES);
+        }
+        result.passes.push_back(std::move(report));
+    }
+    return result;
+}
+
+}  // namespace shvr::gpu

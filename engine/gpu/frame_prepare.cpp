@@ -1,0 +1,142 @@
+// What a graph takes before its commands are recorded (frame_in_flight.h): memory, kernels, descriptors.
+
+#include <algorithm>
+#include <cstring>
+
+#include "engine/gpu/frame_in_flight.h"
+#include "engine/gpu/live_trace.h"
+
+namespace shvr::gpu {
+
+namespace {
+
+/// What the host can write of a device's own memory may be 256 MiB in all, for every program.
+Placement placement_of(uint64_t bytes)
+{
+    constexpr uint64_t MOST = uint64_t{4} << 20;
+    return bytes <= MOST ? Placement::values : Placement::upload;
+}
+
+}  // namespace
+
+/// Whether a kernel counts what each of its threads does, rather than what hardly ever happens. Then counters are in
+/// the device's memory, which kernels add to sooner; otherwise in the host's, which takes no pass to clear or copy.
+bool Submission::Frame::counts_work() const
+{
+    return std::ranges::any_of(compiled.steps, [this](const Step& step) {
+        return std::ranges::any_of(pass(step).constants, [](const auto& constant) {
+            return constant.first == "COUNT_WORK" && constant.second != 0;
+        });
+    });
+}
+
+Storage& Submission::Frame::take_resource(const FrameGraph::ResourceData& resource)
+{
+    if (resource.contents.empty()) return take(resource.name, resource.desc, Placement::device);
+    Storage& storage = take(resource.name, resource.desc, placement_of(resource.contents.size()));
+    std::ranges::copy(resource.contents, storage.mapped().begin());
+    return storage;
+}
+
+void Submission::Frame::prepare()
+{
+    const auto& resources = graph.resources();
+    const uint64_t alignment = executor.device_.traits().limits.minStorageBufferOffsetAlignment;
+    storages.resize(resources.size());
+    for (uint32_t i = 0; i < resources.size(); ++i) {
+        if (!compiled.used[i] || resources[i].imported) continue;
+        Storage*& own = storages[compiled.memory_of[i]];
+        if (!own) own = &take_resource(resources[compiled.memory_of[i]]);
+        storages[i] = own;
+    }
+    read_backs.resize(graph.read_back_count());
+
+    uint64_t block_bytes = 0, counter_bytes = 0;
+    is_timed = (options.timestamps || IS_TRACED) && executor.device_.traits().timestamp_bits > 0;
+    FrameObjects::Needs needs{.queries = is_timed ? uint32_t(compiled.steps.size()) * 2 : 0};
+    constexpr uint32_t QUERIES_OF_STEP = 64;
+    if (options.statistics && executor.device_.traits().has_pipeline_statistics)
+        statistics_room = needs.statistics = uint32_t(compiled.steps.size()) * QUERIES_OF_STEP;
+    prepared.resize(compiled.steps.size());
+    for (size_t i = 0; i < compiled.steps.size(); ++i) {
+        const PassData& data = pass(compiled.steps[i]);
+        if (data.kind == PassData::Kind::read_back)
+            read_backs[data.read_back] =
+                &take("read back", buffer_desc(resources[data.bindings[0].resource].desc.bytes), Placement::download);
+        if (data.kind != PassData::Kind::compute) continue;
+        const KernelInterface& interface = executor.kernels_.interface(data.kernel);
+        check_bindings(data, interface, resources);
+        prepared[i].kernel = &executor.kernels_.get(data.kernel, data.constants);
+        for (const auto& [name, bytes] : data.blocks) block_bytes += aligned(bytes.size(), alignment);
+        if (interface.slot("counters")) {
+            prepared[i].counters_offset = counter_bytes;
+            counter_bytes += aligned(COUNTER_BYTES, alignment);
+        }
+        for (const KernelInterface::Slot& slot : interface.slots) ++needs.descriptors[slot.type];
+        ++needs.sets;
+    }
+    if (block_bytes) blocks = &take("blocks", buffer_desc(block_bytes), placement_of(block_bytes));
+    if (counter_bytes) {
+        const bool are_copied = counts_work();
+        counters = &take("counters", buffer_desc(counter_bytes), Placement::download, !are_copied);
+        if (are_copied)
+            work_counters = &take("work counters", counters->desc(), Placement::device);
+        else
+            std::memset(counters->mapped().data(), 0, counters->mapped().size());
+    }
+
+    if (executor.idle_objects_.empty()) {
+        objects = std::make_unique<FrameObjects>(executor.device_);
+    } else {
+        objects = std::move(executor.idle_objects_.back());
+        executor.idle_objects_.pop_back();
+    }
+    objects->renew(needs);
+    uint64_t block_offset = 0;
+    for (size_t i = 0; i < compiled.steps.size(); ++i) {
+        if (!prepared[i].kernel) continue;
+        const auto began = std::chrono::steady_clock::now();
+        prepared[i].set = objects->allocate(prepared[i].kernel->set_layout());
+        write_descriptors(pass(compiled.steps[i]), prepared[i], block_offset);
+        prepared[i].recording = std::chrono::steady_clock::now() - began;
+    }
+}
+
+void Submission::Frame::write_descriptors(const PassData& data, const Prepared& step, uint64_t& block_offset) const
+{
+    const std::vector<KernelInterface::Slot>& slots = step.kernel->interface().slots;
+    std::vector<VkWriteDescriptorSet> writes;
+    std::vector<VkDescriptorBufferInfo> buffers(slots.size());
+    std::vector<VkDescriptorImageInfo> images(slots.size());
+    for (size_t i = 0; i < slots.size(); ++i) {
+        const KernelInterface::Slot& slot = slots[i];
+        const auto binding = std::find_if(data.bindings.begin(), data.bindings.end(),
+                                          [&](const Binding& b) { return b.name == slot.name; });
+        const auto block =
+            std::find_if(data.blocks.begin(), data.blocks.end(), [&](const auto& b) { return b.first == slot.name; });
+        if (binding != data.bindings.end()) {
+            const Memory::Object& bound = object(binding->resource);
+            buffers[i] = {bound.buffer, 0, graph.resources()[binding->resource].desc.bytes};
+            images[i] = {executor.sampler_, bound.view, VK_IMAGE_LAYOUT_GENERAL};
+        } else if (block != data.blocks.end()) {
+            std::memcpy(blocks->mapped().data() + block_offset, block->second.data(), block->second.size());
+            buffers[i] = {executor.memory_.object(blocks->import().id).buffer, block_offset, block->second.size()};
+            block_offset +=
+                aligned(block->second.size(), executor.device_.traits().limits.minStorageBufferOffsetAlignment);
+        } else {
+            const Storage& counted = work_counters ? *work_counters : *counters;
+            buffers[i] = {executor.memory_.object(counted.import().id).buffer, step.counters_offset, COUNTER_BYTES};
+        }
+        const bool is_buffer = slot.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        writes.push_back({.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                          .dstSet = step.set,
+                          .dstBinding = slot.binding,
+                          .descriptorCount = 1,
+                          .descriptorType = slot.type,
+                          .pImageInfo = is_buffer ? nullptr : &images[i],
+                          .pBufferInfo = is_buffer ? &buffers[i] : nullptr});
+    }
+    vkUpdateDescriptorSets(executor.device_.handle(), uint32_t(writes.size()), writes.data(), 0, nullptr);
+}
+
+}  // namespace shvr::gpu

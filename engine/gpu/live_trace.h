@@ -1,0 +1,59 @@
+#pragma once
+// What Tracy (https://github.com/wolfpld/tracy), a profiler that watches a program while it runs, is told: spans of the
+// host, passes of the device, frames of the window. Only in builds with -DSHVR_TRACY=FOLDER, of Tracy's sources; in all
+// others nothing of it is compiled: no call, no branch, no byte (tests/cli/instruments/test_live_trace.py).
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace shvr::gpu {
+
+#ifdef SHVR_TRACY
+inline constexpr bool IS_TRACED = true;
+#else
+inline constexpr bool IS_TRACED = false;
+#endif
+
+/// A span of the host, from here to the end of the block. Any thread.
+class TraceSpan {
+public:
+#ifdef SHVR_TRACY
+    explicit TraceSpan(std::string_view name);
+    ~TraceSpan();
+    TraceSpan(const TraceSpan&) = delete;
+    TraceSpan& operator=(const TraceSpan&) = delete;
+
+private:
+    uint32_t id_ = 0;
+    int32_t is_active_ = 0;
+#else
+    explicit constexpr TraceSpan(std::string_view) {}
+#endif
+};
+
+/// A pass of the device; times are ticks of its clock.
+struct TracedPass {
+    std::string_view name;
+    uint64_t begin = 0, end = 0;
+};
+/// How a device's ticks are read.
+struct DeviceClock {
+    uint64_t device = 0;  ///< tells devices apart
+    double nanoseconds_per_tick = 1.0;
+    uint64_t mask = ~uint64_t{0};  ///< of the bits that count
+};
+
+#ifdef SHVR_TRACY
+/// The passes of a frame, in order of execution, once the device is done with it. The clocks of host and device are not
+/// tied to each other: the first frame of a device is drawn to end when it was seen to be done, later ones by their
+/// ticks. One thread.
+void trace_passes(const DeviceClock& clock, std::span<const TracedPass> passes);
+/// The window shows its next picture.
+void trace_frame();
+#else
+inline void trace_passes(const DeviceClock&, std::span<const TracedPass>) {}
+constexpr void trace_frame() {}
+#endif
+
+}  // namespace shvr::gpu

@@ -1,0 +1,15 @@
+#pragma once
+// Moves bricks from a buffer into their places on the device (shaders/brick_unpack.comp): all of a batch at once.
+
+#include <span>
+
+#include "engine/graph/frame_graph.h"
+#include "shaders/brick_unpack.h"
+
+namespace shvr {
+
+/// `atlas`, `cell_ranges`: as in VolumeBinding. Returns the new `cell_ranges`.
+[[nodiscard]] Resource brick_unpack(FrameGraph& graph, Resource staged, Resource atlas, Resource cell_ranges,
+                                    bool filtered, std::span<const gpu::BrickUnpackJob> jobs);
+
+}  // namespace shvr

@@ -1,0 +1,54 @@
+// Settings of the workbench: what is said of a change, and whether it draws the picture anew.
+
+#include <doctest/doctest.h>
+
+#include "tests/support/gpu.h"
+#include "tests/support/volume_files.h"
+#include "tests/support/workbench_state.h"
+
+using namespace shvr;
+using namespace shvr::test;
+using namespace shvr::ui;
+
+TEST_CASE_FIXTURE(OnDevice, "a changed curve of ambient occlusion is said in words, and draws nothing while it is off")
+{
+    TemporaryFolder folder;
+    Workbench bench(renderer(), {.has_servo = false});
+    bench.set_pixels({48, 40});
+    bench.open(write_tubes_session(folder.path), {});
+    settle(bench);
+    const auto set = [&](const char* patch) {
+        const uint64_t before = bench.document().screen.submissions();
+        bench.perform(Set{patch});
+        settle(bench);
+        return bench.document().screen.submissions() - before;
+    };
+    const auto said = [&] { return bench.messages().last(); };
+
+    set(R"({"light":{"occlusion":{"strength":0}}})");
+    CHECK(set(R"({"light":{"occlusion":{"mapping":[{"arrives":0,"seen":0},{"arrives":1,"seen":1}]}}})") == 0);
+    CHECK(said() == "Occlusion curve: points from now on, 2 of them; occlusion is off, its strength is 0");
+    CHECK(set(R"({"light":{"occlusion":{"radius":5}}})") == 0);
+
+    const auto stepped = [&](const Action& action) {
+        const uint64_t before = bench.document().screen.submissions();
+        bench.perform(action);
+        settle(bench);
+        return bench.document().screen.submissions() - before;
+    };
+    CHECK(stepped(UndoOp{1}) == 0);  // the radius
+    CHECK(stepped(UndoOp{1}) == 0);  // the curve
+    CHECK(bench.model().session.light.occlusion.mapping.empty());
+    CHECK(stepped(RedoOp{2}) == 0);
+    CHECK(bench.model().session.light.occlusion.radius == 5.0);
+
+    CHECK(set(R"({"light":{"occlusion":{"strength":0.5}}})") > 0);
+    CHECK(set(R"({"light":{"occlusion":{"mapping":[{"arrives":0,"seen":0},{"arrives":1,"seen":0.5}]}}})") > 0);
+    CHECK(said() == "Occlusion curve, point 2: where 100 % of the light arrives, 50 % is seen");
+    CHECK(set(R"({"light":{"occlusion":{"mapping":[{"arrives":0,"seen":0},{"arrives":0.5,"seen":0.2},)"
+              R"({"arrives":1,"seen":0.5}]}}})") > 0);
+    CHECK(said() == "Occlusion curve: a point added, 3 of them");
+    CHECK(set(R"({"light":{"occlusion":{"mapping":null}}})") > 0);
+    CHECK(said() == "Occlusion curve: a power again");
+    CHECK(stepped(UndoOp{1}) > 0);
+}

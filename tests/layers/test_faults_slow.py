@@ -1,0 +1,12 @@
+"""Every call of every entry point fails once, with each of its errors."""
+import unittest
+
+import test_faults
+
+
+class EveryFault(test_faults.Faults):
+    numbers = staticmethod(test_faults.all_numbers)
+
+
+if __name__ == "__main__":
+    unittest.main(defaultTest="EveryFault")

@@ -1,0 +1,57 @@
+#pragma once
+// Bars along an axis of milliseconds, as SVG inside a page, whose colours of text and lines it takes (html.cpp).
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace shvr::cli {
+
+/// A colour for each pass, the same wherever it is. Up to seven passes have seven, which people with any colour vision
+/// tell apart (Okabe and Ito 2008); of more, those that ran one after the other differ.
+class PassColors {
+public:
+    /// The names in the order in which passes first ran, each once.
+    explicit PassColors(std::vector<std::string> names) : names_(std::move(names)) {}
+    std::string of(const std::string& name) const;
+
+private:
+    std::vector<std::string> names_;
+};
+
+/// 1234567 -> "1 234 567", with narrow spaces.
+std::string grouped_text(int64_t number);
+/// "3.4 MiB"
+std::string bytes_text(uint64_t bytes);
+
+/// For the page that a chart is in.
+inline constexpr const char* CHART_STYLE = R"(.chart{font:12px sans-serif;border:1px solid var(--line)}
+.chart text{fill:var(--ink)}.chart text.on{pointer-events:none}.chart line{stroke:var(--line)}
+.chart rect:hover{stroke:var(--ink);stroke-width:2}
+.swatch{display:inline-block;width:.8em;height:.8em;margin-right:.5em})";
+
+class Chart {
+public:
+    static constexpr double WIDTH = 1400.0, ROW = 22.0;
+
+    /// `left`: room for the names of rows.
+    Chart(double left, double end_ms);
+    /// Below all rows so far.
+    void begin_row(const std::string& name);
+    /// In the last row; further lanes are below it. What is said of it is a tooltip and, where it fits, on it.
+    void bar(double begin_ms, double length_ms, const std::string& color, const std::string& tooltip,
+             const std::string& on_it = {}, size_t lane = 0);
+    /// A line of values from 0 to the most, as steps: each holds from its time on.
+    void line(const std::string& name, const std::vector<std::pair<double, double>>& values, const std::string& most);
+    /// With an axis of ticks that are `least_tick` apart at least.
+    std::string svg(const std::string& unit = "ms", double least_tick = 0.0) const;
+
+private:
+    double x(double ms) const { return left_ + ms * per_ms_; }
+
+    double left_, per_ms_, end_ms_;
+    double row_y_ = 0.0, bottom_ = 6.0;
+    std::string marks_;
+};
+
+}  // namespace shvr::cli

@@ -1,0 +1,34 @@
+#pragma once
+// A folder that goes with its owner.
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <filesystem>
+
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+
+namespace shvr::cli {
+
+struct TemporaryFolder {
+    std::filesystem::path path;
+
+    /// Among the system's temporary files, with a name that begins so. Fails where it cannot be made.
+    explicit TemporaryFolder(const std::string& begins_with)
+    {
+        std::string name = (std::filesystem::temp_directory_path() / (begins_with + "-XXXXXX")).string();
+        if (!::mkdtemp(name.data())) fail(name, ": cannot be created: ", reason_of(errno));
+        path = name;
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    ~TemporaryFolder()
+    {
+        std::error_code ignored;  // files that cannot be removed stay there
+        std::filesystem::remove_all(path, ignored);
+    }
+};
+
+}  // namespace shvr::cli

@@ -1,0 +1,74 @@
+#pragma once
+// Reads the names in a folder, and what is asked about them, on a thread of its own; a folder that does not answer
+// holds up nobody, and what becomes of it is forgotten with the reader. One thread uses a reader.
+
+#include <chrono>
+#include <condition_variable>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace shvr::ui {
+
+/// The folders before `other` are opened as a whole, as a volume or a project.
+enum class FileKind { project, zarr, dicom_series, tiff_series, folder, volume, session, annotation, other };
+inline bool is_opened_whole(FileKind kind)
+{
+    return kind < FileKind::folder;
+}
+
+struct FileDetails {
+    FileKind kind = FileKind::other;
+    std::string kind_text;         ///< "NRRD volume", "folder"
+    std::optional<int64_t> bytes;  ///< of a file
+    std::string changed;           ///< local time, "2026-11-22 17:49"; empty where it is not known
+};
+/// By its name, and for a folder by a few names in it. Asks the file system.
+FileDetails details_of(const std::filesystem::path& path);
+
+struct FolderEntry {
+    std::string name;
+    bool is_folder = false;
+};
+
+class FolderReader {
+public:
+    /// Names that are listed between two looks at what was asked: a few milliseconds.
+    static constexpr size_t READ_AT_ONCE = 4096;
+
+    explicit FolderReader(std::filesystem::path folder, size_t at_once = READ_AT_ONCE);
+    ~FolderReader();
+    FolderReader(const FolderReader&) = delete;
+
+    struct News {
+        std::vector<FolderEntry> entries;
+        std::vector<std::pair<std::string, FileDetails>> details;
+        std::string failure;  ///< why the folder, or the rest of it, cannot be listed, as a sentence; empty: it can
+        bool is_reading = true;
+    };
+    /// What was found since it was last asked.
+    News take();
+    void ask_about(std::string name);
+    /// Waits until all names are read, or that time is over.
+    void wait(std::chrono::milliseconds patience);
+
+private:
+    struct Shared {
+        std::filesystem::path folder;
+        std::mutex mutex;
+        std::condition_variable changed;
+        News news;
+        std::vector<std::string> wanted;
+        bool is_abandoned = false;
+    };
+    static void read(Shared& shared, size_t at_once);
+    static bool answer(Shared& shared);
+
+    std::shared_ptr<Shared> shared_;
+};
+
+}  // namespace shvr::ui

@@ -1,0 +1,58 @@
+#include "ui/panels/field_keys.h"
+
+#include <utility>
+
+#include <imgui/imgui_internal.h>
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr int FRAMES_TO_ANSWER = 2;
+constexpr int PATIENCE_FRAMES = 7;  ///< a field behind a dialog never gets the keyboard
+int awaited_in_frame = -1;          ///< the last in which some field awaited it
+
+}  // namespace
+
+void FieldKeys::before_field(bool are_asked_for)
+{
+    const int frame = ImGui::GetFrameCount();
+    if (std::exchange(last_frame_, frame) + 1 < frame) {  // it was gone meanwhile, and all of its story with it
+        awaited_since_ = -1;
+        early_.clear();
+    }
+    if (are_asked_for) {
+        awaited_since_ = frame;
+        are_here_ = false;
+    }
+    if (!are_awaited()) return;
+    // Asked in the frame in which a dialog ends, Dear ImGui forgets it.
+    if (!are_here_ && (frame - awaited_since_) % FRAMES_TO_ANSWER == 0) {
+        ImGui::SetWindowFocus();
+        ImGui::SetKeyboardFocusHere();
+    }
+    ImVector<ImWchar>& typed = ImGui::GetIO().InputQueueCharacters;
+    early_.insert(early_.end(), typed.begin(), typed.end());
+    typed.resize(0);  // in the frame in which a field gets the keyboard, it may pass text over
+    if (!are_here_ && frame - awaited_since_ <= PATIENCE_FRAMES) return;
+    awaited_since_ = -1;
+    for (const ImWchar character : std::exchange(early_, {}))
+        if (are_here_) typed.push_back(character);
+}
+
+void FieldKeys::after_field()
+{
+    if (!are_awaited()) return;
+    are_here_ = ImGui::IsItemActive();
+    awaited_in_frame = ImGui::GetFrameCount();
+}
+
+bool field_has_keys()
+{
+    const ImGuiContext& context = *ImGui::GetCurrentContext();
+    const ImGuiID active = context.ActiveId;
+    const bool is_typed_in = active != 0 && active == context.InputTextState.ID && active == context.ActiveIdIsAlive;
+    return is_typed_in || awaited_in_frame == context.FrameCount;
+}
+
+}  // namespace shvr::ui
