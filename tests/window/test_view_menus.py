@@ -11,7 +11,7 @@ from test_view_keys import FIRST, MAKES
 INNER = {"Open recent", "Look from", "Kept views", "Panels", "Turn the view", "Move the view", "Distance blending",
          "Cutting planes", "Clip planes", "Touch", "Group of what is selected", "view 1", "Remove"}
 DIALOGS = {"Save as...", "Open with options...", "Correct the spacing...", "Import as project...", "Export...",
-           "Label connected parts...", "Compare with a reference..."}
+           "Label connected parts...", "Compare with a reference...", "Take from a file..."}
 EXPECTED = {
     "Copy the session": "copy_session", "Revert to the last save": "revert", "Shading": "set light.shaded",
     "Show everything": "reset_cuts", "Go there": "look_from", "Remove this view": "forget_camera",

@@ -130,15 +130,6 @@ class Screen(Window):
         self.finish()
         self.assertEqual(self.saved(session)["probe"]["tool"], "select")
 
-    def test_hints_are_shown_once(self):
-        session = self.write_ball()
-        self.started(session)
-        self.do("key", "ctrl+shift+p", pause_s=0.7)
-        self.do("type", "--delay", 5, 'prefer values={"hints_seen":3}', pause_s=0.5)
-        self.do("key", "Return", pause_s=1)
-        self.finish()
-        self.assertEqual(self.preferences()["hints_seen"], 3)
-
     def test_escape_closes_windows_and_then_the_tool(self):
         session = self.write_ball()
         self.started(session)

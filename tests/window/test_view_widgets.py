@@ -6,6 +6,7 @@ from pathlib import Path
 from harness import ENVIRONMENT
 from seen import Seen
 from test_view import WINDOW
+from test_view_photographs import PANELS
 
 
 class Widgets(Seen):
@@ -60,6 +61,136 @@ class Widgets(Seen):
         shifted = [values["transfer_function"]["points"] for values in self.settings() if "transfer_function" in values]
         self.assertEqual([p["intensity"] for p in shifted[0]], [103, 163, 258])  # a hundredth of 255, in whole numbers
         self.assertEqual([p["intensity"] for p in shifted[-1]], [104, 164, 259])
+
+    # ---- Fine drags
+
+    FONT = 14                    # pixels, as it ships
+    HEIGHT = 150 - 1.3 * FONT    # of the curve's axes, from opacity 0 to 1
+
+    def open_panel(self, panel):
+        folds = {name: {"folded": name != panel} for name in PANELS}
+        self.open_scan(self.write_ball(), preferences={"layout": {"panels": folds}, "hints_seen": 3})
+
+    def drag(self, begin, by, *, finely=False, tail=()):
+        """By so many pixels, with Shift where it is to be fine."""
+        way = [word for step in range(1, 6)
+               for word in ("mousemove", begin[0] + by[0] * step // 5, begin[1] + by[1] * step // 5, "sleep", 0.04)]
+        keys = (["keydown", "shift", "sleep", 0.1], ["keyup", "shift"]) if finely else ([], [])
+        before = len(self.done())
+        self.do("mousemove", *begin, "sleep", 0.2, "mousedown", 1, "sleep", 0.1, *keys[0], *way, *tail, "sleep", 0.1,
+                "mouseup", 1, *keys[1], pause_s=0)
+        self.until(lambda: len(self.done()) > before and self.rests(), "what was dragged in the log")
+
+    def last(self, *keys):
+        """The value that was set last."""
+        found = self.settings()
+        values = [value for value in found if keys[0] in value]
+        value = values[-1]
+        for key in keys:
+            value = value[key]
+        return value
+
+    def test_points_and_lines_of_the_curve_are_dragged_a_tenth_as_far_with_shift(self):
+        self.open_panel("transfer_function")
+        word = self.see("paint")
+        top = word["box"][1] - self.FONT / 4
+        x = round(word["box"][0] - self.FONT / 4)
+        # The threshold's line: as far as the mouse, and then a tenth of it.
+        low = round(top + 0.7 * self.HEIGHT)
+        self.drag((x, low), (40, 0))
+        far = self.last("probe", "paint_threshold") - 120
+        per_pixel = far / 40
+        self.drag((x + 40, low), (40, 0), finely=True)
+        near = self.last("probe", "paint_threshold") - 120 - far
+        self.assertGreater(far, 20)
+        self.assertAlmostEqual(near, far / 10, delta=1.5)   # thresholds of whole numbers
+        # The point at 160 and 0.9, which lies where that tells.
+        point = (round(x + (160 - 120) / per_pixel), round(top + self.HEIGHT * (1 - 0.9 ** 0.5)))
+        self.drag(point, (20, 10))
+        once = self.last("transfer_function", "points")[1]
+        self.drag((point[0] + 20, point[1] + 10), (20, 10), finely=True)
+        twice = self.last("transfer_function", "points")[1]
+        self.assertAlmostEqual(once["intensity"] - 160, 20 * per_pixel, delta=2)
+        self.assertAlmostEqual(twice["intensity"] - once["intensity"], 2 * per_pixel, delta=0.3)
+        self.assertAlmostEqual(once["opacity"] ** 0.5 - twice["opacity"] ** 0.5, 1 / self.HEIGHT, delta=0.003)
+        # Shift may be let go of on the way: nothing jumps.
+        self.drag((point[0] + 22, point[1] + 11), (20, 0), finely=True, tail=("keyup", "shift", "sleep", 0.2))
+        self.assertAlmostEqual(self.last("transfer_function", "points")[1]["intensity"] - twice["intensity"],
+                               2 * per_pixel, delta=0.3)
+        self.finish()
+
+    def test_numbers_and_sliders_are_dragged_a_tenth_as_far_with_shift(self):
+        self.open_panel("transfer_function")
+        number = self.middle_of(self.until(lambda: self.after("Intensity"), "number of the intensity"))
+        self.drag(number, (-50, 0))
+        before, once = 100, self.last("transfer_function", "points")[0]["intensity"]
+        self.drag(number, (-50, 0), finely=True)
+        twice = self.last("transfer_function", "points")[0]["intensity"]
+        self.assertLess(once, before - 10)
+        self.assertAlmostEqual(once - twice, (before - once) / 10, delta=0.2)
+        # The handle of a slider follows the mouse; from where it was taken with Shift only a tenth of the way.
+        x, y = self.middle_of(self.after("Volume"))
+        self.drag((x, y), (40, 0))
+        at_mouse = self.last("unpainted", "opacity")
+        self.drag((x, y), (40, 0), finely=True)
+        finely = self.last("unpainted", "opacity")
+        self.drag((x, y), (1, 0))
+        begin = self.last("unpainted", "opacity")
+        self.assertGreater(at_mouse - begin, 0.1)
+        self.assertAlmostEqual(finely - begin, (at_mouse - begin) / 10, delta=0.03)
+        self.finish()
+
+    def test_escape_closes_the_colour_picker_and_nothing_else(self):
+        self.open_panel("groups")
+        self.press("Alt+2")
+        self.see("Paint (left: paint", "Status")
+        left, _, _, _ = self.see("See")["box"]          # its column is right of the colours
+        _, top, _, bottom = self.see("0  unpainted")["box"]
+        _, below, _, _ = self.see("3  group 3")["box"]
+        self.do("mousemove", round(left - self.FONT), round(below + (bottom - top) / 2), "sleep", 0.2, "mousedown", 1,
+                "sleep", 0.1, "mouseup", 1, pause_s=0)
+        self.until(lambda: self.seen(window="##Popup"), "colour picker")
+        self.press("Escape")
+        self.see_no_more("", "##Popup")
+        self.assertEqual([action for action in self.done() if action["op"] == "set"][1:], [], "the tool stays")
+        self.press("Escape")
+        self.see("Turn (left: turn", "Status")
+        self.finish()
+
+    def test_what_is_drawn_over_the_picture_is_switched_in_its_panel(self):
+        self.open_panel("aids")
+        for words, key in (("Scale bar", "scale_bar"), ("Axes", "axes"), ("Names of groups", "group_legend"),
+                           ("Depth and filling at the probe", "probe_label")):
+            before = len(self.settings())
+            self.click_on(words)
+            self.until(lambda: self.settings()[before:], f"setting of {key}")
+            self.assertEqual(self.settings()[before:], [{"interaction": {key: False}}])
+        self.click_on("Edges of the cutting planes")
+        self.until(lambda: self.settings()[-1] == {"view": {"cut_box": True}}, "setting of the edges")
+        self.finish()
+
+    def test_hints_are_shown_once(self):
+        session = self.write_ball()
+        self.open_scan(session)
+        for words, button in (("Drag to turn the volume", "Next hint"), ("The bar at the top", "Next hint"),
+                              ("Everything can be undone", "Done")):
+            self.see(words, "First hints")
+            self.click_on(button, "First hints")
+            self.see_no_more(words)
+        self.see_no_more("", "First hints")
+        self.finish()
+        self.open_scan(session)
+        self.assertEqual(self.seen(window="First hints"), [])
+        self.finish()
+
+    def after(self, label):
+        """What stands on the row of a label, right of it."""
+        rows = [seen for seen in self.seen(label) if seen["text"] == label]
+        if not rows:
+            return None
+        _, top, right, bottom = rows[0]["box"]
+        return next((seen for seen in self.seen() if seen["box"][0] > right and seen["box"][1] < bottom
+                     and seen["box"][3] > top), None)
 
 
 if __name__ == "__main__":

@@ -225,7 +225,9 @@ Verdict verdict_on(const fs::path& path, Wanted wanted, bool enters_folders)
         }
         return {is_folder && !is_opened_whole(details_of(path).kind), {}};
     }
-    if (is_folder && (enters_folders || wanted == Wanted::new_file)) return {true, {}};
+    if (is_folder && (enters_folders || wanted != Wanted::any)) return {true, {}};
+    if (wanted == Wanted::file)
+        return {false, fs::exists(status) ? "" : sentence(path.string(), ": there is no such file")};
     if (wanted == Wanted::new_file && fs::exists(status))
         return {false, sentence(path.string(), ": is there already; type another name")};
     if (!fs::is_directory(path.parent_path(), error))

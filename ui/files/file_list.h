@@ -73,6 +73,7 @@ std::string completed(const std::string& typed, const std::filesystem::path& fol
 
 enum class Wanted {
     scan,      ///< something that SHVR opens
+    file,      ///< any file that is there
     new_file,  ///< the name of a file that is not there yet
     any,       ///< a file or a folder, there or not
 };

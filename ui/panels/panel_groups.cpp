@@ -170,9 +170,7 @@ bool opacity_drag(double& opacity)
 {
     ImGui::TableNextColumn();
     ImGui::SetNextItemWidth(3.0f * ImGui::GetFontSize());
-    const double least = 0.0, most = 1.0;
-    return ImGui::DragScalar("##opacity", ImGuiDataType_Double, &opacity, 0.005f, &least, &most, "%.2f",
-                             ImGuiSliderFlags_AlwaysClamp);
+    return drag_number("##opacity", opacity, 0.005, 0.0, 1.0, "%.2f");
 }
 
 void right_aligned(const std::string& text, bool is_grey)
@@ -205,7 +203,7 @@ void size_cell(const char* id, uint8_t group, size_t count, double radius_units,
     double radius = edited_id == own ? edited : radius_units / model.volume.spacing.x;
     constexpr double LEAST = 0.0, MOST = 1000.0;
     ImGui::SetNextItemWidth(-1.0f);
-    ImGui::DragScalar(id, ImGuiDataType_Double, &radius, 0.05f, &LEAST, &MOST, "%.2f", ImGuiSliderFlags_AlwaysClamp);
+    drag_number(id, radius, 0.05, LEAST, MOST, "%.2f");
     if (ImGui::IsItemActive()) {
         edited_id = own;
         edited = radius;

@@ -35,6 +35,7 @@ constexpr Gesture GESTURES[] = {
     {"Double click, with the tool that turns", "Put the probe onto what you see there"},
     {"Right drag", "Turn the volume; with the tool that turns, paint; in a slice, change the contrast"},
     {"Double click on a setting", "Give it its usual value"},
+    {"Shift while dragging a setting", "A tenth as far, for fine steps; so with the wheel over the curve"},
     {"Double click on the panels' edge", "Give them their usual width"},
     {"Drop files", "Open them: scans, sessions, projects, masks, traces, transfer functions"},
     {"Click, with the tool that turns", "Select the node, or take the group, under the pointer"},

@@ -75,6 +75,9 @@ void file_menu(const Model& model, Actions& actions)
     action_item("Revert to the last save", RevertOp{}, model, actions);
     ImGui::Separator();
     task_menu(model);
+    if (reasoned_item("Take from a file...", model.is_open ? "" : "nothing is open")) ask_what_to_take(model);
+    if (model.is_open)
+        hint("A mask, offsets, a trace or a transfer function, into this scan. Or drop it on the window.");
     ImGui::Separator();
     shortcut_item("screenshot", model, actions);
     shortcut_item("large_screenshot", model, actions);
@@ -417,7 +420,7 @@ void menu_bar(const Model& model, Actions& actions)
         ImGui::EndMainMenuBar();
     }
     open_dialog(model, actions);
-    save_as_dialog(actions);
+    name_and_take_dialogs(model, actions);
     task_dialogs(model, actions);
 }
 

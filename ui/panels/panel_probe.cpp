@@ -60,9 +60,8 @@ bool radius(const Model& model, BrushSettings& brush, Actions& actions)
 {
     label("Radius");
     ImGui::SetNextItemWidth(8.0f * ImGui::GetFontSize());
-    const bool changed = ImGui::DragScalar("##radius", ImGuiDataType_Double, &brush.radius_voxels, 0.15f,
-                                           &SMALLEST_RADIUS_VOXELS, &LARGEST_RADIUS_VOXELS, "%.1f voxels",
-                                           ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    const bool changed = drag_number("##radius", brush.radius_voxels, 0.15, SMALLEST_RADIUS_VOXELS,
+                                     LARGEST_RADIUS_VOXELS, "%.1f voxels", ImGuiSliderFlags_Logarithmic);
     hint(sentence("Of the probe and the brush. Drag sideways, or Ctrl + click to type. ",
                   name_with_key("larger_brush", model.keymap), ", ", name_with_key("smaller_brush", model.keymap), ".")
              .c_str());
@@ -129,8 +128,7 @@ bool density(const Model& model, BrushSettings& brush)
     ImGui::SetNextItemWidth(-1.0f);
     const auto [lower, upper] = model.statistics.range();
     const double most = upper - lower, least = -most;
-    if (ImGui::DragScalar("##offset", ImGuiDataType_Double, &offset, float(most / 400.0), &least, &most,
-                          format_of(model.volume.type), ImGuiSliderFlags_AlwaysClamp)) {
+    if (drag_number("##offset", offset, most / 400.0, least, most, format_of(model.volume.type))) {
         brush.density->offset = offset;
         changed = true;
     }

@@ -68,8 +68,7 @@ void new_nodes(const Model& model, Actions& actions)
     double radius = model.session.probe.node_radius_voxels.value_or(model.brush().radius_voxels);
     constexpr double LEAST = 0.1, MOST = 127.0;
     ImGui::SetNextItemWidth(8.0f * ImGui::GetFontSize());
-    if (ImGui::DragScalar("##new nodes", ImGuiDataType_Double, &radius, 0.05f, &LEAST, &MOST, "%.2f voxels",
-                          ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
+    if (drag_number("##new nodes", radius, 0.05, LEAST, MOST, "%.2f voxels", ImGuiSliderFlags_Logarithmic))
         set(actions, model, [&](Session& s) { s.probe.node_radius_voxels = radius; });
     hint("Radius of nodes that you add. It has nothing to do with the brush.");
     ImGui::SameLine();

@@ -57,8 +57,7 @@ void radius(const Model& model, double radius_units, Actions& actions)
     label("Radius");
     ImGui::SetNextItemWidth(8.0f * ImGui::GetFontSize());
     constexpr double LEAST = 0.0, MOST = 1000.0;
-    ImGui::DragScalar("##node radius", ImGuiDataType_Double, &edited, 0.05f, &LEAST, &MOST, "%.2f voxels",
-                      ImGuiSliderFlags_AlwaysClamp);
+    drag_number("##node radius", edited, 0.05, LEAST, MOST, "%.2f voxels");
     is_edited = ImGui::IsItemActive();
     if (ImGui::IsItemDeactivatedAfterEdit()) actions.push_back(RadiusOp{.radius_voxels = edited});
     hint(sentence("Drag sideways, or Ctrl + click to type. ", name_with_key("larger_selected", model.keymap), ". ",

@@ -71,7 +71,9 @@ bool choosers_have_keys();
 bool choosers_are_busy();
 /// Shows the dialog that asks for another name to go on under, from the next frame on.
 void ask_for_name(const Model& model);
-void save_as_dialog(Actions& actions);
+/// Shows the dialog that asks for a file with annotation or a transfer function, from the next frame on.
+void ask_what_to_take(const Model& model);
+void name_and_take_dialogs(const Model& model, Actions& actions);
 /// Items of the menu File for exporting, importing, labelling and comparing; and the dialogs that they show.
 void task_menu(const Model& model);
 /// Whether one of these dialogs, as it was drawn last, waits for what the disk says of its files.

@@ -11,6 +11,7 @@
 #include "engine/base/text.h"
 #include "engine/session/session_patch.h"
 #include "ui/panels/panels.h"
+#include "ui/workbench/curves/fine_drag.h"
 
 namespace shvr::ui {
 
@@ -44,14 +45,48 @@ bool slider(const char* label, double& value, double lower, double upper, const 
     return slider_scalar(sentence("##", label).c_str(), ImGuiDataType_Double, &value, &lower, &upper, format, flags);
 }
 
+namespace {
+
+/// Shows a slider that the mouse holds a mouse of its own, which goes slowly with Shift.
+class HeldSlider {
+public:
+    explicit HeldSlider(ImGuiID slider) : slider_(slider)
+    {
+        ImGuiIO& io = ImGui::GetIO();
+        const bool is_held = slider == held_slider_ && ImGui::GetActiveID() == slider && io.MouseDown[0];
+        if (!is_held) return;
+        const glm::vec2 at = drag_.follow({mouse_.x, mouse_.y}, io.KeyShift);
+        io.MousePos = {at.x, at.y};
+    }
+    ~HeldSlider()
+    {
+        ImGui::GetIO().MousePos = mouse_;
+        if (!ImGui::IsItemActivated()) return;
+        held_slider_ = slider_;
+        drag_ = FineDrag({mouse_.x, mouse_.y}, {mouse_.x, mouse_.y});
+    }
+    HeldSlider(const HeldSlider&) = delete;
+    HeldSlider& operator=(const HeldSlider&) = delete;
+
+private:
+    static inline ImGuiID held_slider_ = 0;
+    static inline FineDrag drag_;
+    ImGuiID slider_;
+    ImVec2 mouse_ = ImGui::GetIO().MousePos;
+};
+
+}  // namespace
+
 /// The number stands on the frame's own colour, before the handle, which shows above and below it.
 bool slider_scalar(const char* id, ImGuiDataType type, void* value, const void* lower, const void* upper,
                    const char* format, ImGuiSliderFlags flags)
 {
     const bool is_typed = ImGui::TempInputIsActive(ImGui::GetID(id));
     if (!is_typed) ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32_BLACK_TRANS);
-    const bool is_changed =
-        ImGui::SliderScalar(id, type, value, lower, upper, format, ImGuiSliderFlags_AlwaysClamp | flags);
+    const bool is_changed = [&] {
+        const HeldSlider held(ImGui::GetID(id));
+        return ImGui::SliderScalar(id, type, value, lower, upper, format, ImGuiSliderFlags_AlwaysClamp | flags);
+    }();
     if (!is_typed) ImGui::PopStyleColor();
     const ImVec2 begin = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
     const ImGuiStyle& style = ImGui::GetStyle();
@@ -71,6 +106,15 @@ bool slider_scalar(const char* id, ImGuiDataType type, void* value, const void* 
         list.PopClipRect();
     }
     return is_changed;
+}
+
+/// Dear ImGui goes ten times as far with Shift.
+bool drag_number(const char* id, double& value, double speed, double lower, double upper, const char* format,
+                 ImGuiSliderFlags flags)
+{
+    const double by_shift = ImGui::GetIO().KeyShift ? 0.1 * double(FineDrag::SHARE) : 1.0;
+    return ImGui::DragScalar(id, ImGuiDataType_Double, &value, float(by_shift * speed), &lower, &upper, format,
+                             ImGuiSliderFlags_AlwaysClamp | flags);
 }
 
 bool is_double_clicked()

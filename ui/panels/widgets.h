@@ -32,9 +32,14 @@ void row(const char* text);
 bool slider(const char* label, double& value, double lower, double upper, const char* format,
             ImGuiSliderFlags flags = 0);
 
-/// ImGui::SliderScalar with its number readable wherever the handle is, and without a label: "##value".
+/// ImGui::SliderScalar with its number readable wherever the handle is, and without a label: "##value". With Shift the
+/// handle goes a tenth as far as the mouse.
 bool slider_scalar(const char* id, ImGuiDataType type, void* value, const void* lower, const void* upper,
                    const char* format, ImGuiSliderFlags flags = 0);
+
+/// ImGui::DragScalar of a number, that goes a tenth as far with Shift.
+bool drag_number(const char* id, double& value, double speed, double lower, double upper, const char* format,
+                 ImGuiSliderFlags flags = 0);
 
 /// Whether the widget drawn last was double-clicked; it lets go of the mouse then, and would else follow it.
 bool is_double_clicked();

@@ -309,6 +309,7 @@ private:
     void start_copy(const std::filesystem::path& path, bool opens_it);
     void end_save(const Jobs::Finished& job);
     void take(FileContent content, const std::filesystem::path& path);
+    void take_transfer_function(const std::filesystem::path& path, const std::string& text);
     void take_together(std::vector<std::filesystem::path> paths);
     void begin_open_with(const std::filesystem::path& path, std::vector<std::filesystem::path> taken_into_it);
     void take_annotation(Part part, const std::filesystem::path& path);

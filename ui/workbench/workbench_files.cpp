@@ -7,6 +7,7 @@
 #include "engine/base/assets.h"
 #include "engine/base/atomic_file.h"
 #include "engine/base/file.h"
+#include "engine/base/json.h"
 #include "engine/session/session_patch.h"
 #include "engine/tasks/file_content.h"
 #include "ui/workbench/workbench.h"
@@ -33,6 +34,15 @@ bool is_opened(FileContent content)
 {
     return content == FileContent::volume || content == FileContent::session || content == FileContent::project ||
            content == FileContent::picture;
+}
+
+/// Whether the points of a transfer function lie in the tissue of any volume, as in files of those that are kept, and
+/// not at intensities.
+bool is_preset(const std::string& text, const std::filesystem::path& path)
+{
+    const JsonDocument json(text, path.string());
+    const JsonNode points = json.root()["points"];
+    return points.is_array() && points.count() > 0 && points.elements()[0]["at"].exists();
 }
 
 }  // namespace
@@ -108,8 +118,10 @@ void Workbench::act(const TakeFile& action)
     if (document_) volume = document_->volume();
     jobs_.start("looking at " + short_name(action.path), [this, path = action.path, volume](ProgressReporter&) {
         const WhatItIs found = what_is(path, volume ? &*volume : nullptr);
-        return Jobs::Completion([this, path, found] {
+        const bool is_function = found.content == FileContent::transfer_function;
+        return Jobs::Completion([this, path, found, text = is_function ? read_text(path, MAX_JSON_BYTES) : ""] {
             if (!found.content) fail(found.why_not);
+            if (*found.content == FileContent::transfer_function) return take_transfer_function(path, text);
             take(*found.content, path);
         });
     });
@@ -142,7 +154,19 @@ void Workbench::take(FileContent content, const std::filesystem::path& path)
     if (content == FileContent::mask) return take_annotation(Part::mask, path);
     if (content == FileContent::offsets) return take_annotation(Part::offsets, path);
     if (content == FileContent::trace) return take_annotation(Part::trace, path);
-    act(Set{patch_of("transfer_function=" + read_text(path, MAX_JSON_BYTES))});
+}
+
+void Workbench::take_transfer_function(const std::filesystem::path& path, const std::string& text)
+{
+    if (!document_) fail(path.string(), ": belongs to a volume; expected that to be open, to take it into");
+    if (is_preset(text, path)) {
+        Session after = document_->session;
+        const TransferPreset preset = parse_transfer_preset(text, path.stem().string(), path.string());
+        after.transfer_function = transfer_function_of(preset, document_->statistics);
+        take_session(std::move(after));
+    } else {
+        act(Set{patch_of("transfer_function=" + text)});
+    }
     record_settings();
     say("The transfer function of " + path.string() + " is taken; undo takes it back");
 }

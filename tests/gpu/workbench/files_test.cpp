@@ -134,6 +134,20 @@ TEST_CASE_FIXTURE(OnDevice, "what is dropped is taken by its contents, whatever 
     drop("look");
     CHECK(desk.said("is taken; undo takes it back"));
     CHECK(desk.bench.model().undoable == 1);
+    // As transfer functions are kept: in shares of what is tissue in any volume.
+    desk.folder.write("kept.json", R"({"note":"Kept.","points":[{"at":0,"color":"#200000","opacity":0},)"
+                                   R"({"at":1,"color":"#ffffe0","opacity":0.8}],"extends":false})");
+    const TransferFunction before = desk.bench.model().session.transfer_function;
+    drop("kept.json");
+    CHECK(desk.said("kept.json is taken; undo takes it back"));
+    CHECK(desk.bench.model().session.transfer_function ==
+          transfer_function_of(read_transfer_preset(desk.path("kept.json")), desk.bench.model().statistics));
+    desk.bench.perform(UndoOp{1});
+    CHECK(desk.bench.model().session.transfer_function == before);
+    desk.folder.write("bad.json", R"({"points":[{"at":0,"colour":"#200000","opacity":0},{"at":1,"opacity":0.8}]})");
+    drop("bad.json");
+    CHECK(desk.said("bad.json"));
+    CHECK(desk.bench.messages().all().back().weight == Weight::error);
     desk.folder.write("paint.anything", std::string(24 * 20 * 16, '\3'));
     drop("paint.anything");
     CHECK(desk.bench.model().voxels_by_group[3] == 24 * 20 * 16);

@@ -233,6 +233,9 @@ TEST_CASE("a path is taken, looked into, or refused in a sentence, by what is wa
     CHECK(verdict("scan.nrrd", Wanted::new_file).failure == said("scan.nrrd", "is there already; type another name"));
     CHECK(verdict("new.json", Wanted::new_file).failure == "");
     CHECK(verdict("gone/new.json", Wanted::new_file).failure == said("gone", "is no folder; choose one for the file"));
+    CHECK(verdict("scan.nrrd", Wanted::file).failure == "");
+    CHECK(verdict("plain", Wanted::file, false).enters);
+    CHECK(verdict("gone.mask", Wanted::file).failure == said("gone.mask", "there is no such file"));
     CHECK(verdict("series", Wanted::any).enters);
     CHECK_FALSE(verdict("series", Wanted::any, false).enters);
 }

@@ -23,7 +23,7 @@ public:
         Wanted wanted = Wanted::scan;
     };
 
-    explicit FileChooser(const Question& question) : question_(question) {}
+    explicit FileChooser(const Question& question) : question_(question), all_files_(question.wanted == Wanted::file) {}
     /// Shows it from the next `draw` on. `begin`: a path to begin with; empty: where it was left, or home.
     void ask(const std::filesystem::path& begin, std::vector<Place> places);
     /// The same, with why the path could not be taken.
@@ -65,7 +65,8 @@ private:
     Asked<bool> is_folder_;  ///< whether `followed_`, which may be one, is to be listed
     std::filesystem::path followed_;
     std::optional<double> waiting_since_;  ///< of Dear ImGui's clock
-    bool all_files_ = false, hidden_ = false;
+    bool all_files_ = false;
+    bool hidden_ = false;
     bool is_asked_for_ = false, is_open_ = false, closes_ = false;
     FieldKeys field_keys_;
     bool field_wants_keys_ = false, field_has_keys_ = false, scrolls_ = false;

@@ -28,6 +28,11 @@ FileChooser saving({.title = "Go on under another name",
                     .verb = "Save",
                     .note = "Session (.json); mask, trace and history are written beside it. The files so far stay.",
                     .wanted = FileChooser::Wanted::new_file});
+FileChooser taking({.title = "Take annotation or a curve from a file",
+                    .verb = "Take",
+                    .note = "Mask, offsets, trace or transfer function, known by its contents. It takes the place of "
+                            "what is there; undo brings that back.",
+                    .wanted = FileChooser::Wanted::file});
 
 std::vector<Place> places_of(const Model& model)
 {
@@ -141,9 +146,18 @@ void ask_for_name(const Model& model)
     saving.ask(std::filesystem::path(model.session_path).replace_extension().string() + "-2.json", places_of(model));
 }
 
-void save_as_dialog(Actions& actions)
+void ask_what_to_take(const Model& model)
+{
+    static bool was_shown = false;  // later it begins where it was left
+    const std::filesystem::path beside =
+        std::exchange(was_shown, true) ? std::filesystem::path() : model.session_path.parent_path() / "";
+    taking.ask(beside, places_of(model));
+}
+
+void name_and_take_dialogs(const Model& model, Actions& actions)
 {
     if (const auto path = saving.draw()) actions.push_back(SaveAs{*path});
+    if (const auto path = taking.draw(); path && model.is_open) actions.push_back(TakeFile{.path = *path});
 }
 
 void start_page(const Model& model, Actions& actions)

@@ -39,6 +39,26 @@ void shown(const Model& model, Actions& actions)
     if (is_other) set(actions, model, [&](Session& s) { s.view = view; });
 }
 
+/// What is drawn over the picture to read it by; screenshots have it where the menu File says so.
+void marks(const Model& model, Actions& actions)
+{
+    InteractionSettings interaction = model.session.interaction;
+    ViewSettings view = model.session.view;
+    bool is_other = flag(model, "Scale bar", interaction.scale_bar, "scale_bar",
+                         "A length at the lower edge of each picture. Without a spacing it is in voxels.");
+    ImGui::SameLine();
+    is_other |= flag(model, "Axes", interaction.axes, "axes", "Which way x, y and z go.");
+    ImGui::SameLine();
+    is_other |= flag(model, "Names of groups", interaction.group_legend, "group_legend",
+                     "What is painted or traced, by its name beside its colour.");
+    is_other |= flag(model, "Depth and filling at the probe", interaction.probe_label, "probe_label",
+                     "How deep the probe lies in what is drawn, and how much of it is filled.");
+    const bool has_box = flag(model, "Edges of the cutting planes", view.cut_box, "cut_box",
+                              "Lines along the edges of what the cutting planes leave.");
+    if (is_other) set(actions, model, [&](Session& s) { s.interaction = interaction; });
+    if (has_box) set(actions, model, [&](Session& s) { s.view = view; });
+}
+
 void probe_look(const Model& model, Actions& actions)
 {
     ProbeSettings probe = model.session.probe;
@@ -73,6 +93,7 @@ void probe_look(const Model& model, Actions& actions)
 void aids_panel(const Model& model, Actions& actions)
 {
     shown(model, actions);
+    marks(model, actions);
     probe_look(model, actions);
 }
 

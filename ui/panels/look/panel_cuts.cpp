@@ -20,10 +20,8 @@ bool plane(const char* id, double& voxels, double least, double most, double sca
     double value = voxels * scale;
     const double lowest = least * scale, highest = most * scale;
     ImGui::SetNextItemWidth(-1.0f);
-    const float speed = float(std::max((highest - lowest) / 300.0, 1e-9));
-    if (!ImGui::DragScalar(id, ImGuiDataType_Double, &value, speed, &lowest, &highest, format,
-                           ImGuiSliderFlags_AlwaysClamp))
-        return false;
+    const double speed = std::max((highest - lowest) / 300.0, 1e-9);
+    if (!drag_number(id, value, speed, lowest, highest, format)) return false;
     voxels = value / scale;
     return true;
 }
@@ -94,10 +92,8 @@ void cutting_planes(const Model& model, Actions& actions)
 bool clip(const char* name, double& distance, double reach, const char* none, const char* format, const char* help)
 {
     row(name);
-    const double least = 0.0, most = 100.0 * reach;
-    const bool is_other =
-        ImGui::DragScalar(sentence("##", name).c_str(), ImGuiDataType_Double, &distance, float(reach / 300.0), &least,
-                          &most, distance > 0.0 ? format : none, ImGuiSliderFlags_AlwaysClamp);
+    const bool is_other = drag_number(sentence("##", name).c_str(), distance, reach / 300.0, 0.0, 100.0 * reach,
+                                      distance > 0.0 ? format : none);
     hint(help);
     return is_other;
 }

@@ -74,10 +74,8 @@ bool light_ball(glm::dvec3& direction, bool& is_reset, Actions& actions)
 
 bool light_angle(const char* name, double& degrees, double most, const char* help)
 {
-    const double least = -most;
     ImGui::SetNextItemWidth(6.0f * ImGui::GetFontSize());
-    const bool is_other = ImGui::DragScalar(name, ImGuiDataType_Double, &degrees, 1.0f, &least, &most, "%.0f\u00b0",
-                                            ImGuiSliderFlags_AlwaysClamp);
+    const bool is_other = drag_number(name, degrees, 1.0, -most, most, "%.0f\u00b0");
     hint(help);
     return is_other;
 }

@@ -7,6 +7,7 @@
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/appearance/hints.h"
+#include "ui/workbench/curves/fine_drag.h"
 #include "ui/workbench/curves/occlusion_curve.h"
 #include "ui/workbench/edit.h"
 
@@ -17,6 +18,7 @@ namespace {
 /// The point that numbers are of, and whether the mouse has it.
 size_t chosen_point = 0;
 bool drags_point = false;
+FineDrag held_point;
 
 void send(OcclusionPoints points, const Model& model, Actions& actions)
 {
@@ -58,9 +60,13 @@ void curve_field(const OcclusionSettings& settings, const Model& model, Actions&
     ImGui::InvisibleButton("curve", size, ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     hint_beside(
         "From the light that arrives (left to right) to the light that is seen (upwards): darker where the curve is "
-        "below the diagonal. Double click: a point; drag: moves it; right click: removes it.");
+        "below the diagonal. Double click: a point; drag: moves it, with Shift a tenth as far; right click: removes "
+        "it.");
     const ImVec2 mouse = ImGui::GetMousePos();
-    const glm::dvec2 place((mouse.x - begin.x) / size.x, (end.y - mouse.y) / size.y);
+    const auto place_of = [&](const glm::vec2& at) {
+        return glm::dvec2((at.x - begin.x) / size.x, (end.y - at.y) / size.y);
+    };
+    const glm::dvec2 place = place_of({mouse.x, mouse.y});
     const double reach = 0.7 * double(ImGui::GetFontSize());
     const std::optional<size_t> under =
         point_under(settings.mapping, place, {reach / double(size.x), reach / double(size.y)});
@@ -69,15 +75,18 @@ void curve_field(const OcclusionSettings& settings, const Model& model, Actions&
         if (points.empty()) points = points_of_power(settings.curve);
         chosen_point = add(points, {place.x, place.y});
         drags_point = true;
+        held_point = FineDrag({mouse.x, mouse.y}, {mouse.x, mouse.y});
         send(std::move(points), model, actions);
     } else if (ImGui::IsItemClicked(0)) {
         drags_point = under.has_value();
+        held_point = FineDrag({mouse.x, mouse.y}, {mouse.x, mouse.y});
         if (under) chosen_point = *under;
     } else if (ImGui::IsItemClicked(1) && under) {
         send(without(std::move(points), *under), model, actions);
     } else if (drags_point && ImGui::IsItemActive() && ImGui::IsMouseDragging(0, 0.0f) &&
                chosen_point < points.size()) {
-        send(moved(std::move(points), chosen_point, {place.x, place.y}), model, actions);
+        const glm::dvec2 to = place_of(held_point.follow({mouse.x, mouse.y}, ImGui::GetIO().KeyShift));
+        send(moved(std::move(points), chosen_point, {to.x, to.y}), model, actions);
     }
     if (!ImGui::IsMouseDown(0)) drags_point = false;
     draw_curve(settings, begin, end);

@@ -7,6 +7,7 @@
 #include <imgui/imgui_stdlib.h>
 
 #include "ui/panels/field_keys.h"
+#include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/action_rows.h"
 #include "ui/workbench/edit.h"
@@ -63,6 +64,8 @@ bool list(const Model& model, Actions& actions)
     bool asks = false, has_own = false;
     if (ImGui::Selectable("the histogram"))
         set(actions, model, [&](Session& s) { s.transfer_function = automatic_transfer_function(model.statistics); });
+    if (ImGui::Selectable("a file ...")) ask_what_to_take(model);
+    hint("A transfer function in a file, as those that are kept. Or drop it on the window.");
     for (const TransferPreset& preset : model.presets) {
         if (preset.is_own && !std::exchange(has_own, true)) {
             ImGui::Separator();

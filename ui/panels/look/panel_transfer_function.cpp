@@ -16,6 +16,7 @@
 #include "ui/panels/look/color_field.h"
 #include "ui/panels/look/panel_presets.h"
 #include "ui/panels/widgets.h"
+#include "ui/workbench/curves/fine_drag.h"
 #include "ui/workbench/curves/histogram_bars.h"
 #include "ui/workbench/curves/transfer_curve.h"
 #include "ui/workbench/edit.h"
@@ -43,7 +44,7 @@ struct WidgetState {
     size_t selected = 0;
     CurveRange range;         ///< of the horizontal axis; fixed while dragging
     double grabbed_at = 0.0;  ///< intensity under the mouse when it last moved all points
-    glm::vec2 offset{0.0f};   ///< from the mouse to the centre of the grabbed item
+    FineDrag held;            ///< the centre of the grabbed item
     bool is_logarithmic = true;
     VolumeStatistics bars_of;  ///< what the bars were made of
     HistogramBars bars;
@@ -187,22 +188,26 @@ void begin_drag(const CurveAxes& axes, const TransferCurve& curve, const Transfe
 {
     state.grip = ImGui::GetIO().KeyCtrl ? Grip::all_points : found.grip;
     state.grabbed_at = axes.intensity_at(mouse.x);
-    state.offset = glm::vec2(0.0f);
+    state.held = FineDrag(mouse, mouse);
     if (state.grip != Grip::point) return;
     state.selected = found.point;
-    state.offset = axes.place_of(curve.points()[found.point]) - mouse;
+    state.held = FineDrag(mouse, axes.place_of(curve.points()[found.point]));
 }
 
+/// Finely with Shift, as the wheel.
 void drag(const CurveAxes& axes, TransferCurve& curve, const Model& model, const glm::vec2& mouse, WidgetState& state,
           Actions& actions)
 {
+    const glm::vec2 held_at = state.held.follow(mouse, ImGui::GetIO().KeyShift);
     const auto [lowest, highest] = model.statistics.range();
-    const double now = axes.intensity_at(mouse.x);
+    const double now = axes.intensity_at(held_at.x);
     const double held = std::clamp(now, lowest, highest);
     const double threshold = is_float(model.volume.type) ? held : std::round(held);
     switch (state.grip) {
         case Grip::nothing: return;
-        case Grip::point: curve.move(state.selected, now, axes.opacity_at(mouse.y)); return send(curve, model, actions);
+        case Grip::point:
+            curve.move(state.selected, now, axes.opacity_at(held_at.y));
+            return send(curve, model, actions);
         case Grip::all_points:
             curve.shift_all(now - std::exchange(state.grabbed_at, now), lowest, highest);
             return send(curve, model, actions);
@@ -231,8 +236,7 @@ void use_mouse(const CurveAxes& axes, const Model& model, WidgetState& state, Ac
     const glm::vec2 mouse(at.x, at.y);
     TransferCurve curve(model.session.transfer_function);
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) state.grip = Grip::nothing;
-    if (ImGui::IsMouseDragging(ImGuiMouseButton_Left, 1.0f))
-        return drag(axes, curve, model, mouse + state.offset, state, actions);
+    if (ImGui::IsMouseDragging(ImGuiMouseButton_Left, 1.0f)) return drag(axes, curve, model, mouse, state, actions);
     if (!ImGui::IsItemHovered()) return;
     const float size = ImGui::GetFontSize();
     const TransferCurve::Found found = curve.under(axes, mouse, {model.paint_threshold(), model.haptic_threshold()},
@@ -324,12 +328,11 @@ void scale_and_help(const Model& model, WidgetState& state, Actions& actions)
     ImGui::TextDisabled("How to edit (?)");
     hint(
         "Left to right: the file's intensities, over how often they occur. Upwards: opacity, as its square root, so "
-        "that "
-        "small opacities can be seen and dragged.\n\n"
+        "that small opacities can be seen and dragged.\n\n"
         "Drag a point to move it. Double click on empty space adds one, right click on a point deletes it. The wheel "
-        "shifts all points, a tenth as far with Shift; Ctrl + drag does, too. The lines \"paint\" and \"haptic\" are "
-        "the "
-        "thresholds; drag them as well, or double click them for what fits the volume.");
+        "shifts all points; Ctrl + drag does, too. The lines \"paint\" and \"haptic\" are the thresholds; drag them as "
+        "well, or double click them for what fits the volume.\n\n"
+        "With Shift everything goes a tenth as far, drags and the wheel.");
 }
 
 /// The whole curve at once.
@@ -350,19 +353,18 @@ void edit_point(const Model& model, size_t index, Actions& actions)
     const auto before = model.session.transfer_function.points();
     Points points(before.begin(), before.end());
     ControlPoint& point = points[index];
-    const float speed = float((model.statistics.range().upper - model.statistics.range().lower) / 500.0);
+    const double speed = (model.statistics.range().upper - model.statistics.range().lower) / 500.0;
     const TransferCurve held(model.session.transfer_function);
     const double least = held.held_between_neighbors(index, -DBL_MAX);
     const double most = held.held_between_neighbors(index, DBL_MAX);
-    const double clear = 0.0, solid = 1.0;
     const char* format = is_float(model.volume.type) ? "%.5g" : "%.1f";
     row("Intensity");
-    bool changed = ImGui::DragScalar("##intensity", ImGuiDataType_Double, &point.intensity, std::max(speed, 1e-6f),
-                                     &least, &most, format, ImGuiSliderFlags_AlwaysClamp);
-    hint("Of the selected point, in the file's units. Drag sideways, or Ctrl + click to type.");
+    bool changed = drag_number("##intensity", point.intensity, std::max(speed, 1e-6), least, most, format);
+    hint(
+        "Of the selected point, in the file's units. Drag sideways, with Shift a tenth as fast; or Ctrl + click to "
+        "type.");
     row("Opacity");
-    changed |= ImGui::DragScalar("##opacity", ImGuiDataType_Double, &point.opacity, 0.002f, &clear, &solid, "%.4f",
-                                 ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
+    changed |= drag_number("##opacity", point.opacity, 0.002, 0.0, 1.0, "%.4f", ImGuiSliderFlags_Logarithmic);
     hint("Of one voxel: 0 clear, 1 solid.");
     row("Colour");
     changed |= color_field("##colour", point.color, ImGuiColorEditFlags_None);

@@ -1,0 +1,95 @@
+"""Files dropped onto the window as a file manager drops them, and the menu entry for who cannot: known by what is in
+them, whatever they are called."""
+import json
+import unittest
+
+from seen import Seen
+from xdnd import Source
+
+CURVE = {"points": [{"intensity": 90, "color": "#ff0000", "opacity": 0}, {"intensity": 210, "opacity": 0.75}]}
+KEPT = {"note": "Kept by hand.", "extends": False,
+        "points": [{"at": 0, "color": "#200000", "opacity": 0}, {"at": 1, "color": "#ffffe0", "opacity": 0.5}]}
+
+
+class Drop(Seen):
+    def drop(self, *paths):
+        window = int(self.display.do("search", "--name", "SHVR").split()[-1])
+        source = Source(self.display.name, window)
+        self.addCleanup(source.close)
+        source.drop(paths, self.middle())
+
+    def functions(self):
+        """The transfer functions of the log's actions that state one."""
+        return [action["values"]["transfer_function"] for action in self.done()
+                if action["op"] == "set" and "transfer_function" in action["values"]]
+
+    def saved_opacities(self, session):
+        self.press("Ctrl+S")
+        self.see("saved", "Status")
+        return [point["opacity"] for point in json.loads(session.read_text())["transfer_function"]["points"]]
+
+    def test_a_transfer_function_is_taken_in_both_its_forms_and_undone(self):
+        session = self.write_ball()
+        before = [point["opacity"] for point in json.loads(session.read_text())["transfer_function"]["points"]]
+        self.open_scan(session, preferences={"hints_seen": 3})
+        curve, kept = self.folder / "Kurve für Leitbündel (1)", self.folder / "kept look.json"
+        curve.write_text(json.dumps(CURVE))
+        kept.write_text(json.dumps(KEPT))
+        self.drop(curve)
+        self.see("The transfer function of", "Status")
+        self.assertEqual(self.saved_opacities(session), [0, 0.75])
+        self.drop(kept)
+        self.until(lambda: self.done()[-1].get("path") == str(kept), "drop of the second in the log")
+        self.see("The transfer function of", "Status")
+        self.assertEqual(self.saved_opacities(session), [0, 0.5])
+        for expected in ([0, 0.75], before):
+            self.press("Ctrl+Z")
+            self.see("Undone", "Status")
+            self.assertEqual(self.saved_opacities(session), expected)
+        self.finish()
+
+    def test_of_several_files_each_is_taken_and_what_is_none_is_told(self):
+        self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
+        curve, trace, other = (self.folder / name for name in ("curve.json", "line.txt", "notes.txt"))
+        curve.write_text(json.dumps(CURVE))
+        trace.write_text("-v 30, 32, 32, 1, 2\n")
+        other.write_text("nothing that is known\n")
+        self.drop(curve, trace)
+        self.see("1 node")
+        self.drop(other)
+        self.see("Error: ", "Status")
+        report = self.finish()
+        said = "\n".join(report["messages"])
+        self.assertIn("curve.json is taken", said)
+        self.assertIn("line.txt is taken", said)
+        self.assertIn("notes.txt", said)
+
+    def test_a_scan_is_dropped_onto_the_start_page(self):
+        session = self.write_ball()
+        self.view(preferences={"hints_seen": 3})
+        self.see("Open the example")
+        self.drop(session)
+        self.wait_for_window("sphere.* - SHVR")
+        self.finish()
+
+    def test_the_menu_takes_what_could_be_dropped(self):
+        self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
+        curve = self.folder / "curve.json"
+        curve.write_text(json.dumps(CURVE))
+        self.click_on("File", "##MainMenuBar")
+        self.click_on("Take from a file...", "##Menu_00")
+        self.see("Cancel", "Take annotation")
+        self.do("key", "ctrl+a", "type", "--delay", 20, self.folder / "gone.json", pause_s=0)
+        self.see(str(self.folder / "gone.json"), "Take annotation")
+        self.press("Enter")
+        self.see(f"{self.folder / 'gone.json'}: there is no such file", "Take annotation")
+        self.do("key", "ctrl+a", "type", "--delay", 20, curve, pause_s=0)
+        self.see(str(curve), "Take annotation")
+        self.press("Enter")
+        self.see("The transfer function of", "Status")
+        self.see_no_more("Cancel", "Take annotation")
+        self.finish()
+
+
+if __name__ == "__main__":
+    unittest.main()

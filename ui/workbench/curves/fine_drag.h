@@ -1,0 +1,28 @@
+#pragma once
+// A drag that goes a tenth as far as the mouse while a modifier is held, which may change on the way: nothing jumps.
+// Pure; any thread.
+
+#include <glm/glm.hpp>
+
+namespace shvr::ui {
+
+class FineDrag {
+public:
+    static constexpr float SHARE = 0.1f;
+
+    FineDrag() = default;
+    /// What is dragged may be held beside its middle.
+    FineDrag(const glm::vec2& mouse, const glm::vec2& held) : mouse_(mouse), held_(held) {}
+    /// Where it is once the mouse is there.
+    glm::vec2 follow(const glm::vec2& mouse, bool is_fine)
+    {
+        held_ += (is_fine ? SHARE : 1.0f) * (mouse - mouse_);
+        mouse_ = mouse;
+        return held_;
+    }
+
+private:
+    glm::vec2 mouse_{0.0f}, held_{0.0f};
+};
+
+}  // namespace shvr::ui
