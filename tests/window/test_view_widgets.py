@@ -67,9 +67,9 @@ class Widgets(Seen):
     FONT = 14                    # pixels, as it ships
     HEIGHT = 150 - 1.3 * FONT    # of the curve's axes, from opacity 0 to 1
 
-    def open_panel(self, panel):
+    def open_panel(self, panel, **keys):
         folds = {name: {"folded": name != panel} for name in PANELS}
-        self.open_scan(self.write_ball(), preferences={"layout": {"panels": folds}, "hints_seen": 3})
+        self.open_scan(self.write_ball(**keys), preferences={"layout": {"panels": folds}, "hints_seen": 3})
 
     def drag(self, begin, by, *, finely=False, tail=()):
         """By so many pixels, with Shift where it is to be fine."""
@@ -91,17 +91,18 @@ class Widgets(Seen):
         return value
 
     def test_points_and_lines_of_the_curve_are_dragged_a_tenth_as_far_with_shift(self):
-        self.open_panel("transfer_function")
+        # Of two lines in one place the haptic threshold is taken below their words.
+        self.open_panel("transfer_function", probe={"paint_threshold": 120, "haptic_threshold": 120})
         word = self.see("paint")
         top = word["box"][1] - self.FONT / 4
         x = round(word["box"][0] - self.FONT / 4)
         # The threshold's line: as far as the mouse, and then a tenth of it.
         low = round(top + 0.7 * self.HEIGHT)
         self.drag((x, low), (40, 0))
-        far = self.last("probe", "paint_threshold") - 120
+        far = self.last("probe", "haptic_threshold") - 120
         per_pixel = far / 40
         self.drag((x + 40, low), (40, 0), finely=True)
-        near = self.last("probe", "paint_threshold") - 120 - far
+        near = self.last("probe", "haptic_threshold") - 120 - far
         self.assertGreater(far, 20)
         self.assertAlmostEqual(near, far / 10, delta=1.5)   # thresholds of whole numbers
         # The point at 160 and 0.9, which lies where that tells.
@@ -145,9 +146,9 @@ class Widgets(Seen):
         self.press("Alt+2")
         self.see("Paint (left: paint", "Status")
         left, _, _, _ = self.see("See")["box"]          # its column is right of the colours
-        _, top, _, bottom = self.see("0  unpainted")["box"]
-        _, below, _, _ = self.see("3  group 3")["box"]
-        self.do("mousemove", round(left - self.FONT), round(below + (bottom - top) / 2), "sleep", 0.2, "mousedown", 1,
+        bottom = self.see("0  unpainted")["box"][3]
+        row = next(seen["box"] for seen in self.seen("3  group 3") if seen["box"][1] > bottom)   # not in the tool bar
+        self.do("mousemove", round(left - self.FONT), round((row[1] + row[3]) / 2), "sleep", 0.2, "mousedown", 1,
                 "sleep", 0.1, "mouseup", 1, pause_s=0)
         self.until(lambda: self.seen(window="##Popup"), "colour picker")
         self.press("Escape")
