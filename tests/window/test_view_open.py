@@ -145,6 +145,7 @@ class Open(Seen):
         self.until(lambda: any(seen["text"].startswith("Saved") for seen in self.seen()), "Saved")
         messages = self.finish()["messages"]
         self.assertFalse(any("were changed since" in line for line in messages), messages)
+        self.assertTrue(any(f"Opened {scan}, and goes on with {session.name}" in line for line in messages), messages)
         self.assertEqual(json.loads(session.read_text())["render"]["step_voxels"], 0.7)
 
 

@@ -91,7 +91,7 @@ class Widgets(Seen):
         return value
 
     def test_points_and_lines_of_the_curve_are_dragged_a_tenth_as_far_with_shift(self):
-        # Of two lines in one place the haptic threshold is taken below their words.
+        # Of two lines in one place it is the one that strokes go by, below their words.
         self.open_panel("transfer_function", probe={"paint_threshold": 120, "haptic_threshold": 120})
         word = self.see("paint")
         top = word["box"][1] - self.FONT / 4
@@ -99,10 +99,10 @@ class Widgets(Seen):
         # The threshold's line: as far as the mouse, and then a tenth of it.
         low = round(top + 0.7 * self.HEIGHT)
         self.drag((x, low), (40, 0))
-        far = self.last("probe", "haptic_threshold") - 120
+        far = self.last("probe", "paint_threshold") - 120
         per_pixel = far / 40
         self.drag((x + 40, low), (40, 0), finely=True)
-        near = self.last("probe", "haptic_threshold") - 120 - far
+        near = self.last("probe", "paint_threshold") - 120 - far
         self.assertGreater(far, 20)
         self.assertAlmostEqual(near, far / 10, delta=1.5)   # thresholds of whole numbers
         # The point at 160 and 0.9, which lies where that tells.

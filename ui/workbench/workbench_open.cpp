@@ -331,6 +331,9 @@ void Workbench::welcome(const std::filesystem::path& path, const std::vector<std
     recovered_ = losses;
     for (const Notice& notice : document_->messages) recovered_.push_back(notice.text);
     std::string status = "Opened " + path.string();
+    const std::filesystem::path& session = document_->session_path;  // of a scan, saved beside it
+    if (document_->has_session_file() && session != path && session.parent_path() == path.parent_path())
+        status += ", and goes on with " + session.filename().string();
     if (document_->only_looks()) status += "; read only, for it is open for writing in " + document_->holder;
     for (const std::string& loss : losses) status += "; " + loss;
     for (const std::string& warning : document_->volume().warnings) status += "; " + warning;

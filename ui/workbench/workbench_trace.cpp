@@ -195,12 +195,13 @@ void Workbench::act(const NodeAt& action)
     }
     trace(NodeOp{.at = voxel, .radius_voxels = {}, .group = {}});
     if (goes_inside && !ball)
-        say(messages_.last() + "; on what is seen, for nothing there has a middle at the paint threshold " +
-                sentence(*document_->brush().threshold, with_key("; ", "threshold_here", " sets that from here")),
+        say(messages_.last() + "; it stays on the surface, for nothing there has a middle above the paint threshold " +
+                sentence(*document_->brush().threshold,
+                         with_key("; ", "threshold_here", " sets the threshold from here")),
             Weight::warning);
     if (ball && ball->is_held)
         say(messages_.last() +
-            "; the middle of that lies further aside than the probe's ball reaches, and a larger one finds it");
+            "; it is not in the middle, which lies further aside than the probe's radius: a larger probe finds it");
     move_probe(voxel * document_->volume().spacing, false);
     log_instead({NodeOp{.at = voxel, .radius_voxels = {}, .group = {}}, PlaceProbe{voxel}});
 }

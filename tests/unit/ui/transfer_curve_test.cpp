@@ -54,7 +54,9 @@ TEST_CASE("the mouse grabs the nearest point, and lines where no point is near")
     CHECK(curve.under(AXES, first, {50.0, 50.0}, REACH).grip == Grip::point);
     // Of two lines in one place the one whose label is hit.
     CHECK(curve.under(AXES, {105.0f, 25.0f}, {190.0, 190.0}, REACH).grip == Grip::paint_threshold);
-    CHECK(curve.under(AXES, {105.0f, 60.0f}, {190.0, 190.0}, REACH).grip == Grip::haptic_threshold);
+    CHECK(curve.under(AXES, {105.0f, 45.0f}, {190.0, 190.0}, REACH).grip == Grip::haptic_threshold);
+    // Below the words it is what a stroke goes by.
+    CHECK(curve.under(AXES, {105.0f, 60.0f}, {190.0, 190.0}, REACH).grip == Grip::paint_threshold);
 }
 
 TEST_CASE("an added point has the colour that the function has there, or its end's")

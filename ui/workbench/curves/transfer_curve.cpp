@@ -67,7 +67,8 @@ TransferCurve::Found TransferCurve::under(const CurveAxes& axes, const glm::vec2
     const float to_paint = std::abs(axes.x_of(lines.paint_threshold) - mouse.x);
     const float to_felt = std::abs(axes.x_of(lines.haptic_threshold) - mouse.x);
     if (std::min(to_paint, to_felt) > 0.6f * reach.pixels) return found;
-    const bool is_felt_row = mouse.y > axes.begin.y + reach.label;
+    const float row = (mouse.y - axes.begin.y) / reach.label;
+    const bool is_felt_row = row > 1.0f && row <= 2.0f;
     const bool is_paint = to_paint == to_felt ? !is_felt_row : to_paint < to_felt;
     return {is_paint ? Grip::paint_threshold : Grip::haptic_threshold, 0};
 }

@@ -43,8 +43,8 @@ public:
     struct Lines {
         double paint_threshold = 0.0, haptic_threshold = 0.0;
     };
-    /// The mouse grabs points within `reach` pixels; of lines at one place, above `label` pixels from the top the
-    /// paint threshold.
+    /// The mouse grabs points within `pixels`; of lines at one place the paint threshold, but for where the word of the
+    /// other one stands, in the second row of so high a label.
     struct Reach {
         float pixels = 9.0f, label = 17.0f;
     };
