@@ -10,12 +10,14 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "haptics/kept_memory.h"
 
 namespace shvr {
 namespace {
 
 constexpr int SERVO_PRIORITY = 80;
 constexpr uint64_t SECOND_NS = 1'000'000'000;
+constexpr size_t STACK_BYTES = size_t{128} << 10;  ///< of a tick, at most
 
 class RealPacing : public Pacing {
 public:
@@ -101,6 +103,10 @@ Servo::~Servo()
 void Servo::run() noexcept
 {
     ::prctl(PR_SET_TIMERSLACK, 1UL);  // up to 50 us less delay than by default; no effect under SCHED_FIFO
+    const KeptMemory shared(this, sizeof *this), growth(growth_.get(), sizeof *growth_);
+    const KeptMemory stack(static_cast<std::byte*>(__builtin_frame_address(0)) - STACK_BYTES, STACK_BYTES);
+    const bool has_code = keep_code();
+    keeps_memory_ = shared.is_kept() && growth.is_kept() && stack.is_kept() && has_code;
     const uint64_t period_ns = SECOND_NS / options_.rate_hz;
     ForceMemory memory;
     DeviceState device;

@@ -81,6 +81,9 @@ public:
     Latest<ProbePlace>& place() { return place_; }
     /// Whether the system granted SCHED_FIFO; if not, only the timer slack is reduced.
     bool is_realtime() const { return is_realtime_; }
+    /// Whether the system lets it keep all memory of a tick where it is (kept_memory.h), which is known once it ticks;
+    /// if not, that is there at the first tick, and may be missing after hours.
+    bool keeps_memory() const { return keeps_memory_; }
 
 private:
     void run() noexcept;
@@ -94,6 +97,7 @@ private:
     Latest<ProbePlace> place_;
     std::atomic<bool> running_{true};
     bool is_realtime_ = false;
+    std::atomic<bool> keeps_memory_{false};
     std::thread thread_;
 };
 

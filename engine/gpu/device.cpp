@@ -173,7 +173,7 @@ Device::Device(const DeviceOptions& options)
     try {
         create_instance(options);
         choose_physical(options);
-        create_device(!options.instance_extensions.empty());
+        create_device(options);
         looks_ahead_ = options.looks_ahead && !traits_.is_cpu;
     } catch (...) {
         destroy();
@@ -297,6 +297,7 @@ void Device::read_traits()
     traits_.max_buffer_bytes = buffers.maxBufferSize;
     traits_.tells_faults = device_extension_is_present(physical_, VK_EXT_DEVICE_FAULT_EXTENSION_NAME);
     traits_.tells_memory_left = device_extension_is_present(physical_, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
+    traits_.has_memory_priority = device_extension_is_present(physical_, VK_EXT_MEMORY_PRIORITY_EXTENSION_NAME);
     const auto families = enumerate<VkQueueFamilyProperties>([&](uint32_t* count, VkQueueFamilyProperties* items) {
         vkGetPhysicalDeviceQueueFamilyProperties(physical_, count, items);
     });
@@ -335,7 +336,7 @@ std::optional<uint64_t> Device::heap_bytes_left() const
     return budget.heapBudget[heap_] - std::min(budget.heapBudget[heap_], budget.heapUsage[heap_]);
 }
 
-void Device::create_device(bool presents)
+void Device::create_device(const DeviceOptions& options)
 {
     VkPhysicalDeviceVulkan13Features has13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
     VkPhysicalDeviceVulkan12Features has12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
@@ -351,8 +352,9 @@ void Device::create_device(bool presents)
              ": R16_UNORM storage images cannot be read; expected a driver that can read them");
     if (const auto why = why_too_limited(what_it_has(physical_, traits_))) fail("device ", traits_.name, ": ", *why);
 
-    // Every device has it. Reads beside an image are 0: pair_at(-1) of density_exact.glsl at the atlas's edge, whose
-    // result is not used, would be undefined without.
+    // Every device has both. Reads beside an image are 0: pair_at(-1) of density_exact.glsl at the atlas's edge, whose
+    // result is not used, would be undefined without. Nothing reads or writes beside a buffer (bounds_slow_test.cpp); a
+    // mistake there is a wrong pixel, and not a lost device, or paint that another buffer's bits are written into.
     VkPhysicalDeviceVulkan13Features want13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
                                             .robustImageAccess = VK_TRUE,
                                             .synchronization2 = VK_TRUE,
@@ -363,6 +365,7 @@ void Device::create_device(bool presents)
                                             .hostQueryReset = VK_TRUE,
                                             .timelineSemaphore = VK_TRUE};
     VkPhysicalDeviceFeatures2 want{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &want12};
+    want.features.robustBufferAccess = options.robust_buffers ? VK_TRUE : VK_FALSE;
     want.features.shaderStorageImageExtendedFormats = VK_TRUE;
     traits_.has_pipeline_statistics = has.features.pipelineStatisticsQuery == VK_TRUE;
     want.features.pipelineStatisticsQuery = has.features.pipelineStatisticsQuery;
@@ -370,6 +373,11 @@ void Device::create_device(bool presents)
     VkPhysicalDeviceFaultFeaturesEXT faults{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FAULT_FEATURES_EXT,
                                             .deviceFault = VK_TRUE};
     if (traits_.tells_faults) want13.pNext = &faults;
+    VkPhysicalDeviceMemoryPriorityFeaturesEXT priorities{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_PRIORITY_FEATURES_EXT,
+        .pNext = want13.pNext,
+        .memoryPriority = VK_TRUE};
+    if (traits_.has_memory_priority) want13.pNext = &priorities;
 
     const float priority = 1.0f;
     const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
@@ -377,9 +385,10 @@ void Device::create_device(bool presents)
                                         .queueCount = 1,
                                         .pQueuePriorities = &priority};
     std::vector<const char*> extensions;
-    if (presents) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+    if (!options.instance_extensions.empty()) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
     if (traits_.tells_memory_left) extensions.push_back(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
     if (traits_.tells_faults) extensions.push_back(VK_EXT_DEVICE_FAULT_EXTENSION_NAME);
+    if (traits_.has_memory_priority) extensions.push_back(VK_EXT_MEMORY_PRIORITY_EXTENSION_NAME);
     const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                   .pNext = &want,
                                   .queueCreateInfoCount = 1,

@@ -38,8 +38,11 @@ void check(VkResult result, const char* call);
 
 struct DeviceOptions {
     std::string device;        ///< part of the device's name, or its index; empty: $SHVR_DEVICE, else the best
-    bool looks_ahead = false;  ///< on a GPU, compiles what graphs expect later ones to run (FrameGraph::expect)
     bool validation = false;   ///< Khronos layer with synchronisation validation; fails where it is not installed
+    bool looks_ahead = false;  ///< on a GPU, compiles what graphs expect later ones to run (FrameGraph::expect)
+    /// What is read beside a buffer is 0 or of that buffer, and nothing is written there. Validation that looks for
+    /// such accesses finds none with it.
+    bool robust_buffers = true;
     std::vector<std::string> instance_extensions;  ///< those for a window's surface; if any, the device can present
     /// Whether a queue of a family can show pictures in the window; null: nobody asks.
     std::function<bool(VkInstance, VkPhysicalDevice, uint32_t family)> can_present{};
@@ -61,9 +64,10 @@ struct DeviceTraits {
     VkPhysicalDeviceLimits limits{};
     uint64_t max_allocation_bytes = 0;  ///< of one buffer or image, as its memory is one allocation
     uint64_t max_buffer_bytes = 0;
-    uint64_t max_volume_bytes = 0;   ///< of a 3-D image of codes; no more than one allocation holds
-    bool tells_memory_left = false;  ///< VK_EXT_memory_budget
-    bool tells_faults = false;       ///< VK_EXT_device_fault
+    uint64_t max_volume_bytes = 0;     ///< of a 3-D image of codes; no more than one allocation holds
+    bool tells_memory_left = false;    ///< VK_EXT_memory_budget
+    bool tells_faults = false;         ///< VK_EXT_device_fault
+    bool has_memory_priority = false;  ///< VK_EXT_memory_priority
 };
 
 /// For Vulkan calls that are made twice, first for the count and then for the items: returns the items.
@@ -123,7 +127,7 @@ private:
     void create_instance(const DeviceOptions& options);
     void choose_physical(const DeviceOptions& options);
     void read_traits();
-    void create_device(bool presents);
+    void create_device(const DeviceOptions& options);
     void destroy() noexcept;
     std::string fault_in_words() const;
     static VkBool32 on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,

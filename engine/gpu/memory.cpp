@@ -62,6 +62,14 @@ std::vector<uint32_t> memory_types(const VkPhysicalDeviceMemoryProperties& prope
     return types;
 }
 
+float memory_priority(const ResourceDesc& desc, Placement placement)
+{
+    constexpr float USUAL = 0.5f, HIGHEST = 1.0f;
+    const bool is_picture = desc.kind == ResourceDesc::Kind::image && desc.is_flat;
+    const bool is_read_by_kernels = placement == Placement::device || placement == Placement::values;
+    return is_read_by_kernels && !is_picture ? HIGHEST : USUAL;
+}
+
 uint64_t automatic_device_bytes(const DeviceTraits& traits, std::optional<uint64_t> left)
 {
     const uint64_t share = traits.is_integrated ? traits.device_bytes / 2 : traits.device_bytes / 4 * 3;
@@ -273,7 +281,7 @@ void Memory::allocate(Object& object, const VkMemoryRequirements& needs, const c
     if (!allocate_in_block(object, needs)) {
         const auto from_driver = [&] {
             uint32_t type = 0;
-            return allocate_from_driver(needs.size, needs.memoryTypeBits, object.placement, &object.memory, &type);
+            return allocate_from_driver(needs.size, needs.memoryTypeBits, object, &object.memory, &type);
         };
         VkResult result = from_driver();
         if (is_shortage(result)) {
@@ -296,16 +304,21 @@ void Memory::allocate(Object& object, const VkMemoryRequirements& needs, const c
 }
 
 /// Where the device is integrated, all its heaps are the same memory, and another type will do.
-VkResult Memory::allocate_from_driver(uint64_t bytes, uint32_t allowed, Placement placement, VkDeviceMemory* memory,
+VkResult Memory::allocate_from_driver(uint64_t bytes, uint32_t allowed, const Object& object, VkDeviceMemory* memory,
                                       uint32_t* type)
 {
-    std::vector<uint32_t> types = memory_types(device_.memory_properties(), allowed, placement);
+    const VkMemoryPriorityAllocateInfoEXT priority{.sType = VK_STRUCTURE_TYPE_MEMORY_PRIORITY_ALLOCATE_INFO_EXT,
+                                                   .priority = memory_priority(object.desc, object.placement)};
+    const bool has_priority = device_.traits().has_memory_priority;
+    std::vector<uint32_t> types = memory_types(device_.memory_properties(), allowed, object.placement);
     if (types.empty()) fail("device ", device_.traits().name, " has no memory for what the host reads or writes");
-    if (placement == Placement::device && !device_.traits().is_integrated) types.resize(1);
+    if (object.placement == Placement::device && !device_.traits().is_integrated) types.resize(1);
     VkResult result = VK_SUCCESS;
     for (const uint32_t candidate : types) {
-        const VkMemoryAllocateInfo info{
-            .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = bytes, .memoryTypeIndex = candidate};
+        const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                        .pNext = has_priority ? &priority : nullptr,
+                                        .allocationSize = bytes,
+                                        .memoryTypeIndex = candidate};
         result = vkAllocateMemory(device_.handle(), &info, nullptr, memory);
         if (result == VK_SUCCESS) {
             ++allocations_;
@@ -337,7 +350,7 @@ bool Memory::allocate_in_block(Object& object, const VkMemoryRequirements& needs
         if (take(*block)) return true;
     VkDeviceMemory memory = VK_NULL_HANDLE;
     uint32_t type = 0;
-    if (allocate_from_driver(MemoryBlock::BYTES, needs.memoryTypeBits, object.placement, &memory, &type) != VK_SUCCESS)
+    if (allocate_from_driver(MemoryBlock::BYTES, needs.memoryTypeBits, object, &memory, &type) != VK_SUCCESS)
         return false;
     try {
         std::byte* const mapped = object.placement == Placement::device ? nullptr : map(memory);

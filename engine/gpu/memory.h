@@ -42,6 +42,10 @@ public:
 std::vector<uint32_t> memory_types(const VkPhysicalDeviceMemoryProperties& properties, uint32_t allowed,
                                    Placement placement);
 
+/// How much it matters that such memory stays the device's own where other programs leave too little of that (0 to 1,
+/// VK_EXT_memory_priority): what rays look up again and again before pictures, which are written once.
+float memory_priority(const ResourceDesc& desc, Placement placement);
+
 /// "1.5 MiB", rounded up to a tenth.
 std::string mebibytes(uint64_t bytes);
 
@@ -134,7 +138,7 @@ private:
     void create_buffer(Object& object, const char* purpose);
     void create_image(Object& object, const char* purpose);
     void allocate(Object& object, const VkMemoryRequirements& needs, const char* purpose);
-    VkResult allocate_from_driver(uint64_t bytes, uint32_t allowed, Placement placement, VkDeviceMemory* memory,
+    VkResult allocate_from_driver(uint64_t bytes, uint32_t allowed, const Object& object, VkDeviceMemory* memory,
                                   uint32_t* type);
     bool allocate_in_block(Object& object, const VkMemoryRequirements& needs);
     std::byte* map(VkDeviceMemory memory) const;

@@ -58,7 +58,7 @@ ProbeLook probe_at(const glm::dvec3& center)
 /// A renderer with its own budget, as the command line uses one.
 Picture picture_of(const Source& source, const Scenery& scenery, uint64_t device_mib)
 {
-    Renderer renderer({.device = {"", true}, .budget = {device_mib << 20, 0}, .threads = 2});
+    Renderer renderer({.device = {.validation = true}, .budget = {device_mib << 20, 0}, .threads = 2});
     renderer.load(source, BYTES, scenery.session.render, shows_occlusion(scenery.session.light));
     renderer.scene().show(scenery.document);
     renderer.scene().show_surfaces(scenery.session.surfaces, scenery.document.trace, scenery.session.groups);
@@ -197,7 +197,7 @@ TEST_CASE("what no budget of this size draws is refused before a voxel is read")
     const Source deep = open_procedural({.kind = "fog", .size = {1024, 1024, 1024}, .levels = 2});
     const Source flat = open_procedural({.kind = "fog", .size = {512, 512, 512}});
     const auto said = [&](Paging paging, uint64_t mib) -> std::string {
-        Renderer renderer({.device = {"", true}, .budget = {mib << 20, 0}, .threads = 1});
+        Renderer renderer({.device = {.validation = true}, .budget = {mib << 20, 0}, .threads = 1});
         try {
             renderer.check_sizes(paging == Paging::never ? *flat : *deep, {.paging = paging}, false);
         } catch (const Error& error) {
@@ -242,7 +242,7 @@ TEST_CASE("bands of rows have the bits of a picture drawn whole, lines over them
     for (const Arrangement arrangement : {Arrangement::single, Arrangement::overview, Arrangement::slices}) {
         scenery.session.view.arrangement = arrangement;
         const ImageF whole = picture_of(source, scenery, 1024).image;
-        Renderer renderer({.device = {"", true}, .budget = {0, 4 << 20}, .threads = 1});
+        Renderer renderer({.device = {.validation = true}, .budget = {0, 4 << 20}, .threads = 1});
         renderer.load(source, BYTES, scenery.session.render);
         ImageF image{600, 0, {}};
         int bands = 0;

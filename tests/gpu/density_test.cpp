@@ -33,7 +33,7 @@ Session session_of(double opacity, double occlusion)
 }
 
 struct Device {
-    Renderer renderer{{.device = {"", true}, .budget = {}, .threads = 2}};
+    Renderer renderer{{.device = {.validation = true}, .budget = {}, .threads = 2}};
     ~Device()
     {
         for (const std::string& message : renderer.device().take_validation_messages()) FAIL_CHECK(message);

@@ -136,7 +136,7 @@ const std::vector<Feature> FEATURES{
 
 class Everything {
 public:
-    Everything() : renderer_({.device = {"", true}, .threads = 2}) {}
+    Everything() : renderer_({.device = {.validation = true}, .threads = 2}) {}
     ~Everything()
     {
         for (const std::string& message : renderer_.device().take_validation_messages()) FAIL_CHECK(message);

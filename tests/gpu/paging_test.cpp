@@ -49,7 +49,7 @@ Session session_of(double opacity, bool shaded)
 struct Budgeted {
     Renderer renderer;
     explicit Budgeted(uint64_t device_mib = 0, uint64_t host_mib = 0)
-        : renderer({.device = {"", true}, .budget = {device_mib << 20, host_mib << 20}, .threads = 2})
+        : renderer({.device = {.validation = true}, .budget = {device_mib << 20, host_mib << 20}, .threads = 2})
     {}
     ~Budgeted()
     {

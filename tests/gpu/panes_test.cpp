@@ -183,7 +183,7 @@ TEST_CASE("panes are the same with paged bricks")
     session.render.size = {96, 80};
     session.render.sampling = Sampling::exact;
     session.render.detail = 0.0;
-    Renderer renderer({.device = {"", true}, .threads = 2});
+    Renderer renderer({.device = {.validation = true}, .threads = 2});
     const auto drawn = [&](Paging paging) {
         session.render.paging = paging;
         renderer.load(tubes, {.minimum = 0.0, .maximum = 255.0}, session.render);

@@ -26,7 +26,7 @@ TEST_CASE("a picture in parts has the bits of one drawn whole, resident and with
                           .color = {1.0, 0.5, 0.1},
                           .ball_share = 0.3,
                           .shell = ShellLook{.threshold = 100.0}};
-    Renderer renderer({.device = {"", true}, .threads = 2});
+    Renderer renderer({.device = {.validation = true}, .threads = 2});
     const Camera camera = camera_looking("front", tubes->info());
     for (const Paging paging : {Paging::never, Paging::always}) {
         session.render.paging = paging;
@@ -64,7 +64,7 @@ TEST_CASE("a picture in parts has the bits of one drawn whole, resident and with
 
 TEST_CASE("a picture that memory does not hold is refused before any is taken")
 {
-    Renderer renderer({.device = {"", true}, .budget = {0, 64 << 20}, .threads = 1});
+    Renderer renderer({.device = {.validation = true}, .budget = {0, 64 << 20}, .threads = 1});
     renderer.load(open_procedural({.kind = "sphere", .size = {16, 16, 16}}), {.minimum = 0.0, .maximum = 255.0});
     Session session;
     session.render.size = {4096, 4096};

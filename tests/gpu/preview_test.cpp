@@ -29,7 +29,7 @@ std::shared_ptr<const VolumeSource> noise(uint32_t seed)
 }
 
 struct Device {
-    Renderer renderer{{.device = {"", true}, .budget = {}, .threads = 2}};
+    Renderer renderer{{.device = {.validation = true}, .budget = {}, .threads = 2}};
     ~Device()
     {
         for (const std::string& message : renderer.device().take_validation_messages()) FAIL_CHECK(message);

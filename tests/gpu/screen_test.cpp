@@ -111,7 +111,7 @@ TEST_CASE("panes of paged bricks end as the picture of render, under a budget fo
     session.render.sampling = Sampling::exact;
     session.render.paging = Paging::always;
     session.render.detail = 0.0;
-    Renderer renderer({.device = {"", true}, .budget = {256 << 20, 0}, .threads = 2});
+    Renderer renderer({.device = {.validation = true}, .budget = {256 << 20, 0}, .threads = 2});
     renderer.load(tubes, {.minimum = 0.0, .maximum = 255.0}, session.render);
     const Camera camera = camera_looking("front", tubes->info());
     const glm::dvec3 probe(100.5, 128.5, 90.5);

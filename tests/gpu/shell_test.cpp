@@ -231,7 +231,7 @@ TEST_CASE("a shell is the same with paged bricks, though nothing else of them is
     session.render.size = {96, 80};
     session.render.sampling = Sampling::exact;
     session.render.detail = 0.0;
-    Renderer renderer({.device = {"", true}, .threads = 2});
+    Renderer renderer({.device = {.validation = true}, .threads = 2});
     const Camera camera = camera_looking("front", tubes->info());
     for (const bool is_box : {false, true}) {
         const ProbeLook probe{.center = {60.0, 66.0, 70.0},

@@ -48,6 +48,16 @@ Structure* chained(void* query, VkStructureType type)
     return nullptr;
 }
 
+/// What a call of an instance answers that is made twice, first for the count and then for the items.
+template <class Item>
+VkResult answer(const std::vector<Item>& all, uint32_t* count, Item* found)
+{
+    const auto there = uint32_t(all.size()), copied = found ? std::min(*count, there) : there;
+    if (found) std::copy_n(all.begin(), copied, found);
+    *count = copied;
+    return copied < there ? VK_INCOMPLETE : VK_SUCCESS;
+}
+
 /// What layers may ask for.
 inline constexpr const char* INSTANCE_CALLS[] = {"vkDestroyInstance",
                                                  "vkGetPhysicalDeviceProperties",

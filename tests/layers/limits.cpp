@@ -6,8 +6,9 @@
 // Some drivers make a dispatch of each slice of each region of a copy: a copy of more than 256 regions is logged, too.
 // What a driver may refuse is refused as a driver does: memory of a heap that is full, allocations beyond their number.
 // What a program must not ask for is refused with VK_ERROR_INITIALIZATION_FAILED and logged: images and buffers that
-// are too large, memory mapped that cannot be, timestamps that there are not. Kernels read beside images, so a device
-// without robustImageAccess is logged. All memory types are the driver's first one that a host can map. Any thread.
+// are too large, memory mapped that cannot be, timestamps that there are not, priorities of memory. Logged alone are
+// memory without a priority, where there are some, and a device without robust access to images, beside which kernels
+// read, or to buffers. All memory types are the driver's first one that a host can map. Any thread.
 
 #include <algorithm>
 #include <cstdio>
@@ -154,7 +155,8 @@ struct Limits : layers::Unobtrusive {
     static bool is_ours(const char* extension)
     {
         return std::strcmp(extension, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME) == 0 ||
-               std::strcmp(extension, VK_EXT_DEVICE_FAULT_EXTENSION_NAME) == 0;
+               std::strcmp(extension, VK_EXT_DEVICE_FAULT_EXTENSION_NAME) == 0 ||
+               std::strcmp(extension, VK_EXT_MEMORY_PRIORITY_EXTENSION_NAME) == 0;
     }
     static VKAPI_ATTR VkResult VKAPI_CALL extensions(VkPhysicalDevice physical, const char* layer, uint32_t* count,
                                                      VkExtensionProperties* found)
@@ -168,14 +170,8 @@ struct Limits : layers::Unobtrusive {
         std::erase_if(all, [](const VkExtensionProperties& one) { return is_ours(one.extensionName); });
         if (record().tells_budget) all.push_back({VK_EXT_MEMORY_BUDGET_EXTENSION_NAME, 1});
         if (record().tells_faults) all.push_back({VK_EXT_DEVICE_FAULT_EXTENSION_NAME, 1});
-        if (!found) {
-            *count = uint32_t(all.size());
-            return VK_SUCCESS;
-        }
-        const uint32_t copied = std::min(*count, uint32_t(all.size()));
-        std::copy_n(all.begin(), copied, found);
-        *count = copied;
-        return copied < all.size() ? VK_INCOMPLETE : VK_SUCCESS;
+        if (record().has_memory_priority) all.push_back({VK_EXT_MEMORY_PRIORITY_EXTENSION_NAME, 1});
+        return layers::answer(all, count, found);
     }
     static uint32_t all_types() { return (1u << record().types.size()) - 1; }
     static VKAPI_ATTR void VKAPI_CALL buffer_needs(VkDevice device, VkBuffer buffer, VkMemoryRequirements* needs)
@@ -202,7 +198,15 @@ struct Limits : layers::Unobtrusive {
             if (used().of_heaps[heap] + info->allocationSize > record().heaps[heap].size)
                 return VK_ERROR_OUT_OF_DEVICE_MEMORY;
         }
+        const auto* const priority = chained<VkMemoryPriorityAllocateInfoEXT>(
+            const_cast<void*>(info->pNext), VK_STRUCTURE_TYPE_MEMORY_PRIORITY_ALLOCATE_INFO_EXT);
+        if (!priority && record().has_memory_priority)
+            violated("memory without a priority");  // a device may be told none
+        if (priority && !record().has_memory_priority) return violated("a priority of memory");
+        if (priority && !(priority->priority >= 0.0f && priority->priority <= 1.0f))
+            return violated("a priority of " + std::to_string(priority->priority));
         VkMemoryAllocateInfo real = *info;
+        real.pNext = nullptr;
         real.memoryTypeIndex = 0;
         const VkResult result =
             Next::next<PFN_vkAllocateMemory>(device, "vkAllocateMemory")(device, &real, allocator, memory);
@@ -356,12 +360,19 @@ struct Limits : layers::Unobtrusive {
         const auto* const asked = chained<VkPhysicalDeviceVulkan13Features>(
             const_cast<void*>(info.pNext), VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
         if (!asked || !asked->robustImageAccess) violated("reads beside images, as robustImageAccess is off");
+        const auto* const features = chained<VkPhysicalDeviceFeatures2>(const_cast<void*>(info.pNext),
+                                                                        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
+        if (!features || !features->features.robustBufferAccess)
+            violated("accesses beside buffers, as robustBufferAccess is off");
         static thread_local std::vector<const char*> kept;
         kept.assign(info.ppEnabledExtensionNames, info.ppEnabledExtensionNames + info.enabledExtensionCount);
         std::erase_if(kept, is_ours);
+        const auto is_added = [](const VkBaseOutStructure* one) {
+            return one && (one->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FAULT_FEATURES_EXT ||
+                           one->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_PRIORITY_FEATURES_EXT);
+        };
         for (auto* at = static_cast<VkBaseOutStructure*>(const_cast<void*>(info.pNext)); at; at = at->pNext)
-            if (at->pNext && at->pNext->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FAULT_FEATURES_EXT)
-                at->pNext = at->pNext->pNext;
+            while (is_added(at->pNext)) at->pNext = at->pNext->pNext;
         VkDeviceCreateInfo changed = info;
         changed.enabledExtensionCount = uint32_t(kept.size());
         changed.ppEnabledExtensionNames = kept.data();

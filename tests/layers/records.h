@@ -26,6 +26,7 @@ struct Record {
     std::vector<VkMemoryHeap> heaps;
     std::vector<VkMemoryType> types;
     bool tells_faults = false;               ///< VK_EXT_device_fault
+    bool has_memory_priority = false;        ///< VK_EXT_memory_priority
     uint32_t max_storage_images = 1u << 20;  ///< in a kernel
 };
 
@@ -56,7 +57,8 @@ inline std::vector<Record> made_records()
          .tells_budget = true,
          .heaps = {{12 * GIBI, VK_MEMORY_HEAP_DEVICE_LOCAL_BIT}, {24 * GIBI, 0}, {214 * MEBI, 1}},
          .types = {{0, 1}, {LOCAL, 0}, {MAPPED, 1}, {CACHED, 1}, {LOCAL | MAPPED, 2}},
-         .tells_faults = true},
+         .tells_faults = true,
+         .has_memory_priority = true},
         {.name = "amd",
          .device = "record of a discrete AMD",
          .type = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU,
@@ -77,7 +79,8 @@ inline std::vector<Record> made_records()
                    {MAPPED, 2},
                    {LOCAL | MAPPED, 1},
                    {CACHED, 2},
-                   {CACHED | UNCACHED, 2}}},
+                   {CACHED | UNCACHED, 2}},
+         .has_memory_priority = true},
         {.name = "apu",
          .device = "record of an AMD APU",
          .type = VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU,

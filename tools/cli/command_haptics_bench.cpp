@@ -155,6 +155,7 @@ Json run_servo(const std::vector<uint8_t>& scene, double seconds, LongWork& work
     return {{"ticks", state.ticks},
             {"late", state.late_ticks},
             {"is_realtime", servo->is_realtime()},
+            {"keeps_memory", servo->keeps_memory()},
             {"work_us", histogram(state.duration)},
             {"lateness_us", histogram(state.lateness)}};
 }
@@ -192,7 +193,8 @@ void run_bench(const BenchCommandOptions& options)
                                      one["mode"].get<std::string>(), ": p50 ", one["tick_us"]["p50"], ", p99 ",
                                      one["tick_us"]["p99"], ", most ", one["tick_us"]["max"], " us a tick"));
     say(options.common, sentence("servo on the clock: ", servo["ticks"], " ticks, ", servo["late"], " late, ",
-                                 servo["is_realtime"].get<bool>() ? "SCHED_FIFO" : "no realtime scheduling"));
+                                 servo["is_realtime"].get<bool>() ? "SCHED_FIFO" : "no realtime scheduling", ", ",
+                                 servo["keeps_memory"].get<bool>() ? "memory kept" : "memory not kept"));
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ struct Worked {
     View view{renderer, {}};
 
     Worked(const glm::uvec2& pixels, Paging paging, uint64_t device_bytes = 256 * MIB)
-        : renderer({.device = {"", false}, .budget = {device_bytes, 0}, .threads = 1})
+        : renderer({.device = {}, .budget = {device_bytes, 0}, .threads = 1})
     {
         session.transfer_function = TransferFunction(
             {{90.0, glm::dvec3(0.8, 0.3, 0.1), 0.0}, {140.0, glm::dvec3(0.9, 0.7, 0.3), 0.3}, {255.0, WHITE, 0.6}});
@@ -227,7 +227,7 @@ TEST_CASE("a picture that nobody times makes no query and reads none")
 {
     const auto queries_of = [](bool timestamps, bool statistics) {
         std::map<std::string, int64_t> calls = calls_in([&] {
-            Renderer renderer({.device = {"", false}, .budget = {256 * MIB, 0}, .threads = 1});
+            Renderer renderer({.device = {}, .budget = {256 * MIB, 0}, .threads = 1});
             const std::shared_ptr<const VolumeSource> source =
                 open_procedural({.kind = "tubes", .size = {64, 64, 64}, .seed = 3});
             Session session;

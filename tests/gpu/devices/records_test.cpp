@@ -1,11 +1,6 @@
 // The engine on devices with other limits (tests/layers/records.h): views wider than 3-D images, and automatic budgets.
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <tuple>
-
-#include <unistd.h>
 
 #include <doctest/doctest.h>
 
@@ -14,41 +9,12 @@
 #include "engine/live/annotator.h"
 #include "engine/live/view.h"
 #include "engine/picture/picture_job.h"
-#include "tests/support/gpu.h"
+#include "tests/gpu/devices/on_record.h"
 
 using namespace shvr;
 using namespace shvr::test;
 
 namespace {
-
-/// A device of the record; it must not be asked for what it does not have.
-class On {
-public:
-    explicit On(const char* record)
-        : log_(std::filesystem::temp_directory_path() / sentence("shvr-limits-", getpid(), "-", record))
-    {
-        setenv("VK_INSTANCE_LAYERS", "VK_LAYER_SHVR_limits", 1);
-        setenv("SHVR_LIMITS", record, 1);
-        setenv("SHVR_LIMITS_LOG", log_.c_str(), 1);
-        renderer_.emplace(Renderer::Options{.device = {.device = "", .validation = true}, .threads = 1});
-    }
-    On(const On&) = delete;
-    ~On()
-    {
-        for (const std::string& message : renderer_->device().take_validation_messages()) FAIL_CHECK(message);
-        renderer_.reset();
-        unsetenv("VK_INSTANCE_LAYERS");
-        std::ifstream log(log_);
-        for (std::string line; std::getline(log, line);) FAIL_CHECK(line);
-        std::filesystem::remove(log_);
-    }
-    Renderer* operator->() { return &*renderer_; }
-    Renderer& operator*() { return *renderer_; }
-
-private:
-    std::filesystem::path log_;
-    std::optional<Renderer> renderer_;
-};
 
 constexpr VolumeStatistics BYTES{.minimum = 0.0, .maximum = 255.0};
 constexpr uint64_t MIB = uint64_t{1} << 20;
@@ -173,7 +139,7 @@ TEST_CASE("a GPU computes the light of many bricks at once, to the bits of a few
         return picture.image;
     };
     int few = 0, many = 0;
-    Renderer plain({.device = {"", true}, .threads = 1});
+    Renderer plain({.device = {.validation = true}, .threads = 1});
     const ImageF expected = drawn(plain, few);
     On device("nvidia");
     CHECK(different_bits(drawn(*device, many), expected) == 0);
@@ -182,70 +148,6 @@ TEST_CASE("a GPU computes the light of many bricks at once, to the bits of a few
     // Paged bricks, too, may take more of it than of a CPU, whose memory is everybody's.
     CHECK(Scene::most_atlas_bytes(plain.device().traits(), false) <= 2048 * MIB);
     CHECK(Scene::most_atlas_bytes(device->device().traits(), true) > 2048 * MIB);
-}
-
-TEST_CASE("paged bricks fill more images than one, to the bits of bricks in one")
-{
-    Session session = plain_session({{0.0, RED, 0.002}, {255.0, BLUE, 0.01}}, {40, 30});  // rays come by all bricks
-    session.light.shaded = true;
-    session.render.detail = 0.0;
-    session.render.paging = Paging::always;
-    // 512 bricks, and coarser ones; the images of these devices hold 343 and 320.
-    const std::shared_ptr<const VolumeSource> source =
-        open_procedural({.kind = "tubes", .size = {250, 250, 250}, .seed = 5});
-    const Camera camera = camera_looking("right", source->info());
-    const PaintOp op{.brush = Brush::fill,
-                     .group = 3,
-                     .threshold = 60.0,
-                     .radius_voxels = 30.0,
-                     .path = {{70, 60, 60}, {180, 170, 200}}};
-    struct Drawn {
-        ImageF plain, painted, lit;
-        std::array<int64_t, 256> voxels{};
-    };
-    const auto drawn = [&](Renderer& renderer, bool is_stacked) {
-        renderer.load(source, BYTES, session.render);
-        Drawn made{.plain = renderer.render(session, camera).image, .painted = {}, .lit = {}};
-        const DeviceVolume::Counts counts = renderer.volume().counts().value();
-        CHECK(counts.resident > 512);
-        CHECK(counts.evictions == 0);
-        FrameGraph graph;
-        CHECK(renderer.volume().atlas(graph).more_atlases.empty() != is_stacked);
-        Session lit = session;
-        lit.light.occlusion = {.strength = 0.9, .radius = 6.0, .rays = 8};
-        const Picture picture = renderer.render(lit, camera);
-        for (const std::string& warning : picture.warnings) MESSAGE(warning);
-        if (picture.warnings.empty()) made.lit = picture.image;
-        Annotator annotator(renderer);
-        annotator.paint(op);
-        made.voxels = annotator.document().mask.voxels_by_group();
-        made.painted = renderer.render(session, camera).image;
-        return made;
-    };
-    for (const auto& [record, sampling] :
-         {std::pair{"minimum", Sampling::exact}, {"filters", Sampling::exact}, {"filters", Sampling::hardware}}) {
-        CAPTURE(std::string(record));
-        CAPTURE(int(sampling));
-        session.render.sampling = sampling;
-        Renderer plain({.device = {"", true}, .threads = 1});
-        const Drawn expected = drawn(plain, false);
-        CHECK(expected.voxels[3] > 1000);
-        CHECK(!expected.lit.rgba.empty());
-        On device(record);
-        const Drawn seen = drawn(*device, true);
-        // A filter is asked for other places of the texture.
-        const auto is_same = [&](const ImageF& a, const ImageF& b) {
-            return sampling == Sampling::exact ? different_bits(a, b) == 0
-                                               : compare_pixels(to_image8(a), to_image8(b)).max_abs <= 1.0;
-        };
-        CHECK(is_same(seen.plain, expected.plain));
-        CHECK(is_same(seen.painted, expected.painted));
-        CHECK(seen.voxels == expected.voxels);
-        CHECK(different_bits(seen.painted, seen.plain) > 0);
-        // The light's images are too large for the first device, which says so.
-        CHECK(seen.lit.rgba.empty() == (std::string(record) == "minimum"));
-        if (!seen.lit.rgba.empty()) CHECK(is_same(seen.lit, expected.lit));
-    }
 }
 
 TEST_CASE("a GPU unpacks bricks by kernels, all of a batch at once, to the bits of copies")
@@ -265,7 +167,7 @@ TEST_CASE("a GPU unpacks bricks by kernels, all of a batch at once, to the bits 
                 renderer.load(source, BYTES, session.render);
                 return renderer.render(session, camera).image;
             };
-            Renderer plain({.device = {"", true}, .threads = 1});
+            Renderer plain({.device = {.validation = true}, .threads = 1});
             On device("nvidia");
             // The place in the texture that a filter is asked for differs with its size.
             const ImageF seen = drawn(*device), expected = drawn(plain);
@@ -297,7 +199,7 @@ TEST_CASE("a GPU draws the next part of a picture while one is taken, to the bit
         return image;
     };
     std::vector<double> one, two;
-    Renderer plain({.device = {"", true}, .threads = 1});
+    Renderer plain({.device = {.validation = true}, .threads = 1});
     const ImageF expected = drawn(plain, one);
     On device("nvidia");
     CHECK(different_bits(drawn(*device, two), expected) == 0);
@@ -339,6 +241,25 @@ TEST_CASE("paint is drawn as long as it fits, though there is no room for more o
     DeviceMask on_device(device->executor(), device->memory(), false);
     CHECK_THROWS_AS(on_device.update(mask, mask.painted_bricks()), gpu::MemoryError);
     CHECK(on_device.is_stale());
+}
+
+TEST_CASE("where memory has priorities, all has one, and what rays look up has a higher one than pictures")
+{
+    // The layer says so of memory that has none there, and of any elsewhere.
+    for (const auto& [record, has] : {std::pair{"nvidia", true}, {"amd", true}, {"intel", false}}) {
+        CAPTURE(std::string(record));
+        On device(record);
+        CHECK(device->device().traits().has_memory_priority == has);
+        for (const gpu::Placement placement : {gpu::Placement::device, gpu::Placement::values, gpu::Placement::upload})
+            for (const uint64_t bytes : {uint64_t{1000}, MIB})  // with others, and alone
+                static_cast<void>(device->memory().create("some", buffer_desc(bytes), placement));
+        static_cast<void>(device->memory().create("voxels", image_desc(Format::r32_uint, {16, 16, 16})));
+    }
+    using gpu::memory_priority, gpu::Placement;
+    const float of_picture = memory_priority(picture_desc(Format::rgba8_unorm, {64, 64}), Placement::device);
+    CHECK(memory_priority(image_desc(Format::r32_uint, {64, 64, 1}), Placement::device) > of_picture);
+    CHECK(memory_priority(buffer_desc(64), Placement::values) > of_picture);
+    CHECK(memory_priority(buffer_desc(64), Placement::upload) <= of_picture);
 }
 
 TEST_CASE("what is larger than the device allows is refused in words, and can be asked before")

@@ -70,7 +70,7 @@ void check_valid(Renderer& renderer)
 
 TEST_CASE("a window that grows beyond the memory for sharp pictures shows coarse ones, and says so once")
 {
-    Renderer renderer({.device = {"", true}, .budget = {40 * MIB, 0}, .threads = 1});
+    Renderer renderer({.device = {.validation = true}, .budget = {40 * MIB, 0}, .threads = 1});
     Shown shown({300, 200});
     renderer.load(shown.source, BYTES, shown.session.render);
     View view(renderer, {});
@@ -102,7 +102,7 @@ TEST_CASE("a window that grows beyond the memory for sharp pictures shows coarse
 
 TEST_CASE("a window that no picture has memory for fails in words each time, and shows the next one that has")
 {
-    Renderer renderer({.device = {"", true}, .budget = {24 * MIB, 0}, .threads = 1});
+    Renderer renderer({.device = {.validation = true}, .budget = {24 * MIB, 0}, .threads = 1});
     Shown shown({2500, 2400});
     renderer.load(shown.source, BYTES, shown.session.render);
     View view(renderer, {});
@@ -128,7 +128,7 @@ TEST_CASE("a window that no picture has memory for fails in words each time, and
 TEST_CASE("paint that there was no memory for is shown once there is")
 {
     Shown shown({120, 90});
-    Renderer renderer({.device = {"", true}, .budget = {48 * MIB, 0}, .threads = 1});
+    Renderer renderer({.device = {.validation = true}, .budget = {48 * MIB, 0}, .threads = 1});
     renderer.load(shown.source, BYTES, shown.session.render);
     const auto paint = [&](int64_t brick) {
         shown.paint(brick);
@@ -169,7 +169,7 @@ TEST_CASE("whichever submission of a view fails, it comes to rest on the same pi
     setenv("SHVR_FAULTS_LOG", log.c_str(), 1);
     for (const Paging paging : {Paging::never, Paging::always}) {
         CAPTURE(int(paging));
-        Renderer renderer({.device = {"", true}, .budget = {256 * MIB, 0}, .threads = 1});
+        Renderer renderer({.device = {.validation = true}, .budget = {256 * MIB, 0}, .threads = 1});
         Shown shown({96, 64});
         shown.session.render.paging = paging;
         shown.session.light.occlusion = {.strength = 0.8, .radius = 6.0, .rays = 8, .automatic = true};
