@@ -351,7 +351,7 @@ void Device::create_device(bool presents)
              ": R16_UNORM storage images cannot be read; expected a driver that can read them");
     if (const auto why = why_too_limited(what_it_has(physical_, traits_))) fail("device ", traits_.name, ": ", *why);
 
-    // Every device has it. Reads beside an image are 0: pair_at(-1) of density_exact.glsl at the atlas's edge, whose
+    // Every device has it. Reads beside an image are 0: word_at(-1) of density_exact.glsl at the atlas's edge, whose
     // result is not used, would be undefined without.
     VkPhysicalDeviceVulkan13Features want13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
                                             .robustImageAccess = VK_TRUE,
