@@ -1,6 +1,6 @@
-// Puts bricks into their slots: a group for each slice of a brick's codes; the first ones bring the cells as well.
+// Puts bricks into their places: a group for each slice of a brick's codes; the first ones bring the cells as well.
 // Copies would do the same, but some devices run a dispatch for each slice of each.
-// FILTERED: the atlas is the one for the device's filter.
+// FILTERED: the atlas is the one for the device's filter. Else codes are staged as they lie in it.
 // variants: FILTERED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -17,21 +17,27 @@ layout(binding = 2, r32ui) uniform writeonly uimage3D atlas;
 #endif
 layout(binding = 3, r32ui) uniform writeonly uimage3D cell_ranges;
 
-const uint PAIRS = BRICK_TEXELS / 2u;
+#ifdef FILTERED
+const uint CODE_BYTES = 2u;
+#else
+layout(constant_id = 0) const uint CODE_BYTES = 2u;   // library/atlas.glsl
+#endif
 
 void main()
 {
     const BrickUnpackJob job = jobs.list[gl_GlobalInvocationID.z];
     const uint z = gl_GlobalInvocationID.y;
-    for (uint i = gl_LocalInvocationID.x; i < PAIRS * BRICK_TEXELS; i += UNPACK_THREADS) {
-        const uvec2 at = uvec2(i % PAIRS, i / PAIRS);
-        const uint pair = staged.words[job.codes + i + PAIRS * BRICK_TEXELS * z];
+    const uint codes_a_word = 4u / CODE_BYTES, width = job.extent.x / codes_a_word, words = width * job.extent.y;
+    const uint end = z < job.extent.z ? words : 0u;
+    for (uint i = gl_LocalInvocationID.x; i < end; i += UNPACK_THREADS) {
+        const uvec2 at = uvec2(i % width, i / width);
+        const uint word = staged.words[job.codes + i + words * z];
 #ifdef FILTERED
-        const ivec3 texel = ivec3(job.texel + uvec3(2u * at.x, at.y, z));
-        imageStore(atlas, texel, vec4(float(pair & 0xffffu) / 65535.0));
-        imageStore(atlas, texel + ivec3(1, 0, 0), vec4(float(pair >> 16) / 65535.0));
+        const ivec3 texel = ivec3(job.code + uvec3(2u * at.x, at.y, z));
+        imageStore(atlas, texel, vec4(float(word & 0xffffu) / 65535.0));
+        imageStore(atlas, texel + ivec3(1, 0, 0), vec4(float(word >> 16) / 65535.0));
 #else
-        imageStore(atlas, ivec3(job.texel / uvec3(2u, 1u, 1u) + uvec3(at, z)), uvec4(pair));
+        imageStore(atlas, ivec3(job.code / uvec3(codes_a_word, 1u, 1u) + uvec3(at, z)), uvec4(word));
 #endif
     }
     if (z >= BRICK_CELLS) return;

@@ -8,10 +8,11 @@ SHARED_BEGIN
 SHARED_CONST uint UNPACK_THREADS = 64u;  // for each slice of a brick
 
 struct BrickUnpackJob {
-    uvec3 texel;  ///< the first code of its slot, apron included
-    uint codes;   ///< the first word of its codes, two in a word
-    uvec3 cell;   ///< its first cell
-    uint ranges;  ///< the first word of its cells' ranges
+    uvec3 code;    ///< the place of its first code
+    uint codes;    ///< the first staged word of its codes
+    uvec3 extent;  ///< in codes
+    uvec3 cell;    ///< the place of its first cell
+    uint ranges;   ///< the first word of its cells' ranges
 };
 
 SHARED_END

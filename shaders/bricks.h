@@ -1,8 +1,9 @@
 // Bricks, atlas and page table: the address arithmetic that kernels and C++ share.
 //
-// A brick holds 32^3 voxels and an apron of one voxel on each side, so that trilinear filtering, and central
-// differences of +-0.5 voxel, never need a second brick. The atlas is one 3-D texture of slots; the page table maps a
-// brick to its slot; slot 0 is never drawn from and means "not on the device".
+// A brick holds 32^3 voxels. Paged ones lie in slots of the atlas, a 3-D texture, with an apron of one voxel on each
+// side, so that trilinear filtering, and central differences of +-0.5 voxel, never need a second brick. Those of a
+// resident volume lie side by side; a border of one voxel repeats the outermost ones, but for those along x, which who
+// reads repeats: rows stay as long as devices like them. Slot 0 never holds a brick and means "not on the device".
 #ifndef SHVR_BRICKS_H
 #define SHVR_BRICKS_H
 #include "shared.h"
@@ -35,10 +36,23 @@ SHARED_FUNCTION uvec3 unpack_slot(uint packed_slot)
     return uvec3(packed_slot & 0xffu, packed_slot >> 8u & 0xffu, packed_slot >> 16u & 0xffu);
 }
 
-/// First texel (apron included) of a slot.
+/// First texel (apron included) of a slot in an image of BRICK_TEXELS a slot.
 SHARED_FUNCTION uvec3 slot_origin(uint packed_slot)
 {
     return BRICK_TEXELS * unpack_slot(packed_slot);
+}
+
+/// Codes of a slot of the atlas along each axis, aprons included, where a code takes so many bytes: rows of a slot are
+/// whole words.
+SHARED_FUNCTION uvec3 slot_codes(uint code_bytes)
+{
+    return uvec3(code_bytes == 1u ? 36u : BRICK_TEXELS, BRICK_TEXELS, BRICK_TEXELS);
+}
+
+/// Codes around a volume whose bricks lie side by side, on each side.
+SHARED_FUNCTION uvec3 code_border()
+{
+    return uvec3(0u, 1u, 1u);
 }
 
 /// First voxel of a brick of the mask in its atlas, whose bricks have no aprons.

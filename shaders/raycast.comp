@@ -202,12 +202,12 @@ vec4 painted(const RaycastParams params, vec3 position, float part, vec4 look)
 }
 #endif
 
-// The density at a point at most half a voxel outside the brick whose first texel is at `slot`.
-float value_near(vec3 in_brick, ivec3 slot)
+// The density at a point at most half a voxel outside the brick whose first voxel is at `first`.
+float value_near(vec3 in_brick, ivec3 first)
 {
     const vec3 held = clamp(in_brick, -1.0, float(BRICK_SIZE));   // its aprons included
     const vec3 corner = min(floor(held), float(BRICK_SIZE) - 1.0);
-    return value_of(density_at(ivec3(corner) + slot + int(BRICK_APRON), held - corner));
+    return value_of(density_at(ivec3(corner) + first, held - corner));
 }
 
 void note_sample(const Place place, inout Work work)
@@ -231,6 +231,7 @@ struct Texels {
     ivec3 corner;
     vec3 fraction;   // between the corner and the next texels
     ivec3 to_atlas;
+    uint slot;
 };
 
 // Cell and fraction come from the global position, and only the integer part is moved into the brick: a bricked volume
@@ -241,16 +242,20 @@ Texels texels_at(vec3 position, const Place place)
 #ifdef PAGED
     texels.lattice = position * uintBitsToFloat(127u - place.level << 23) - 0.5;   // times 2^-level, exactly
     texels.brick = uvec3(position) >> place.level + 5u;
-    const uint slot = place.distance > 0u || place.is_missing ? NO_SLOT : place.slot;
+    texels.slot = place.distance > 0u || place.is_missing ? NO_SLOT : place.slot;
 #else
     texels.lattice = position - 0.5;
     texels.brick = uvec3(position) / BRICK_SIZE;
-    const uint slot = place.slot;
+    texels.slot = place.slot;
 #endif
     const vec3 corner = floor(texels.lattice);
     texels.corner = ivec3(corner);
     texels.fraction = texels.lattice - corner;
-    texels.to_atlas = ivec3(slot_origin(slot)) - ivec3(texels.brick * BRICK_SIZE) + int(BRICK_APRON);
+#ifdef PAGED
+    texels.to_atlas = place_in_slot(texels.slot) - ivec3(texels.brick * BRICK_SIZE);
+#else
+    texels.to_atlas = place_of_first();
+#endif
     return texels;
 }
 
@@ -268,8 +273,8 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float
 #endif
         const vec3 in_brick = texels.lattice - vec3(texels.brick * BRICK_SIZE);
         const vec3 half_step = 0.5 * (part * params.step) * per_voxel * ray.direction;
-        const ivec3 slot = ivec3(slot_origin(place.slot));
-        look = classify_step(params, value_near(in_brick - half_step, slot), value_near(in_brick + half_step, slot),
+        const ivec3 first = texels.to_atlas + ivec3(texels.brick * BRICK_SIZE);
+        look = classify_step(params, value_near(in_brick - half_step, first), value_near(in_brick + half_step, first),
                              part);
     } else {
         look = SLICE != 0u ? slice_look(params, value_of(density)) : classify(params, value_of(density), part);
@@ -285,7 +290,9 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float
 #else
         const uvec3 last = uvec3(params.position_limit);
 #endif
-        ambient *= ambient_share(texels.lattice, texels.to_atlas, vec3(last));
+        const ivec3 to_values =
+            ivec3(slot_origin(texels.slot)) - ivec3(texels.brick * BRICK_SIZE) + int(BRICK_APRON);
+        ambient *= ambient_share(texels.lattice, to_values, vec3(last));
 #endif
         look.rgb = shade(params, ambient, look.rgb, gradient_of(density) * params.inverse_spacing, ray.half_way);
     }

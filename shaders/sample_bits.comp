@@ -10,22 +10,24 @@
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 layout(push_constant, scalar) uniform Push { SampleBitsParams params; };
 layout(binding = 0, r32ui) uniform readonly uimage3D leap;
-layout(binding = 1, r32ui) uniform readonly uimage3D atlas;   // library/density_exact.glsl
+layout(binding = 1, r32ui) uniform readonly uimage3D atlas;
 layout(binding = 2, r32ui) uniform writeonly uimage3D sample_bits;
 
-const uint ALL = 0xffffffffu;
+#include "library/atlas.glsl"
 
-// Of five codes in a row from an even one on: which are not below what is seen, and which are not above it. Bits 0 to 4
-// and 8 to 12.
-uint sides_of_row(ivec3 texel)
+const uint ALL = 0xffffffffu;
+// Of the codes of four voxels from `x` on, where a word begins, and of the one before: which are not below what is
+// seen, and which are not above it. Bits 0 to 4 and 8 to 12. The volume's first voxel repeats.
+uint sides_of_row(int x, int y, int z)
 {
+    const int before = max(x - 1, 0), first_word = x >> WORD_SHIFT;
+    const uint words[3] = uint[3](atlas_word(ivec3(before >> WORD_SHIFT, y, z)), atlas_word(ivec3(first_word, y, z)),
+                                  CODE_BYTES == 1u ? 0u : atlas_word(ivec3(first_word + 1, y, z)));
     uint sides = 0u;
-    [[unroll]] for (int pair = 0; pair < 3; ++pair) {
-        const uint codes = imageLoad(atlas, texel + ivec3(pair, 0, 0)).x;
-        const vec2 both = vec2(codes & 0xffffu, codes >> 16);
-        const uvec2 reach = uvec2(greaterThanEqual(both, vec2(params.lower)));
-        const uvec2 within = uvec2(lessThanEqual(both, vec2(params.upper)));
-        sides |= (reach.x | reach.y << 1u | within.x << 8u | within.y << 9u) << 2u * uint(pair);
+    [[unroll]] for (int i = 0; i < 5; ++i) {
+        const uint word = i == 0 ? words[0] : CODE_BYTES == 1u || i < 3 ? words[1] : words[2];
+        const float code = float(CODE_UNIT * (word >> shift_to(i == 0 ? before : i - 1) & CODE_MASK));
+        sides |= (uint(code >= params.lower) | uint(code <= params.upper) << 8u) << i;
     }
     return sides | (sides >> 1u & 0x0f0fu);   // of the four pairs of neighbours
 }
@@ -44,15 +46,13 @@ void main()
     }
     uvec2 bits = uvec2(is_painted ? ALL : 0u);
     if (!is_empty && !is_painted) {
-        const uint slot = imageLoad(leap, ivec3(cell)).x & LEAP_SLOT_MASK;
-        // The voxel before the cell: its apron is where the brick's own texels begin.
-        const ivec3 texel = ivec3(slot_origin(slot) + CELL_SIZE * (cell % BRICK_CELLS)) >> ivec3(1, 0, 0);
+        const ivec3 first = place_of_first() + ivec3(CELL_SIZE * cell) - ivec3(0, 1, 1);
         uint plane_before[4];   // four rows of bits, of two rows of voxels each
         [[unroll]] for (int z = 0; z < 5; ++z) {
             uint plane[4];
             uint row_before = 0u;
             [[unroll]] for (int y = 0; y < 5; ++y) {
-                const uint row = sides_of_row(texel + ivec3(0, y, z));
+                const uint row = sides_of_row(first.x, first.y + y, first.z + z);
                 if (y > 0) plane[y - 1] = row | row_before;
                 row_before = row;
             }

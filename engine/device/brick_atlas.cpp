@@ -2,21 +2,22 @@
 
 namespace shvr {
 
-uint64_t BrickAtlas::slot_bytes()
+uint64_t BrickAtlas::slot_bytes(AtlasCodes codes)
 {
-    return BrickTexels::CODE_BYTES + BrickTexels::CELLS * (sizeof(uint32_t) + sizeof(uint8_t));
+    return slot_code_bytes(codes) + BrickTexels::CELLS * (sizeof(uint32_t) + sizeof(uint8_t));
 }
 
-BrickAtlas::BrickAtlas(gpu::Executor& executor, gpu::Memory& memory, const StackedLayout& layout, bool filtered)
-    : slots_(layout.all()), rows_(layout.slots.z), uploads_(executor, memory, BATCH, filtered)
+BrickAtlas::BrickAtlas(gpu::Executor& executor, gpu::Memory& memory, const StackedLayout& layout, AtlasCodes codes)
+    : slots_(layout.all()),
+      rows_(layout.slots.z),
+      slot_codes_(gpu::slot_codes(code_bytes(codes))),
+      uploads_(executor, memory, BATCH, codes)
 {
-    const glm::uvec3 texels = layout.slots * gpu::BRICK_TEXELS;
     const auto create_image = [&](const char* name, const ResourceDesc& desc) {
         return memory.create(name, desc, gpu::Placement::device, "the volume");
     };
     for (uint32_t image = 0; image < layout.images; ++image)
-        codes_.push_back(create_image("atlas", filtered ? image_desc(Format::r16_unorm, texels)
-                                                        : image_desc(Format::r32_uint, texels / glm::uvec3(2, 1, 1))));
+        codes_.push_back(create_image("atlas", atlas_desc(codes, layout.slots * slot_codes_)));
     cell_ranges_ = create_image("cell ranges", image_desc(Format::r32_uint, slots_ * gpu::BRICK_CELLS));
 }
 
@@ -29,7 +30,9 @@ void BrickAtlas::stage(uint32_t slot, const BrickTexels& texels)
 {
     const glm::uvec3 at = gpu::unpack_slot(packed(slot));
     uploads_.stage({.codes = &codes_[at.z / rows_],
-                    .texel = gpu::BRICK_TEXELS * glm::uvec3(at.x, at.y, at.z % rows_),
+                    .code = slot_codes_ * glm::uvec3(at.x, at.y, at.z % rows_),
+                    .begin = -glm::ivec3(gpu::BRICK_APRON),
+                    .end = glm::ivec3(slot_codes_ - gpu::BRICK_APRON),
                     .cells = &cell_ranges_,
                     .cell = gpu::BRICK_CELLS * at},
                    texels);

@@ -14,10 +14,10 @@ class BrickAtlas {
 public:
     static constexpr size_t BATCH = BrickUploads::BATCH;
     /// Device bytes per slot, including the leap distances of its cells.
-    static uint64_t slot_bytes();
+    static uint64_t slot_bytes(AtlasCodes codes);
 
-    /// `filtered`: in a format that the device can filter. Fails as gpu::Memory::create does.
-    BrickAtlas(gpu::Executor& executor, gpu::Memory& memory, const StackedLayout& layout, bool filtered);
+    /// Fails as gpu::Memory::create does.
+    BrickAtlas(gpu::Executor& executor, gpu::Memory& memory, const StackedLayout& layout, AtlasCodes codes);
 
     const glm::uvec3& slots() const { return slots_; }
     /// Slot 0 is never used.
@@ -39,6 +39,7 @@ public:
 private:
     glm::uvec3 slots_;
     uint32_t rows_;  ///< slots of one image along z
+    glm::uvec3 slot_codes_;
     std::vector<gpu::Storage> codes_;
     gpu::Storage cell_ranges_;
     BrickUploads uploads_;

@@ -6,17 +6,38 @@
 
 namespace shvr {
 
-BrickUploads::BrickUploads(gpu::Executor& executor, gpu::Memory& memory, uint64_t bricks, bool filtered)
+BrickUploads::BrickUploads(gpu::Executor& executor, gpu::Memory& memory, uint64_t bricks, AtlasCodes codes)
     : executor_(executor),
-      filtered_(filtered),
+      codes_(codes),
       unpacks_(!memory.traits().is_cpu),
       batch_(size_t(std::clamp<uint64_t>(bricks, 1, BATCH)))
 {
     for (Staging& staging : staging_)
-        staging.bytes =
-            memory.create("brick staging", buffer_desc(batch_ * (BrickTexels::CODE_BYTES + BrickTexels::RANGE_BYTES)),
-                          gpu::Placement::upload, "the transfer of the volume");
+        staging.bytes = memory.create("brick staging", buffer_desc(ranges_at(batch_)), gpu::Placement::upload,
+                                      "the transfer of the volume");
 }
+
+namespace {
+
+/// `Code`: uint16_t, or uint8_t for codes that are multiples of 257.
+template <class Code>
+void write_codes(const BrickTexels& texels, const glm::ivec3& begin, const glm::ivec3& end, std::byte* to)
+{
+    constexpr int APRON = gpu::BRICK_APRON, SIDE = gpu::BRICK_TEXELS;
+    std::array<Code, SIDE> row;
+    for (int z = begin.z; z < end.z; ++z)
+        for (int y = begin.y; y < end.y; ++y) {
+            const uint16_t* from = &texels.codes[size_t(SIDE * (y + APRON + SIDE * (z + APRON)))];
+            for (int x = 0; x < SIDE; ++x) row[size_t(x)] = Code(from[x] >> 8 * (2 - sizeof(Code)));
+            const int first = std::max(begin.x, -APRON), last = std::min(end.x, SIDE - APRON);
+            for (int x = begin.x; x < first; ++x, to += sizeof(Code)) std::memcpy(to, row.data(), sizeof(Code));
+            std::memcpy(to, &row[size_t(first + APRON)], size_t(last - first) * sizeof(Code));
+            to += size_t(last - first) * sizeof(Code);
+            for (int x = last; x < end.x; ++x, to += sizeof(Code)) std::memcpy(to, &row.back(), sizeof(Code));
+        }
+}
+
+}  // namespace
 
 void BrickUploads::stage(const Target& target, const BrickTexels& texels)
 {
@@ -24,9 +45,9 @@ void BrickUploads::stage(const Target& target, const BrickTexels& texels)
     Staging& staging = staging_[filling_];
     if (staging.copy) static_cast<void>(staging.copy.finish());
     std::byte* bytes = staging.bytes.mapped().data();
-    std::memcpy(bytes + targets_.size() * BrickTexels::CODE_BYTES, texels.codes.data(), BrickTexels::CODE_BYTES);
-    std::memcpy(bytes + batch_ * BrickTexels::CODE_BYTES + targets_.size() * BrickTexels::RANGE_BYTES,
-                texels.cell_ranges.data(), BrickTexels::RANGE_BYTES);
+    const auto write = codes_ == AtlasCodes::exact8 ? write_codes<uint8_t> : write_codes<uint16_t>;
+    write(texels, target.begin, target.end, bytes + codes_at(targets_.size()));
+    std::memcpy(bytes + ranges_at(targets_.size()), texels.cell_ranges.data(), BrickTexels::RANGE_BYTES);
     targets_.push_back(target);
     if (targets_.size() == batch_) flush();
 }
@@ -67,14 +88,13 @@ void for_each_image(const std::vector<BrickUploads::Target>& targets, const Imag
 
 void BrickUploads::add_copies(FrameGraph& graph, Resource staged) const
 {
-    const glm::uvec3 codes_per_texel(filtered_ ? 1 : 2, 1, 1);
+    const glm::uvec3 of_texel(codes_a_texel(codes_), 1, 1);
     for_each_image(
         targets_, [](const Target& target) { return target.codes; },
         [&](const gpu::Storage& image, const std::vector<uint32_t>& bricks) {
             std::vector<ImageRegion> regions;
             for (const uint32_t brick : bricks)
-                regions.push_back({brick * BrickTexels::CODE_BYTES, targets_[brick].texel / codes_per_texel,
-                                   glm::uvec3(gpu::BRICK_TEXELS) / codes_per_texel});
+                regions.push_back({codes_at(brick), targets_[brick].code / of_texel, extent_of(brick) / of_texel});
             static_cast<void>(graph.copy_to_image(staged, graph.import("atlas", image.import()), std::move(regions),
                                                   "upload bricks"));
         });
@@ -83,8 +103,7 @@ void BrickUploads::add_copies(FrameGraph& graph, Resource staged) const
         [&](const gpu::Storage& image, const std::vector<uint32_t>& bricks) {
             std::vector<ImageRegion> regions;
             for (const uint32_t brick : bricks)
-                regions.push_back({batch_ * BrickTexels::CODE_BYTES + brick * BrickTexels::RANGE_BYTES,
-                                   targets_[brick].cell, glm::uvec3(gpu::BRICK_CELLS)});
+                regions.push_back({ranges_at(brick), targets_[brick].cell, glm::uvec3(gpu::BRICK_CELLS)});
             static_cast<void>(graph.copy_to_image(staged, graph.import("cell ranges", image.import()),
                                                   std::move(regions), "upload cell ranges"));
         });
@@ -99,13 +118,12 @@ void BrickUploads::add_kernels(FrameGraph& graph, Resource staged) const
         [&](const gpu::Storage& image, const std::vector<uint32_t>& bricks) {
             std::vector<gpu::BrickUnpackJob> jobs;
             for (const uint32_t brick : bricks)
-                jobs.push_back(
-                    {.texel = targets_[brick].texel,
-                     .codes = uint32_t(brick * BrickTexels::CODE_BYTES / sizeof(uint32_t)),
-                     .cell = targets_[brick].cell,
-                     .ranges = uint32_t((batch_ * BrickTexels::CODE_BYTES + brick * BrickTexels::RANGE_BYTES) /
-                                        sizeof(uint32_t))});
-            cells = brick_unpack(graph, staged, graph.import("atlas", image.import()), cells, filtered_, jobs);
+                jobs.push_back({.code = targets_[brick].code,
+                                .codes = uint32_t(codes_at(brick) / sizeof(uint32_t)),
+                                .extent = extent_of(brick),
+                                .cell = targets_[brick].cell,
+                                .ranges = uint32_t(ranges_at(brick) / sizeof(uint32_t))});
+            cells = brick_unpack(graph, staged, graph.import("atlas", image.import()), codes_, cells, jobs);
         });
 }
 

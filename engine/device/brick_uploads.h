@@ -16,13 +16,15 @@ class BrickUploads {
 public:
     static constexpr size_t BATCH = 32;  ///< twice 2.5 MiB of staging
 
-    /// Of `bricks` at most in a batch. `filtered`: as VolumeBinding.
-    BrickUploads(gpu::Executor& executor, gpu::Memory& memory, uint64_t bricks, bool filtered);
+    /// Of `bricks` at most in a batch.
+    BrickUploads(gpu::Executor& executor, gpu::Memory& memory, uint64_t bricks, AtlasCodes codes);
 
     /// Where a brick goes: its codes, and the ranges of its cells. The images must outlive the copies.
     struct Target {
         const gpu::Storage* codes;
-        glm::uvec3 texel;  ///< its first code, apron included
+        glm::uvec3 code;  ///< the place of the first one
+        /// Which ones: in voxels from the brick's first. Those beyond its apron repeat the apron's.
+        glm::ivec3 begin, end;
         const gpu::Storage* cells;
         glm::uvec3 cell;
     };
@@ -39,14 +41,22 @@ public:
 
 private:
     struct Staging {
-        gpu::Storage bytes;  ///< codes of all bricks, then their ranges
+        gpu::Storage bytes;  ///< codes of all bricks, as they lie in a slot, then their ranges
         gpu::Submission copy;
     };
+    /// Where the codes and the ranges of a brick of a batch are staged.
+    uint64_t codes_at(uint64_t brick) const
+    {
+        return brick * slot_code_bytes(codes_);  // the most that go to any place
+    }
+    uint64_t ranges_at(uint64_t brick) const { return codes_at(batch_) + brick * BrickTexels::RANGE_BYTES; }
+    glm::uvec3 extent_of(uint32_t brick) const { return {targets_[brick].end - targets_[brick].begin}; }
     void add_copies(FrameGraph& graph, Resource staged) const;
     void add_kernels(FrameGraph& graph, Resource staged) const;
 
     gpu::Executor& executor_;
-    bool filtered_, unpacks_;
+    AtlasCodes codes_;
+    bool unpacks_;
     size_t batch_;
     std::array<Staging, 2> staging_;
     size_t filling_ = 0;           ///< of staging_

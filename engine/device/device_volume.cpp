@@ -70,11 +70,11 @@ glm::uvec3 atlas_layout(uint64_t slots, uint32_t brick_texels, uint32_t max_side
     return {uint32_t(x), uint32_t(y), uint32_t(z)};
 }
 
-std::optional<StackedLayout> stacked_layout(uint64_t slots, const gpu::DeviceTraits& traits)
+std::optional<StackedLayout> stacked_layout(uint64_t slots, AtlasCodes codes, const gpu::DeviceTraits& traits)
 {
     const uint32_t side = traits.limits.maxImageDimension3D;
     const uint64_t most =
-        std::min(traits.max_volume_bytes / BrickTexels::CODE_BYTES, max_atlas_slots(gpu::BRICK_TEXELS, side));
+        std::min(traits.max_volume_bytes / slot_code_bytes(codes), max_atlas_slots(gpu::BRICK_TEXELS, side));
     if (slots == 0 || most == 0) return std::nullopt;
     for (uint32_t images = 1; images <= gpu::MAX_ATLASES; ++images) {
         const uint64_t each = (slots + images - 1) / images;

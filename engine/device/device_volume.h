@@ -34,7 +34,7 @@ struct StackedLayout {
     uint64_t count() const { return uint64_t{slots.x} * slots.y * slots.z * images; }
 };
 /// At least so many slots in as few images as the device's limits allow; null where it takes too many.
-std::optional<StackedLayout> stacked_layout(uint64_t slots, const gpu::DeviceTraits& traits);
+std::optional<StackedLayout> stacked_layout(uint64_t slots, AtlasCodes codes, const gpu::DeviceTraits& traits);
 
 /// The packed address of the slot with that index, x fastest.
 uint32_t slot_at(uint32_t index, const glm::uvec3& slots);

@@ -30,18 +30,19 @@ uint64_t useful_slots(const VolumeInfo& info, int levels)
 }
 
 /// As many as fit, in as many images as that takes.
-StackedLayout layout_for(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, uint64_t bytes)
+StackedLayout layout_for(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, AtlasCodes codes,
+                         uint64_t bytes)
 {
-    const uint64_t useful = useful_slots(info, levels), most = bytes / BrickAtlas::slot_bytes();
+    const uint64_t useful = useful_slots(info, levels), most = bytes / BrickAtlas::slot_bytes(codes);
     const uint64_t least = std::min(useful, PagedVolume::MIN_SLOTS);
     // Layouts round up. One that takes fewer slots may be of more, or be there where one of more is not.
     for (uint64_t slots = std::min(useful, most); slots >= least; --slots)
-        if (const std::optional<StackedLayout> layout = stacked_layout(slots, traits))
+        if (const std::optional<StackedLayout> layout = stacked_layout(slots, codes, traits))
             if (layout->count() <= most) return *layout;
-    const std::optional<StackedLayout> smallest = stacked_layout(least, traits);
+    const std::optional<StackedLayout> smallest = stacked_layout(least, codes, traits);
     if (smallest && most >= least) return *smallest;
     fail(info.name, ": ", gpu::mebibytes(bytes), " of device memory are left for its bricks; expected at least ",
-         gpu::mebibytes(PagedVolume::MIN_SLOTS * BrickAtlas::slot_bytes()), ", as a larger --budget-device gives");
+         gpu::mebibytes(PagedVolume::MIN_SLOTS * BrickAtlas::slot_bytes(codes)), ", as a larger --budget-device gives");
 }
 
 int kept_levels(int levels)
@@ -50,21 +51,22 @@ int kept_levels(int levels)
 }
 
 /// Half of the room is for finer bricks, unless there is room for all that there are.
-void check_coarsest(const VolumeInfo& info, int levels, uint64_t slots)
+void check_coarsest(const VolumeInfo& info, int levels, AtlasCodes codes, uint64_t slots)
 {
     const int64_t bricks = brick_total(info.size, levels - 1);
     if (slots < useful_slots(info, levels) && bricks >= int64_t(slots / 2))
         fail(info.name, ": its coarsest level has ", bricks, " bricks and the device has room for ", slots,
              "; expected a coarser level, as `shvr import` makes, or --budget-device ",
-             (4 * uint64_t(bricks) * BrickAtlas::slot_bytes() >> 20) + 1);
+             (4 * uint64_t(bricks) * BrickAtlas::slot_bytes(codes) >> 20) + 1);
 }
 
 }  // namespace
 
-void PagedVolume::check_room(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, uint64_t device_bytes)
+void PagedVolume::check_room(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, AtlasCodes codes,
+                             uint64_t device_bytes)
 {
     levels = kept_levels(levels);
-    check_coarsest(info, levels, layout_for(traits, info, levels, device_bytes).count());
+    check_coarsest(info, levels, codes, layout_for(traits, info, levels, codes, device_bytes).count());
 }
 
 PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
@@ -74,8 +76,9 @@ PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shar
       source_(std::move(source)),
       options_(options),
       levels_(kept_levels(source_->levels())),
-      atlas_(executor, memory, layout_for(memory.device().traits(), source_->info(), levels_, options.device_bytes),
-             options.filtered),
+      atlas_(executor, memory,
+             layout_for(memory.device().traits(), source_->info(), levels_, options.codes, options.device_bytes),
+             options.codes),
       slots_(atlas_.slot_count(), [this](const BrickKey& key) { return need_of(key); }),
       known_(info(), levels_, window, source_),
       lister_(known_),
@@ -89,7 +92,7 @@ PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shar
 /// Loads the coarsest level now, or begins to, so that there is something to show at once, and requests the next ones.
 void PagedVolume::pin_coarse_levels()
 {
-    check_coarsest(info(), levels_, slots_.count());
+    check_coarsest(info(), levels_, options_.codes, slots_.count());
     for (int level = levels_ - 1; level >= 0; --level) {
         if (brick_total(info().size, level) > COARSE_BRICKS && level < levels_ - 1) break;
         const glm::ivec3 counts = brick_counts(size_of_level(info().size, level));
@@ -219,7 +222,7 @@ gpu::BrickLeapJob PagedVolume::job_of(const BrickKey& key, uint32_t slot) const
 VolumeBinding PagedVolume::atlas(FrameGraph& graph)
 {
     atlas_.flush();
-    VolumeBinding volume{.filtered = options_.filtered};
+    VolumeBinding volume{.codes = options_.codes, .in_slots = true};
     atlas_.import_codes(graph, volume);
     return volume;
 }
@@ -231,7 +234,8 @@ VolumeBinding PagedVolume::prepare(FrameGraph& graph, const DeviceMask& mask, co
     atlas_.flush();
     VolumeBinding volume{.cell_ranges = atlas_.import_cell_ranges(graph),
                          .brick_counts = glm::uvec3(brick_counts(info().size)),
-                         .filtered = options_.filtered};
+                         .codes = options_.codes,
+                         .in_slots = true};
     atlas_.import_codes(graph, volume);
     volume.pages = PageBinding{.directory = {},
                                .cell_leap = graph.import("cell leap", cell_leap_.import()),

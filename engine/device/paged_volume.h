@@ -34,7 +34,7 @@ public:
     static constexpr uint64_t MIN_SLOTS = 64;
 
     struct Options {
-        bool filtered = false;      ///< VolumeBinding
+        AtlasCodes codes = AtlasCodes::exact16;
         int threads = 1;            ///< loader threads
         uint64_t host_bytes = 0;    ///< of bricks kept on the host
         uint64_t device_bytes = 0;  ///< of the atlas and its tables
@@ -48,7 +48,8 @@ public:
     double loaded() const override;
 
     /// Fails where so much device memory holds too few bricks of such a volume, its coarsest level among them.
-    static void check_room(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, uint64_t device_bytes);
+    static void check_room(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, AtlasCodes codes,
+                           uint64_t device_bytes);
 
     bool get_ready(const PageView& view, const Visibility& visibility) override;
     int look(const PageView& view, const Visibility& visibility) override;

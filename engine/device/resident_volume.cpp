@@ -90,20 +90,20 @@ private:
 };
 
 ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
-                               const IntensityWindow& window, bool filtered, int threads, const Progress& progress)
+                               const IntensityWindow& window, AtlasCodes codes, int threads, const Progress& progress)
     : DeviceVolume(source->info(), window),
       executor_(executor),
       memory_(memory),
       source_(std::move(source)),
-      filtered_(filtered),
+      codes_(codes),
       brick_counts_(brick_counts(info().size))
 {
     create_images();
     const uint64_t bricks = brick_count();
-    uploads_.emplace(executor, memory, bricks, filtered);
+    uploads_.emplace(executor, memory, bricks, codes);
     build_bricks(*source_, window, threads, [&](const glm::ivec3& brick, const BrickTexels& texels) {
         slots_.push_back(slot_at(uint32_t(slots_.size()) + 1, atlas_slots_));
-        upload(texels, glm::uvec3(brick), slots_.back());
+        upload(texels, glm::uvec3(brick));
         ranges_.push_back(texels.range);
         if (slots_.size() % BrickUploads::BATCH == 0) tell(progress, double(slots_.size()) / double(bricks));
     });
@@ -111,12 +111,12 @@ ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std
 }
 
 ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
-                               const IntensityWindow& window, bool filtered, int threads, InSlices)
+                               const IntensityWindow& window, AtlasCodes codes, int threads, InSlices)
     : DeviceVolume(source->info(), window),
       executor_(executor),
       memory_(memory),
       source_(std::move(source)),
-      filtered_(filtered),
+      codes_(codes),
       brick_counts_(brick_counts(info().size))
 {
     create_images();
@@ -127,7 +127,7 @@ ResidentVolume::~ResidentVolume() = default;
 
 /// Null where no atlas has so many slots.
 std::optional<ResidentVolume::Shape> ResidentVolume::shape_of(const gpu::Memory& memory, const glm::uvec3& brick_counts,
-                                                              bool filtered)
+                                                              AtlasCodes codes)
 {
     const gpu::DeviceTraits& traits = memory.traits();
     const uint64_t bricks = uint64_t(brick_counts.x) * brick_counts.y * brick_counts.z;
@@ -135,16 +135,15 @@ std::optional<ResidentVolume::Shape> ResidentVolume::shape_of(const gpu::Memory&
     const uint32_t max_side = traits.limits.maxImageDimension3D;
     if (bricks + 1 > max_atlas_slots(gpu::BRICK_TEXELS, max_side)) return std::nullopt;
     const glm::uvec3 slots = atlas_layout(bricks + 1, gpu::BRICK_TEXELS, max_side, traits.is_cpu);
-    const glm::uvec3 codes = slots * gpu::BRICK_TEXELS, codes_per_texel(filtered ? 1 : 2, 1, 1);
     return Shape{.atlas_slots = slots,
-                 .atlas = image_desc(filtered ? Format::r16_unorm : Format::r32_uint, codes / codes_per_texel),
+                 .atlas = atlas_desc(codes, codes_side_by_side(brick_counts)),
                  .page_table = buffer_desc(bricks * sizeof(uint32_t)),
                  .cells = image_desc(Format::r32_uint, brick_counts * gpu::BRICK_CELLS)};
 }
 
-bool ResidentVolume::is_possible(const gpu::Memory& memory, const VolumeInfo& info, bool filtered)
+bool ResidentVolume::is_possible(const gpu::Memory& memory, const VolumeInfo& info, AtlasCodes codes)
 {
-    const std::optional<Shape> shape = shape_of(memory, glm::uvec3(shvr::brick_counts(info.size)), filtered);
+    const std::optional<Shape> shape = shape_of(memory, glm::uvec3(shvr::brick_counts(info.size)), codes);
     return shape && memory.can_create(shape->atlas) && memory.can_create(shape->page_table) &&
            memory.can_create(shape->cells);
 }
@@ -152,7 +151,7 @@ bool ResidentVolume::is_possible(const gpu::Memory& memory, const VolumeInfo& in
 void ResidentVolume::create_images()
 {
     cell_counts_ = brick_counts_ * gpu::BRICK_CELLS;
-    const std::optional<Shape> shape = shape_of(memory_, brick_counts_, filtered_);
+    const std::optional<Shape> shape = shape_of(memory_, brick_counts_, codes_);
     if (!shape)
         fail(info().name, ": the volume has ", brick_count(), " bricks, more than an image of the device holds; ",
              "expected render.paging automatic");
@@ -165,15 +164,23 @@ void ResidentVolume::create_images()
     cell_ranges_ = create("cell ranges", shape->cells);
     leap_ = create("leap grid", shape->cells);
     const ResourceDesc bits = image_desc(Format::r32_uint, shape->cells.texels * glm::uvec3(1, 1, 2));
-    if (!filtered_ && memory_.can_create(bits)) sample_bits_ = create("sample bits", bits);
+    if (codes_ != AtlasCodes::filtered && memory_.can_create(bits)) sample_bits_ = create("sample bits", bits);
     for (gpu::Storage& scratch : leap_scratch_) scratch = create("leap scratch", shape->cells);
 }
 
-void ResidentVolume::upload(const BrickTexels& texels, const glm::uvec3& brick, uint32_t slot)
+/// A brick at a face of the volume brings the border there.
+void ResidentVolume::upload(const BrickTexels& texels, const glm::uvec3& brick)
 {
-    uploads_->stage(
-        {.codes = &atlas_, .texel = gpu::slot_origin(slot), .cells = &cell_ranges_, .cell = gpu::BRICK_CELLS * brick},
-        texels);
+    const glm::uvec3 border = gpu::code_border(), none(0);
+    const glm::uvec3 before = glm::mix(none, border, glm::equal(brick, none));
+    const glm::uvec3 behind = glm::mix(none, border, glm::equal(brick + 1u, brick_counts_));
+    uploads_->stage({.codes = &atlas_,
+                     .code = border + gpu::BRICK_SIZE * brick - before,
+                     .begin = -glm::ivec3(before),
+                     .end = glm::ivec3(gpu::BRICK_SIZE + behind),
+                     .cells = &cell_ranges_,
+                     .cell = gpu::BRICK_CELLS * brick},
+                    texels);
 }
 
 /// Once all bricks are staged.
@@ -200,10 +207,10 @@ bool ResidentVolume::load_on(double seconds)
     while (builder_) {
         const Builder::Batch batch = builder_->take();
         if (batch.empty()) return false;
-        if (!uploads_) uploads_.emplace(executor_, memory_, brick_count(), filtered_);
+        if (!uploads_) uploads_.emplace(executor_, memory_, brick_count(), codes_);
         for (const Builder::Brick& brick : batch) {
             slots_.push_back(slot_at(uint32_t(slots_.size()) + 1, atlas_slots_));
-            upload(brick.texels, brick.place, slots_.back());
+            upload(brick.texels, brick.place);
             ranges_.push_back(brick.texels.range);
         }
         if (slots_.size() == brick_count()) {
@@ -221,12 +228,12 @@ double ResidentVolume::loaded() const
     return builder_ ? double(slots_.size()) / double(brick_count()) : 1.0;
 }
 
-uint64_t ResidentVolume::bytes_for(const VolumeInfo& info)
+uint64_t ResidentVolume::bytes_for(const VolumeInfo& info, AtlasCodes codes)
 {
-    const glm::i64vec3 counts(brick_counts(info.size));
+    const glm::u64vec3 counts(brick_counts(info.size)), of_codes(codes_side_by_side(glm::uvec3(counts)));
     constexpr uint64_t LEAP_IMAGES = 5;  // the grid, its two scratch images, and sample bits, which take two
-    return uint64_t(counts.x * counts.y * counts.z) *
-           (BrickTexels::CODE_BYTES + BrickTexels::RANGE_BYTES * (1 + LEAP_IMAGES) + sizeof(uint32_t));
+    return of_codes.x * of_codes.y * of_codes.z * code_bytes(codes) +
+           counts.x * counts.y * counts.z * (BrickTexels::RANGE_BYTES * (1 + LEAP_IMAGES) + sizeof(uint32_t));
 }
 
 std::optional<RegionBricks> ResidentVolume::region(const VoxelBox& voxels, bool /*wait*/)
@@ -341,14 +348,14 @@ void ResidentVolume::renew_bricks(std::span<const BrickKey> keys)
         uploads_.reset();
     }
     if (keys.empty()) return;
-    if (!uploads_) uploads_.emplace(executor_, memory_, keys.size(), filtered_);
+    if (!uploads_) uploads_.emplace(executor_, memory_, keys.size(), codes_);
     BrickMaker maker(*source_, window());
     const auto texels = std::make_unique<BrickTexels>();
     for (const BrickKey& key : keys) {
         const glm::uvec3 brick(key.brick);
         const uint32_t index = gpu::grid_index(brick, brick_counts_);
         maker.make(key, *texels);
-        upload(*texels, brick, slot_at(index + 1, atlas_slots_));
+        upload(*texels, brick);
         ranges_[index] = texels->range;
     }
     uploads_->flush();
@@ -373,7 +380,7 @@ VolumeBinding ResidentVolume::import(FrameGraph& graph) const
                                : std::nullopt,
             .brick_counts = brick_counts_,
             .cell_counts = cell_counts_,
-            .filtered = filtered_};
+            .codes = codes_};
 }
 
 }  // namespace shvr

@@ -1,7 +1,7 @@
 #pragma once
-// A volume with all of its bricks on the device: the atlas, the page table, the value range of every cell and the leap
-// grid, which is updated when visibility or paint changes. A volume that does not fit the device budget is refused with
-// a message before any brick is read.
+// A volume with all of its bricks on the device, side by side in one image; the value range of every cell; and the leap
+// grid, which is updated when visibility or paint changes. Bricks have slots, as paged ones have, for their ambient
+// light. A volume that does not fit the device budget is refused with a message before any brick is read.
 //
 // One thread, the one that owns the executor.
 
@@ -13,21 +13,21 @@ namespace shvr {
 
 class ResidentVolume final : public DeviceVolume {
 public:
-    /// Reads, encodes and uploads every brick, on `threads` workers. `filtered` chooses the atlas (VolumeBinding).
+    /// Reads, encodes and uploads every brick, on `threads` workers.
     ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
-                   const IntensityWindow& window, bool filtered, int threads, const Progress& progress = {});
+                   const IntensityWindow& window, AtlasCodes codes, int threads, const Progress& progress = {});
     /// Begins to, for `load_on`: bricks are read and encoded on threads of their own.
     struct InSlices {};
     ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
-                   const IntensityWindow& window, bool filtered, int threads, InSlices);
+                   const IntensityWindow& window, AtlasCodes codes, int threads, InSlices);
     ~ResidentVolume() override;
     bool load_on(double seconds) override;
     double loaded() const override;
 
     /// Device memory that such a volume takes, cells and leap grid included.
-    static uint64_t bytes_for(const VolumeInfo& info);
+    static uint64_t bytes_for(const VolumeInfo& info, AtlasCodes codes);
     /// Whether the device has such large images and buffers, however much memory is free.
-    static bool is_possible(const gpu::Memory& memory, const VolumeInfo& info, bool filtered);
+    static bool is_possible(const gpu::Memory& memory, const VolumeInfo& info, AtlasCodes codes);
 
     uint64_t brick_count() const;
     /// Handles for a new frame graph.
@@ -80,17 +80,17 @@ private:
         glm::uvec3 atlas_slots;
         ResourceDesc atlas, page_table, cells;  ///< the last one of cell ranges, leap grid and scratch
     };
-    static std::optional<Shape> shape_of(const gpu::Memory& memory, const glm::uvec3& brick_counts, bool filtered);
+    static std::optional<Shape> shape_of(const gpu::Memory& memory, const glm::uvec3& brick_counts, AtlasCodes codes);
     void create_images();
     void upload_page_table();
-    void upload(const BrickTexels& texels, const glm::uvec3& brick, uint32_t slot);
+    void upload(const BrickTexels& texels, const glm::uvec3& brick);
     void renew_bricks(std::span<const BrickKey> keys);
     LeapGridInput leap_input(const std::optional<MaskBinding>& painted) const;
 
     gpu::Executor& executor_;
     gpu::Memory& memory_;
     std::shared_ptr<const VolumeSource> source_;
-    bool filtered_;
+    AtlasCodes codes_;
     glm::uvec3 brick_counts_{1}, cell_counts_{1}, atlas_slots_{1};
     gpu::Storage atlas_, page_table_, cell_ranges_, leap_, sample_bits_;
     std::array<gpu::Storage, 2> leap_scratch_;

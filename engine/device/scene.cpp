@@ -45,6 +45,11 @@ bool filters(const gpu::DeviceTraits& traits, Sampling sampling)
     return sampling == Sampling::hardware || (sampling == Sampling::automatic && !traits.is_cpu && traits.linear_r16);
 }
 
+AtlasCodes codes_of(const gpu::Memory& memory, const VolumeSource& source, const Scene::Options& options)
+{
+    return Scene::codes_for(memory.traits(), source.info().type, options.sampling);
+}
+
 uint64_t bytes_for_pictures(const gpu::Memory& memory)
 {
     return std::max(MIN_PICTURE_BYTES, memory.device_bytes_left() / 16 * PICTURE_SIXTEENTHS);
@@ -56,14 +61,13 @@ uint64_t scratch_bytes(const gpu::Memory& memory, const Scene::Options& options)
     return options.with_occlusion ? Occlusion::scratch_bytes(memory.traits(), memory.device_budget()) : 0;
 }
 
-/// With ambient occlusion a brick takes less than twice as much.
 bool fits_resident(const gpu::Memory& memory, const VolumeSource& source, const Scene::Options& options,
                    uint64_t reserved_bytes)
 {
-    const uint64_t bytes = ResidentVolume::bytes_for(source.info());
+    const uint64_t bytes =
+        Scene::resident_bytes(source.info(), codes_of(memory, source, options), options.with_occlusion);
     const uint64_t beside = bytes_for_pictures(memory) + reserved_bytes + scratch_bytes(memory, options);
-    return beside <= memory.device_bytes_left() &&
-           (options.with_occlusion ? 2 * bytes : bytes) <= memory.device_bytes_left() - beside;
+    return beside <= memory.device_bytes_left() && bytes <= memory.device_bytes_left() - beside;
 }
 
 bool pages(const gpu::Memory& memory, const VolumeSource& source, const Scene::Options& options,
@@ -87,10 +91,11 @@ uint64_t budget_for(uint64_t bytes)
 }
 
 /// Device memory for the atlas of paged bricks.
-uint64_t atlas_bytes(const gpu::Memory& memory, const VolumeInfo& info, bool with_occlusion, uint64_t reserved_bytes)
+uint64_t atlas_bytes(const gpu::Memory& memory, const VolumeInfo& info, AtlasCodes codes, bool with_occlusion,
+                     uint64_t reserved_bytes)
 {
     const uint64_t budget = memory.device_budget(), left = memory.device_bytes_left();
-    const uint64_t of_slot = BrickAtlas::slot_bytes();
+    const uint64_t of_slot = BrickAtlas::slot_bytes(codes);
     const uint64_t with_light = of_slot + (with_occlusion ? Occlusion::slot_bytes() : 0);
     const auto scratch = [&](uint64_t of_budget) {
         return with_occlusion ? Occlusion::scratch_bytes(memory.traits(), of_budget) : 0;
@@ -108,7 +113,7 @@ uint64_t atlas_bytes(const gpu::Memory& memory, const VolumeInfo& info, bool wit
                      ", and ", gpu::mebibytes(left), " of the budget of ", gpu::mebibytes(budget),
                      " are left; expected at least --budget-device ", budget_for(rest + scratch(2 * rest))));
     const uint64_t fifths = with_occlusion ? PAGED_FIFTHS_WITH_OCCLUSION : PAGED_FIFTHS;
-    return std::min({Scene::most_atlas_bytes(memory.traits(), with_occlusion),
+    return std::min({Scene::most_atlas_bytes(memory.traits(), codes, with_occlusion),
                      std::max(left / 5 * fifths, fewest / with_light * of_slot), room / with_light * of_slot});
 }
 
@@ -144,15 +149,15 @@ void Scene::load(uint64_t reserved_bytes)
 {
     memory_.free_idle();
     const IntensityWindow window = window_for(source_->info().type, statistics_);
-    const bool filtered = filters(traits(), options_.sampling);
-    const bool is_paged = pages(memory_, *source_, options_, reserved_bytes) || !load_resident(window, filtered);
+    const AtlasCodes codes = codes_of(memory_, *source_, options_);
+    const bool is_paged = pages(memory_, *source_, options_, reserved_bytes) || !load_resident(window);
     mask_.emplace(executor_, memory_, is_paged);
     if (!is_paged) return;
     PagedVolume::Options paged{
-        .filtered = filtered,
+        .codes = codes,
         .threads = options_.threads,
         .host_bytes = options_.host_bytes / HOST_SHARES,
-        .device_bytes = atlas_bytes(memory_, source_->info(), options_.with_occlusion, reserved_bytes),
+        .device_bytes = atlas_bytes(memory_, source_->info(), codes, options_.with_occlusion, reserved_bytes),
         .in_slices = options_.in_slices};
     source_ = with_levels(std::move(source_), options_.host_bytes, options_.progress);
     offsets_ = std::make_shared<OffsetSource>(source_);
@@ -171,15 +176,16 @@ void Scene::load(uint64_t reserved_bytes)
 }
 
 /// False: the driver has less memory than it says, or other programs have it, and bricks can be paged instead.
-bool Scene::load_resident(const IntensityWindow& window, bool filtered)
+bool Scene::load_resident(const IntensityWindow& window)
 {
+    const AtlasCodes codes = codes_of(memory_, *source_, options_);
     offsets_ = std::make_shared<OffsetSource>(source_);
     try {
         if (options_.in_slices)
-            volume_ = std::make_unique<ResidentVolume>(executor_, memory_, offsets_, window, filtered, options_.threads,
+            volume_ = std::make_unique<ResidentVolume>(executor_, memory_, offsets_, window, codes, options_.threads,
                                                        ResidentVolume::InSlices{});
         else
-            volume_ = std::make_unique<ResidentVolume>(executor_, memory_, offsets_, window, filtered, options_.threads,
+            volume_ = std::make_unique<ResidentVolume>(executor_, memory_, offsets_, window, codes, options_.threads,
                                                        options_.progress);
         return true;
     } catch (const gpu::MemoryError&) {
@@ -218,42 +224,57 @@ uint64_t Scene::atlas_share(uint64_t device_budget, bool with_occlusion)
     return device_budget / 5 * (with_occlusion ? PAGED_FIFTHS_WITH_OCCLUSION : PAGED_FIFTHS);
 }
 
-/// In several images, but for ambient light, whose values are in one that is half as large.
-uint64_t Scene::most_atlas_bytes(const gpu::DeviceTraits& traits, bool with_occlusion)
+uint64_t Scene::resident_bytes(const VolumeInfo& info, AtlasCodes codes, bool with_occlusion)
 {
-    const uint64_t of_image = std::min(traits.max_volume_bytes / BrickTexels::CODE_BYTES,
+    // Layouts of slots round up, and devices align rows.
+    const uint64_t light = with_occlusion ? uint64_t(finest_bricks(info)) * Occlusion::slot_bytes() / 4 * 5 : 0;
+    return ResidentVolume::bytes_for(info, codes) + light;
+}
+
+AtlasCodes Scene::codes_for(const gpu::DeviceTraits& traits, VoxelType type, Sampling sampling)
+{
+    if (filters(traits, sampling)) return AtlasCodes::filtered;
+    // Their window is that of the type, whatever its values (window_for).
+    return type == VoxelType::uint8 || type == VoxelType::int8 ? AtlasCodes::exact8 : AtlasCodes::exact16;
+}
+
+/// In several images, but for ambient light, whose values are in one that is half as large.
+uint64_t Scene::most_atlas_bytes(const gpu::DeviceTraits& traits, AtlasCodes codes, bool with_occlusion)
+{
+    const uint64_t of_image = std::min(traits.max_volume_bytes / slot_code_bytes(codes),
                                        max_atlas_slots(gpu::BRICK_TEXELS, traits.limits.maxImageDimension3D));
     const uint64_t slots = of_image * (with_occlusion ? 1 : gpu::MAX_ATLASES);
-    return std::min(traits.is_cpu ? MAX_ATLAS_BYTES_OF_CPU : UINT64_MAX, slots * BrickAtlas::slot_bytes());
+    return std::min(traits.is_cpu ? MAX_ATLAS_BYTES_OF_CPU : UINT64_MAX, slots * BrickAtlas::slot_bytes(codes));
 }
 
 /// Some devices have images of 256 texels a side, or allocations of 2 GiB.
 bool Scene::can_be_resident(const gpu::Memory& memory, const VolumeSource& source, const Options& options)
 {
-    return ResidentVolume::is_possible(memory, source.info(), filters(memory.traits(), options.sampling));
+    return ResidentVolume::is_possible(memory, source.info(), codes_of(memory, source, options));
 }
 
 bool Scene::pages_alone(const gpu::Memory& memory, const VolumeSource& source, const Options& options)
 {
     if (options.paging != Paging::automatic) return options.paging == Paging::always;
-    return source.levels() > 1 || ResidentVolume::bytes_for(source.info()) > memory.device_budget() ||
+    return source.levels() > 1 ||
+           ResidentVolume::bytes_for(source.info(), codes_of(memory, source, options)) > memory.device_budget() ||
            !can_be_resident(memory, source, options);
 }
 
 bool Scene::fits_now(gpu::Memory& memory, const VolumeSource& source, const Options& options)
 {
-    static_cast<void>(filters(memory.traits(), options.sampling));
+    static_cast<void>(codes_of(memory, source, options));
     return !pages(memory, source, options) && fits_resident(memory, source, options, 0);
 }
 
 void Scene::check_sizes(gpu::Memory& memory, const VolumeSource& source, const Options& options)
 {
-    static_cast<void>(filters(memory.traits(), options.sampling));
-    const uint64_t left = memory.device_bytes_left(), bytes = ResidentVolume::bytes_for(source.info());
+    const AtlasCodes codes = codes_of(memory, source, options);
+    const uint64_t left = memory.device_bytes_left(), bytes = ResidentVolume::bytes_for(source.info(), codes);
     if (pages(memory, source, options)) {
-        const uint64_t atlas = atlas_bytes(memory, source.info(), options.with_occlusion, 0);
+        const uint64_t atlas = atlas_bytes(memory, source.info(), codes, options.with_occlusion, 0);
         const int levels = planned_levels(source, options.host_bytes);
-        PagedVolume::check_room(memory.traits(), source.info(), levels, atlas);
+        PagedVolume::check_room(memory.traits(), source.info(), levels, codes, atlas);
     } else if (!can_be_resident(memory, source, options)) {
         fail(source.info().name, ": render.paging is never, and an image of device ", memory.traits().name,
              " cannot hold all of its bricks; expected render.paging automatic");

@@ -49,7 +49,11 @@ public:
     static uint64_t bytes_to_show(const Document& document);
     /// The most that the atlas of paged bricks takes of a budget; and of a device.
     static uint64_t atlas_share(uint64_t device_budget, bool with_occlusion);
-    static uint64_t most_atlas_bytes(const gpu::DeviceTraits& traits, bool with_occlusion);
+    static uint64_t most_atlas_bytes(const gpu::DeviceTraits& traits, AtlasCodes codes, bool with_occlusion);
+    /// Device memory of a volume that is resident, with its ambient light.
+    static uint64_t resident_bytes(const VolumeInfo& info, AtlasCodes codes, bool with_occlusion);
+    /// How the device holds the codes of such voxels. Fails where it cannot sample so.
+    static AtlasCodes codes_for(const gpu::DeviceTraits& traits, VoxelType type, Sampling sampling);
     /// Whether an image of the device could hold all bricks of the source, however much memory is free.
     static bool can_be_resident(const gpu::Memory& memory, const VolumeSource& source, const Options& options);
     /// Whether such a scene would be paged, even if nothing else were on the device.
@@ -143,7 +147,7 @@ public:
 
 private:
     void load(uint64_t reserved_bytes);
-    bool load_resident(const IntensityWindow& window, bool filtered);
+    bool load_resident(const IntensityWindow& window);
     void make_room(uint64_t bytes);
     void drop_occlusion(const std::string& why);
     Occlusion::Look occlusion_look(const Look& look);

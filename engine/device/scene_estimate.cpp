@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "engine/base/error.h"
-#include "engine/device/resident_volume.h"
 #include "engine/device/scene.h"
 #include "engine/volume/pyramid_source.h"
 
@@ -25,10 +24,10 @@ std::string size_text(uint64_t bytes)
 }  // namespace
 
 SceneEstimate estimate_scene(const VolumeSource& source, Paging paging, bool with_occlusion, uint64_t device_budget,
-                             uint64_t host_budget, bool can_be_resident, uint64_t most_atlas_bytes)
+                             uint64_t host_budget, bool can_be_resident, AtlasCodes codes, uint64_t most_atlas_bytes)
 {
     SceneEstimate estimate{.device_budget = device_budget, .host_budget = host_budget};
-    const uint64_t all = ResidentVolume::bytes_for(source.info()) * (with_occlusion ? 2 : 1);
+    const uint64_t all = Scene::resident_bytes(source.info(), codes, with_occlusion);
     estimate.is_paged =
         paging == Paging::always ||
         (paging == Paging::automatic && (!can_be_resident || source.levels() > 1 || all > device_budget / 16 * 15));

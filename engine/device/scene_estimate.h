@@ -6,6 +6,7 @@
 #include <string>
 
 #include "engine/look/settings.h"
+#include "engine/passes/atlas_codes.h"
 #include "engine/volume/source.h"
 
 namespace shvr {
@@ -21,10 +22,11 @@ struct SceneEstimate {
 };
 
 /// `device_budget`, `host_budget`: of the whole program, in bytes, with nothing else loaded. `can_be_resident`: an
-/// image of the device could hold all bricks (Scene::can_be_resident). `most_atlas_bytes`: Scene::most_atlas_bytes.
+/// image of the device could hold all bricks (Scene::can_be_resident). `codes`: Scene::codes_for.
+/// `most_atlas_bytes`: Scene::most_atlas_bytes.
 /// Reads no voxels. Any thread.
 SceneEstimate estimate_scene(const VolumeSource& source, Paging paging, bool with_occlusion, uint64_t device_budget,
-                             uint64_t host_budget, bool can_be_resident, uint64_t most_atlas_bytes);
+                             uint64_t host_budget, bool can_be_resident, AtlasCodes codes, uint64_t most_atlas_bytes);
 /// "312 MiB of 4 GiB on the device, 40 MiB of 2 GiB on the host": a sentence for a dialog.
 std::string in_words(const SceneEstimate& estimate);
 

@@ -352,7 +352,7 @@ void Device::create_device(const DeviceOptions& options)
              ": R16_UNORM storage images cannot be read; expected a driver that can read them");
     if (const auto why = why_too_limited(what_it_has(physical_, traits_))) fail("device ", traits_.name, ": ", *why);
 
-    // Every device has both. Reads beside an image are 0: pair_at(-1) of density_exact.glsl at the atlas's edge, whose
+    // Every device has both. Reads beside an image are 0: word_at(-1) of density_exact.glsl at the atlas's edge, whose
     // result is not used, would be undefined without. Nothing reads or writes beside a buffer (bounds_slow_test.cpp); a
     // mistake there is a wrong pixel, and not a lost device, or paint that another buffer's bits are written into.
     VkPhysicalDeviceVulkan13Features want13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,

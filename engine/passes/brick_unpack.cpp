@@ -2,10 +2,11 @@
 
 namespace shvr {
 
-Resource brick_unpack(FrameGraph& graph, Resource staged, Resource atlas, Resource cell_ranges, bool filtered,
+Resource brick_unpack(FrameGraph& graph, Resource staged, Resource atlas, AtlasCodes codes, Resource cell_ranges,
                       std::span<const gpu::BrickUnpackJob> jobs)
 {
-    Pass pass = graph.compute("brick_unpack", {{"FILTERED", filtered}});
+    Pass pass = graph.compute("brick_unpack", {{"FILTERED", codes == AtlasCodes::filtered}});
+    if (codes != AtlasCodes::filtered) pass.constant("CODE_BYTES", code_bytes(codes));
     pass.read("staged", staged);
     pass.block("jobs", jobs);
     pass.dispatch({gpu::UNPACK_THREADS, gpu::BRICK_TEXELS, uint32_t(jobs.size())});

@@ -4,12 +4,13 @@
 #include <span>
 
 #include "engine/graph/frame_graph.h"
+#include "engine/passes/atlas_codes.h"
 #include "shaders/brick_unpack.h"
 
 namespace shvr {
 
-/// `atlas`, `cell_ranges`: as in VolumeBinding. Returns the new `cell_ranges`.
-[[nodiscard]] Resource brick_unpack(FrameGraph& graph, Resource staged, Resource atlas, Resource cell_ranges,
-                                    bool filtered, std::span<const gpu::BrickUnpackJob> jobs);
+/// `atlas`, `codes`, `cell_ranges`: as in VolumeBinding. Returns the new `cell_ranges`.
+[[nodiscard]] Resource brick_unpack(FrameGraph& graph, Resource staged, Resource atlas, AtlasCodes codes,
+                                    Resource cell_ranges, std::span<const gpu::BrickUnpackJob> jobs);
 
 }  // namespace shvr

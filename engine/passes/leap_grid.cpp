@@ -55,7 +55,7 @@ void sample_bits(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& 
     const CellBox cells{input.changed.begin, glm::min(input.changed.end + 1u, volume.cell_counts)};
     Pass pass = graph.compute("sample_bits");
     pass.read("leap", volume.leap);
-    pass.read("atlas", volume.atlas);
+    read_atlas(pass, volume);
     // A code next to what is seen counts: the ray caster's rounding may move a sample a few ulp past its voxels' codes.
     pass.push(gpu::SampleBitsParams{cells.begin, cells.end, input.params.table_lower - 1.0f,
                                     input.params.table_upper + 1.0f});

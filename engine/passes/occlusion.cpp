@@ -139,9 +139,9 @@ void gather(FrameGraph& graph, const VolumeBinding& volume, const OcclusionBindi
     for (uint32_t i = 0; i < jobs.size(); ++i)
         regions.push_back({0, of_one.texels * gpu::scratch_place(i), of_one.texels});
     scratch.near = graph.copy_to_image(zeros, scratch.near, std::move(regions), "clear occlusion scratch");
-    Pass pass = graph.compute(
-        "occlusion_gather",
-        {{"PAGED", volume.pages.has_value()}, {"FILTERED", volume.filtered}, {"MASKED", input.near.mask.has_value()}});
+    Pass pass = graph.compute("occlusion_gather", {{"PAGED", volume.pages.has_value()},
+                                                   {"FILTERED", volume.is_filtered()},
+                                                   {"MASKED", input.near.mask.has_value()}});
     gpu::OcclusionGatherParams params{.voxels = input.near.params,
                                       .cell_counts = volume.cell_counts,
                                       .reach = occlusion_reach(input.taps.radius),
@@ -153,7 +153,6 @@ void gather(FrameGraph& graph, const VolumeBinding& volume, const OcclusionBindi
     pass.block("jobs", jobs);
     pass.block("bricks_around", around);
     bind_opacities(pass, input.near);
-    if (volume.pages) pass.constant("ATLASES", atlases_of(volume));
     read_atlas(pass, volume);
     bind_leap(pass, volume);
     group_each(pass, jobs.size(), gpu::OCCLUSION_SPLIT);
@@ -171,12 +170,11 @@ void occlusion_cells(FrameGraph& graph, const VolumeBinding& volume, OcclusionBi
 {
     Pass pass = graph.compute(
         "occlusion_cells",
-        {{"PAGED", volume.pages.has_value()}, {"FILTERED", volume.filtered}, {"MASKED", input.mask.has_value()}});
+        {{"PAGED", volume.pages.has_value()}, {"FILTERED", volume.is_filtered()}, {"MASKED", input.mask.has_value()}});
     const gpu::OcclusionCellsParams& params = input.params;
     pass.block("params_block", std::span<const gpu::OcclusionCellsParams>(&params, 1));
     pass.block("jobs", jobs);
     bind_opacities(pass, input);
-    if (volume.pages) pass.constant("ATLASES", atlases_of(volume));
     read_atlas(pass, volume);
     group_each(pass, jobs.size());
     for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size)
@@ -189,7 +187,8 @@ void occlusion_bake(FrameGraph& graph, const VolumeBinding& volume, OcclusionBin
 {
     SHVR_CHECK(jobs.size() <= gpu::OCCLUSION_SLICE);
     gather(graph, volume, occlusion, scratch, input, jobs, around);
-    Pass pass = graph.compute("occlusion_bake", {{"PAGED", volume.pages.has_value()}, {"FILTERED", volume.filtered}});
+    Pass pass =
+        graph.compute("occlusion_bake", {{"PAGED", volume.pages.has_value()}, {"FILTERED", volume.is_filtered()}});
     gpu::OcclusionBakeParams params = input.params;
     params.radius = float(input.taps.radius);
     params.first = float(input.taps.first);
@@ -212,7 +211,6 @@ void occlusion_bake(FrameGraph& graph, const VolumeBinding& volume, OcclusionBin
     pass.block("jobs", jobs);
     pass.block("bricks_around", around);
     pass.block("visible_intervals", std::span<const uint32_t>(input.visible_intervals));
-    if (volume.pages) pass.constant("ATLASES", atlases_of(volume));
     read_atlas(pass, volume);
     pass.read("near", scratch.near);
     for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) pass.read(AROUND_NAMES[size], scratch.around[size]);

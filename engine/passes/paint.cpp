@@ -19,11 +19,18 @@ uint64_t word_bytes(const gpu::RegionParams& params)
     return uint64_t(words.x) * words.y * words.z * sizeof(uint32_t);
 }
 
+std::vector<std::pair<std::string, uint32_t>> constants_of_bits(const VolumeBinding& volume)
+{
+    std::vector<std::pair<std::string, uint32_t>> constants = constants_of_codes(volume, true);
+    constants.emplace_back("IN_SLOTS", volume.in_slots);
+    return constants;
+}
+
 Labelled region_bits(FrameGraph& graph, const VolumeBinding& volume, const RegionInput& input)
 {
-    Pass pass = graph.compute("region_bits", {{"FILTERED", volume.filtered}});
-    pass.constant("ATLASES", atlases_of(volume));
-    read_stacked_atlas(pass, volume);
+    Pass pass = graph.compute("region_bits", {{"FILTERED", volume.is_filtered()}});
+    for (const auto& [name, value] : constants_of_bits(volume)) pass.constant(name, value);
+    bind_stacked_atlas(pass, volume);
     pass.block("region_bricks", std::span<const uint32_t>(input.bricks.slots));
     pass.block("rows", input.rows);
     gpu::RegionParams params = input.params;
@@ -103,7 +110,7 @@ Resource region_select(FrameGraph& graph, const gpu::RegionParams& params, const
 
 void expect_brushes(FrameGraph& graph, const VolumeBinding& volume)
 {
-    graph.expect({variant_of("region_bits", {{"FILTERED", volume.filtered}}), {{"ATLASES", atlases_of(volume)}}});
+    graph.expect({variant_of("region_bits", {{"FILTERED", volume.is_filtered()}}), constants_of_bits(volume)});
     for (const char* kernel : {"region_merge", "region_mark"}) graph.expect({kernel, {}});
     for (const uint32_t keep : {gpu::KEEP_SEED, gpu::KEEP_UNMARKED}) graph.expect({"region_select", {{"KEEP", keep}}});
 }

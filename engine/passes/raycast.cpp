@@ -58,19 +58,20 @@ std::vector<std::byte> bytes_of(const RaycastOcclusion& occlusion)
 /// What decides which kernel draws, and with which constants.
 struct Choice {
     bool is_paged, is_filtered, is_masked, is_occluded, is_surfaced;
+    std::vector<std::pair<std::string, uint32_t>> of_codes;  ///< constants
     uint32_t shell = gpu::SHELL_NONE;
     bool feedback, has_sample_bits, is_shaded, picks;
     uint32_t kept = gpu::KEPT_NOTHING;
-    uint32_t atlases = 1;
 };
 
 Choice choice_of(const VolumeBinding& volume, const RaycastInput& input, bool is_shelled, bool keeps_rays)
 {
     return {.is_paged = volume.pages.has_value(),
-            .is_filtered = volume.filtered,
+            .is_filtered = volume.is_filtered(),
             .is_masked = input.mask.has_value(),
             .is_occluded = input.occlusion.has_value(),
             .is_surfaced = input.surfaces.has_value(),
+            .of_codes = constants_of_codes(volume, volume.pages.has_value()),
             .shell = is_shelled ? input.shell : gpu::SHELL_NONE,
             .feedback = volume.pages && volume.pages->feedback,
             .has_sample_bits = volume.sample_bits.has_value(),
@@ -78,8 +79,7 @@ Choice choice_of(const VolumeBinding& volume, const RaycastInput& input, bool is
             .picks = input.pick,
             .kept = input.waiting ? gpu::KEPT_ALL
                     : keeps_rays  ? gpu::KEPT_SHELL
-                                  : gpu::KEPT_NOTHING,
-            .atlases = atlases_of(volume)};
+                                  : gpu::KEPT_NOTHING};
 }
 
 KernelVariant kernel_of(const Choice& choice, const RaycastInput& input)
@@ -91,14 +91,12 @@ KernelVariant kernel_of(const Choice& choice, const RaycastInput& input)
                                                 {"OCCLUDED", choice.is_occluded},
                                                 {"SURFACED", choice.is_surfaced},
                                                 {"SHELLED", is_shelled}}),
-                         {}};
+                         choice.of_codes};
     const auto constant = [&](const char* name, uint32_t value) { kernel.second.emplace_back(name, value); };
-    if (choice.is_paged) {
+    if (choice.is_paged)
         constant("FEEDBACK", choice.feedback);
-        constant("ATLASES", choice.atlases);
-    } else if (!choice.is_filtered) {
+    else if (!choice.is_filtered)
         constant("HAS_SAMPLE_BITS", choice.has_sample_bits);
-    }
     constant("SHADED", choice.is_shaded);
     if (choice.is_shaded) constant("SHININESS_SQUARINGS", shininess_squarings(input.params.shininess));
     constant("COUNT_WORK", input.count_work);
@@ -151,10 +149,10 @@ Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastIn
         volume.pages->reached = pass.modify("reached", volume.pages->reached);
     } else {
         pass.read("leap", volume.leap);
-        if (!volume.filtered)
+        if (!volume.is_filtered())
             pass.read("sample_bits", volume.sample_bits.value_or(volume.leap));  // a stand-in is never read
     }
-    read_atlas(pass, volume);
+    bind_atlas(pass, volume);
     if (input.mask) {
         pass.read("mask", input.mask->mask);
         pass.read("mask_table", input.mask->mask_table);

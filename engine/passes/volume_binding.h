@@ -4,9 +4,11 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/graph/frame_graph.h"
+#include "engine/passes/atlas_codes.h"
 #include "shaders/bricks.h"
 
 namespace shvr {
@@ -23,7 +25,7 @@ struct PageBinding {
 };
 
 struct VolumeBinding {
-    Resource atlas;  ///< bricks with their aprons: see `filtered`
+    Resource atlas;  ///< bricks with their aprons, as `codes` says
     /// Images of the same size that are stacked upon it (shaders/library/atlas.glsl); of paged volumes.
     std::vector<Resource> more_atlases;
     Resource cell_ranges;  ///< r32ui per cell of the volume, or of every slot: minimum | maximum << 16
@@ -36,19 +38,23 @@ struct VolumeBinding {
     std::optional<PageBinding> pages;
     glm::uvec3 brick_counts{1};
     glm::uvec3 cell_counts{1};
-    /// false: r32ui, two 16-bit codes along x in one texel, for exact sampling; true: R16_UNORM for the device's
-    /// filter.
-    bool filtered = false;
+    AtlasCodes codes = AtlasCodes::exact16;
+    bool in_slots = false;  ///< paged bricks, with aprons
+
+    bool is_filtered() const { return codes == AtlasCodes::filtered; }
 };
 
-/// The constant ATLASES of kernels that know stacked images.
-inline uint32_t atlases_of(const VolumeBinding& volume)
+/// The constants of kernels that read codes (shaders/library/atlas.glsl). `is_stacked`: they know stacked images.
+inline std::vector<std::pair<std::string, uint32_t>> constants_of_codes(const VolumeBinding& volume, bool is_stacked)
 {
-    return uint32_t(1 + volume.more_atlases.size());
+    std::vector<std::pair<std::string, uint32_t>> constants;
+    if (is_stacked) constants.emplace_back("ATLASES", uint32_t(1 + volume.more_atlases.size()));
+    if (!volume.is_filtered()) constants.emplace_back("CODE_BYTES", code_bytes(volume.codes));
+    return constants;
 }
 
-/// Binds the atlas to such a kernel. Images that are not there are never read.
-inline void read_stacked_atlas(Pass& pass, const VolumeBinding& volume)
+/// Binds the atlas to a kernel that knows stacked images. Those that are not there are never read.
+inline void bind_stacked_atlas(Pass& pass, const VolumeBinding& volume)
 {
     pass.read("atlas", volume.atlas);
     for (size_t i = 0; i + 1 < gpu::MAX_ATLASES; ++i)
@@ -57,12 +63,19 @@ inline void read_stacked_atlas(Pass& pass, const VolumeBinding& volume)
 }
 
 /// Likewise to one that knows them where bricks are paged.
-inline void read_atlas(Pass& pass, const VolumeBinding& volume)
+inline void bind_atlas(Pass& pass, const VolumeBinding& volume)
 {
     if (volume.pages)
-        read_stacked_atlas(pass, volume);
+        bind_stacked_atlas(pass, volume);
     else
         pass.read("atlas", volume.atlas);
+}
+
+/// And sets its constants.
+inline void read_atlas(Pass& pass, const VolumeBinding& volume)
+{
+    for (const auto& [name, value] : constants_of_codes(volume, volume.pages.has_value())) pass.constant(name, value);
+    bind_atlas(pass, volume);
 }
 
 /// The bricks of a region of level 0, and their slots.

@@ -93,9 +93,10 @@ SceneEstimate Renderer::estimate(const VolumeSource& source, const RenderSetting
     const std::lock_guard lock(device_mutex_);
     if (!on_device_) throw DeviceLost("the graphics device was lost and could not be started again");
     const gpu::Memory& memory = on_device_->memory;
+    const AtlasCodes codes = Scene::codes_for(memory.traits(), source.info().type, settings.sampling);
     return estimate_scene(source, settings.paging, with_occlusion, memory.device_budget(), host_budget_,
-                          Scene::can_be_resident(memory, source, scene_options(settings, with_occlusion)),
-                          Scene::most_atlas_bytes(memory.traits(), with_occlusion));
+                          Scene::can_be_resident(memory, source, scene_options(settings, with_occlusion)), codes,
+                          Scene::most_atlas_bytes(memory.traits(), codes, with_occlusion));
 }
 
 Scene& Renderer::scene() const

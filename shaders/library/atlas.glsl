@@ -1,11 +1,30 @@
-// Texels of the atlas of densities, at places that slot_origin gives (bricks.h). Needs `atlas`: r32ui, two codes in a
-// texel, or FILTERED, a sampler3D of R16_UNORM codes.
+// Texels of the atlas of densities. Needs bricks.h and `atlas`: r32ui, or FILTERED, a sampler3D of R16_UNORM codes.
+// Codes have 16 bits, and two along x are in a texel of r32ui, the first one in its low half. Of volumes of bytes they
+// are multiples of 257; four are in a texel then, as CODE_BYTES says.
+//
+// Paged bricks lie in slots, those of a resident volume side by side (bricks.h).
 //
 // STACKED: where one image of the device cannot hold enough paged bricks there are several, all of the same size, one
 // upon the other along z: ATLASES of them. Those that are not there are bound to the first, and never read. A brick
 // lies in one image, with all that is read for a sample in it.
 #ifndef SHVR_ATLAS_GLSL
 #define SHVR_ATLAS_GLSL
+
+#ifdef FILTERED
+const uint CODE_BYTES = 2u;
+#else
+layout(constant_id = 15) const uint CODE_BYTES = 2u;
+const int WORD_SHIFT = CODE_BYTES == 1u ? 2 : 1;   // from a code's place along x to that of its word
+const uint CODE_BITS = 8u * CODE_BYTES;
+const uint CODE_MASK = CODE_BYTES == 1u ? 0xffu : 0xffffu;
+const uint CODE_UNIT = CODE_BYTES == 1u ? 257u : 1u;
+
+// By how much a word is shifted to have that code at its end.
+uint shift_to(int x)
+{
+    return uint(x & (1 << WORD_SHIFT) - 1) * CODE_BITS;
+}
+#endif
 
 #ifdef STACKED
 layout(constant_id = 13) const uint ATLASES = 1u;
@@ -26,6 +45,18 @@ int atlas_of(int z, int height)
 }
 #endif
 
+// The place of the first voxel of a brick in a slot.
+ivec3 place_in_slot(uint slot)
+{
+    return ivec3(slot_codes(CODE_BYTES) * unpack_slot(slot) + BRICK_APRON);
+}
+
+// The place of the first voxel of a volume whose bricks lie side by side.
+ivec3 place_of_first()
+{
+    return ivec3(code_border());
+}
+
 #ifdef FILTERED
 float atlas_texel(ivec3 at)
 {
@@ -41,7 +72,7 @@ float atlas_texel(ivec3 at)
     return texelFetch(atlas, at, 0).x;
 }
 #else
-uint atlas_pair(ivec3 at)
+uint atlas_word(ivec3 at)
 {
 #ifdef STACKED
     if (ATLASES > 1u) {
@@ -55,5 +86,15 @@ uint atlas_pair(ivec3 at)
     return imageLoad(atlas, at).x;
 }
 #endif
+
+// The last place along x of a volume whose bricks lie side by side.
+int last_along_x()
+{
+#ifdef FILTERED
+    return textureSize(atlas, 0).x - 1;
+#else
+    return (imageSize(atlas).x << WORD_SHIFT) - 1;
+#endif
+}
 
 #endif

@@ -1,45 +1,56 @@
 // Exact sampling of the density: trilinear values, and central differences of +-0.5 voxel, by arithmetic on 16-bit
-// codes. Needs `atlas`, r32ui: two neighbouring codes along x per texel, the lower one in the low half; and
-// `density_reads`, which counts. One load in place of two makes this the fastest way on devices whose images are
+// codes. Needs `atlas`, r32ui, with two or four neighbouring codes along x in a texel (atlas.glsl); and
+// `density_reads`, which counts. Several codes in one load make this the fastest way on devices whose images are
 // ordinary memory (DECISIONS.md).
 //
 // A sample touches the eight codes around it and, for the gradient, one more row on the nearer side of each axis. All
-// lie within the brick's apron, so no second lookup is ever needed.
+// lie side by side, or within the brick's apron, so no second lookup is ever needed.
 #include "atlas.glsl"
+
+// Three neighbouring codes along x: the words that hold the first and the last of them, and how to take them out.
+struct Row {
+    int first_word, last_word;
+    uvec3 shifts;
+    bool middle_is_in_first;
+};
 
 struct Density {
     ivec3 corner;      // lower corner, in codes
     vec3 fraction;
+    Row row;           // from the corner, or from the code before
     float v[8];        // codes at the corners, x fastest
     float beyond[4];   // the next code along x on the nearer side, in the rows (y, z) = 00, 10, 01, 11
 };
 
-uint pair_at(int x, int y, int z)
+Row row_from(int x)
+{
+    ivec3 at = x + ivec3(0, 1, 2);
+#ifndef PAGED
+    at = clamp(at, 0, last_along_x());
+#endif
+    const ivec3 word = at >> WORD_SHIFT;
+    return Row(word.x, word.z, uvec3(shift_to(at.x), shift_to(at.y), shift_to(at.z)), word.y == word.x);
+}
+
+uint word_at(int x, int y, int z)
 {
     if (COUNT_WORK != 0u) ++density_reads;
-    return atlas_pair(ivec3(x, y, z));
+    return atlas_word(ivec3(x, y, z));
 }
 
-float lower_of(uint pair)
+vec3 codes_of(const Row row, int y, int z)
 {
-    return float(pair & 0xffffu);
+    const uint a = word_at(row.first_word, y, z), b = word_at(row.last_word, y, z);
+    return vec3(CODE_UNIT * (uvec3(a, row.middle_is_in_first ? a : b, b) >> row.shifts & CODE_MASK));
 }
 
-float upper_of(uint pair)
+void load_row(inout Density d, int i, int y, int z)
 {
-    return float(pair >> 16);
-}
-
-// Two neighbouring pairs hold the corners x, x + 1 and the code beyond:
-//   x odd           (x-1, x) (x+1, x+2)
-//   x even, below   (x-2, x-1) (x, x+1)
-//   x even, above   (x, x+1) (x+2, x+3)
-void load_row(inout Density d, int row, int first_pair, int y, int z, bool odd, bool below)
-{
-    const uint a = pair_at(first_pair, y, z), b = pair_at(first_pair + 1, y, z);
-    d.v[2 * row] = odd ? upper_of(a) : below ? lower_of(b) : lower_of(a);
-    d.v[2 * row + 1] = odd ? lower_of(b) : below ? upper_of(b) : upper_of(a);
-    d.beyond[row] = below ? (odd ? lower_of(a) : upper_of(a)) : (odd ? upper_of(b) : lower_of(b));
+    const bool below = d.fraction.x < 0.5;
+    const vec3 codes = codes_of(d.row, y, z);
+    d.v[2 * i] = below ? codes.y : codes.x;
+    d.v[2 * i + 1] = below ? codes.z : codes.y;
+    d.beyond[i] = below ? codes.x : codes.z;
 }
 
 Density density_at(ivec3 corner, vec3 fraction)
@@ -47,21 +58,19 @@ Density density_at(ivec3 corner, vec3 fraction)
     Density d;
     d.corner = corner;
     d.fraction = fraction;
-    const bool odd = (corner.x & 1) != 0;
-    const bool below = fraction.x < 0.5;
-    const int first_pair = (corner.x >> 1) - int(!odd && below);
-    load_row(d, 0, first_pair, corner.y, corner.z, odd, below);
-    load_row(d, 1, first_pair, corner.y + 1, corner.z, odd, below);
-    load_row(d, 2, first_pair, corner.y, corner.z + 1, odd, below);
-    load_row(d, 3, first_pair, corner.y + 1, corner.z + 1, odd, below);
+    d.row = row_from(corner.x - int(fraction.x < 0.5));
+    load_row(d, 0, corner.y, corner.z);
+    load_row(d, 1, corner.y + 1, corner.z);
+    load_row(d, 2, corner.y, corner.z + 1);
+    load_row(d, 3, corner.y + 1, corner.z + 1);
     return d;
 }
 
-// The codes at x and x + 1.
-vec2 codes_at(int x, int y, int z)
+// The codes at the corner's place along x, and at the next, in another row.
+vec2 pair_in(const Density d, int y, int z)
 {
-    const uint a = pair_at(x >> 1, y, z), b = pair_at((x + 1) >> 1, y, z);
-    return (x & 1) != 0 ? vec2(upper_of(a), lower_of(b)) : vec2(lower_of(a), upper_of(a));
+    const vec3 codes = codes_of(d.row, y, z);
+    return d.fraction.x < 0.5 ? codes.yz : codes.xy;
 }
 
 float bilinear(float a, float b, float c, float d, float x, float y)
@@ -94,8 +103,8 @@ vec3 gradient_of(const Density d)
     const vec3 f = d.fraction;
     const ivec3 c = d.corner;
     const int y = c.y + (f.y < 0.5 ? -1 : 2), z = c.z + (f.z < 0.5 ? -1 : 2);
-    const vec2 y0 = codes_at(c.x, y, c.z), y1 = codes_at(c.x, y, c.z + 1);
-    const vec2 z0 = codes_at(c.x, c.y, z), z1 = codes_at(c.x, c.y + 1, z);
+    const vec2 y0 = pair_in(d, y, c.z), y1 = pair_in(d, y, c.z + 1);
+    const vec2 z0 = pair_in(d, c.y, z), z1 = pair_in(d, c.y + 1, z);
     const float along_x = central(bilinear(d.v[0], d.v[2], d.v[4], d.v[6], f.y, f.z),
                                   bilinear(d.v[1], d.v[3], d.v[5], d.v[7], f.y, f.z),
                                   bilinear(d.beyond[0], d.beyond[1], d.beyond[2], d.beyond[3], f.y, f.z), f.x);

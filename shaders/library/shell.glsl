@@ -55,7 +55,11 @@ Cell cell_at(const RaycastParams params, const Ray ray, vec3 position)
     cell.scale = float(1u << level);
     cell.corner = floor(position / cell.scale - 0.5);
     const uvec3 brick = uvec3(position) >> level + 5u;
-    cell.to_atlas = ivec3(slot_origin(place.slot)) - ivec3(brick * BRICK_SIZE) + int(BRICK_APRON);
+#ifdef PAGED
+    cell.to_atlas = place_in_slot(place.slot) - ivec3(brick * BRICK_SIZE);
+#else
+    cell.to_atlas = place_of_first();
+#endif
     // A brick ends half-way through a cell, and the next brick may be of another level.
     const float brick_size = cell.scale * float(BRICK_SIZE);
     const vec3 of_cell = ((cell.corner + 0.5 + ray.ahead) * cell.scale - ray.origin) * ray.inverse;

@@ -1,13 +1,14 @@
-// The 16-bit code of one texel of the density atlas, in either of its formats. Needs `atlas`, and FILTERED if it is for
-// a sampler.
+// The 16-bit code of one voxel of the density atlas, whichever form it has. Needs what atlas.glsl needs. Where bricks
+// lie side by side, the outermost voxels along x repeat.
 #include "atlas.glsl"
 
-float code_at(ivec3 texel)
+float code_at(ivec3 place)
 {
+    const int x = clamp(place.x, 0, last_along_x());
 #ifdef FILTERED
-    return round(65535.0 * atlas_texel(texel));
+    return round(65535.0 * atlas_texel(ivec3(x, place.yz)));
 #else
-    const uint pair = atlas_pair(ivec3(texel.x >> 1, texel.yz));
-    return float((texel.x & 1) != 0 ? pair >> 16 : pair & 0xffffu);
+    const uint word = atlas_word(ivec3(x >> WORD_SHIFT, place.yz));
+    return float(CODE_UNIT * (word >> shift_to(x) & CODE_MASK));
 #endif
 }

@@ -7,12 +7,13 @@ float occlusion_value(ivec3 texel)
     return float(imageLoad(occlusion, texel).x);
 }
 
-// `lattice`: position in voxels of the brick's level; `last`: the last voxel of that level.
-float ambient_share(vec3 lattice, ivec3 to_atlas, vec3 last)
+// `lattice`: position in voxels of the brick's level; `to_values`: from there to its texels; `last`: the last voxel of
+// that level.
+float ambient_share(vec3 lattice, ivec3 to_values, vec3 last)
 {
     const vec3 held = clamp(lattice, vec3(0.0), last);   // no values exist beyond the volume's edge
     const vec3 corner = floor(held), f = held - corner;
-    const ivec3 c = ivec3(corner) + to_atlas;
+    const ivec3 c = ivec3(corner) + to_values;
     vec4 v = mix(vec4(occlusion_value(c), occlusion_value(c + ivec3(0, 1, 0)), occlusion_value(c + ivec3(0, 0, 1)),
                       occlusion_value(c + ivec3(0, 1, 1))),
                  vec4(occlusion_value(c + ivec3(1, 0, 0)), occlusion_value(c + ivec3(1, 1, 0)),

@@ -93,13 +93,13 @@ ivec3 apron_voxel(uint number)
 }
 #endif
 
-// The texel of a voxel in the slot of the brick that it belongs to, which is there and of this level.
+// The place of a voxel's code, in the brick that it belongs to, which is there and of this level.
 ivec3 texel_of(const OcclusionJob job, ivec3 voxel)
 {
 #ifdef PAGED
-    return ivec3(slot_origin(entry_at(params.reach, voxel >> 5))) + int(BRICK_APRON) + (voxel & 31);
+    return place_in_slot(entry_at(params.reach, voxel >> 5)) + (voxel & 31);
 #else
-    return ivec3(slot_origin(job.slot)) + int(BRICK_APRON) + voxel;
+    return place_of_first() + ivec3(BRICK_SIZE * job.brick) + voxel;
 #endif
 }
 
@@ -151,11 +151,11 @@ void list_voxels(const OcclusionJob job)
         const ivec3 voxel = voxel_of(cells[i], lane);
         if (any_cell_is_occupied(job, voxel, voxel)) add_voxel(cells[i] << 6u | lane);
     }
-    const ivec3 slot = ivec3(slot_origin(job.slot)) + int(BRICK_APRON);
+    const ivec3 first = texel_of(job, ivec3(0));
     const uint row = lane & 15u, by_rows = params.grow != 0u ? 0u : (found + 3u) / 4u;
     for (uint i = 0u; i < by_rows; ++i) {
         const uint index = 4u * i + (lane >> 4u), cell = cells[min(index, found - 1u)];
-        const uint bits = shows_nearby(slot + voxel_of(cell, 4u * row));
+        const uint bits = shows_nearby(first + voxel_of(cell, 4u * row));
         for (uint k = 0u; k < 4u; ++k)
             if (index < found && (bits >> k & 1u) != 0u) add_voxel(cell << 6u | 4u * row + k);
     }

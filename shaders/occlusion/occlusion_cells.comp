@@ -25,7 +25,12 @@ layout(binding = 5, r32ui) uniform writeonly uimage3D cells_4;
 
 float opacity_at(const OcclusionCellsParams params, const OcclusionCellsJob job, uvec3 voxel)
 {
-    const float opacity = opacity_of(params, code_at(ivec3(slot_origin(job.slot) + BRICK_APRON + voxel)));
+#ifdef PAGED
+    const ivec3 first = place_in_slot(job.slot);
+#else
+    const ivec3 first = place_of_first() + ivec3(BRICK_SIZE * job.brick);
+#endif
+    const float opacity = opacity_of(params, code_at(first + ivec3(voxel)));
     const float held = opacity_held(params, float(1u << params.level) * (vec3(job.brick * BRICK_SIZE + voxel) + 0.5));
     return held < 0.0 ? opacity : held;
 }

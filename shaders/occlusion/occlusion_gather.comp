@@ -57,7 +57,11 @@ ivec3 in_brick_of(const OcclusionJob job, ivec3 voxel, int above)
 uint near_of(const OcclusionGatherParams params, const OcclusionJob job, ivec3 voxel)
 {
     const uint entry = entry_at(params.reach, voxel >> 5), above = entry >> OCCLUSION_LEVEL_SHIFT;
-    const ivec3 texel = ivec3(slot_origin(entry)) + int(BRICK_APRON) + in_brick_of(job, voxel, int(above));
+#ifdef PAGED
+    const ivec3 texel = place_in_slot(entry) + in_brick_of(job, voxel, int(above));
+#else
+    const ivec3 texel = place_of_first() + ivec3(BRICK_SIZE * job.brick) + voxel;
+#endif
     const float side = float(1u << above);
     const float middle = code_at(texel);
     const vec3 before = vec3(code_at(texel - ivec3(1, 0, 0)), code_at(texel - ivec3(0, 1, 0)),

@@ -7,6 +7,7 @@
 #include "regions.h"
 
 layout(local_size_x = 1, local_size_y = 8, local_size_z = 8) in;
+layout(constant_id = 0) const uint IN_SLOTS = 0u;   // of paged bricks
 layout(push_constant, scalar) uniform Push { RegionParams params; };
 #ifdef FILTERED
 layout(binding = 0) uniform sampler3D atlas;
@@ -19,18 +20,14 @@ layout(binding = 3, scalar) writeonly buffer Bits { uint words[]; } bits;
 layout(binding = 4, scalar) writeonly buffer Parents { uint of[]; } parents;
 
 #define STACKED 5
-#include "../library/atlas.glsl"
+#include "../library/voxel_code.glsl"
 #include "region.glsl"
 
-uint code_at(uvec3 voxel)
+uint code_of(uvec3 voxel)
 {
+    if (IN_SLOTS == 0u) return uint(code_at(place_of_first() + ivec3(voxel)));
     const uint slot = region_bricks.slots[grid_index(voxel / BRICK_SIZE - params.brick_begin, params.brick_counts)];
-    const uvec3 texel = slot_origin(slot) + voxel % BRICK_SIZE + BRICK_APRON;
-#ifdef FILTERED
-    return uint(atlas_texel(ivec3(texel)) * 65535.0 + 0.5);
-#else
-    return atlas_pair(ivec3(texel.x / 2u, texel.yz)) >> (texel.x % 2u * 16u) & 0xffffu;
-#endif
+    return uint(code_at(place_in_slot(slot) + ivec3(voxel % BRICK_SIZE)));
 }
 
 void main()
@@ -42,7 +39,7 @@ void main()
     const int end = min(span.end, first + 32);
     uint result = 0u;
     for (int x = max(span.begin, first); x < end; ++x)
-        if (code_at(params.origin + uvec3(uint(x), word.yz)) >= params.threshold_code) result |= 1u << uint(x - first);
+        if (code_of(params.origin + uvec3(uint(x), word.yz)) >= params.threshold_code) result |= 1u << uint(x - first);
 
     const uint index = word_index(word);
     bits.words[index] = result;

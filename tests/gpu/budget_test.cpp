@@ -209,7 +209,7 @@ TEST_CASE("what no budget of this size draws is refused before a voxel is read")
     CHECK(said(Paging::automatic, 16).find("its coarsest level has 4096 bricks and the device has room for ") !=
           std::string::npos);
     CHECK(said(Paging::automatic, 6).find("a picture needs ") != std::string::npos);
-    CHECK(said(Paging::never, 256).find("render.paging is never, and its bricks need ") != std::string::npos);
+    CHECK(said(Paging::never, 160).find("render.paging is never, and its bricks need ") != std::string::npos);
 }
 
 TEST_CASE("paint that a budget does not hold is refused in one sentence with a remedy")

@@ -320,7 +320,7 @@ TEST_CASE("where occlusion has no room the picture goes without, and says so onc
     gpu::DeviceOptions device;
     device.validation = true;
     // The volume takes nearly all memory.
-    Renderer renderer({.device = device, .budget = {.device_bytes = uint64_t{40} << 20}});
+    Renderer renderer({.device = device, .budget = {.device_bytes = uint64_t{28} << 20}});
     renderer.load(source, measure(*source), session.render);
     REQUIRE(!renderer.volume().counts());
     const Camera camera = camera_looking("front", source->info());

@@ -210,8 +210,8 @@ TEST_CASE("members of shared structs lie where C++ puts them")
     }
     for (const char* kernel : {"brick_unpack", "brick_unpack_filtered"})
         check_members(kernel, "jobs",
-                      {MEMBER(BrickUnpackJob, texel), MEMBER(BrickUnpackJob, codes), MEMBER(BrickUnpackJob, cell),
-                       MEMBER(BrickUnpackJob, ranges)});
+                      {MEMBER(BrickUnpackJob, code), MEMBER(BrickUnpackJob, codes), MEMBER(BrickUnpackJob, extent),
+                       MEMBER(BrickUnpackJob, cell), MEMBER(BrickUnpackJob, ranges)});
     for (const char* kernel : {"leap_occupancy", "leap_occupancy_masked"})
         check_members(kernel, "push", occupancy_params());
     check_members("leap_distance", "push",

@@ -146,8 +146,8 @@ TEST_CASE("a GPU computes the light of many bricks at once, to the bits of a few
     CHECK(few == 8);
     CHECK(many == 1);
     // Paged bricks, too, may take more of it than of a CPU, whose memory is everybody's.
-    CHECK(Scene::most_atlas_bytes(plain.device().traits(), false) <= 2048 * MIB);
-    CHECK(Scene::most_atlas_bytes(device->device().traits(), true) > 2048 * MIB);
+    CHECK(Scene::most_atlas_bytes(plain.device().traits(), AtlasCodes::exact16, false) <= 2048 * MIB);
+    CHECK(Scene::most_atlas_bytes(device->device().traits(), AtlasCodes::exact16, true) > 2048 * MIB);
 }
 
 TEST_CASE("a GPU unpacks bricks by kernels, all of a batch at once, to the bits of copies")
