@@ -75,7 +75,7 @@ TEST_CASE("bricks are in as few images as the device's limits allow, all of one 
                     CAPTURE(is_cpu);
                     CAPTURE(side);
                     CAPTURE(slots);
-                    const std::optional<StackedLayout> layout = stacked_layout(slots, traits);
+                    const std::optional<StackedLayout> layout = stacked_layout(slots, AtlasCodes::exact16, traits);
                     if (!layout) {
                         CHECK(slots > most / 9 * 8);  // rounding up may ask for one image more
                         continue;
@@ -89,10 +89,10 @@ TEST_CASE("bricks are in as few images as the device's limits allow, all of one 
                     CHECK(layout->images >= (slots + most - 1) / most);
                     if (slots <= most / 2) CHECK(layout->images == 1);
                 }
-                CHECK(!stacked_layout(4 * most + 1, traits));
+                CHECK(!stacked_layout(4 * most + 1, AtlasCodes::exact16, traits));
             }
-    CHECK(!stacked_layout(0, traits_of(2048, GIB)));
-    CHECK(!stacked_layout(1, traits_of(16, GIB)));
+    CHECK(!stacked_layout(0, AtlasCodes::exact16, traits_of(2048, GIB)));
+    CHECK(!stacked_layout(1, AtlasCodes::exact16, traits_of(16, GIB)));
 }
 
 TEST_CASE("the slots of a layout are each another address, none of which has more than a byte an axis")
