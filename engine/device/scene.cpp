@@ -61,6 +61,12 @@ uint64_t scratch_bytes(const gpu::Memory& memory, const Scene::Options& options)
     return options.with_occlusion ? Occlusion::scratch_bytes(memory.traits(), memory.device_budget()) : 0;
 }
 
+/// Device memory for the ambient light of so many bricks: layouts of slots round up, and devices align rows.
+uint64_t light_bytes(uint64_t bricks)
+{
+    return bricks * (Occlusion::slot_bytes() / 4 * 5);
+}
+
 bool fits_resident(const gpu::Memory& memory, const VolumeSource& source, const Scene::Options& options,
                    uint64_t reserved_bytes)
 {
@@ -96,7 +102,7 @@ uint64_t atlas_bytes(const gpu::Memory& memory, const VolumeInfo& info, AtlasCod
 {
     const uint64_t budget = memory.device_budget(), left = memory.device_bytes_left();
     const uint64_t of_slot = BrickAtlas::slot_bytes(codes);
-    const uint64_t with_light = of_slot + (with_occlusion ? Occlusion::slot_bytes() : 0);
+    const uint64_t with_light = of_slot + (with_occlusion ? light_bytes(1) : 0);
     const auto scratch = [&](uint64_t of_budget) {
         return with_occlusion ? Occlusion::scratch_bytes(memory.traits(), of_budget) : 0;
     };
@@ -199,7 +205,7 @@ void Scene::make_room(uint64_t bytes)
 {
     memory_.free_idle();
     const glm::u64vec3 slots(volume_->atlas_slots());
-    const uint64_t light = options_.with_occlusion ? slots.x * slots.y * slots.z * Occlusion::slot_bytes() : 0;
+    const uint64_t light = options_.with_occlusion ? light_bytes(slots.x * slots.y * slots.z) : 0;
     if (bytes + bytes_for_pictures(memory_) + light + scratch_bytes(memory_, options_) <= memory_.device_bytes_left())
         return;
     occlusion_.clear();
@@ -226,9 +232,7 @@ uint64_t Scene::atlas_share(uint64_t device_budget, bool with_occlusion)
 
 uint64_t Scene::resident_bytes(const VolumeInfo& info, AtlasCodes codes, bool with_occlusion)
 {
-    // Layouts of slots round up, and devices align rows.
-    const uint64_t light = with_occlusion ? uint64_t(finest_bricks(info)) * Occlusion::slot_bytes() / 4 * 5 : 0;
-    return ResidentVolume::bytes_for(info, codes) + light;
+    return ResidentVolume::bytes_for(info, codes) + (with_occlusion ? light_bytes(uint64_t(finest_bricks(info))) : 0);
 }
 
 AtlasCodes Scene::codes_for(const gpu::DeviceTraits& traits, VoxelType type, Sampling sampling)

@@ -116,7 +116,7 @@ const Mistake MISTAKES[] = {
     {"a sample whose bit is its neighbour's", "tubes_opaque", "library/search.glsl", "floor(position - 0.5)) + 1,",
      "floor(position - 0.5)) + ivec3(2, 1, 1),"},
     {"bits of rows that are not above what is seen alone", "tubes_opaque", "sample_bits.comp",
-     "greaterThanEqual(both, vec2(params.lower))", "greaterThan(both, vec2(params.upper))"},
+     "uint(code >= params.lower)", "uint(code > params.upper)"},
     {"the last, shorter step left out", "step_coarse", "raycast.comp", "if (rest > 0.0 &&", "if (rest > 1e30 &&"},
     {"what is in front hides nothing", "fog_unshaded", "raycast.comp", "(1.0 - sum.a) * look.a;\n    sum.rgb",
      "look.a;\n    sum.rgb"},
@@ -129,8 +129,8 @@ const Mistake MISTAKES[] = {
      "f < 0.5 ? low - beyond : beyond - high", "f < 0.5 ? beyond - high : low - beyond"},
     {"gradients in voxels, not in space", "tubes_anisotropic", "raycast.comp",
      "gradient_of(density) * params.inverse_spacing", "gradient_of(density)"},
-    {"a brick's apron forgotten", "tubes_opaque", "raycast.comp", "ivec3(texels.brick * BRICK_SIZE) + int(BRICK_APRON)",
-     "ivec3(texels.brick * BRICK_SIZE)"},
+    {"a volume's border forgotten", "tubes_opaque", "library/atlas.glsl", "return ivec3(code_border());",
+     "return ivec3(0);"},
     {"leaps that go a step too far", "tubes_translucent", "raycast.comp", "exit / params.step - 0.01",
      "exit / params.step + 3.0"},
     {"cells that are skipped although something shows in them", "tubes_translucent", "library/occupancy.glsl",
@@ -141,11 +141,11 @@ const Mistake MISTAKES[] = {
     {"eyes exchanged", "anaglyph", "anaglyph.comp", "vec4(red.r, rest.gb,", "vec4(rest.r, red.gb,"},
     {"ambient occlusion that is too strong", "tubes_occluded", "occlusion/occlusion.glsl",
      "1.0 - occlusion_look.data.strength * (1.0 - curved)", "1.0 - (1.0 - curved)"},
-    {"ambient occlusion of the next voxel", "tubes_occluded", "occlusion/occlusion.glsl", "ivec3(corner) + to_atlas;",
-     "ivec3(corner) + to_atlas + 1;"},
+    {"ambient occlusion of the next voxel", "tubes_occluded", "occlusion/occlusion.glsl", "ivec3(corner) + to_values;",
+     "ivec3(corner) + to_values + 1;"},
     {"the back of a step taken for its front", "preintegrated", "raycast.comp",
-     "value_near(in_brick - half_step, slot), value_near(in_brick + half_step, slot)",
-     "value_near(in_brick - half_step, slot), value_near(in_brick - half_step, slot)"},
+     "value_near(in_brick - half_step, first), value_near(in_brick + half_step, first)",
+     "value_near(in_brick - half_step, first), value_near(in_brick - half_step, first)"},
     {"a highlight on the dark side", "surfaces", "library/shade.glsl", "facing > 0.0 ? surface",
      "facing < 0.5 ? surface"},
 };
@@ -272,9 +272,9 @@ TEST_CASE("a lost skip, an extra fetch and a redundant pass fail by their work, 
     CHECK(golden::why_other_work(one, lost_skip).value_or("").find("samples") != std::string::npos);
 
     const Mistake twice = {"a row of texels read twice", "tubes_opaque", "library/density_exact.glsl",
-                           "    return d;\n}\n\n// The codes at x",
-                           "    load_row(d, 3, first_pair, corner.y + 1, corner.z + 1, odd, below);\n"
-                           "    return d;\n}\n\n// The codes at x"};
+                           "    return d;\n}\n\n// The codes at the corner",
+                           "    load_row(d, 3, corner.y + 1, corner.z + 1);\n"
+                           "    return d;\n}\n\n// The codes at the corner"};
     {
         const std::set<std::string> kernels = kernels_of(one);
         const WrongKernels wrong(twice, std::vector<std::string>(kernels.begin(), kernels.end()));
