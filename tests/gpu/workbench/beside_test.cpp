@@ -360,12 +360,12 @@ TEST_CASE_FIXTURE(OnDevice, "opening is cancelled at each stage, and what is ope
 TEST_CASE("where the device has no room for both, what is open is put away, and comes back where the next fails")
 {
     TemporaryFolder folder;
-    // 128^3 voxels take about 6 MiB of bricks, and pictures 4; the budget has room for one such volume.
+    // 128^3 bytes take about 3 MiB, and pictures 4; the budget has room for one such volume.
     for (const char* name : {"a.json", "b.json"})
         folder.write(name, sentence(R"({"shvr_session": 1, "volume": {"procedural": "tubes", "size": [128, 128, 128],
             "seed": )",
                                     name[0] == 'a' ? 1 : 2, R"(}, "render": {"paging": "never"}})"));
-    Renderer renderer({.device = {}, .budget = {.device_bytes = uint64_t{13} << 20, .host_bytes = 0}});
+    Renderer renderer({.device = {}, .budget = {.device_bytes = uint64_t{9} << 20, .host_bytes = 0}});
     Workbench bench(renderer, {.has_servo = false});
     bench.set_pixels({48, 40});
     bench.open(folder.path / "a.json", {});

@@ -186,7 +186,7 @@ TEST_CASE_FIXTURE(OnDevice,
     on.perform(Set{R"({"probe":{"paint_threshold":250}})"});
     on.perform(NodeAt{0, {32.0, 48.0}});
     CHECK(std::abs(on.trace().node(2).position.y - 16.0) < 2.0);
-    CHECK(on.bench.messages().last().find("nothing there has a middle at the paint threshold 250") !=
+    CHECK(on.bench.messages().last().find("nothing there has a middle above the paint threshold 250") !=
           std::string::npos);
     on.perform(Set{R"({"probe":{"paint_threshold":105,"centered_nodes":false}})"});
     on.perform(NodeAt{0, {32.0, 48.0}});
