@@ -1,6 +1,7 @@
 """What is done in the window can be replayed without one, and comes back after the program was killed."""
 import json
 import signal
+import time
 import unittest
 
 from seen import Seen
@@ -41,6 +42,12 @@ class Log(Seen):
         self.check_refused("annotate", session, "--actions", log, says=["log.jsonl:2: key on is missing"])
         self.assertFalse(session.with_suffix(".journal").exists())
 
+    @staticmethod
+    def stays(measure, seconds):
+        before = measure()
+        time.sleep(seconds)
+        return measure() == before
+
     def test_the_window_that_opens_after_a_kill_is_the_one_that_was_there(self):
         session = self.write_ball()
         self.open_scan(session)
@@ -49,10 +56,14 @@ class Log(Seen):
         self.assertIn("paint_here", self.what_follows(lambda: self.stroke((x, y), (x + 10, y)), "paint_here"))
         # Other view, panes, brush and tool; none of it is saved.
         self.do("mousemove", x, y, "mousedown", 1, "mousemove", x + 60, y + 20, "mouseup", 1)
+        journal = session.with_suffix(".journal")
+        size = journal.stat().st_size
         keys = ["F6", "7", "End", "x"]
         self.assertIn("set probe.tool", self.what_follows(lambda: self.do(*[word for key in keys for word in ("key", key)]),
                                                           "set probe.tool"))
-        self.until(self.rests, "window at rest")   # settings are in the journal by then
+        # What was set reaches the journal when the hand has rested for a while.
+        self.until(lambda: journal.stat().st_size > size, "setting in the journal")
+        self.until(lambda: self.stays(lambda: journal.stat().st_size, 2.0), "rest of the journal")
         self.program.send_signal(signal.SIGKILL)
         self.program.communicate(timeout=30)
         self.assertNotIn("window", json.loads(session.read_text()).get("cameras", {}))
