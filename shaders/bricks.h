@@ -36,7 +36,7 @@ SHARED_FUNCTION uvec3 unpack_slot(uint packed_slot)
     return uvec3(packed_slot & 0xffu, packed_slot >> 8u & 0xffu, packed_slot >> 16u & 0xffu);
 }
 
-/// First texel (apron included) of a slot in an image of BRICK_TEXELS a slot.
+/// First texel (apron included) of a slot in an image of BRICK_TEXELS a slot: values of ambient light.
 SHARED_FUNCTION uvec3 slot_origin(uint packed_slot)
 {
     return BRICK_TEXELS * unpack_slot(packed_slot);
