@@ -16,9 +16,10 @@ ERRORS = {"vkMapMemory": [HOST], "vkCreatePipelineCache": [HOST], "vkResetFences
           "vkWaitForFences": [HOST, DEVICE, LOST], "vkGetQueryPoolResults": [HOST, DEVICE, LOST]}
 # Where no failure can be told: it has no result that a program could heed.
 HEEDLESS = ["vkDeviceWaitIdle"]
-# How often depends on the machine: a frame takes these from those before it that are done, and waits as long as it must.
+# How often depends on the machine: a frame takes these from those before it that are done, which resets them, or makes
+# new ones, and waits as long as it must.
 VARYING = ["vkAllocateCommandBuffers", "vkCreateCommandPool", "vkCreateDescriptorPool", "vkCreateFence",
-           "vkCreateQueryPool", "vkWaitForFences"]
+           "vkCreateQueryPool", "vkResetCommandPool", "vkResetDescriptorPool", "vkResetFences", "vkWaitForFences"]
 # Of calls that are made often, the first ones, the last ones and some between.
 ENDS, BETWEEN = 2, 1
 
