@@ -1,5 +1,6 @@
 #include "engine/session/kept_settings.h"
 
+#include "engine/session/lasting_settings.h"
 #include "engine/session/session_keys.h"
 
 namespace shvr {
@@ -22,7 +23,11 @@ void set_kept_settings(Session& session, const SettingValues& values)
         session.cameras = read.cameras;
         session.camera_name = read.camera_name;
     }
-    if (has("render")) session.render = read.render;
+    if (has("render")) {
+        const RenderSettings before = session.render;
+        session.render = read.render;
+        take_picture(session.render, before);
+    }
     if (has("view")) session.view = read.view;
     if (has("interaction")) session.interaction = read.interaction;
     if (has("probe")) session.probe = read.probe;

@@ -1,7 +1,7 @@
 #pragma once
-// What of a session comes back as it was left, but is no work and not undone: cameras and the one in use, rendering,
-// panes, the window's settings, probe and brush. The journal holds it (Work::keep_settings) as the lasting settings
-// (lasting_settings.h), between which and this everything is divided that a person changes. Any thread.
+// What of a session comes back as it was left, but is no work and not undone: cameras and the one in use, how pictures
+// are made, panes, the window's settings, probe and brush. The journal holds it (Work::keep_settings) as the lasting
+// settings (lasting_settings.h), between which and this everything is divided that a person changes. Any thread.
 
 #include "engine/annotation/settings.h"
 #include "engine/session/session.h"

@@ -1,8 +1,17 @@
 #include "engine/session/lasting_settings.h"
 
+#include <algorithm>
+
 #include "engine/session/session_keys.h"
 
 namespace shvr {
+
+void take_picture(RenderSettings& to, const RenderSettings& from)
+{
+    to.background = from.background;
+    to.smooth_borders = from.smooth_borders;
+    to.saturation = from.saturation;
+}
 
 std::string text_of_sections(const SettingValues& values)
 {
@@ -22,6 +31,7 @@ void set_lasting_settings(Session& session, const SettingValues& values)
     if (has("blend")) session.blend = read.blend;
     if (has("cut")) session.cut = read.cut;
     if (has("measurements")) session.measurements = read.measurements;
+    if (has("picture")) take_picture(session.render, read.render);
 }
 
 SettingValues normalized_settings(const SettingValues& values)
@@ -36,8 +46,12 @@ SettingValues normalized_settings(const SettingValues& values)
 SettingValues without_overridden(SettingValues values, const std::vector<std::string>& settings)
 {
     for (const std::string& setting : settings) {
-        const std::string name = setting.substr(0, setting.find_first_of(".="));
-        values.erase(name == "camera" ? "cameras" : name);  // which holds both (kept_settings.h)
+        const std::string key = setting.substr(0, setting.find('='));
+        const std::string name = key.substr(0, key.find('.'));
+        const bool is_of_picture = std::ranges::any_of(
+            PICTURE_KEYS, [&](std::string_view each) { return key == "render." + std::string(each); });
+        if (is_of_picture || key == "render") values.erase("picture");
+        if (!is_of_picture) values.erase(name == "camera" ? "cameras" : name);  // which holds both (kept_settings.h)
     }
     return values;
 }

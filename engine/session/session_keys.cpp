@@ -438,21 +438,16 @@ const About MEASUREMENTS{.meaning = "distances that were measured, which the win
                          .standard = "none"};
 static_assert(MAX_MEASUREMENTS == 1000);
 
-}  // namespace
-
-void lasting_fields(Fields& f, Session& session)
+void work_fields(Fields& f, Session& session)
 {
     look_fields(f, session);
     f.section("cut", session.cut);
     f.list("measurements", session.measurements, MAX_MEASUREMENTS, MEASUREMENTS);
 }
 
-namespace {
-
-/// What a person sets that is neither work nor a camera.
+/// Beside cameras, what a person sets that is no work.
 void passing_fields(Fields& f, Session& session)
 {
-    f.section("render", session.render);
     f.section("view", session.view);
     f.section("interaction", session.interaction);
     f.section("probe", session.probe);
@@ -460,15 +455,26 @@ void passing_fields(Fields& f, Session& session)
 
 }  // namespace
 
+void lasting_fields(Fields& f, Session& session)
+{
+    work_fields(f, session);
+    f.section("picture", [&](Fields& picture) { picture_fields(picture, session.render); });
+}
+
 void kept_fields(Fields& f, Session& session)
 {
     f.section("cameras", [&](Fields& cameras) { camera_fields(cameras, session); });
+    f.section("render", [&](Fields& render) {
+        rendering_fields(render, session.render);
+        for (const std::string_view key : PICTURE_KEYS) render.mention(key, {});  // older journals have them here
+    });
     passing_fields(f, session);
 }
 
 void setting_fields(Fields& f, Session& session)
 {
-    lasting_fields(f, session);
+    work_fields(f, session);
+    f.section("render", session.render);
     passing_fields(f, session);
 }
 

@@ -36,6 +36,10 @@ void fields(Fields& f, OcclusionPoint& point);
 void fields(Fields& f, OcclusionSettings& occlusion);
 void fields(Fields& f, DistanceBlend& blend);
 void fields(Fields& f, RenderSettings& render);
+/// Of `render`, how the picture is made, and then how it looks, whatever makes it.
+void rendering_fields(Fields& f, RenderSettings& render);
+void picture_fields(Fields& f, RenderSettings& render);
+inline constexpr std::string_view PICTURE_KEYS[]{"background", "smooth_borders", "saturation"};
 void fields(Fields& f, ViewSettings& view);
 void fields(Fields& f, StereoSettings& stereo);
 void fields(Fields& f, SliceSettings& slices);

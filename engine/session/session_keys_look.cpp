@@ -108,9 +108,8 @@ void quality_fields(Fields& f, RenderSettings& render)
         if (name == each.name) take(render, each);
 }
 
-}  // namespace
-
-void fields(Fields& f, RenderSettings& render)
+/// How a picture is made, in the two places that they have in files.
+void sample_fields(Fields& f, RenderSettings& render)
 {
     std::vector<int64_t> size{render.size.x, render.size.y};
     f.wholes("size", size, 1, 65536, {"width and height of the picture", "pixels"});
@@ -120,9 +119,10 @@ void fields(Fields& f, RenderSettings& render)
              {"distance between samples", "reference lengths"});
     f.number("opacity_limit", render.opacity_limit, above_zero(1e-6, 1.0),
              {"a ray stops once its opacity reaches this"});
-    std::optional<glm::dvec4> background = render.background;
-    f.color("background", background, true, {"colour behind the volume, with straight alpha"});
-    render.background = background.value_or(render.background);
+}
+
+void way_fields(Fields& f, RenderSettings& render)
+{
     f.choice("sampling", render.sampling,
              {"how voxels are interpolated: in the kernel (exact), by the texture unit (hardware), or whichever the "
               "device does well"});
@@ -141,6 +141,17 @@ void fields(Fields& f, RenderSettings& render)
          "steep edges; steps of at most 1"});
     f.check("preintegration", !render.preintegration || render.step_voxels <= 1.0,
             sentence("false, because render.step_voxels is ", render.step_voxels, ", above 1"));
+}
+
+void background_field(Fields& f, RenderSettings& render)
+{
+    std::optional<glm::dvec4> background = render.background;
+    f.color("background", background, true, {"colour behind the volume, with straight alpha"});
+    render.background = background.value_or(render.background);
+}
+
+void border_and_color_fields(Fields& f, RenderSettings& render)
+{
     f.flag(
         "smooth_borders", render.smooth_borders,
         {"painted groups end between voxels, where their labels, interpolated, weigh less than their neighbours'; at "
@@ -150,6 +161,28 @@ void fields(Fields& f, RenderSettings& render)
         "saturation", render.saturation, SHARE,
         {"of the picture's colours, background included; 0: greys of the same luminance, for print, or for anaglyphs "
          "of things that one eye alone would see; lines over the picture keep theirs"});
+}
+
+}  // namespace
+
+void rendering_fields(Fields& f, RenderSettings& render)
+{
+    sample_fields(f, render);
+    way_fields(f, render);
+}
+
+void picture_fields(Fields& f, RenderSettings& render)
+{
+    background_field(f, render);
+    border_and_color_fields(f, render);
+}
+
+void fields(Fields& f, RenderSettings& render)
+{
+    sample_fields(f, render);
+    background_field(f, render);
+    way_fields(f, render);
+    border_and_color_fields(f, render);
 }
 
 void fields(Fields& f, StereoSettings& stereo)

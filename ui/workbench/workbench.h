@@ -366,6 +366,7 @@ private:
     void stroke_ended();
     void await_strokes();
     void show_changes(const Command& command);
+    bool follows_empty_stroke();
     template <class Way>
     void step(int count, const char* done, const char* nothing, Way way);
 
@@ -428,6 +429,8 @@ private:
     bool has_tried_view_ = false;  ///< that alone is no reason to stay
     /// Steps that could be undone when the work was discarded: as long as nothing else is done, nothing is saved.
     std::optional<size_t> discarded_steps_;
+    /// Steps that could be undone when the last stroke ended that changed nothing: undo takes that back first.
+    std::optional<size_t> steps_at_empty_stroke_;
     bool is_leaving_ = false;         ///< that a save fails is a reason to stay
     std::set<Jobs::Number> copies_;   ///< being written by a saver
     std::set<Jobs::Number> writers_;  ///< jobs that write what somebody asked for: leaving waits for them

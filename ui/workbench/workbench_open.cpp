@@ -308,6 +308,7 @@ void Workbench::finish_opening()
     read_voxel_.reset();
     settings_to_record_ = was_set_in_this_turn_ = has_tried_view_ = is_leaving_ = false;
     discarded_steps_.reset();
+    steps_at_empty_stroke_.reset();
     to_keep_since_s_.reset();
     session_before_hand_.reset();
     journal_failure_.clear();

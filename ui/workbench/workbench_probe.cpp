@@ -182,6 +182,10 @@ void Workbench::stroke_ended()
     const bool found_nothing =
         is_as_meant && result.voxels() == 0 && result.kept_painted == 0 && !result.stroke.erases();
     if (found_nothing) said += how_to_reach_this();
+    if (result.voxels() == 0)
+        steps_at_empty_stroke_ = document_->annotator.history().undoable();
+    else
+        steps_at_empty_stroke_.reset();
     say(said, is_as_meant && !found_nothing ? Weight::done : Weight::warning);
 }
 

@@ -1,6 +1,7 @@
 // Actions on the work: undo and redo, saving, pictures, opening another scan.
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/session/picture_session.h"
 #include "ui/workbench/workbench.h"
@@ -24,13 +25,29 @@ void Workbench::step(int count, const char* done, const char* nothing, Way way)
     say(steps == 1 ? sentence(done, ": ", last) : sentence(done, ": ", steps, " steps, the last: ", last));
 }
 
+/// Whether undo would take back another step than what a person did last: a stroke that changed nothing is none.
+/// Asked once after such a stroke. Scripts count steps.
+bool Workbench::follows_empty_stroke()
+{
+    record_settings();
+    const size_t steps = document_->annotator.history().undoable();
+    return std::exchange(steps_at_empty_stroke_, {}) == steps && steps > 0 && !document_->is_script();
+}
+
 void Workbench::act(const UndoOp& action)
 {
+    if (follows_empty_stroke() && action.count == 1) {
+        const History& history = document_->annotator.history();
+        say(sentence("The last stroke changed nothing, and nothing is undone; undo once more takes back: ",
+                     history.label_of(history.undoable() - 1)));
+        return log_instead({Set{"{}"}});
+    }
     step(action.count, "Undone", "Nothing to undo", [](Annotator& annotator) { return annotator.undo(); });
 }
 
 void Workbench::act(const RedoOp& action)
 {
+    steps_at_empty_stroke_.reset();
     step(action.count, "Redone", "Nothing to redo", [](Annotator& annotator) { return annotator.redo(); });
 }
 

@@ -485,6 +485,31 @@ TEST_CASE_FIXTURE(OnDevice, "a stroke that finds nothing says what is there, and
     CHECK(on.is_painted(16, 10));
 }
 
+TEST_CASE_FIXTURE(OnDevice, "undo after a stroke that changed nothing takes no other step back in its place")
+{
+    Plates on(renderer());
+    on.perform(PlaceProbe{{16.0, 10.0, 24.0}});
+    for (int stroke = 0; stroke < 2; ++stroke) {  // the second finds all of it painted
+        on.perform(Paint{true});
+        on.perform(Paint{false});
+    }
+    REQUIRE(on.bench.model().undoable == 1);
+    on.perform(UndoOp{1});
+    CHECK(on.is_painted(16, 10));
+    const std::string said = on.bench.messages().last();
+    CHECK_MESSAGE(said.starts_with("The last stroke changed nothing, and nothing is undone; undo once more"), said);
+    on.perform(UndoOp{1});
+    CHECK(!on.is_painted(16, 10));
+    // What was done after it is taken back at once.
+    on.perform(RedoOp{1});
+    on.perform(Paint{true});
+    on.perform(Paint{false});
+    on.perform(Set{R"({"light":{"ambient":0.125}})"});
+    on.perform(UndoOp{1});
+    CHECK(on.bench.model().session.light.ambient != 0.125);
+    CHECK(on.is_painted(16, 10));
+}
+
 TEST_CASE_FIXTURE(OnDevice, "a node that is clicked on something wide stays where the probe's ball is seen")
 {
     TemporaryFolder folder;

@@ -157,7 +157,8 @@ TEST_CASE_FIXTURE(OnDevice, "random actions are undone and redone bit for bit, a
             run.bench.log_to({});
             const size_t steps = run.bench.model().undoable;
             CHECK(steps > 200);
-            for (size_t i = 0; i < steps; ++i) REQUIRE(run.bench.apply(UndoOp{1}));
+            // The first takes back no step where the last stroke changed nothing.
+            while (run.bench.model().undoable > 0) REQUIRE(run.bench.apply(UndoOp{1}));
             CHECK((lasting_state(run.bench) == start));
             for (size_t i = 0; i < steps; ++i) REQUIRE(run.bench.apply(RedoOp{1}));
             CHECK((lasting_state(run.bench) == end));

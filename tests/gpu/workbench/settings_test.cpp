@@ -52,3 +52,32 @@ TEST_CASE_FIXTURE(OnDevice, "a changed curve of ambient occlusion is said in wor
     CHECK(said() == "Occlusion curve: a power again");
     CHECK(stepped(UndoOp{1}) > 0);
 }
+
+TEST_CASE_FIXTURE(OnDevice, "how the picture looks is a step of the history, how it is made is none")
+{
+    TemporaryFolder folder;
+    Workbench bench(renderer(), {.has_servo = false});
+    bench.set_pixels({48, 40});
+    bench.open(write_tubes_session(folder.path), {});
+    settle(bench);
+    const auto perform = [&](const Action& action) {
+        const uint64_t before = bench.document().screen.submissions();
+        bench.perform(action);
+        settle(bench);
+        return bench.document().screen.submissions() - before;
+    };
+    const RenderSettings before = bench.model().session.render;
+    perform(Set{R"({"render":{"step_voxels":0.375}})"});
+    CHECK(bench.model().undoable == 0);
+    CHECK(perform(Set{R"({"render":{"background":"#000000"}})"}) > 0);
+    perform(Set{R"({"render":{"saturation":0.5}})"});
+    perform(Set{R"({"render":{"smooth_borders":true}})"});
+    CHECK(bench.model().undoable == 3);
+    perform(UndoOp{2});
+    CHECK(bench.model().session.render.background == glm::dvec4(0.0, 0.0, 0.0, 1.0));
+    CHECK(perform(UndoOp{1}) > 0);
+    RenderSettings expected = before;
+    expected.step_voxels = 0.375;
+    CHECK(bench.model().session.render == expected);
+    CHECK(bench.messages().last() == "Undone: picture: background #ffffff to #000000");
+}

@@ -51,7 +51,9 @@ const std::vector<std::string> CHANGES{"camera=top",
 
 TEST_CASE("every section of a session is lasting, kept, or left out for a reason, and none is two of them")
 {
-    const SettingValues lasting = lasting_settings(parse()), kept = kept_settings(parse());
+    SettingValues lasting = lasting_settings(parse());
+    const SettingValues kept = kept_settings(parse());
+    lasting.erase("picture");  // keys of `render`, below
     std::set<std::string> sections;
     for (const SessionKey& key : session_keys()) sections.insert(key.name.substr(0, key.name.find('.')));
     CHECK(sections.size() >= 14);
@@ -63,6 +65,33 @@ TEST_CASE("every section of a session is lasting, kept, or left out for a reason
     for (const auto& [name, reason] : NOT_KEPT) CHECK_MESSAGE(sections.contains(name), name);
     for (const SettingValues& values : {lasting, kept})
         for (const auto& [name, value] : values) CHECK_MESSAGE(sections.contains(name), name);
+}
+
+TEST_CASE("every key of rendering is lasting, as of the picture, or kept")
+{
+    RenderSettings render;
+    std::set<std::string> all, parts, named(std::begin(PICTURE_KEYS), std::end(PICTURE_KEYS));
+    for (const SessionKey& key : keys_of([&](Fields& f) { fields(f, render); })) all.insert(key.name);
+    for (const SessionKey& key : keys_of([&](Fields& f) { picture_fields(f, render); })) parts.insert(key.name);
+    CHECK(parts == named);
+    for (const SessionKey& key : keys_of([&](Fields& f) { rendering_fields(f, render); }))
+        CHECK_MESSAGE(parts.insert(key.name).second, key.name);
+    CHECK(parts == all);
+    for (const char* setting :
+         {"render.background=#20406080", "render.smooth_borders=true", "render.saturation=0.25"}) {
+        CAPTURE(setting);
+        const Session changed = parse({setting});
+        CHECK(kept_settings(changed) == kept_settings(parse()));
+        CHECK(lasting_settings(changed) != lasting_settings(parse()));
+        Session session = parse();
+        set_lasting_settings(session, lasting_settings(changed));
+        CHECK(session == changed);
+        // What is kept knows nothing of it, nor what older journals keep of rendering.
+        set_kept_settings(session, kept_settings(parse()));
+        CHECK(session == changed);
+        set_kept_settings(session, {{"render", R"({"background":"#000000","saturation":1,"step_voxels":0.5})"}});
+        CHECK(session == changed);
+    }
 }
 
 TEST_CASE("what is kept comes back as it was, section by section")
@@ -121,4 +150,10 @@ TEST_CASE("sections that are set for this time only are not kept")
     const SettingValues rest = without_overridden(values, {"render.size=[1,2]", "probe={}"});
     CHECK(rest.size() == 3);
     CHECK_FALSE(rest.contains("probe"));
+    const SettingValues lasting = lasting_settings(parse());
+    REQUIRE(lasting.contains("picture"));
+    for (const char* setting : {"render.background=#000000", "render.saturation=0", "render={}"})
+        CHECK_FALSE(without_overridden(lasting, {setting}).contains("picture"));
+    CHECK(without_overridden(lasting, {"render.size=[1,2]"}) == lasting);
+    CHECK(without_overridden(values, {"render.background=#000000"}) == values);
 }
