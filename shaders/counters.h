@@ -16,6 +16,10 @@ SHARED_CONST uint COUNTER_TERMINATED = 6u;      // rays that ended early
 /// what is behind.
 SHARED_CONST uint COUNTER_CUT_SHORT = 7u;
 SHARED_CONST uint COUNTER_DENSITY_READS = 8u;  // texels of the atlas, or taps of its filter, that samples asked for
+SHARED_CONST uint COUNTER_TURNS = 9u;          // of the loops along a ray, but those of a fixed length
+
+/// The loops of one thread take no more together in a dispatch. Some devices end loops after 65535, without a word.
+SHARED_CONST uint MAX_TURNS = 32768u;
 
 SHARED_END
 #endif

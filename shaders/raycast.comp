@@ -146,8 +146,8 @@ Place place_at(const RaycastParams params, vec3 position)
 }
 #endif
 
-// Larger numbers are no longer whole steps apart in a float.
-const float MAX_STEPS = 4294967040.0;
+// A leap from the last step still ends at a number of 32 bits.
+const float MAX_STEPS = 2147483648.0;
 const float MAX_LEAP = 2147483648.0;
 const float NO_SHELL = 1e30;   // a length along a ray
 // Lanes that have seen nothing in so many samples in a row search for the next one that shows something: soon where the
@@ -169,7 +169,7 @@ struct Ray {
 };
 
 struct Work {
-    uint samples, shaded, leaps, bricks;
+    uint samples, shaded, leaps, bricks, turns;
     uint last_slot;
     uint last_entry;
 };
@@ -450,7 +450,7 @@ void main()
     }
 #endif
     const bool was_done = (state & RAY_IS_DONE) != 0u;
-    Work work = Work(0u, 0u, 0u, 0u, 0u, 0xffffffffu);
+    Work work = Work(0u, 0u, 0u, 0u, 0u, 0u, 0xffffffffu);
     bool waits = false;
     if (SLICE != 0u && !was_done) {
         const float plane = 0.5 * length_to_far;
@@ -459,7 +459,8 @@ void main()
     if (SLICE != 0u) end = begin;
 
     const float extent = end > begin ? end - begin : 0.0;   // of what is no number, too
-    const uint steps = uint(min(extent / params.step, MAX_STEPS));
+    const float whole_steps = extent / params.step;
+    const uint steps = whole_steps > 0.0 ? uint(min(whole_steps, MAX_STEPS)) : 0u;   // likewise
     uint first_step = min(params.first_step, steps), end_step = min(params.end_step, steps);
     bool is_last = params.is_last_block != 0u;
     if (KEPT == KEPT_ALL) {
@@ -489,6 +490,7 @@ void main()
             const vec3 position = sample_position(params, ray, begin, i);
             const Place place = place_at(params, position);
             note(place, work);
+            if (COUNT_WORK != 0u) ++work.turns;
             goes_on = place.distance == 0u && i < end_step && sum.a < params.opacity_limit;
 #ifdef SHELLED
             const float here = begin + (float(i) + 0.5) * params.step;
@@ -502,12 +504,13 @@ void main()
             }
             goes_on = goes_on && !waits && i < end_step && unseen < patience && sum.a < params.opacity_limit;
         } while (goes_on);
+        // Drivers may round positions in one loop as they do not in the other, which then disagree about a border.
+        i += uint(i == step_before && !waits);
+        if (COUNT_WORK != 0u) ++work.turns;
     }
     if (KEPT == KEPT_ALL) i = min(i, steps);   // leaps go beyond the end
     // Nobody but the device ends the loop before its end; and the last block may end before the ray.
-    const bool is_cut_short = i < (is_last ? steps : end_step) && sum.a < params.opacity_limit && !waits && !was_done;
-    count(COUNTER_CUT_SHORT, uint(is_cut_short));
-
+    bool is_cut_short = i < (is_last ? steps : end_step) && sum.a < params.opacity_limit && !waits && !was_done;
     bool has_ended = (state & RAY_HAS_ENDED) != 0u;
     if (is_last && !waits && !has_ended && !was_done) {
         // The rest of the ray is a shorter and therefore more transparent step.
@@ -536,7 +539,10 @@ void main()
         add_shells(params, ray, NO_SHELL, shell, sum);
         waits = shell_waits(params, shell, NO_SHELL, sum);
     }
+    is_cut_short = is_cut_short || shell.turns >= MAX_TURNS;
+    work.turns += shell.turns;
 #endif
+    count(COUNTER_CUT_SHORT, uint(is_cut_short));
     const bool is_stopped = sum.a >= params.opacity_limit;
     const bool is_done = was_done || is_stopped || (is_last && !waits);
 
@@ -547,6 +553,7 @@ void main()
         count(COUNTER_SHADED, work.shaded);
         count(COUNTER_DENSITY_READS, density_reads);
         count(COUNTER_LEAPS, work.leaps);
+        count(COUNTER_TURNS, work.turns);
         count(COUNTER_BRICKS_VISITED, work.bricks);
         count(COUNTER_BRICKS_SKIPPED, crossed - min(work.bricks, crossed));
         const bool ends_here = KEPT == KEPT_ALL ? is_done && !was_done : is_last;

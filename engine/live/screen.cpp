@@ -134,7 +134,8 @@ void Screen::submit_ahead(double ahead_ms)
     const size_t next = unsketched < parts_.size() ? unsketched : first([&](size_t part) {
         return !parts_[part].view->is_finished() || (part == turn_ && is_loading());
     });
-    if (next == parts_.size()) return;
+    is_held_ = is_held_ && unsketched == parts_.size();
+    if (next == parts_.size() || is_held_) return;
     // One view at a time, so that little is in flight in total.
     for (size_t part = 0; part < parts_.size(); ++part)
         if (part != next && !parts_[part].view->is_idle()) return;

@@ -29,6 +29,10 @@ public:
     /// Submits so much more of what is due: the thread will wait that long for something else, and the device is not
     /// to be idle meanwhile.
     void submit_ahead(double ahead_ms);
+    /// While another picture waits for the bricks that it asked for: panes that show what they should are not made
+    /// sharper, which would ask for theirs instead. Ends once a pane has to follow the user.
+    void hold(bool is_held) { is_held_ = is_held; }
+    bool is_held() const { return is_held_; }
     void wait();
     /// Frees all panes and their device memory; look() makes new ones.
     void clear();
@@ -75,7 +79,8 @@ private:
     glm::uvec2 pixels_{0};
     glm::dvec3 probe_voxel_{0.0};
     std::vector<Part> parts_;
-    size_t turn_ = 0;                                           ///< index of the pane whose bricks are being loaded
+    size_t turn_ = 0;  ///< index of the pane whose bricks are being loaded
+    bool is_held_ = false;
     uint64_t retired_submissions_ = 0, retired_revisions_ = 0;  ///< of removed panes
 };
 

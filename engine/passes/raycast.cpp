@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/passes/pixel_groups.h"
+#include "shaders/counters.h"
 
 namespace shvr {
 
@@ -16,9 +17,8 @@ uint32_t shininess_squarings(float shininess)
 
 namespace {
 
-/// Turns that the loops of one thread may take together. Some devices end loops after 65535, without a word.
-constexpr uint64_t MAX_TURNS = 32768;
-/// Threads that such a device runs in step: each may make all of them take a turn. Sixteen stay below 65535 as well.
+/// Threads that a device which ends loops runs in step (MAX_TURNS): each may make all of them take a turn. Sixteen stay
+/// below 65535 as well.
 constexpr uint64_t LANES = 8;
 constexpr uint64_t MAX_BLOCKS = 4096;
 
@@ -35,15 +35,16 @@ uint64_t steps_of_block(const VolumeBinding& volume, const RaycastInput& input, 
     double turns = double(LANES * std::max(to_leap, to_take) + 1 + to_leap + to_search + to_take);
     // An iso-surface is searched cell by cell: at most three a reference length, and one where the ray enters.
     if (is_shelled) turns += double(LANES * (to_leap + 1)) * (3.0 * double(input.params.step) + 1.0);
-    return std::max(uint64_t(double(MAX_TURNS) / turns), uint64_t{1});
+    return std::max(uint64_t(double(gpu::MAX_TURNS) / turns), uint64_t{1});
 }
 
 /// Steps of the longest ray that there can be.
 uint64_t steps_of_ray(const gpu::RaycastParams& params)
 {
-    constexpr double ROUNDING = 1.0 + 1e-5, MOST = 4294967040.0;
+    constexpr double ROUNDING = 1.0 + 1e-5, MOST = 2147483648.0;
     const double longest = glm::length(glm::dvec3(params.box_upper - params.box_lower) * glm::dvec3(params.spacing));
-    return uint64_t(std::min(longest / double(params.step) * ROUNDING + 1.0, MOST));
+    const double steps = longest / double(params.step) * ROUNDING + 1.0;
+    return uint64_t(steps < MOST ? steps : MOST);  // of what is no number, too
 }
 
 std::vector<std::byte> bytes_of(const RaycastOcclusion& occlusion)

@@ -25,7 +25,8 @@ public:
     /// The other thread is busy: a step that completes the next band would wait for it, and commit() would.
     bool is_writing() const;
     /// As PictureJob::step; fails where rows cannot be written.
-    void step() { job_.step(); }
+    void step(bool waits = true) { job_.step(waits); }
+    bool is_waiting() const { return job_.is_waiting(); }
     double progress() const { return job_.progress(); }
     bool is_complete() const { return job_.is_complete(); }
     /// All but the image. Call it once no step follows.

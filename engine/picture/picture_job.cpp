@@ -194,27 +194,37 @@ void PictureJob::end_band()
     renderer_.note_picture_bytes(0);
 }
 
-/// Loads the bricks that light comes from, as far as there is room.
-void PictureJob::load_around(const Progress& progress)
+/// Takes the bricks that are asked for. False: some are still to come, and it waits for none.
+bool PictureJob::load(const Progress& progress, bool waits)
 {
-    if (pane().shot.is_slice || !scene().has_occlusion(look_)) return;
-    scene().want_occlusion(look_);
-    scene().advance(true, progress);
+    scene().advance(waits, progress);
+    return waits || scene().volume().state() != DeviceVolume::State::loading;
 }
 
-/// Completes the ambient occlusion that the look wants, as far as the loaded bricks allow.
-void PictureJob::renew_occlusion(const Progress& progress)
+/// Loads the bricks that light comes from, as far as there is room.
+bool PictureJob::load_around(const Progress& progress, bool waits)
+{
+    if (pane().shot.is_slice || !scene().has_occlusion(look_)) return true;
+    scene().want_occlusion(look_);
+    return load(progress, waits);
+}
+
+/// Completes the ambient occlusion that the look wants, as far as the loaded bricks allow. False: there is more to do
+/// and it waits for nothing.
+bool PictureJob::renew_occlusion(const Progress& progress, bool waits)
 {
     constexpr Occlusion::Most MOST{.bricks = gpu::OCCLUSION_SLICE, .cell_bricks = 512};
-    if (pane().shot.is_slice) return;
-    load_around(progress);
+    if (pane().shot.is_slice) return true;
+    if (!load_around(progress, waits)) return false;
     while (std::optional<FrameGraph> slice = next_occlusion(scene(), look_, pane().shot.camera, MOST)) {
         tell(progress, 0.0);
         append(picture_.passes,
                renderer_.executor()
                    .run(std::move(*slice), {.timestamps = options_.timestamps, .statistics = options_.statistics})
                    .passes);
+        if (!waits) return false;
     }
+    return true;
 }
 
 /// Of a part that is drawn for the nth time: how often it will be is not known, so each round counts half of the rest.
@@ -229,16 +239,20 @@ Progress PictureJob::progress_of(const PicturePart& part, int round)
     };
 }
 
-void PictureJob::step()
+void PictureJob::step(bool waits)
 {
     SHVR_CHECK(!is_done());
-    const PicturePart part = parts_.back();
-    parts_.pop_back();
+    const PicturePart part = rounds_ ? rounds_->part : parts_.back();
+    if (!rounds_) parts_.pop_back();
     // A CPU that draws takes the pixels as well: it would only need more memory.
     const bool is_paged = scene().volume().counts().has_value(), is_ahead = !is_paged && !scene().traits().is_cpu;
     try {
-        is_ahead ? draw_ahead(part) : draw_completely(part);
+        if (is_ahead)
+            draw_ahead(part);
+        else if (!draw_completely(part, waits))
+            return;
     } catch (const gpu::MemoryError& error) {
+        rounds_.reset();
         if (under_way_) {
             catch_up();
             return parts_.push_back(part);  // alone there may be room for it
@@ -307,7 +321,7 @@ void PictureJob::draw_ahead(const PicturePart& part)
     look_at(scene(), look_, pane().shot, part);
     const Progress progress = progress_of(part, 0);
     tell(progress, 0.0);
-    renew_occlusion(progress);
+    static_cast<void>(renew_occlusion(progress, true));
     UnderWay next = begin(part);
     if (drawn_pixels_ == 0 && !under_way_) return finish(part, take(std::move(next)));
     catch_up();
@@ -324,28 +338,49 @@ void PictureJob::catch_up()
     finish(part, take(std::move(last)));
 }
 
-/// Draws a part with all bricks that its rays visit, or splits it into quarters.
-void PictureJob::draw_completely(const PicturePart& part)
+/// Draws a part with all bricks that its rays visit, or splits it into quarters. False: it goes on in the next step.
+bool PictureJob::draw_completely(const PicturePart& part, bool waits)
+{
+    DeviceVolume& volume = scene().volume();
+    // Others may have looked since the last step; what was drawn is stale then, and is drawn again.
+    look_at(scene(), look_, pane().shot, part);
+    if (!rounds_) {
+        if (area_of(part) != PixelBox{glm::uvec2(0), part.pixels}.area()) volume.forget_visits();
+        rounds_.emplace(Rounds{.part = part});
+    }
+    if (!draw_rounds(waits)) return false;
+    std::vector<gpu::PassReport> passes = std::move(rounds_->passes);
+    rounds_.reset();
+    if (volume.state() == DeviceVolume::State::complete)
+        finish(part, std::move(passes));
+    else if (area_of(part) <= MAX_WAITING_PIXELS)
+        draw_waiting(part);
+    else
+        for (const PicturePart& quarter : quarters_of(part)) parts_.push_back(quarter);
+    return true;
+}
+
+/// Draws the part of `rounds_` until all bricks that its rays visit are on the device, or there is no room for them.
+bool PictureJob::draw_rounds(bool waits)
 {
     using State = DeviceVolume::State;
     DeviceVolume& volume = scene().volume();
-    look_at(scene(), look_, pane().shot, part);
-    if (area_of(part) != PixelBox{glm::uvec2(0), part.pixels}.area()) volume.forget_visits();
-    std::vector<gpu::PassReport> passes;
-    for (int round = 0;; ++round) {
-        const Progress progress = progress_of(part, round);
-        tell(progress, 0.0);
-        renew_occlusion(progress);
-        passes = draw(part);
-        scene().advance(true, progress);
-        load_around(progress);  // bricks seen again may have been lit while there was no room for those around them
-        if (volume.state() == State::limited) break;
+    for (;; ++rounds_->round) {
+        const Progress progress = progress_of(rounds_->part, rounds_->round);
+        if (!rounds_->is_drawn) {
+            tell(progress, 0.0);
+            if (!renew_occlusion(progress, waits)) return false;
+            rounds_->passes = draw(rounds_->part);
+            rounds_->is_drawn = true;
+        }
+        if (!load(progress, waits)) return false;
+        // Bricks seen again may have been lit while there was no room for those around them.
+        if (!load_around(progress, waits)) return false;
+        rounds_->is_drawn = false;
+        if (volume.state() == State::limited) return true;
         if (!pane().shot.is_slice && scene().occlusion().is_due()) continue;  // of bricks visited for the first time
-        if (volume.state() == State::complete && !volume.is_stale()) break;
+        if (volume.state() == State::complete && !volume.is_stale()) return true;
     }
-    if (volume.state() == State::complete) return finish(part, std::move(passes));
-    if (area_of(part) <= MAX_WAITING_PIXELS) return draw_waiting(part);
-    for (const PicturePart& quarter : quarters_of(part)) parts_.push_back(quarter);
 }
 
 /// Draws a part whose rays need more bricks than there is room for. In every round the bricks that rays wait for are
@@ -368,7 +403,7 @@ void PictureJob::draw_waiting(const PicturePart& part)
         if (!volume.has_rays_waiting()) break;
         const Progress progress = progress_of(part, round);
         if (waits_for_light && volume.limit_visits(scene().occlusion().reach())) {
-            renew_occlusion(progress);
+            static_cast<void>(renew_occlusion(progress, true));
             continue;
         }
         if (waits_for_light) {  // in vain: rays go on with what light there is

@@ -24,12 +24,17 @@ public:
     PictureJob(const PictureJob&) = delete;
     PictureJob& operator=(const PictureJob&) = delete;
 
-    bool is_done() const { return parts_.empty() && band_end_ == size_.y; }
+    bool is_done() const { return parts_.empty() && !rounds_ && band_end_ == size_.y; }
     /// Draws the next part. Of a paged volume waits for it, and for bricks: a part is drawn again until all bricks that
     /// its rays visit are on the device. A part that needs more bricks than there is room for is split into quarters,
     /// or drawn by rays that wait for them. Where nothing is paged, and a GPU draws, waits for the part before, so that
     /// the device has work while that one's pixels are taken. Hands on the rows of a band that is done.
-    void step();
+    ///
+    /// `waits` false: for no brick that is read, unless rays wait for bricks; the next step goes on with the part, and
+    /// others may look at the volume meanwhile.
+    void step(bool waits = true);
+    /// The last step left a part whose bricks are still to come, or their light.
+    bool is_waiting() const { return rounds_.has_value(); }
     /// The share of all pixels drawn so far.
     double progress() const { return double(drawn_pixels_) / double(uint64_t(size_.x) * size_.y); }
     /// Whether nothing is missing from what is drawn so far.
@@ -55,13 +60,15 @@ private:
     std::vector<gpu::PassReport> draw(const PicturePart& part, WaitingRays* waiting = nullptr);
     void draw_ahead(const PicturePart& part);
     void catch_up();
-    void draw_completely(const PicturePart& part);
+    bool draw_completely(const PicturePart& part, bool waits);
+    bool draw_rounds(bool waits);
     bool has_given_way(const PicturePart& part, const std::string& why);
     void draw_waiting(const PicturePart& part);
     void note_limited();
     void finish(const PicturePart& part, std::vector<gpu::PassReport> passes);
-    void load_around(const Progress& progress);
-    void renew_occlusion(const Progress& progress);
+    bool load(const Progress& progress, bool waits);
+    bool load_around(const Progress& progress, bool waits);
+    bool renew_occlusion(const Progress& progress, bool waits);
     Progress progress_of(const PicturePart& part, int round);
     Scene& scene() const { return renderer_.scene(); }
     const Pane& pane() const { return panes_[pane_]; }
@@ -78,7 +85,15 @@ private:
     uint32_t band_begin_ = 0, band_end_ = 0;  ///< rows of the picture
     ImageF band_;
     size_t pane_ = 0;
-    std::vector<PicturePart> parts_;       ///< of the pane within the band, still to be drawn, the next one last
+    std::vector<PicturePart> parts_;  ///< of the pane within the band, still to be drawn, the next one last
+    /// A part that is drawn until no brick is missing.
+    struct Rounds {
+        PicturePart part;
+        int round = 0;          ///< of which its light is renewed, it is drawn, and its bricks are loaded
+        bool is_drawn = false;  ///< in this round
+        std::vector<gpu::PassReport> passes{};
+    };
+    std::optional<Rounds> rounds_;         ///< begun by draw_completely
     std::optional<UnderWay> under_way_;    ///< begun by draw_ahead
     std::optional<double> last_taken_ms_;  ///< of a clock that does not go back
     Picture picture_;

@@ -43,6 +43,7 @@ void search_bits(const RaycastParams params, const Ray ray, float begin, uint en
             const vec3 position = sample_position(params, ray, begin, i);
             const Place place = place_at(params, position);
             leaps_on = place.distance > NEAR && i < end_step;
+            if (COUNT_WORK != 0u) ++work.turns;
             if (place.distance > 0u && i < end_step) {
                 i += steps_to_leave(params, ray, position, place);
                 unseen += SAMPLES_OF_LEAP;
@@ -71,6 +72,7 @@ void search_bits(const RaycastParams params, const Ray ray, float begin, uint en
             }
         }
         ++turn;
+        if (COUNT_WORK != 0u) ++work.turns;
     } while (searches && i < end_step && turn < MAX_SEARCH_TURNS);
 }
 #endif
@@ -95,6 +97,7 @@ void search_sample(const RaycastParams params, const Ray ray, float begin, uint 
             const Place place = place_at(params, position);
             note(place, work);
             leaps = place.distance > 0u;
+            if (COUNT_WORK != 0u) ++work.turns;
             if (leaps) {
                 i += steps_to_leave(params, ray, position, place);
                 unseen += SAMPLES_OF_LEAP;
@@ -119,5 +122,6 @@ void search_sample(const RaycastParams params, const Ray ray, float begin, uint 
             searches = !is_found;
         }
         ++turn;
+        if (COUNT_WORK != 0u) ++work.turns;
     } while (searches && i < end_step && turn < MAX_SEARCH_TURNS);
 }

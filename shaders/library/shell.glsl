@@ -26,6 +26,7 @@ struct Shell {
     float end;
     bool is_inside;   // at `from`
     bool waits;       // for a brick
+    uint turns;       // of both loops; MAX_TURNS are more than any ray needs whose numbers are some
 };
 
 // The cell of the lattice around a position, in the brick that holds it.
@@ -138,7 +139,8 @@ float crossing(vec4 c, float low, float high, bool low_is_inside)
 void search_shell(const RaycastParams params, const Ray ray, inout Shell shell)
 {
     shell.next = NO_SHELL;
-    while (shell.next == NO_SHELL && shell.from < shell.limit && !shell.waits) {
+    while (shell.next == NO_SHELL && shell.from < shell.limit && !shell.waits && shell.turns < MAX_TURNS) {
+        ++shell.turns;
         const Cell cell = cell_at(params, ray, position_at(params, ray, shell.from + hair_at(shell.from)));
         const float to = min(max(cell.exit, shell.from + 2.0 * hair_at(shell.from)), shell.end);
         const float extent = to - shell.from;
@@ -208,6 +210,7 @@ Shell begin_shell(const RaycastParams params, const Ray ray, float begin, float 
     shell.limit = min(limit, shell.end);
     shell.is_inside = is_inside;
     shell.waits = false;
+    shell.turns = 0u;
     if (shell.from < 0.0 && start < shell.limit) {
         const Cell cell = cell_at(params, ray, position_at(params, ray, start + hair_at(start)));
         shell.is_inside = cell.is_there && above_threshold(params, ray, cell, corners_of(cell), start) >= 0.0;
@@ -240,7 +243,8 @@ vec4 shell_look(const RaycastParams params, const Ray ray, const Cell cell, vec3
 // Adds the crossings before `s`.
 void add_shells(const RaycastParams params, const Ray ray, float s, inout Shell shell, inout vec4 sum)
 {
-    while (shell.next < s && sum.a < params.opacity_limit && !shell.waits) {
+    while (shell.next < s && sum.a < params.opacity_limit && !shell.waits && shell.turns < MAX_TURNS) {
+        ++shell.turns;
         const vec3 position = position_at(params, ray, shell.next);
         const Cell cell = cell_at(params, ray, position);
         shell.waits = cell.is_missing;

@@ -2,12 +2,108 @@
 
 #include "engine/picture/picture_job.h"
 
+#include <chrono>
+#include <condition_variable>
+#include <filesystem>
+#include <mutex>
+#include <thread>
+
 #include <doctest/doctest.h>
 
+#include "engine/base/image_file.h"
+#include "engine/base/image_metrics.h"
+#include "engine/picture/frame.h"
 #include "tests/support/gpu.h"
+#include "ui/workbench/document/screenshots.h"
 
 using namespace shvr;
 using namespace shvr::test;
+
+namespace {
+
+/// A disk that reads as often as it is let. Closed, it keeps readers for half a minute, and then all the same reads.
+class Gated final : public VolumeSource {
+public:
+    explicit Gated(std::shared_ptr<const VolumeSource> source)
+        : VolumeSource(source->info()), source_(std::move(source))
+    {}
+    Size3 block() const override { return source_->block(); }
+    int levels() const override { return source_->levels(); }
+    void read(const VoxelBox& box, std::span<std::byte> voxels) const override { read_level(0, box, voxels); }
+    void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const override
+    {
+        {
+            std::unique_lock lock(mutex_);
+            if (!changed_.wait_for(lock, std::chrono::seconds(30), [&] { return let_ > 0; })) ++waited_for_;
+            --let_;
+            ++reads_;
+        }
+        source_->read_level(level, box, voxels);
+    }
+    void let(int reads)
+    {
+        const std::scoped_lock lock(mutex_);
+        let_ = reads;
+        changed_.notify_all();
+    }
+    int reads() const
+    {
+        const std::scoped_lock lock(mutex_);
+        return reads_;
+    }
+    /// Readers that have waited in vain.
+    int waited_for() const
+    {
+        const std::scoped_lock lock(mutex_);
+        return waited_for_;
+    }
+
+private:
+    std::shared_ptr<const VolumeSource> source_;
+    mutable std::mutex mutex_;
+    mutable std::condition_variable changed_;
+    mutable int let_ = 0, reads_ = 0, waited_for_ = 0;
+};
+
+constexpr int ALL = 1 << 30;
+
+struct SlowlyRead {
+    std::shared_ptr<const VolumeSource> tubes = open_procedural({.kind = "tubes", .size = {128, 128, 128}, .seed = 3});
+    std::shared_ptr<Gated> gated = std::make_shared<Gated>(tubes);
+    Renderer renderer{{.device = {.validation = true}, .threads = 2}};
+    Camera camera = camera_looking("front", tubes->info());
+    Session session;
+    ImageF expected;
+
+    SlowlyRead()
+    {
+        session.transfer_function =
+            TransferFunction({{90.0, glm::dvec3(0.8, 0.3, 0.1), 0.0}, {140.0, glm::dvec3(0.9, 0.7, 0.3), 0.3}});
+        session.render.size = {101, 77};
+        session.render.sampling = Sampling::exact;
+        session.render.detail = 0.0;
+        session.render.paging = Paging::always;
+        session.light.occlusion = {.strength = 0.8, .radius = 6.0, .rays = 8};
+        renderer.load(tubes, {.minimum = 0.0, .maximum = 255.0}, session.render);
+        expected = renderer.render(session, camera).image;
+        gated->let(ALL);
+        renderer.load(gated, {.minimum = 0.0, .maximum = 255.0}, session.render);
+    }
+    ~SlowlyRead()
+    {
+        gated->let(ALL);
+        for (const std::string& message : renderer.device().take_validation_messages()) FAIL_CHECK(message);
+    }
+    /// Lets the readers read a little, while nobody waits for them.
+    void read_a_little() const
+    {
+        gated->let(8);
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        gated->let(0);
+    }
+};
+
+}  // namespace
 
 TEST_CASE("a picture in parts has the bits of one drawn whole, resident and with paged bricks")
 {
@@ -60,6 +156,83 @@ TEST_CASE("a picture in parts has the bits of one drawn whole, resident and with
         }
     }
     for (const std::string& message : renderer.device().take_validation_messages()) FAIL_CHECK(message);
+}
+
+TEST_CASE_FIXTURE(SlowlyRead, "a picture whose steps wait for no brick has the same bits, whoever looks in between")
+{
+    ImageF image{101, 0, {}};
+    PictureJob job(renderer, session, camera, {.part_pixels = 48}, [&](const ImageF& rows) {
+        image.height += rows.height;
+        image.rgba.insert(image.rgba.end(), rows.rgba.begin(), rows.rgba.end());
+    });
+    gated->let(0);
+    int waiting = 0;
+    for (int steps = 0; !job.is_done() && gated->waited_for() == 0; ++steps) {
+        REQUIRE(steps < 20'000);
+        const int before = gated->reads();
+        job.step(false);
+        CHECK(gated->reads() == before);
+        if (!job.is_waiting()) continue;
+        ++waiting;
+        read_a_little();
+        if (steps % 5 == 4)
+            look_at(renderer.scene(), session.look(), Shot(camera_looking("left", tubes->info())),
+                    {.pixels = {40, 30}, .begin = glm::uvec2(0), .end = {40, 30}});
+    }
+    REQUIRE(gated->waited_for() == 0);  // by a step
+    CHECK(waiting > 10);
+    CHECK(job.take().complete);
+    CHECK(different_bits(image, expected) == 0);
+}
+
+TEST_CASE_FIXTURE(SlowlyRead, "a large screenshot waits for its bricks beside the window, which shows its own view")
+{
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / sentence("shvr-slowly-read-", std::this_thread::get_id());
+    std::filesystem::create_directories(folder);
+    Screen screen(renderer, {});
+    Session shown = session;
+    shown.render.detail = Session().render.detail;
+    const Camera other = camera_looking("left", tubes->info());
+    const glm::uvec2 pixels(40, 30);
+    screen.look(shown, other, pixels, glm::dvec3(64.0));
+    const auto settle = [&] {
+        while (!screen.complete()) {
+            screen.advance();
+            screen.wait();
+        }
+    };
+    settle();
+    ui::Screenshots screenshots;
+    const auto texts = [](const std::filesystem::path&) { return PictureTexts(); };
+    screenshots.take_large(folder / "scan", renderer, session, camera, {.part_pixels = 48}, texts, {});
+    gated->let(0);
+    bool was_held = false, is_followed = false;
+    std::string said;
+    for (int turns = 0; said.empty() && gated->waited_for() == 0; ++turns) {
+        REQUIRE(turns < 200'000);
+        screen.advance();
+        if (was_held && !is_followed) {  // the volume is turned: the window follows, and the picture goes on later
+            screen.look_from(camera_looking("top", tubes->info()), glm::dvec3(64.0));
+            screen.advance();
+            CHECK_FALSE(screen.is_held());
+            is_followed = true;
+        }
+        const int before = gated->reads();
+        said = screenshots.advance(screen, folder / "scan", true, texts, [] { return ui::Figure(); }).said;
+        CHECK(gated->reads() == before);
+        was_held = was_held || screen.is_held();
+        read_a_little();
+    }
+    REQUIRE(gated->waited_for() == 0);  // by a turn of the window
+    CHECK(is_followed);
+    gated->let(ALL);
+    CHECK_FALSE(screen.is_held());
+    settle();
+    CHECK(said == sentence("Screenshot: ", (folder / "scan-view-1.png").string()));
+    const Image8 kept = read_png(folder / "scan-view-1.png");
+    CHECK(compare_pixels(kept, to_image8(expected)).max_abs == 0.0);
+    std::filesystem::remove_all(folder);
 }
 
 TEST_CASE("a picture that memory does not hold is refused before any is taken")

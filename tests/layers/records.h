@@ -138,6 +138,11 @@ inline std::vector<Record> made_records()
     filters.max_side_3d = 2048;
     filters.max_image = 24 * MEBI;
     all.push_back(filters);
+    Record pieces = filters;
+    pieces.name = "pieces";
+    pieces.device = "record of a device whose images hold little";
+    pieces.max_image = 8 * MEBI;
+    all.push_back(pieces);
     Record bare = least;  // the least one, with fewer images than a kernel binds
     bare.name = "bare";
     bare.device = "record of a device with too few images";

@@ -1,11 +1,13 @@
 // Atlases of several images, on devices of which one holds too few bricks (tests/layers/records.h).
 
+#include <algorithm>
 #include <array>
 
 #include <doctest/doctest.h>
 
 #include "engine/base/image_metrics.h"
 #include "engine/live/annotator.h"
+#include "shaders/bricks.h"
 #include "tests/gpu/devices/on_record.h"
 
 using namespace shvr;
@@ -15,35 +17,45 @@ namespace {
 
 constexpr VolumeStatistics BYTES{.minimum = 0.0, .maximum = 255.0};
 
-}  // namespace
+/// What is drawn of a volume: rays come by all of its bricks, and a stroke goes through it.
+struct Stacked {
+    Session session = plain_session({{0.0, RED, 0.002}, {255.0, BLUE, 0.01}}, {40, 30});
+    std::shared_ptr<const VolumeSource> source;
+    Camera camera;
+    PaintOp op;
+    size_t bricks;  ///< of the finest level
 
-TEST_CASE("paged bricks fill more images than one, to the bits of bricks in one")
-{
-    Session session = plain_session({{0.0, RED, 0.002}, {255.0, BLUE, 0.01}}, {40, 30});  // rays come by all bricks
-    session.light.shaded = true;
-    session.render.detail = 0.0;
-    session.render.paging = Paging::always;
-    // 512 bricks, and coarser ones; the images of these devices hold 343 and 320.
-    const std::shared_ptr<const VolumeSource> source =
-        open_procedural({.kind = "tubes", .size = {250, 250, 250}, .seed = 5});
-    const Camera camera = camera_looking("right", source->info());
-    const PaintOp op{.brush = Brush::fill,
-                     .group = 3,
-                     .threshold = 60.0,
-                     .radius_voxels = 30.0,
-                     .path = {{70, 60, 60}, {180, 170, 200}}};
+    Stacked(const Size3& size, std::vector<glm::dvec3> path)
+        : source(open_procedural({.kind = "tubes", .size = size, .seed = 5})),
+          camera(camera_looking("right", source->info())),
+          op{.brush = Brush::fill, .group = 3, .threshold = 60.0, .radius_voxels = 30.0, .path = std::move(path)}
+    {
+        session.light.shaded = true;
+        session.render.detail = 0.0;
+        session.render.paging = Paging::always;
+        const Size3 counts = (size + int64_t{31}) / int64_t{32};
+        bricks = size_t(counts.x * counts.y * counts.z);
+    }
+
     struct Drawn {
         ImageF plain, painted, lit;
         std::array<int64_t, 256> voxels{};
     };
-    const auto drawn = [&](Renderer& renderer, bool is_stacked) {
+    Drawn drawn(Renderer& renderer, size_t images) const
+    {
         renderer.load(source, BYTES, session.render);
         Drawn made{.plain = renderer.render(session, camera).image, .painted = {}, .lit = {}};
         const DeviceVolume::Counts counts = renderer.volume().counts().value();
-        CHECK(counts.resident > 512);
+        CHECK(counts.resident > bricks);
         CHECK(counts.evictions == 0);
         FrameGraph graph;
-        CHECK(renderer.volume().atlas(graph).more_atlases.empty() != is_stacked);
+        CHECK(1 + renderer.volume().atlas(graph).more_atlases.size() == images);
+        // A brick lies in each of them.
+        std::vector<bool> has_bricks(4);
+        const uint32_t height = renderer.volume().atlas_slots().z / uint32_t(images);
+        for (const DeviceVolume::Place& place : renderer.volume().places())
+            has_bricks.at(gpu::unpack_slot(place.slot).z / height) = true;
+        CHECK(std::ranges::count(has_bricks, true) == ptrdiff_t(images));
         Session lit = session;
         lit.light.occlusion = {.strength = 0.9, .radius = 6.0, .rays = 8};
         const Picture picture = renderer.render(lit, camera);
@@ -54,18 +66,21 @@ TEST_CASE("paged bricks fill more images than one, to the bits of bricks in one"
         made.voxels = annotator.document().mask.voxels_by_group();
         made.painted = renderer.render(session, camera).image;
         return made;
-    };
-    for (const auto& [record, sampling] :
-         {std::pair{"minimum", Sampling::exact}, {"filters", Sampling::exact}, {"filters", Sampling::hardware}}) {
+    }
+
+    /// On a device of the record and on one that holds all bricks in one image. `lights`: the record's device has room
+    /// for the light; where it has none, it says so.
+    void compare(const char* record, Sampling sampling, size_t images, bool lights)
+    {
         CAPTURE(std::string(record));
         CAPTURE(int(sampling));
         session.render.sampling = sampling;
         Renderer plain({.device = {.validation = true}, .threads = 1});
-        const Drawn expected = drawn(plain, false);
+        const Drawn expected = drawn(plain, 1);
         CHECK(expected.voxels[3] > 1000);
         CHECK(!expected.lit.rgba.empty());
         On device(record);
-        const Drawn seen = drawn(*device, true);
+        const Drawn seen = drawn(*device, images);
         // A filter is asked for other places of the texture.
         const auto is_same = [&](const ImageF& a, const ImageF& b) {
             return sampling == Sampling::exact ? different_bits(a, b) == 0
@@ -75,8 +90,37 @@ TEST_CASE("paged bricks fill more images than one, to the bits of bricks in one"
         CHECK(is_same(seen.painted, expected.painted));
         CHECK(seen.voxels == expected.voxels);
         CHECK(different_bits(seen.painted, seen.plain) > 0);
-        // The light's images are too large for the first device, which says so.
-        CHECK(seen.lit.rgba.empty() == (std::string(record) == "minimum"));
+        CHECK(seen.lit.rgba.empty() == !lights);
         if (!seen.lit.rgba.empty()) CHECK(is_same(seen.lit, expected.lit));
+    }
+};
+
+}  // namespace
+
+TEST_CASE("paged bricks fill more images than one, to the bits of bricks in one")
+{
+    // 512 bricks, and coarser ones; the images of these devices hold 343 and 320. The light's are too large for the
+    // first device.
+    Stacked stacked({250, 250, 250}, {{70, 60, 60}, {180, 170, 200}});
+    stacked.compare("minimum", Sampling::exact, 2, false);
+    stacked.compare("filters", Sampling::exact, 2, true);
+    stacked.compare("filters", Sampling::hardware, 2, true);
+}
+
+TEST_CASE("paged bricks fill as many images as kernels know, to the bits of bricks in one")
+{
+    // Where samplers read codes, they take two bytes instead of one. Light has one image, half as large as all codes.
+    struct Tried {
+        int length;
+        Sampling sampling;
+        size_t images;
+    };
+    for (const Tried& tried : {Tried{160, Sampling::hardware, 3},
+                               {230, Sampling::hardware, 4},
+                               {310, Sampling::exact, 3},
+                               {480, Sampling::exact, 4}}) {
+        CAPTURE(tried.length);
+        Stacked stacked({190, 190, tried.length}, {{30, 40, 20}, {150, 140, tried.length - 20}});
+        stacked.compare("pieces", tried.sampling, tried.images, false);
     }
 }

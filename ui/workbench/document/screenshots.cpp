@@ -32,12 +32,17 @@ Screenshots::Turn Screenshots::advance(Screen& screen, const std::filesystem::pa
         if (written_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
         return {.said = written_.get(), .progress = {}};
     }
-    if (!screen.complete()) return {};
-    if (std::exchange(is_wanted_, false)) {
+    const bool was_held = screen.is_held();  // by a large one that waits for its bricks
+    screen.hold(false);
+    if (!screen.complete() && !was_held) return {};
+    if (screen.complete() && std::exchange(is_wanted_, false)) {
         write(screen.read_back(), stem, texts, figure());
         return {};
     }
-    return large_ && is_still ? advance_large() : Turn{};
+    if (!large_ || !is_still) return {};
+    const Turn turn = advance_large();
+    screen.hold(large_ && large_->is_waiting());
+    return screen.is_held() ? Turn{} : turn;  // nothing new to tell
 }
 
 Screenshots::Turn Screenshots::advance_large()
@@ -51,7 +56,7 @@ Screenshots::Turn Screenshots::advance_large()
     if (picture->is_drawn())
         picture->begin_commit();
     else
-        picture->step();
+        picture->step(false);
     const int percent = int(100.0 * picture->progress());
     large_ = std::move(picture);
     return {.said = {}, .progress = sentence("Large screenshot: ", percent, " %")};
