@@ -46,8 +46,8 @@ std::string message_of(const std::function<void()>& action)
     return "no error";
 }
 
-/// A pass, after two copies, that a device does not know.
-FrameGraph distances_of(const glm::uvec3& cells, bool tiled)
+/// A pass, after two copies, that a device does not know. `into`: an image of so many cells; null: one of the frame's.
+FrameGraph distances_of(const glm::uvec3& cells, bool tiled, const gpu::Storage* into = nullptr)
 {
     FrameGraph graph;
     const Resource zero = graph.fill(graph.create("zero", buffer_desc(4)), 0);
@@ -57,7 +57,8 @@ FrameGraph distances_of(const glm::uvec3& cells, bool tiled)
     pass.read("source", source);
     pass.push(gpu::LeapDistanceParams{cells, glm::uvec3(0), cells, 0});
     pass.dispatch(cells, tiled ? glm::uvec3(128, 128, 1) : glm::uvec3(0));
-    graph.keep(pass.write("leap", graph.create("leap", image_desc(Format::r32_uint, cells))));
+    const ResourceDesc desc = image_desc(Format::r32_uint, cells);
+    graph.keep(pass.write("leap", into ? graph.import("leap", into->import()) : graph.create("leap", desc)));
     return graph;
 }
 
@@ -350,6 +351,23 @@ TEST_CASE("a long pass is several submissions until it is known to be short")
         CHECK(run() == (tiled ? std::pair(96u, 1u) : std::pair(1u, 1u)));
     }
     unsetenv("VK_INSTANCE_LAYERS");
+}
+
+TEST_CASE("of a frame that was submitted in part nobody counts on what it has done")
+{
+    const glm::uvec3 cells(256, 256, 24);
+    setenv("VK_INSTANCE_LAYERS", "VK_LAYER_SHVR_faults", 1);
+    setenv("SHVR_FAULTS", "vkQueueSubmit2:2:out_of_host_memory", 1);
+    Fixture fixture;
+    unsetenv("VK_INSTANCE_LAYERS");
+    unsetenv("SHVR_FAULTS");
+    const gpu::Storage kept =
+        fixture.memory.create("kept", image_desc(Format::r32_uint, cells), gpu::Placement::device, "a test");
+    CHECK(kept.import().state != UNKNOWN_STATE);
+    CHECK_THROWS_AS(fixture.executor.run(distances_of(cells, true, &kept)), gpu::MemoryError);
+    CHECK(kept.import().state == UNKNOWN_STATE);
+    fixture.executor.run(distances_of(cells, true, &kept));
+    CHECK(kept.import().state != UNKNOWN_STATE);
 }
 
 TEST_CASE("a device that does not exist is refused with the list of those that do")

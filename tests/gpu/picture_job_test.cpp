@@ -21,7 +21,9 @@ using namespace shvr::test;
 
 namespace {
 
-/// A disk that reads as often as it is let. Closed, it keeps readers for half a minute, and then all the same reads.
+constexpr int ALL = 1 << 30;
+
+/// A disk that reads as often as it is let. A reader that has waited for half a minute opens it for good.
 class Gated final : public VolumeSource {
 public:
     explicit Gated(std::shared_ptr<const VolumeSource> source)
@@ -34,7 +36,11 @@ public:
     {
         {
             std::unique_lock lock(mutex_);
-            if (!changed_.wait_for(lock, std::chrono::seconds(30), [&] { return let_ > 0; })) ++waited_for_;
+            if (!changed_.wait_for(lock, std::chrono::seconds(30), [&] { return let_ > 0; })) {
+                ++waited_for_;
+                let_ = ALL;
+                changed_.notify_all();
+            }
             --let_;
             ++reads_;
         }
@@ -43,7 +49,7 @@ public:
     void let(int reads)
     {
         const std::scoped_lock lock(mutex_);
-        let_ = reads;
+        let_ = waited_for_ > 0 ? ALL : reads;
         changed_.notify_all();
     }
     int reads() const
@@ -64,8 +70,6 @@ private:
     mutable std::condition_variable changed_;
     mutable int let_ = 0, reads_ = 0, waited_for_ = 0;
 };
-
-constexpr int ALL = 1 << 30;
 
 struct SlowlyRead {
     std::shared_ptr<const VolumeSource> tubes = open_procedural({.kind = "tubes", .size = {128, 128, 128}, .seed = 3});

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 #include <unistd.h>
 
@@ -60,6 +61,30 @@ std::string all_messages(Renderer& renderer)
     for (const std::string& message : renderer.scene().take_messages()) all += message + "\n";
     return all;
 }
+
+/// A driver that, once that begins, has no memory of so many bytes in one piece (tests/layers/memory.cpp). Devices made
+/// while it lives have it.
+class ShortOf {
+public:
+    explicit ShortOf(uint64_t bytes)
+    {
+        std::filesystem::create_directories(folder_);
+        setenv("VK_INSTANCE_LAYERS", "VK_LAYER_SHVR_memory", 1);
+        setenv("SHVR_DEVICE_SHORT_BYTES", std::to_string(bytes).c_str(), 1);
+        setenv("SHVR_DEVICE_SHORT_WHILE", (folder_ / "while").c_str(), 1);
+    }
+    ShortOf(const ShortOf&) = delete;
+    ~ShortOf()
+    {
+        for (const char* name : {"VK_INSTANCE_LAYERS", "SHVR_DEVICE_SHORT_BYTES", "SHVR_DEVICE_SHORT_WHILE"})
+            unsetenv(name);
+        std::filesystem::remove_all(folder_);
+    }
+    void begins() const { std::ofstream(folder_ / "while") << '\n'; }
+
+private:
+    std::filesystem::path folder_ = std::filesystem::temp_directory_path() / sentence("shvr-short-", getpid());
+};
 
 void check_valid(Renderer& renderer)
 {
@@ -158,6 +183,19 @@ TEST_CASE("paint that there was no memory for is shown once there is")
     check_valid(renderer);
 }
 
+TEST_CASE("a volume that the driver has no memory for in one piece is paged")
+{
+    const ShortOf memory(34 * MIB);  // the volume takes 41, and paged bricks are tried with less and less
+    Renderer renderer({.device = {.validation = true}, .budget = {256 * MIB, 0}, .threads = 2});
+    const std::shared_ptr<const VolumeSource> source = open_procedural({.kind = "sphere", .size = {640, 256, 256}});
+    renderer.load(source, BYTES, {.sampling = Sampling::exact});
+    CHECK_FALSE(renderer.volume().counts().has_value());
+    memory.begins();
+    renderer.load(source, BYTES, {.sampling = Sampling::exact});
+    CHECK(renderer.volume().counts().has_value());
+    check_valid(renderer);
+}
+
 TEST_CASE("whichever submission of a view fails, it comes to rest on the same picture")
 {
     // In folders of the process's own: the layer reads its faults from one file, and logs to the other.
@@ -182,6 +220,7 @@ TEST_CASE("whichever submission of a view fails, it comes to rest on the same pi
         };
         load();
         std::optional<Image8> expected;
+        int gave_way = 0;
         for (int number = 0; number < 200; number = number < 16 ? number + 1 : number + 7) {
             CAPTURE(number);
             load();
@@ -203,6 +242,7 @@ TEST_CASE("whichever submission of a view fails, it comes to rest on the same pi
             }
             let_fail("");
             const bool has_fired = failures > 0 || renderer.scene().occlusion_has_no_room();
+            gave_way += failures == 0 && renderer.scene().occlusion_has_no_room();
             if (renderer.scene().occlusion_has_no_room()) {  // it gave way: as if it had been switched off and on
                 Session without = shown.session;
                 without.light.occlusion.strength = 0.0;
@@ -216,6 +256,7 @@ TEST_CASE("whichever submission of a view fails, it comes to rest on the same pi
             CHECK(compare_pixels(seen, *expected).max_abs == 0.0);
             if (number > 0 && !has_fired) break;  // there are no more
         }
+        CHECK(gave_way > 0);  // the light, and the view never failed
         check_valid(renderer);
     }
     unsetenv("VK_INSTANCE_LAYERS");
