@@ -108,7 +108,8 @@ void quality_fields(Fields& f, RenderSettings& render)
         if (name == each.name) take(render, each);
 }
 
-/// How a picture is made, in the two places that they have in files.
+// What says how a picture is made stands in two places of a file, before the background and behind it.
+
 void sample_fields(Fields& f, RenderSettings& render)
 {
     std::vector<int64_t> size{render.size.x, render.size.y};

@@ -10,19 +10,33 @@ using namespace shvr;
 using namespace shvr::test;
 using namespace shvr::ui;
 
-TEST_CASE_FIXTURE(OnDevice, "a changed curve of ambient occlusion is said in words, and draws nothing while it is off")
-{
+namespace {
+
+struct Settings : OnDevice {
     TemporaryFolder folder;
-    Workbench bench(renderer(), {.has_servo = false});
-    bench.set_pixels({48, 40});
-    bench.open(write_tubes_session(folder.path), {});
-    settle(bench);
-    const auto set = [&](const char* patch) {
+    Workbench bench{renderer(), {.has_servo = false}};
+
+    Settings()
+    {
+        bench.set_pixels({48, 40});
+        bench.open(write_tubes_session(folder.path), {});
+        settle(bench);
+    }
+    /// Returns how many submissions draw it.
+    uint64_t perform(const Action& action)
+    {
         const uint64_t before = bench.document().screen.submissions();
-        bench.perform(Set{patch});
+        bench.perform(action);
         settle(bench);
         return bench.document().screen.submissions() - before;
-    };
+    }
+    uint64_t set(const char* patch) { return perform(Set{patch}); }
+};
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Settings, "a changed curve of ambient occlusion is said in words, and draws nothing while it is off")
+{
     const auto said = [&] { return bench.messages().last(); };
 
     set(R"({"light":{"occlusion":{"strength":0}}})");
@@ -30,16 +44,10 @@ TEST_CASE_FIXTURE(OnDevice, "a changed curve of ambient occlusion is said in wor
     CHECK(said() == "Occlusion curve: points from now on, 2 of them; occlusion is off, its strength is 0");
     CHECK(set(R"({"light":{"occlusion":{"radius":5}}})") == 0);
 
-    const auto stepped = [&](const Action& action) {
-        const uint64_t before = bench.document().screen.submissions();
-        bench.perform(action);
-        settle(bench);
-        return bench.document().screen.submissions() - before;
-    };
-    CHECK(stepped(UndoOp{1}) == 0);  // the radius
-    CHECK(stepped(UndoOp{1}) == 0);  // the curve
+    CHECK(perform(UndoOp{1}) == 0);  // the radius
+    CHECK(perform(UndoOp{1}) == 0);  // the curve
     CHECK(bench.model().session.light.occlusion.mapping.empty());
-    CHECK(stepped(RedoOp{2}) == 0);
+    CHECK(perform(RedoOp{2}) == 0);
     CHECK(bench.model().session.light.occlusion.radius == 5.0);
 
     CHECK(set(R"({"light":{"occlusion":{"strength":0.5}}})") > 0);
@@ -50,28 +58,17 @@ TEST_CASE_FIXTURE(OnDevice, "a changed curve of ambient occlusion is said in wor
     CHECK(said() == "Occlusion curve: a point added, 3 of them");
     CHECK(set(R"({"light":{"occlusion":{"mapping":null}}})") > 0);
     CHECK(said() == "Occlusion curve: a power again");
-    CHECK(stepped(UndoOp{1}) > 0);
+    CHECK(perform(UndoOp{1}) > 0);
 }
 
-TEST_CASE_FIXTURE(OnDevice, "how the picture looks is a step of the history, how it is made is none")
+TEST_CASE_FIXTURE(Settings, "how the picture looks is a step of the history, how it is made is none")
 {
-    TemporaryFolder folder;
-    Workbench bench(renderer(), {.has_servo = false});
-    bench.set_pixels({48, 40});
-    bench.open(write_tubes_session(folder.path), {});
-    settle(bench);
-    const auto perform = [&](const Action& action) {
-        const uint64_t before = bench.document().screen.submissions();
-        bench.perform(action);
-        settle(bench);
-        return bench.document().screen.submissions() - before;
-    };
     const RenderSettings before = bench.model().session.render;
-    perform(Set{R"({"render":{"step_voxels":0.375}})"});
+    set(R"({"render":{"step_voxels":0.375}})");
     CHECK(bench.model().undoable == 0);
-    CHECK(perform(Set{R"({"render":{"background":"#000000"}})"}) > 0);
-    perform(Set{R"({"render":{"saturation":0.5}})"});
-    perform(Set{R"({"render":{"smooth_borders":true}})"});
+    CHECK(set(R"({"render":{"background":"#000000"}})") > 0);
+    set(R"({"render":{"saturation":0.5}})");
+    set(R"({"render":{"smooth_borders":true}})");
     CHECK(bench.model().undoable == 3);
     perform(UndoOp{2});
     CHECK(bench.model().session.render.background == glm::dvec4(0.0, 0.0, 0.0, 1.0));
