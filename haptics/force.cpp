@@ -62,6 +62,7 @@ ForceStep stop(const ForceSettings& settings, uint32_t flags, uint64_t now_ns, F
     memory.cross = 1.0;
     memory.rate = {};
     memory.surface = {};
+    memory.click = {};
     disengage(memory);
     add_sent(memory.force_n, now_ns, memory.sent);
     const glm::dvec3 place = settings.workspace.to_point(memory.last.position_m);
@@ -166,7 +167,31 @@ glm::dvec3 damping_of(const ForceSettings& settings, const ForceMemory& memory)
     return damping / divided * memory.moved_m / THESIS_TICK_S;
 }
 
-/// Spring and damping, faded, before the limits.
+/// The push of a click, before fades.
+glm::dvec3 click_of(const ForceSettings& settings, const DeviceCaps& caps, const ModePull& pull, uint64_t dt_ns,
+                    ForceMemory& memory)
+{
+    ClickMemory& click = memory.click;
+    const double speed = glm::length(memory.velocity);
+    const bool begins = pull.in_contact && click.off_ns >= CLICK_PAUSE_NS && speed >= CLICK_LEAST_SPEED;
+    if (pull.in_contact)
+        click.off_ns = 0;
+    else if (pull.is_usable)  // what is not known is not off
+        click.off_ns = std::min(click.off_ns + dt_ns, CLICK_PAUSE_NS);
+    if (!settings.clicks || !caps.outputs_force) {
+        click.left_ns = 0;
+        return glm::dvec3(0.0);
+    }
+    click.left_ns -= std::min(click.left_ns, dt_ns);
+    if (begins) {
+        click.left_ns = CLICK_NS;
+        click.peak_n = -CLICK_N * std::min(speed / CLICK_FULL_SPEED, 1.0) * memory.velocity / speed;
+    }
+    if (click.left_ns == 0) return glm::dvec3(0.0);
+    return std::sin(std::numbers::pi * double(CLICK_NS - click.left_ns) / double(CLICK_NS)) * click.peak_n;
+}
+
+/// Spring, click and damping, faded, before the limits.
 ForceStep feel(const ForceSettings& settings, const DeviceCaps& caps, const RelevancePatch& patch, const Moment& moment,
                ForceMemory& memory, GrowthMemory& growth)
 {
@@ -199,7 +224,8 @@ ForceStep feel(const ForceSettings& settings, const DeviceCaps& caps, const Rele
     }
     if (memory.contact_fade == 0.0) memory.energy.made_j = 0.0;  // nothing to take it from
     const glm::dvec3 taken = take_energy(memory.velocity, double(moment.dt_ns) * 1e-9, memory.energy);
-    return {.force_n = pulled - fade * rate_share * damping_of(settings, memory) + memory.engagement * taken,
+    const glm::dvec3 driven = pulled + fade * click_of(settings, caps, pull, moment.dt_ns, memory);
+    return {.force_n = driven - fade * rate_share * damping_of(settings, memory) + memory.engagement * taken,
             .probe = probe,
             .proxy = probe + pull.offset,
             .in_contact = pull.in_contact,
@@ -275,6 +301,7 @@ ForceStep step(const ForceSettings& settings, const DeviceCaps& stated, ReadResu
         disengage(memory);
         forget_object(growth);
         memory.surface = {};
+        memory.click = {};
         memory.contact_fade = 0.0;
     }
     if (!is_there) memory.flags |= FORCE_NO_DEVICE;

@@ -37,6 +37,21 @@ enum ForceFlag : uint32_t {
     FORCE_OFF_OBJECT = 512,  ///< object following: the probe is off its object and touches another after a moment
 };
 
+/// A push against the way of the hand as it touches something, half a sine wave: what tells a hand where things begin
+/// is the first milliseconds of contact, not its stiffness (Kuchenbecker, Fiene, Niemeyer: Improving contact realism
+/// through event-based haptic feedback, 2006). In proportion to the hand's speed, so that it slows the lightest one,
+/// 30 g of a stylus alone, and never turns it round, and makes no energy. A hand that hardly moves gets none, nor one
+/// that has been off for less than CLICK_PAUSE_NS: one that trembles on a surface feels no buzz.
+struct ClickMemory {
+    glm::dvec3 peak_n{0.0};  ///< of the present one
+    uint64_t left_ns = 0;    ///< of the present one; 0: there is none
+    uint64_t off_ns = 0;     ///< for how long nothing has been touched
+};
+inline constexpr double CLICK_N = 0.25;
+inline constexpr double CLICK_FULL_SPEED = 0.1, CLICK_LEAST_SPEED = 0.01;  ///< m/s
+inline constexpr uint64_t CLICK_NS = 16'000'000;  ///< steepest 0.049 N per tick, as gentle as forces are
+inline constexpr uint64_t CLICK_PAUSE_NS = 100'000'000;
+
 struct ForceMemory {
     bool has_last = false;
     DeviceState last;             ///< the last good state
@@ -63,6 +78,7 @@ struct ForceMemory {
     glm::dvec3 spring_n{0.0};   ///< the last one
     glm::dvec3 crossed_n{0.0};  ///< the one that fades out
 
+    ClickMemory click;
     SurfaceMemory surface;
     HeatMemory heat;
     RateMemory rate;

@@ -50,6 +50,7 @@ struct ForceSettings {
     double surface_share = 0.4;           ///< of the ball: a surface holds above it and lets go below 3/4 of it
     double movement_scale = 1.0;          ///< of the hand's moves, as a person set it: divides the force
     double strength = 1.0;                ///< 0 ... 1 of the force
+    bool clicks = false;                  ///< a short push where contact begins; of devices with motors alone
     bool let_go = false;                  ///< no force from the next tick on; afterwards it engages anew
     uint32_t relevance_settings = 0;      ///< counts changes of threshold and groups: what was made before fades out
 };

@@ -107,6 +107,8 @@ struct FeelSettings {
     bool at_proxy = false;        ///< tools act at the middle of what is touched
     bool overlap_radius = false;  ///< new nodes are as wide as the ball's filling tells
     bool to_nodes = false;        ///< tools act at a node that lies in the ball
+    bool to_lines = false;        ///< tools act at the nearest point of a centre line that passes through the ball
+    bool clicks = false;          ///< a short push of the device where contact begins
     TouchPlane plane = TouchPlane::none;
     bool operator==(const FeelSettings&) const = default;
 };

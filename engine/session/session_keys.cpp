@@ -313,6 +313,9 @@ void fields(Fields& f, FeelSettings& touch)
     f.flag("overlap_radius", touch.overlap_radius,
            {"new nodes get the radius of a tube that fills the probe's ball as much as what is felt does"});
     f.flag("to_nodes", touch.to_nodes, {"tools act at the nearest node that lies in the probe's ball"});
+    f.flag("to_lines", touch.to_lines,
+           {"tools act at the nearest point of a centre line in the probe's ball, and a new node divides it there"});
+    f.flag("clicks", touch.clicks, {"a haptic device gives a short push where the probe begins to touch something"});
     f.choice("plane", touch.plane, {"the probe stays in its plane of voxels across that axis"});
 }
 

@@ -71,7 +71,8 @@ void read_workspace(const JsonNode& node, Workspace& workspace)
 void read_settings(const JsonNode& node, TraceSettings& settings)
 {
     node.allow({"assistance", "law", "mode", "threshold", "probe_radius", "stiffness", "damping", "to_volume", "origin",
-                "reset", "to_camera", "surface_share", "movement_scale", "strength", "let_go", "relevance_settings"});
+                "reset", "to_camera", "surface_share", "movement_scale", "strength", "clicks", "let_go",
+                "relevance_settings"});
     ForceSettings& force = settings.force;
     force.assistance = node["assistance"].flag(force.assistance);
     force.law = node["law"].choice_or(force.law);
@@ -86,6 +87,7 @@ void read_settings(const JsonNode& node, TraceSettings& settings)
     force.surface_share = node["surface_share"].number(force.surface_share, {0.0, 1.0});
     force.movement_scale = node["movement_scale"].number(force.movement_scale, above_zero(1e-6, 1e6));
     force.strength = node["strength"].number(force.strength, {0.0, 1.0});
+    force.clicks = node["clicks"].flag(force.clicks);
     force.let_go = node["let_go"].flag(force.let_go);
     force.relevance_settings = number_32(node["relevance_settings"], force.relevance_settings);
 }

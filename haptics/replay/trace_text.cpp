@@ -105,6 +105,7 @@ std::string line_of(const TraceSettings& settings)
     line.add("surface_share", force.surface_share);
     line.add("movement_scale", force.movement_scale);
     line.add("strength", force.strength);
+    if (force.clicks) line.add("clicks", true);  // programs before it had a click refuse the key
     line.add("let_go", force.let_go);
     line.add("relevance_settings", force.relevance_settings);
     return "{\"settings\":" + line.end() + "}";

@@ -112,6 +112,8 @@ Contact contact(const ContactCase& one)
     const RelevancePatch& patch = one.is_tube ? tube() : half_space();
     settings.stiffness = one.stiffness;
     settings.damping = one.damping;
+    settings.clicks = one.clicks;
+    memory.click.off_ns = CLICK_PAUSE_NS;
 
     const double begin_m = one.is_tube ? 0.005 : 0.0026;  // outside
     HandWish wish{.position_m = {0.0, 0.0, begin_m}, .buttons = 0, .jump = 1};
@@ -161,6 +163,7 @@ void check_contacts(int count, uint32_t seed)
                                  .jitter_s = 0.0003,
                                  .speed = dice.between(0.05, 0.3),
                                  .seed = uint32_t(i + 1),
+                                 .clicks = i % 3 == 0,
                                  .is_tube = i % 2 == 0};
         const Contact one = contact(thrown);
         most_gained = std::max(most_gained, one.gained_j);
@@ -172,6 +175,7 @@ void check_contacts(int count, uint32_t seed)
                                  .delay_ticks = int(dice.random() % 3),
                                  .jitter_s = dice.between(0.0, 0.0005),
                                  .seed = uint32_t(i + 1),
+                                 .clicks = i % 30 == 0,
                                  .is_tube = i % 40 < 20};
         const Contact swung = contact(pushed);
         most_swing = std::max(most_swing, swung.swing_m);
@@ -253,6 +257,7 @@ void check_nonsense(int ticks, uint32_t seed)
             case 12: caps.tells_force_sequence = !caps.tells_force_sequence; break;
             case 13: ++patch->sequence; break;
             case 14: settings.assistance = dice.random() % 4 != 0; break;
+            case 15: settings.clicks = !settings.clicks; break;
             default: break;
         }
         patch->time_ns = now_ns;

@@ -19,6 +19,7 @@ struct ContactCase {
     int delay_ticks = 2;
     double jitter_s = 0.0005, speed = 0.3, count_m = 55e-6;
     uint32_t seed = 1;
+    bool clicks = false;
     bool is_tube = false;    ///< a tube that draws the probe in, instead of a surface that holds it
     bool is_broken = false;  ///< the device claims no latency and any stiffness: what the limits are there for
 };

@@ -281,6 +281,8 @@ void hand_menu(const Model& model, Actions& actions)
     shortcut_item("at_proxy", model, actions, touch.at_proxy);
     shortcut_item("overlap_radius", model, actions, touch.overlap_radius);
     shortcut_item("to_nodes", model, actions, touch.to_nodes);
+    shortcut_item("to_lines", model, actions, touch.to_lines);
+    shortcut_item("clicks", model, actions, touch.clicks);
     shortcut_item("next_plane", model, actions);
     ImGui::Separator();
     shortcut_item("find_devices", model, actions);

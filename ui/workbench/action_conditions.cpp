@@ -117,6 +117,9 @@ std::string why(const Model& model, const DragNode& action)
 
 std::string why(const Model& model, const NodeOp& action)
 {
+    if (action.divides && !model.trace.internodes().contains(*action.divides))
+        return sentence("there is no internode ", *action.divides);
+    if (action.divides && !action.group) return why_not_traced(model);
     return why_without_group(model, action.group.value_or(model.brush().group));
 }
 

@@ -57,12 +57,13 @@ struct Model {
 
     // The probe
     glm::dvec3 probe_voxel{0.0};
-    bool is_painting = false;           ///< a stroke is open, or not yet painted to its end
-    bool stroke_is_open = false;        ///< the hand is down
-    const ServoState* servo = nullptr;  ///< null while no servo runs
-    glm::dvec3 tool_voxel{0.0};         ///< where tools act: the probe, or what it touches (FeelSettings)
-    std::optional<uint32_t> tool_node;  ///< the node that they act at
-    const HandView* hand = nullptr;     ///< devices and what the hand does; null where nothing is open
+    bool is_painting = false;                ///< a stroke is open, or not yet painted to its end
+    bool stroke_is_open = false;             ///< the hand is down
+    const ServoState* servo = nullptr;       ///< null while no servo runs
+    glm::dvec3 tool_voxel{0.0};              ///< where tools act: the probe, or what it touches (FeelSettings)
+    std::optional<uint32_t> tool_node;       ///< the node that they act at
+    std::optional<uint32_t> tool_internode;  ///< the internode that they act on
+    const HandView* hand = nullptr;          ///< devices and what the hand does; null where nothing is open
 
     std::optional<Pointer> pointer{};  ///< of the mouse, while it is over the picture
     Reading reading{};

@@ -39,11 +39,20 @@ NodeOp node_at_probe(const Model& model)
 
 Action node_or_link_at_probe(const Model& model)
 {
-    if (!model.tool_node) return node_at_probe(model);
-    const std::optional<uint32_t> selected = model.trace.selection().node();
-    const bool is_linked = selected && model.trace.internode_between(*selected, *model.tool_node);
-    if (selected && *selected != *model.tool_node && !is_linked) return LinkOp{.near = {}, .node = model.tool_node};
-    return SelectOp{.near = {}, .number = model.tool_node, .within_voxels = {}};
+    return trace_op_at({model.tool_voxel * model.volume.spacing, model.tool_node, model.tool_internode}, model.trace,
+                       model.volume.spacing)
+        .value_or(node_at_probe(model));
+}
+
+std::optional<Action> trace_op_at(const ToolPlace& place, const TraceGraph& trace, const glm::dvec3& spacing)
+{
+    if (place.internode)
+        return NodeOp{.at = place.point / spacing, .radius_voxels = {}, .group = {}, .divides = place.internode};
+    if (!place.node) return std::nullopt;
+    const std::optional<uint32_t> selected = trace.selection().node();
+    const bool is_linked = selected && trace.internode_between(*selected, *place.node);
+    if (selected && *selected != *place.node && !is_linked) return LinkOp{.near = {}, .node = place.node};
+    return SelectOp{.near = {}, .number = place.node, .within_voxels = {}};
 }
 
 SelectOp nearest_selection(const Model& model)

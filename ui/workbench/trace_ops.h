@@ -4,13 +4,17 @@
 
 #include "ui/workbench/action.h"
 #include "ui/workbench/model.h"
+#include "ui/workbench/touch/stylus_motion.h"
 
 namespace shvr::ui {
 
 /// A node at the probe, of the probe's group and as wide as new nodes are, linked to the selected node.
 NodeOp node_at_probe(const Model& model);
-/// The same; at a node that the tool acts at, a link of the selected node with it or, where that is there, its choice.
+/// The same; at a node that the tool acts at, a link of the selected node with it or, where that is there, its choice;
+/// on a centre line, a node that divides it.
 Action node_or_link_at_probe(const Model& model);
+/// What a new node becomes where something of the trace draws the tools; null where nothing does.
+std::optional<Action> trace_op_at(const ToolPlace& place, const TraceGraph& trace, const glm::dvec3& spacing);
 /// Selects the nearest node or, if that is selected already, the nearest of its internodes.
 SelectOp nearest_selection(const Model& model);
 /// Links the selected node to the nearest other one.

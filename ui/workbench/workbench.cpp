@@ -60,7 +60,7 @@ void Workbench::perform(const Action& action)
 }
 
 /// What is seen at a pixel depends on what has been painted and loaded by then; where it was does not.
-void Workbench::log_instead(std::initializer_list<Action> actions)
+void Workbench::log_instead(const Actions& actions)
 {
     if (!log_) return;
     for (const Action& action : actions) logged_instead_.push_back(line_of(action));
@@ -286,6 +286,7 @@ Model Workbench::model() const
                 .gpu_name = renderer_.device().traits().name};
     const Document& document = *document_;
     const Previewer& previewer = document.previewer;
+    const ToolPlace tool = document.tool_place();
     const bool has_preview = previewer.shown() && previewer.is_current();
     return {.is_open = true,
             .session = document.session,
@@ -299,8 +300,9 @@ Model Workbench::model() const
             .is_painting = document.annotator.stroke_is_running(),
             .stroke_is_open = document.annotator.stroke_is_open(),
             .servo = document.touch.servo(),
-            .tool_voxel = document.tool_voxel(),
-            .tool_node = document.tool_node(),
+            .tool_voxel = tool.point / document.volume().spacing,
+            .tool_node = tool.node,
+            .tool_internode = tool.internode,
             .hand = &hand_,
             .pointer = pointer_,
             .reading = reading_,

@@ -361,7 +361,7 @@ private:
     std::string how_to_reach_this() const;
     void move_probe(const glm::dvec3& point, bool jumps);
     void lift();
-    void log_instead(std::initializer_list<Action> actions);
+    void log_instead(const Actions& actions);
     void extend_stroke();
     void stroke_ended();
     void await_strokes();
@@ -383,6 +383,7 @@ private:
     void note_hand();
     void finish_recording();
     void add_node_here();
+    Actions add_node_at(const Action& action);
     void follow_points(const std::vector<StylusPoint>& points, double node_every);
 
     // Turns

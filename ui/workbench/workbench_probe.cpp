@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "ui/workbench/sight/words.h"
 #include "ui/workbench/workbench.h"
@@ -24,6 +25,16 @@ glm::dvec3 in_plane_of(const glm::dvec3& probe, const Pane& seen, const glm::dve
     const Camera& camera = seen.shot.camera;
     const double shallowest = 1e-3 * glm::distance(camera.eye, camera.target);
     return unproject(camera, seen.pixels(), pixel, std::max(depth_of(camera, probe), shallowest));
+}
+
+/// Of what the brush reaches at a place.
+bool is_hardly_any(const StrokeResult& result, const glm::dvec3& spacing)
+{
+    constexpr double HARDLY = 0.05;
+    const double radius = result.stroke.radius_voxels * spacing.x;
+    const double share_of_box = result.stroke.region == RegionShape::ball ? std::numbers::pi / 6.0 : 1.0;
+    const double reached = share_of_box * 8.0 * radius * radius * radius / (spacing.x * spacing.y * spacing.z);
+    return double(result.voxels() + result.kept_painted) < HARDLY * reached;
 }
 
 }  // namespace
@@ -181,7 +192,8 @@ void Workbench::stroke_ended()
         sentence_of(result, [&](uint8_t group) { return group_of(document_->session.groups, group).name; });
     const bool found_nothing =
         is_as_meant && result.voxels() == 0 && result.kept_painted == 0 && !result.stroke.erases();
-    if (found_nothing) said += how_to_reach_this();
+    if (is_as_meant && !result.stroke.erases() && is_hardly_any(result, document_->volume().spacing))
+        said += how_to_reach_this();
     if (result.voxels() == 0)
         steps_at_empty_stroke_ = document_->annotator.history().undoable();
     else

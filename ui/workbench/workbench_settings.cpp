@@ -109,6 +109,11 @@ std::string sentence_about(const FeelSettings& was, const FeelSettings& is)
         return is.at_proxy ? "Tools act at the middle of what is touched" : "Tools act at the probe";
     if (was.to_nodes != is.to_nodes)
         return is.to_nodes ? "Tools act at a node in the probe's ball" : "Nodes draw no tool";
+    if (was.to_lines != is.to_lines)
+        return is.to_lines ? "Tools act on a centre line in the probe's ball, and a new node divides it"
+                           : "Centre lines draw no tool";
+    if (was.clicks != is.clicks)
+        return is.clicks ? "A haptic device clicks where contact begins" : "Contact begins without a click";
     return {};
 }
 

@@ -364,13 +364,26 @@ void Workbench::follow_points(const std::vector<StylusPoint>& points, double nod
                  is_tracing ? " nodes" : " points of strokes"));
 }
 
-/// At a node that the tool acts at, that one is linked and selected in place of a new one.
+/// A node that draws the tool is linked and selected in place of a new one.
 void Workbench::add_node_here()
 {
-    const Action action = node_or_link_at_probe(model());
-    if (const auto* node = std::get_if<NodeOp>(&action)) return trace(*node);
-    if (const auto* link = std::get_if<LinkOp>(&action)) trace(*link);
-    trace(SelectOp{.near = {}, .number = document_->tool_node(), .within_voxels = {}});
+    add_node_at(node_or_link_at_probe(model()));
+}
+
+/// Returns what was done.
+Actions Workbench::add_node_at(const Action& action)
+{
+    if (const auto* node = std::get_if<NodeOp>(&action)) {
+        trace(*node);
+        return {action};
+    }
+    Actions done{action};
+    if (const auto* link = std::get_if<LinkOp>(&action)) {
+        trace(*link);
+        done.push_back(SelectOp{.near = {}, .number = link->node, .within_voxels = {}});
+    }
+    trace(std::get<SelectOp>(done.back()));
+    return done;
 }
 
 }  // namespace shvr::ui

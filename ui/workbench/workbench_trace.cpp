@@ -5,6 +5,7 @@
 #include "engine/annotation/trace/trace_segments.h"
 #include "ui/workbench/edit.h"
 #include "ui/workbench/sight/hits.h"
+#include "ui/workbench/trace_ops.h"
 #include "ui/workbench/workbench.h"
 
 namespace shvr::ui {
@@ -33,9 +34,14 @@ std::string said_of(const TraceOp& op, bool selects, const Command* done, const 
                         " nodes");
     }
     if (!done) return "Nothing to change in the trace";
-    if (std::holds_alternative<NodeOp>(op)) {
+    if (const NodeOp* added = std::get_if<NodeOp>(&op)) {
         const uint32_t node = *selected.node();
         const auto internodes = trace.internodes_of(node);
+        if (added->divides) {
+            const std::string said = sentence("Node ", node, " divides internode ", *added->divides);
+            if (internodes.size() < 3) return said;
+            return sentence(said, ", and is linked with node ", trace.internode(internodes[2]).other(node));
+        }
         if (internodes.empty()) return sentence("Node ", node, " added");
         return sentence("Node ", node, " added, linked with node ", trace.internode(internodes[0]).other(node));
     }
@@ -107,7 +113,8 @@ void Workbench::trace(const TraceOp& asked)
     Annotator& annotator = document_->annotator;
     if (annotator.stroke_is_running()) fail("The trace cannot be edited while a stroke is being painted");
     const TraceGraph& trace = annotator.document().trace;
-    if (const NodeOp* node = std::get_if<NodeOp>(&op); node && node->group.value_or(document_->brush().group) == 0)
+    if (const NodeOp* node = std::get_if<NodeOp>(&op);
+        node && node->group.value_or(node->divides ? uint8_t(1) : document_->brush().group) == 0)
         fail("Group 0 is the eraser; choose a group from 1 up for the node");
     if (const GroupOp* group = std::get_if<GroupOp>(&op); group && group->group == 0)
         fail("Group 0 is the eraser, and what is traced belongs to a group from 1 up");
@@ -187,6 +194,14 @@ void Workbench::act(const NodeAt& action)
     const std::optional<LocalBall> ball =
         goes_inside ? document_->ball_at(voxel, sight_through(seen.shot.camera, *point)) : std::nullopt;
     if (ball) voxel = ball->middle;
+    const glm::dvec3& spacing = document_->volume().spacing;
+    const ToolPlace drawn = document_->tool_place_at(voxel * spacing);
+    if (const auto op = trace_op_at(drawn, document_->annotator.document().trace, spacing)) {
+        Actions done = add_node_at(*op);
+        move_probe(drawn.point, false);
+        done.push_back(PlaceProbe{drawn.point / spacing});
+        return log_instead(done);
+    }
     if (const auto there = ball ? node_in_voxel(voxel) : std::nullopt) {
         const SelectOp selecting{.near = {}, .number = there, .within_voxels = {}};
         trace(selecting);
@@ -202,7 +217,7 @@ void Workbench::act(const NodeAt& action)
     if (ball && ball->is_held)
         say(messages_.last() +
             "; it is not in the middle, which lies further aside than the probe's radius: a larger probe finds it");
-    move_probe(voxel * document_->volume().spacing, false);
+    move_probe(voxel * spacing, false);
     log_instead({NodeOp{.at = voxel, .radius_voxels = {}, .group = {}}, PlaceProbe{voxel}});
 }
 

@@ -80,11 +80,17 @@ PaintOp read_brush(const JsonNode& line)
     return op;
 }
 
+uint32_t read_number(const JsonNode& node)
+{
+    return uint32_t(node.whole(0, 4294967295));
+}
+
 NodeOp read_node(const JsonNode& line)
 {
-    allow(line, {"at", "radius", "group"});
+    allow(line, {"at", "radius", "group", "divides"});
     NodeOp op{line["at"].vector(COORDINATE), read_length(line["radius"]), {}};
     if (line["group"].exists()) op.group = read_group(line["group"]);
+    if (line["divides"].exists()) op.divides = read_number(line["divides"]);
     return op;
 }
 
@@ -95,11 +101,6 @@ std::optional<double> read_within(const JsonNode& line, std::string_view key)
     if (within.exists() && !key.starts_with("near"))
         line.refuse_because(sentence("key within is given with ", key, "; expected it with near"));
     return read_length(within);
-}
-
-uint32_t read_number(const JsonNode& node)
-{
-    return uint32_t(node.whole(0, 4294967295));
 }
 
 SelectOp read_select(const JsonNode& line)

@@ -69,6 +69,7 @@ std::string line(const NodeOp& op)
     Line line("node");
     line.point("at", op.at).number("radius", op.radius_voxels);
     if (op.group) line.whole("group", *op.group);
+    if (op.divides) line.whole("divides", *op.divides);
     return line;
 }
 

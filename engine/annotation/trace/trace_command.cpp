@@ -16,6 +16,7 @@ public:
 
     TraceEffect operator()(const NodeOp& op) const
     {
+        if (op.divides) return dividing(op);
         const TraceNode node{at(op.at), length(op.radius_voxels.value_or(defaults_.radius_voxels)),
                              op.group.value_or(defaults_.group)};
         check_place(op.at, node.radius);
@@ -78,6 +79,18 @@ public:
     }
 
 private:
+    TraceEffect dividing(const NodeOp& op) const
+    {
+        const uint32_t number = *op.divides;
+        if (!trace_.internodes().contains(number))
+            fail("internode ", number, " does not exist; expected one of the trace");
+        const TraceInternode& internode = trace_.internode(number);
+        const double here = trace_.radius_of(internode, share_along(trace_, internode, at(op.at)));
+        const TraceNode node{at(op.at), op.radius_voxels ? length(*op.radius_voxels) : here,
+                             op.group.value_or(internode.group)};
+        check_place(op.at, node.radius);
+        return {sentence("node in internode ", number), divide_internode(trace_, number, node), {}};
+    }
     glm::dvec3 at(const glm::dvec3& voxel) const { return voxel * defaults_.spacing; }
     double length(double voxels) const { return voxels * defaults_.spacing.x; }
     /// Tubes may leave the volume, but what lies farther outside is a mistake in the coordinates.

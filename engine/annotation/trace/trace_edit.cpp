@@ -63,6 +63,23 @@ std::vector<TraceChange> add_node(const TraceGraph& trace, const TraceNode& node
     return with_selection(trace, std::move(changes), {{number}, {}});
 }
 
+std::vector<TraceChange> divide_internode(const TraceGraph& trace, uint32_t internode, const TraceNode& node)
+{
+    const TraceInternode& divided = trace.internode(internode);
+    const uint32_t number = take_number(trace.next_node(), "node");
+    std::vector<TraceChange> changes{TraceInternodeChange{internode, divided, {}}, TraceNodeChange{number, {}, node}};
+    uint64_t next = trace.next_internode();
+    const auto link = [&](uint32_t from, uint32_t to, uint8_t group) {
+        changes.emplace_back(
+            TraceInternodeChange{take_number(next++, "internode"), {}, TraceInternode{from, to, group}});
+    };
+    link(divided.a, number, divided.group);
+    link(number, divided.b, divided.group);
+    const std::optional<uint32_t> from = trace.selection().node();
+    if (from && *from != divided.a && *from != divided.b) link(*from, number, trace.node(*from).group);
+    return with_selection(trace, std::move(changes), {{number}, {}});
+}
+
 std::vector<TraceChange> link_selected(const TraceGraph& trace, uint32_t to)
 {
     const uint32_t from = selected_node(trace);

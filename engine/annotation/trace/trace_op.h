@@ -14,6 +14,9 @@ struct NodeOp {
     glm::dvec3 at{0.0};
     std::optional<double> radius_voxels;  ///< the probe's
     std::optional<uint8_t> group;         ///< the probe's
+    /// An internode that becomes two, which meet in the node; size and group are the internode's where they are not
+    /// given.
+    std::optional<uint32_t> divides{};
 };
 struct SelectOp {
     std::optional<glm::dvec3> near;  ///< the nearest node, or internode of the selected node

@@ -61,12 +61,37 @@ TraceSelection selection_of(const TraceGraph& trace, const TraceSegment& segment
     return selection;
 }
 
-double distance_to(const TraceGraph& trace, const TraceInternode& internode, const glm::dvec3& position)
+double share_along(const TraceGraph& trace, const TraceInternode& internode, const glm::dvec3& position)
 {
     const glm::dvec3 a = trace.node(internode.a).position, along = trace.node(internode.b).position - a;
     const double length_squared = glm::dot(along, along);
-    const double t = length_squared > 0.0 ? glm::clamp(glm::dot(position - a, along) / length_squared, 0.0, 1.0) : 0.0;
-    return glm::length(position - (a + t * along));
+    return length_squared > 0.0 ? glm::clamp(glm::dot(position - a, along) / length_squared, 0.0, 1.0) : 0.0;
+}
+
+std::optional<PlaceOnTrace> nearest_place(const TraceGraph& trace, const glm::dvec3& position, double reach,
+                                          std::optional<uint32_t> except_of)
+{
+    std::optional<PlaceOnTrace> nearest;
+    double least = reach;
+    for (const uint32_t node : trace.nodes_within(position, reach + 0.5 * trace.longest_at_most())) {
+        for (const uint32_t number : trace.internodes_of(node)) {
+            const TraceInternode& internode = trace.internode(number);
+            if (except_of && (internode.a == *except_of || internode.b == *except_of)) continue;
+            const double share = share_along(trace, internode, position);
+            const glm::dvec3 place =
+                glm::mix(trace.node(internode.a).position, trace.node(internode.b).position, share);
+            const double away = glm::distance(place, position);
+            const bool is_nearer = away < least || (away == least && (!nearest || number < nearest->internode));
+            if (is_nearer) nearest = {number, share, place}, least = away;
+        }
+    }
+    return nearest;
+}
+
+double distance_to(const TraceGraph& trace, const TraceInternode& internode, const glm::dvec3& position)
+{
+    const glm::dvec3 a = trace.node(internode.a).position, along = trace.node(internode.b).position - a;
+    return glm::length(position - (a + share_along(trace, internode, position) * along));
 }
 
 }  // namespace shvr

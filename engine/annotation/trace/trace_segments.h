@@ -24,6 +24,20 @@ std::vector<TraceSegment> segments_of(const TraceGraph& trace, const std::set<ui
 /// The targets of edits of the segment: its internodes, and its nodes except branches, which other segments share.
 TraceSelection selection_of(const TraceGraph& trace, const TraceSegment& segment);
 
+/// Where on an internode what is nearest to a point lies: 0 at its first node, 1 at its second.
+double share_along(const TraceGraph& trace, const TraceInternode& internode, const glm::dvec3& position);
+
+struct PlaceOnTrace {
+    uint32_t internode = 0;
+    double share = 0.0;        ///< along it
+    glm::dvec3 position{0.0};  ///< volume space
+};
+/// The place of all internodes, but for those of a node, that is nearest to a point, where one lies within `reach`; of
+/// several the smallest number's. Looks at the internodes of nodes within `reach` and half the longest internode, for
+/// no other can be near.
+std::optional<PlaceOnTrace> nearest_place(const TraceGraph& trace, const glm::dvec3& position, double reach,
+                                          std::optional<uint32_t> except_of = {});
+
 /// The distance of a point from an internode.
 double distance_to(const TraceGraph& trace, const TraceInternode& internode, const glm::dvec3& position);
 

@@ -1,6 +1,8 @@
 #include "engine/annotation/trace/trace_tally.h"
 
+#include <algorithm>
 #include <array>
+#include <cfloat>
 #include <cmath>
 
 #include "engine/annotation/trace/tracing.h"
@@ -69,6 +71,12 @@ size_t inner_nodes_of(const TraceGraph& trace, const TraceInternode& internode)
     return size_t{is_inner(trace, internode.a)} + size_t{is_inner(trace, internode.b)};
 }
 
+/// Of 0 that of the smallest double.
+int exponent_of(double length)
+{
+    return std::ilogb(std::max(length, DBL_MIN));
+}
+
 }  // namespace
 
 void TraceTally::LongSum::add(double value)
@@ -81,16 +89,26 @@ void TraceTally::LongSum::add(double value)
 
 void TraceTally::add_length(const TraceGraph& trace, const TraceInternode& internode)
 {
+    const double length = trace.length_of(internode);
     Group& group = groups_[internode.group];
     ++group.internodes;
-    group.length.add(trace.length_of(internode));
+    group.length.add(length);
+    ++lengths_[exponent_of(length)];
 }
 
 void TraceTally::remove_length(const TraceGraph& trace, const TraceInternode& internode)
 {
+    const double length = trace.length_of(internode);
     const auto group = groups_.find(internode.group);
-    group->second.length.add(-trace.length_of(internode));
+    group->second.length.add(-length);
     if (--group->second.internodes == 0) groups_.erase(group);
+    const auto alike = lengths_.find(exponent_of(length));
+    if (--alike->second == 0) lengths_.erase(alike);
+}
+
+double TraceTally::longest_at_most() const
+{
+    return lengths_.empty() ? 0.0 : std::ldexp(1.0, lengths_.rbegin()->first + 1);
 }
 
 void TraceTally::before_move(const TraceGraph& trace, uint32_t node)

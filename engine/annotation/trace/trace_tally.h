@@ -33,6 +33,8 @@ public:
     void change_group(const TraceGraph& trace, const TraceInternode& from, const TraceInternode& to);
 
     TraceSummary summary_of(const TraceGraph& trace) const;
+    /// A power of two that no internode is as long as, and one is at least half as long as; 0 without any.
+    double longest_at_most() const;
 
 private:
     /// A sum with twice the digits of a double, so that adding and then subtracting a value leaves no remainder.
@@ -49,6 +51,7 @@ private:
     void remove_length(const TraceGraph& trace, const TraceInternode& internode);
 
     std::map<uint8_t, Group> groups_;  ///< those that have internodes
+    std::map<int, size_t> lengths_;    ///< internodes by the binary exponent of their length
     size_t inner_nodes_ = 0;           ///< with exactly two internodes: a segment goes through them
     size_t closed_segments_ = 0;       ///< loops of such nodes only
 };

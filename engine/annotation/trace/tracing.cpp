@@ -105,6 +105,11 @@ std::optional<uint32_t> TraceGraph::nearest_node(const glm::dvec3& position, std
     return index_.nearest(position, except);
 }
 
+std::vector<uint32_t> TraceGraph::nodes_within(const glm::dvec3& position, double distance) const
+{
+    return index_.within(position, distance);
+}
+
 void TraceGraph::select(TraceSelection selection)
 {
     const std::string reason = why_not(TraceSelectionChange{{}, selection}, true);

@@ -99,6 +99,11 @@ public:
     /// The node nearest to a position, the smallest number of several; nothing if there are no nodes.
     std::optional<uint32_t> nearest_node(const glm::dvec3& position, std::optional<uint32_t> except = {}) const;
 
+    /// All nodes that near, ascending.
+    std::vector<uint32_t> nodes_within(const glm::dvec3& position, double distance) const;
+    /// No internode is longer, and one is at least half as long; 0 without any.
+    double longest_at_most() const { return tally_.longest_at_most(); }
+
     /// Numbers, lengths and segments; kept up to date, so it costs little at any size.
     TraceSummary summary() const { return tally_.summary_of(*this); }
 

@@ -150,6 +150,47 @@ TEST_CASE("a window that no picture has memory for fails in words each time, and
     check_valid(renderer);
 }
 
+TEST_CASE("sharp tiles that there is no memory of their own for are drawn where the sketch was")
+{
+    Renderer renderer({.device = {.validation = true}, .budget = {64 * MIB, 0}, .threads = 1});
+    Shown shown({600, 400});
+    renderer.load(shown.source, BYTES, shown.session.render);
+    const auto held = [&](const char* name) -> uint64_t {
+        renderer.memory().collect();
+        const auto all = renderer.memory().bytes_by_name();
+        const auto found = all.find(name);
+        return found == all.end() ? 0 : found->second;
+    };
+    uint64_t sharp_bytes = 0;
+    {
+        View usual(renderer, {});
+        shown.look_with(usual);
+        settle(usual);
+        sharp_bytes = held("sharp picture");
+        CHECK(held("light of tiles") > 0);
+    }
+    View view(renderer, {});
+    shown.look_with(view);
+    for (int i = 0; held("light") == 0; ++i) {  // of the sketch
+        REQUIRE(i < 1000);
+        view.advance();
+    }
+    REQUIRE(held("sharp picture") == 0);
+    renderer.memory().free_idle();
+    constexpr uint64_t MARGIN = 4096;
+    const uint64_t left = renderer.memory().device_bytes_left();
+    REQUIRE(left > sharp_bytes + MARGIN);
+    const gpu::Storage other = renderer.memory().create("other", buffer_desc(left - sharp_bytes - MARGIN));
+    settle(view);
+    CHECK(held("sharp picture") == sharp_bytes);
+    CHECK(held("light of tiles") == 0);
+    CHECK(all_messages(renderer) == "");
+    const Image8 seen = view.read_back();
+    const Image8 rendered = to_image8(renderer.render(shown.session, shown.camera).image);
+    CHECK(compare_pixels(seen, rendered).max_abs <= 1.0);
+    check_valid(renderer);
+}
+
 TEST_CASE("paint that there was no memory for is shown once there is")
 {
     Shown shown({120, 90});

@@ -271,6 +271,46 @@ TEST_CASE_FIXTURE(OnDevice, "a tool that acts at nodes links with one in the pro
 }
 
 TEST_CASE_FIXTURE(OnDevice,
+                  "a tool that acts on centre lines divides one in the probe's ball, and a click in a picture does")
+{
+    TemporaryFolder folder;
+    Workbench bench(renderer(), {.has_servo = false});
+    bench.set_pixels({96, 80});
+    bench.open(write_tubes_session(folder.path), {});
+    bench.perform(NodeOp{.at = {10.0, 12.0, 14.0}, .radius_voxels = {}, .group = 2});
+    bench.perform(NodeOp{.at = {30.0, 12.0, 14.0}, .radius_voxels = {}, .group = 2});
+    bench.perform(DeselectOp{});
+    bench.perform(NodeOp{.at = {20.0, 22.0, 14.0}, .radius_voxels = {}, .group = 3});
+    bench.perform(Set{R"({"probe":{"radius_voxels":4}})"});
+    bench.perform(PlaceProbe{{19.0, 13.5, 15.0}});
+    CHECK(!bench.model().tool_internode);
+    bench.perform(of("to_lines", bench));
+    CHECK(bench.messages().last() == "Tools act on a centre line in the probe's ball, and a new node divides it");
+    REQUIRE(bench.model().tool_internode == 0u);
+    CHECK(bench.model().tool_voxel == glm::dvec3(19.0, 12.0, 14.0));
+    bench.perform(of("add_node", bench));
+    CHECK(bench.messages().last() == "Node 3 divides internode 0, and is linked with node 2");
+    const TraceGraph& trace = bench.document().annotator.document().trace;
+    CHECK(trace.internodes().size() == 3);
+    CHECK(trace.node(3).group == 2);
+    // The lines of the node that tracing goes on from draw nothing, and a node at the end of another is that one.
+    bench.perform(PlaceProbe{{22.0, 13.0, 14.0}});
+    CHECK(!bench.model().tool_internode);
+    bench.perform(SelectOp{.near = {}, .number = 2, .within_voxels = {}});
+    CHECK(bench.model().tool_internode);
+    bench.perform(PlaceProbe{{32.0, 12.0, 14.0}});
+    CHECK(bench.model().tool_node == 1u);
+    bench.perform(of("add_node", bench));
+    CHECK(trace.internode_between(2, 1));
+    CHECK(trace.nodes().size() == 4);
+    bench.perform(UndoOp{2});
+    CHECK(trace.internodes().size() == 1);
+    CHECK(trace.internodes().contains(0));
+    bench.perform(of("to_lines", bench));
+    CHECK(bench.messages().last() == "Centre lines draw no tool");
+}
+
+TEST_CASE_FIXTURE(OnDevice,
                   "the volume moves with a stylus that has taken hold of it, and the probe stays on its voxel")
 {
     TemporaryFolder folder;

@@ -81,12 +81,13 @@ private:
     }
     Action trace_edit()
     {
-        switch (whole(0, 5)) {
+        switch (whole(0, 6)) {
             case 0: return DeleteOp{};
             case 1: return GroupOp{uint8_t(whole(0, 6))};
             case 2: return RadiusOp{.radius_voxels = real(0.5, 5)};
             case 3: return MoveOp{voxel()};
             case 4: return SelectSegmentOp{};
+            case 5: return NodeOp{voxel(), {}, {}, uint32_t(whole(0, 30))};
             default: return LinkOp{.near = voxel(), .node = {}, .within_voxels = {}};
         }
     }

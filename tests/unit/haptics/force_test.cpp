@@ -200,6 +200,57 @@ TEST_CASE("a device without motors engages at once, within a tenth of a second")
     CHECK(now.force_n.y < -0.2);
 }
 
+TEST_CASE("a click against the hand's way marks where contact begins, in proportion to its speed, and slows it")
+{
+    // Differences of the force with clicks from that without, while the hand follows a path across the rod.
+    const auto clicks_of = [](const std::vector<double>& path, bool has_motors) {
+        Bench with, without;
+        with.settings.clicks = true;
+        std::vector<double> difference;
+        for (Bench* bench : {&with, &without}) {
+            bench->caps.outputs_force = has_motors;
+            bench->state.position_m = {0.0, path.front(), 0.0};
+            bench->run(1300);
+        }
+        for (const double y : path) {
+            const ForceStep one = with.tick_at({0.0, y, 0.0}), other = without.tick_at({0.0, y, 0.0});
+            CHECK(std::abs(one.force_n.x - other.force_n.x) < 1e-12);
+            difference.push_back(one.force_n.y - other.force_n.y);
+        }
+        return difference;
+    };
+    const auto way = [](std::initializer_list<double> turns, double speed) {  // metres, with ticks of a millisecond
+        std::vector<double> path{*turns.begin()};
+        for (const double to : turns)
+            while (std::abs(to - path.back()) > 1e-9)
+                path.push_back(path.back() + std::clamp(to - path.back(), -speed * 1e-3, speed * 1e-3));
+        return path;
+    };
+    const auto count = [](const std::vector<double>& difference) {
+        int clicks = 0;
+        for (size_t i = 1; i < difference.size(); ++i) clicks += difference[i] > 0.02 && difference[i - 1] <= 0.02;
+        return clicks;
+    };
+    const std::vector<double> once = clicks_of(way({0.005, 0.002}, 0.05), true);
+    CHECK(count(once) == 1);
+    double impulse = 0.0;
+    for (const double force : once) {
+        CHECK(force >= -1e-12);  // against the way, which is downwards
+        impulse += force * 1e-3;
+    }
+    CHECK(*std::ranges::max_element(once) == doctest::Approx(0.5 * CLICK_N).epsilon(0.03));
+    CHECK(impulse == doctest::Approx(0.5 * CLICK_N * 0.016 * 2.0 / std::numbers::pi).epsilon(0.03));
+    CHECK(count(clicks_of(way({0.005, 0.002}, 0.005), true)) == 0);
+    CHECK(count(clicks_of(way({0.005, 0.002}, 0.05), false)) == 0);
+    // Off for 40 ms is a hand that trembles; off for 200 ms, one that comes back. Where it turns round within a click,
+    // what that gives it is taken back.
+    CHECK(count(clicks_of(way({0.005, 0.003, 0.0045, 0.003}, 0.05), true)) == 1);
+    std::vector<double> back = way({0.005, 0.003, 0.005}, 0.05);
+    back.insert(back.end(), 200, back.back());
+    for (const double y : way({0.005, 0.003}, 0.05)) back.push_back(y);
+    CHECK(count(clicks_of(back, true)) == 2);
+}
+
 TEST_CASE("a lost device has no force the same tick, and engages anew when it is found")
 {
     Bench bench;

@@ -40,6 +40,7 @@ Trace wandering(int ticks)
     settings.threshold = 0.1;
     trace.settings.push_back(settings);
     settings.force.mode = HapticMode::object;
+    settings.force.clicks = true;
     settings.from_tick = size_t(ticks / 2);
     trace.settings.push_back(settings);
     for (int i = 0; i < ticks; ++i) {
@@ -78,6 +79,8 @@ TEST_CASE("a trace is read as it was written, bit for bit")
     CHECK(again.ticks[20].state.position_m == trace.ticks[20].state.position_m);
     CHECK(again.settings[1].from_tick == 150);
     CHECK(again.settings[1].force.mode == HapticMode::object);
+    CHECK(again.settings[1].force.clicks);
+    CHECK(!again.settings[0].force.clicks);
 }
 
 TEST_CASE("what a tick leaves out follows from the one before")

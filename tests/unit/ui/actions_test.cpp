@@ -59,6 +59,7 @@ std::vector<Action> samples()
             DragNode{true},
             NodeOp{{1, 2, 3}, 2.5, uint8_t{4}},
             NodeOp{{1, 2, 3}, {}, {}},
+            NodeOp{{1, 2, 3}, {}, {}, 12},
             SelectOp{.near = glm::dvec3(4, 5, 6), .number = {}, .is_internode = true, .within_voxels = 7.5},
             SelectOp{.near = {}, .number = 7, .within_voxels = {}},
             SelectSegmentOp{},

@@ -134,6 +134,33 @@ TEST_CASE("the radius of a tube through a ball is told by how much of the ball i
     CHECK(!radius_from_overlap(0.0, BALL));
 }
 
+TEST_CASE(
+    "tools act at a node or a centre line in the ball if that is wanted, at nodes first, and at no line that goes on")
+{
+    TraceGraph trace;
+    const auto apply = [&](const TraceChange& change) { trace.apply(change, Direction::forwards); };
+    apply(TraceNodeChange{0, {}, TraceNode{{0, 0, 0}}});
+    apply(TraceNodeChange{1, {}, TraceNode{{10, 0, 0}}});
+    apply(TraceInternodeChange{0, {}, TraceInternode{0, 1}});
+    FeelSettings feel;
+    const glm::dvec3 beside(3, 1, 0), beyond(-1, 0, 0), far(5, 4, 0);
+    const auto at = [&](const glm::dvec3& point, std::optional<uint32_t> except = {}) {
+        return tool_place(feel, trace, point, 3.5, except);
+    };
+    CHECK(at(beside).point == beside);
+    feel.to_lines = true;
+    CHECK(at(beside).point == glm::dvec3(3, 0, 0));
+    CHECK(at(beside).internode == 0u);
+    CHECK(!at(beside).node);
+    CHECK(at(beyond).node == 0u);  // an end of a line is a node
+    CHECK(!at(beyond).internode);
+    CHECK(at(far).point == far);
+    CHECK(at(beside, 1u).point == beside);  // tracing goes on from there
+    feel.to_nodes = true;
+    CHECK(at(beside).node == 0u);
+    CHECK(at(glm::dvec3(5, 1, 0)).internode == 0u);
+}
+
 TEST_CASE("groups that are not felt are no part of what is felt")
 {
     Mask mask(Size3(70, 40, 33));

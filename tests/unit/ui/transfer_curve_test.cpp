@@ -55,6 +55,13 @@ TEST_CASE("the mouse grabs the nearest point, and lines where no point is near")
     // Of two lines in one place the one whose label is hit.
     CHECK(curve.under(AXES, {105.0f, 25.0f}, {190.0, 190.0}, REACH).grip == Grip::paint_threshold);
     CHECK(curve.under(AXES, {105.0f, 45.0f}, {190.0, 190.0}, REACH).grip == Grip::haptic_threshold);
+    // A word is grabbed as its line is, wherever it reaches in its own row.
+    const TransferCurve::Lines words{190.0, 180.0, {108.0f, 130.0f}, {70.0f, 96.0f}};
+    CHECK(curve.under(AXES, {129.0f, 25.0f}, words, REACH).grip == Grip::paint_threshold);
+    CHECK(curve.under(AXES, {131.0f, 25.0f}, words, REACH).grip == Grip::nothing);
+    CHECK(curve.under(AXES, {129.0f, 45.0f}, words, REACH).grip == Grip::nothing);
+    CHECK(curve.under(AXES, {71.0f, 45.0f}, words, REACH).grip == Grip::haptic_threshold);
+    CHECK(curve.under(AXES, {71.0f, 25.0f}, words, REACH).grip == Grip::nothing);
     // Below the words it is what a stroke goes by.
     CHECK(curve.under(AXES, {105.0f, 60.0f}, {190.0, 190.0}, REACH).grip == Grip::paint_threshold);
 }

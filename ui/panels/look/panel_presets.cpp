@@ -1,12 +1,14 @@
 #include "ui/panels/look/panel_presets.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>
 
 #include "ui/panels/field_keys.h"
+#include "ui/panels/look/color_field.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 #include "ui/workbench/action_rows.h"
@@ -23,16 +25,12 @@ struct NameState {
 };
 NameState asked;
 
+constexpr float COLORS_WIDTH = 6.0f;  ///< of a row in the list, in font sizes
 constexpr const char* ASK_NAME = "Name of the transfer function";
 
 void ask_for_preset_name(const std::string& renamed)
 {
     asked = {renamed, renamed};
-}
-
-void take(const TransferPreset& preset, const Model& model, Actions& actions)
-{
-    set(actions, model, [&](Session& s) { s.transfer_function = transfer_function_of(preset, model.statistics); });
 }
 
 /// A right click on one that a person keeps.
@@ -57,13 +55,45 @@ bool own_menu(const TransferPreset& preset, Actions& actions)
     return asks;
 }
 
+/// The colours of a function from the least to the largest intensity, at the right of the row that was drawn last; the
+/// higher the more opaque, as in the curve.
+void draw_colors(const TransferFunction& function, const VolumeStatistics& statistics)
+{
+    constexpr float COLUMN = 2.0f;
+    const float width = COLORS_WIDTH * ImGui::GetFontSize();
+    const ImVec2 corner = ImGui::GetItemRectMax();
+    const float left = corner.x - width, top = ImGui::GetItemRectMin().y + 1.0f, bottom = corner.y - 1.0f;
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled({left, top}, {corner.x, bottom}, ImU32(ThemeColor{ColorRole::chart}));
+    const auto [least, most] = statistics.range();
+    for (float x = 0.0f; x < width; x += COLUMN) {
+        const double share = (double(x) + 0.5 * double(COLUMN)) / double(width);
+        const glm::dvec4 here = function.at(std::lerp(least, most, share));
+        if (here.a <= 0.0) continue;
+        const float height = float(std::sqrt(here.a)) * (bottom - top);
+        list.AddRectFilled({left + x, bottom - height}, {std::min(left + x + COLUMN, corner.x), bottom},
+                           ImGui::GetColorU32(encoded(glm::dvec3(here))));
+    }
+}
+
+/// A row of the list, with its colours. Returns whether it was chosen.
+bool preset_row(const std::string& name, const TransferFunction& function, const Model& model)
+{
+    const float width = ImGui::CalcTextSize(name.c_str()).x + (COLORS_WIDTH + 1.0f) * ImGui::GetFontSize();
+    const bool is_chosen = ImGui::Selectable(name.c_str(), false, ImGuiSelectableFlags_None,
+                                             {std::max(width, ImGui::GetContentRegionAvail().x), 0.0f});
+    draw_colors(function, model.statistics);
+    return is_chosen;
+}
+
 /// Returns whether a name is asked for.
 bool list(const Model& model, Actions& actions)
 {
     if (!ImGui::BeginCombo("##presets", "Start from ...", ImGuiComboFlags_HeightLarge)) return false;
     bool asks = false, has_own = false;
-    if (ImGui::Selectable("the histogram"))
-        set(actions, model, [&](Session& s) { s.transfer_function = automatic_transfer_function(model.statistics); });
+    const TransferFunction automatic = automatic_transfer_function(model.statistics);
+    if (preset_row("the histogram", automatic, model))
+        set(actions, model, [&](Session& s) { s.transfer_function = automatic; });
     if (ImGui::Selectable("a file ...")) ask_what_to_take(model);
     hint("A transfer function in a file, as those that are kept. Or drop it on the window.");
     for (const TransferPreset& preset : model.presets) {
@@ -72,7 +102,9 @@ bool list(const Model& model, Actions& actions)
             ImGui::TextDisabled("Your own (right click: rename, remove)");
         }
         ImGui::PushID(&preset);
-        if (ImGui::Selectable(preset.name.c_str())) take(preset, model, actions);
+        const TransferFunction function = transfer_function_of(preset, model.statistics);
+        if (preset_row(preset.name, function, model))
+            set(actions, model, [&](Session& s) { s.transfer_function = function; });
         if (preset.is_own)
             asks |= own_menu(preset, actions);
         else

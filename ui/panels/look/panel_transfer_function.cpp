@@ -126,14 +126,22 @@ void draw_points(const CurveAxes& axes, const Points& points, size_t selected, I
     }
 }
 
-/// The label is beside the line, on the side with room; `row` 0 is the topmost.
+constexpr const char *PAINT_WORD = "paint", *FELT_WORD = "haptic";
+
+/// From where to where the word of a line reaches: beside it, on the side with room.
+glm::vec2 extent_of_word(const CurveAxes& axes, double intensity, const char* word)
+{
+    const float x = axes.x_of(intensity), width = ImGui::CalcTextSize(word).x, gap = 0.25f * ImGui::GetFontSize();
+    const float left = x + gap + width < axes.end.x ? x + gap : x - gap - width;
+    return {left, left + width};
+}
+
+/// `row` 0 is the topmost.
 void draw_threshold(const CurveAxes& axes, double intensity, const char* word, float row, ImU32 color, ImDrawList& list)
 {
-    const float x = axes.x_of(intensity);
+    const float x = axes.x_of(intensity), left = extent_of_word(axes, intensity, word).x;
     const ImVec2 size = ImGui::CalcTextSize(word);
-    const float gap = 0.25f * ImGui::GetFontSize();
-    const float left = x + gap + size.x < axes.end.x ? x + gap : x - gap - size.x;
-    const float top = axes.begin.y + gap + row * size.y;
+    const float top = axes.begin.y + 0.25f * ImGui::GetFontSize() + row * size.y;
     list.AddLine({x, axes.begin.y}, {x, axes.end.y}, color, STROKE * ImGui::GetFontSize());
     list.AddRectFilled({left - 2.0f, top}, {left + size.x + 2.0f, top + size.y}, shade_of(ColorRole::chart, 0.75f),
                        3.0f);
@@ -174,8 +182,8 @@ void draw(const CurveAxes& axes, const Model& model, const WidgetState& state)
     draw_histogram(axes, state, list);
     draw_area(axes, model.session.transfer_function, list);
     list.PopClipRect();
-    draw_threshold(axes, model.haptic_threshold(), "haptic", 1.0f, FELT_LINE, list);
-    draw_threshold(axes, model.paint_threshold(), "paint", 0.0f, PAINT_LINE, list);
+    draw_threshold(axes, model.haptic_threshold(), FELT_WORD, 1.0f, FELT_LINE, list);
+    draw_threshold(axes, model.paint_threshold(), PAINT_WORD, 0.0f, PAINT_LINE, list);
     draw_density_offset(axes, model, list);
     draw_line(axes, curve.points(), list);
     draw_points(axes, curve.points(), state.selected, list);
@@ -239,8 +247,10 @@ void use_mouse(const CurveAxes& axes, const Model& model, WidgetState& state, Ac
     if (ImGui::IsMouseDragging(ImGuiMouseButton_Left, 1.0f)) return drag(axes, curve, model, mouse, state, actions);
     if (!ImGui::IsItemHovered()) return;
     const float size = ImGui::GetFontSize();
-    const TransferCurve::Found found = curve.under(axes, mouse, {model.paint_threshold(), model.haptic_threshold()},
-                                                   {.pixels = REACH * size, .label = 1.25f * size});
+    const double paint = model.paint_threshold(), felt = model.haptic_threshold();
+    const TransferCurve::Lines lines{paint, felt, extent_of_word(axes, paint, PAINT_WORD),
+                                     extent_of_word(axes, felt, FELT_WORD)};
+    const TransferCurve::Found found = curve.under(axes, mouse, lines, {.pixels = REACH * size, .label = 1.25f * size});
     if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && found.grip == Grip::nothing) {
         state.selected = curve.add(axes.intensity_at(mouse.x), axes.opacity_at(mouse.y));
         send(curve, model, actions);
@@ -330,8 +340,8 @@ void scale_and_help(const Model& model, WidgetState& state, Actions& actions)
         "Left to right: the file's intensities, over how often they occur. Upwards: opacity, as its square root, so "
         "that small opacities can be seen and dragged.\n\n"
         "Drag a point to move it. Double click on empty space adds one, right click on a point deletes it. The wheel "
-        "shifts all points; Ctrl + drag does, too. The lines \"paint\" and \"haptic\" are the thresholds; drag them as "
-        "well, or double click them for what fits the volume.\n\n"
+        "shifts all points; Ctrl + drag does, too. The lines \"paint\" and \"haptic\" are the thresholds; drag them or "
+        "their words, or double click them for what fits the volume.\n\n"
         "With Shift everything goes a tenth as far, drags and the wheel.");
 }
 

@@ -144,6 +144,11 @@ void tools(const Model& model, Actions& actions)
          actions, &FeelSettings::overlap_radius);
     flag("To nodes", "Where a node lies in the probe, tools act at it, and a new node becomes a link with it.", model,
          actions, &FeelSettings::to_nodes);
+    flag("To centre lines", "Where a centre line passes through the probe, tools act on it, and a new node divides it.",
+         model, actions, &FeelSettings::to_lines);
+    flag("Click at contact",
+         "A short push against your hand where the probe begins to touch something. Haptic devices with motors alone.",
+         model, actions, &FeelSettings::clicks);
     label("Plane");
     if (const auto plane = radio(PLANES, model.session.probe.touch.plane))
         set(actions, model, [&](Session& s) { s.probe.touch.plane = *plane; });

@@ -567,6 +567,9 @@ constexpr Shortcut SHORTCUTS[] = {
          toggle_feel<&FeelSettings::overlap_radius>, ""),
     both("to_nodes", HAND_KEYS, "Act at nodes in the probe's ball", Mode::tap, toggle_feel<&FeelSettings::to_nodes>,
          ""),
+    both("to_lines", HAND_KEYS, "Act on centre lines in the probe's ball", Mode::tap,
+         toggle_feel<&FeelSettings::to_lines>, ""),
+    both("clicks", HAND_KEYS, "Click where contact begins", Mode::tap, toggle_feel<&FeelSettings::clicks>, ""),
     both("record_stylus", HAND_KEYS, "Record the stylus, or end it", Mode::tap, toggle_recording, ""),
     both("find_devices", HAND_KEYS, "Look for devices", Mode::tap, plain<FindDevices>, ""),
 };

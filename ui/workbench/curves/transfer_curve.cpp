@@ -64,11 +64,14 @@ TransferCurve::Found TransferCurve::under(const CurveAxes& axes, const glm::vec2
         if (distance <= nearest) found = {Grip::point, i}, nearest = distance;
     }
     if (found.grip == Grip::point) return found;
+    const float row = (mouse.y - axes.begin.y) / reach.label;
+    const bool is_paint_row = row > 0.0f && row <= 1.0f, is_felt_row = row > 1.0f && row <= 2.0f;
+    const auto is_in = [&](const glm::vec2& word) { return mouse.x >= word.x && mouse.x < word.y; };
+    if (is_paint_row && is_in(lines.paint_word)) return {Grip::paint_threshold, 0};
+    if (is_felt_row && is_in(lines.haptic_word)) return {Grip::haptic_threshold, 0};
     const float to_paint = std::abs(axes.x_of(lines.paint_threshold) - mouse.x);
     const float to_felt = std::abs(axes.x_of(lines.haptic_threshold) - mouse.x);
     if (std::min(to_paint, to_felt) > 0.6f * reach.pixels) return found;
-    const float row = (mouse.y - axes.begin.y) / reach.label;
-    const bool is_felt_row = row > 1.0f && row <= 2.0f;
     const bool is_paint = to_paint == to_felt ? !is_felt_row : to_paint < to_felt;
     return {is_paint ? Grip::paint_threshold : Grip::haptic_threshold, 0};
 }

@@ -39,12 +39,13 @@ public:
         size_t point = 0;
         bool operator==(const Found&) const = default;
     };
-    /// Vertical lines beside the points.
+    /// Vertical lines beside the points, and from where to where their words reach, the first in the first row.
     struct Lines {
         double paint_threshold = 0.0, haptic_threshold = 0.0;
+        glm::vec2 paint_word{0.0f}, haptic_word{0.0f};
     };
-    /// The mouse grabs points within `pixels`; of lines at one place the paint threshold, but for where the word of the
-    /// other one stands, in the second row of so high a label.
+    /// The mouse grabs points within `pixels`, then words, whose rows are so high as a label, then lines; of lines at
+    /// one place the paint threshold, but for the row of the other one's word.
     struct Reach {
         float pixels = 9.0f, label = 17.0f;
     };

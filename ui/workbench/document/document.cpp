@@ -168,18 +168,23 @@ ProbeLook Document::probe_look() const
     return look;
 }
 
-std::optional<uint32_t> Document::tool_node() const
+ToolPlace Document::tool_place_at(const glm::dvec3& point) const
 {
-    if (!session.probe.touch.to_nodes || drags_node) return std::nullopt;
-    return node_within(annotator.document().trace, touch.probe(), probe_radius());
+    if (drags_node) return {point, {}, {}};
+    const TraceGraph& trace = annotator.document().trace;
+    const bool is_brush = session.probe.tool == Tool::paint || session.probe.tool == Tool::erase;
+    return ui::tool_place(session.probe.touch, trace, point, probe_radius(),
+                          is_brush ? std::nullopt : trace.selection().node());
 }
 
-glm::dvec3 Document::tool_point() const
+ToolPlace Document::tool_place() const
 {
-    if (const std::optional<uint32_t> node = tool_node()) return annotator.document().trace.node(*node).position;
+    ToolPlace place = tool_place_at(touch.probe());
+    if (place.node || place.internode) return place;
     const ServoState* const servo = touch.servo();
     const bool has_proxy = session.probe.touch.at_proxy && servo && servo->ticks > 0 && servo->step.in_contact;
-    return has_proxy ? servo->step.proxy : touch.probe();
+    if (has_proxy) place.point = servo->step.proxy;
+    return place;
 }
 
 VoxelBox Document::voxels_around_probe() const
@@ -319,7 +324,8 @@ TraceMarks Document::trace_marks() const
     const bool is_traced = session.probe.tool == Tool::trace;
     constexpr size_t SHOWN_LINKS = 64;  // about what fits on a screen
     return shvr::trace_marks(annotator.document().trace, is_traced ? nearby_node() : std::nullopt, least,
-                             drags_node ? std::optional(tool_point()) : std::nullopt, is_traced ? SHOWN_LINKS : 0);
+                             drags_node ? std::optional(tool_place().point) : std::nullopt,
+                             is_traced ? SHOWN_LINKS : 0);
 }
 
 }  // namespace shvr::ui

@@ -72,11 +72,12 @@ struct Document {
 
     const VolumeInfo& volume() const { return source->info(); }
     glm::dvec3 probe_voxel() const { return touch.probe() / volume().spacing; }
-    /// Where tools act, volume space: at the probe or, as the session's `probe.touch` says, at the middle of what it
-    /// touches, or at a node in its ball.
-    glm::dvec3 tool_point() const;
-    glm::dvec3 tool_voxel() const { return tool_point() / volume().spacing; }
-    std::optional<uint32_t> tool_node() const;
+    /// Where tools act: at the probe or, as the session's `probe.touch` says, at the middle of what it touches, at a
+    /// node in its ball, or on a centre line that passes through it.
+    ToolPlace tool_place() const;
+    glm::dvec3 tool_voxel() const { return tool_place().point / volume().spacing; }
+    /// Where they would act with the probe at a point, and nothing touched.
+    ToolPlace tool_place_at(const glm::dvec3& point) const;
     const BrushSettings& brush() const { return session.probe.brush; }
     /// Thresholds that are not given are chosen for the volume; likewise the size of nodes and the slices' contrast.
     void choose_thresholds(Session& of) const;

@@ -31,8 +31,8 @@ bool is_same(const ForceSettings& a, const ForceSettings& b)
     return a.assistance == b.assistance && a.law == b.law && a.probe_radius == b.probe_radius &&
            a.stiffness == b.stiffness && a.damping == b.damping && is_same(a.workspace, b.workspace) &&
            a.reset == b.reset && a.mode == b.mode && a.to_camera == b.to_camera && a.surface_share == b.surface_share &&
-           a.movement_scale == b.movement_scale && a.strength == b.strength && a.let_go == b.let_go &&
-           a.relevance_settings == b.relevance_settings;
+           a.movement_scale == b.movement_scale && a.strength == b.strength && a.clicks == b.clicks &&
+           a.let_go == b.let_go && a.relevance_settings == b.relevance_settings;
 }
 
 bool is_same(const TapOrder& a, const TapOrder& b)
@@ -180,6 +180,7 @@ void Touch::send_settings(const TouchSettings& settings)
                             .surface_share = guide.feel.surface_share,
                             .movement_scale = is_mouse() ? 1.0 : settings.scale,
                             .strength = guide.feel.strength,
+                            .clicks = guide.feel.clicks,
                             .let_go = settings.lets_go,
                             .relevance_settings = chosen_.settings};
     order.plane = plane_of(plane_, on_plane_, order.settings.force.workspace, planes_);

@@ -78,11 +78,20 @@ std::optional<double> radius_from_overlap(double share, double ball_radius)
     return ball_radius * std::sqrt(1.0 - std::pow(1.0 - std::min(share, 1.0), 2.0 / 3.0));
 }
 
-std::optional<uint32_t> node_within(const TraceGraph& trace, const glm::dvec3& point, double distance)
+ToolPlace tool_place(const FeelSettings& feel, const TraceGraph& trace, const glm::dvec3& point, double reach,
+                     std::optional<uint32_t> except_of)
 {
-    const std::optional<uint32_t> node = trace.nearest_node(point);
-    if (!node || glm::distance(trace.node(*node).position, point) > distance) return std::nullopt;
-    return node;
+    const auto at = [&](uint32_t node) { return ToolPlace{trace.node(node).position, node, {}}; };
+    if (feel.to_nodes) {
+        const std::optional<uint32_t> node = trace.nearest_node(point);
+        if (node && glm::distance(trace.node(*node).position, point) <= reach) return at(*node);
+    }
+    const auto place = feel.to_lines ? nearest_place(trace, point, reach, except_of) : std::nullopt;
+    if (!place) return {point, {}, {}};
+    const TraceInternode& internode = trace.internode(place->internode);
+    if (place->share <= 0.0) return at(internode.a);
+    if (place->share >= 1.0) return at(internode.b);
+    return {place->position, {}, place->internode};
 }
 
 }  // namespace shvr::ui

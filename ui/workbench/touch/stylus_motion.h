@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "engine/annotation/trace/tracing.h"
+#include "engine/annotation/trace/trace_segments.h"
 #include "engine/annotation/work/work.h"
 #include "engine/look/camera_motion.h"
 #include "engine/session/session.h"
@@ -45,7 +45,15 @@ glm::dvec3 in_plane(TouchPlane plane, const glm::dvec3& on, const glm::dvec3& po
 ///   share = 1 - (1 - (tube / ball)^2)^(3/2)
 std::optional<double> radius_from_overlap(double share, double ball_radius);
 
-/// The nearest node within a distance of a point.
-std::optional<uint32_t> node_within(const TraceGraph& trace, const glm::dvec3& point, double distance);
+/// Where tools act.
+struct ToolPlace {
+    glm::dvec3 point{0.0};              ///< volume space
+    std::optional<uint32_t> node;       ///< the one that has drawn them
+    std::optional<uint32_t> internode;  ///< likewise, between its ends
+};
+/// A point, or what of the trace within `reach` of it draws tools there, as is wanted: the nearest node, or the nearest
+/// point of a centre line, but for the internodes of a node, from which a person goes on.
+ToolPlace tool_place(const FeelSettings& feel, const TraceGraph& trace, const glm::dvec3& point, double reach,
+                     std::optional<uint32_t> except_of);
 
 }  // namespace shvr::ui

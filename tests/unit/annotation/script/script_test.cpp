@@ -180,6 +180,7 @@ TEST_CASE("a bad line is refused with its file, line, key and value")
         {R"({"op":"node","at":[1,2,1e13]})", {"key at.2 is 1", "from -1e+12 to 1e+12"}},
         {R"({"op":"node","at":[1,2,3],"radius":0})", {"key radius is 0", "above 0"}},
         {R"({"op":"node","at":[1,2,3],"group":256})", {"key group is 256"}},
+        {R"({"op":"node","at":[1,2,3],"divides":-1})", {"key divides is -1"}},
         {R"({"op":"select"})", {"none of these keys is given: near, near_internode, node, internode"}},
         {R"({"op":"select","near":[1,2,3],"node":4})", {"keys near and node are both given"}},
         {R"({"op":"select","node":-1})", {"key node is -1"}},

@@ -61,6 +61,101 @@ TEST_CASE("a node stands at its voxel, in the volume's unit, with the probe's si
     CHECK(work.effect(work.node_at({0, 0, 0})).label == "node, group 7");
 }
 
+TEST_CASE(
+    "a node divides an internode, is as wide and of the group that it has there, and takes the selected node's link")
+{
+    Tracing work;
+    work.perform(NodeOp{.at = {10, 10, 10}, .radius_voxels = 1.0, .group = 3});
+    work.perform(NodeOp{.at = {20, 10, 10}, .radius_voxels = 3.0, .group = 3});
+    work.perform(DeselectOp{});
+    work.perform(NodeOp{.at = {15, 20, 10}, .radius_voxels = 2.0, .group = 4});
+    const TraceGraph before = work.trace();
+    const NodeOp dividing{.at = {15, 10, 10}, .radius_voxels = {}, .group = {}, .divides = 0};
+    CHECK(work.effect(dividing).label == "node in internode 0");
+    work.perform(dividing);
+    const TraceGraph& trace = work.trace();
+    CHECK(trace.node(3) == TraceNode{{30, 30, 40}, 4.0, 3});
+    CHECK(trace.selection() == TraceSelection{{3}, {}});
+    CHECK(!trace.internodes().contains(0));
+    const auto group_between = [&](uint32_t a, uint32_t b) {
+        const auto number = trace.internode_between(a, b);
+        return number ? int(trace.internode(*number).group) : 0;
+    };
+    CHECK(group_between(0, 3) == 3);
+    CHECK(group_between(3, 1) == 3);
+    CHECK(group_between(2, 3) == 4);
+    CHECK(trace.internodes().size() == 3);
+    CHECK(segments_of(trace).size() == 3);
+    // One step, undone as it was.
+    work.history.undo(work.document);
+    CHECK(work.trace() == before);
+    CHECK(work.trace().selection() == TraceSelection{{2}, {}});
+    // From an end of the internode there is nothing more to link.
+    work.perform(SelectOp{.near = {}, .number = 1, .within_voxels = {}});
+    NodeOp own = dividing;
+    own.radius_voxels = 1.5;
+    own.group = 9;
+    work.perform(own);
+    const uint32_t added = *work.trace().selection().node();
+    CHECK(work.trace().node(added) == TraceNode{{30, 30, 40}, 3.0, 9});
+    CHECK(work.trace().internodes_of(added).size() == 2);
+    CHECK(refusal(work, dividing) == "internode 0 does not exist; expected one of the trace");
+    own.at = {90, 10, 10};
+    own.divides = work.trace().internodes_of(added)[0];
+    TraceDefaults in_volume = DEFAULTS;
+    in_volume.size = Size3(64);
+    const std::string why = test::error_of([&] { static_cast<void>(effect_of(own, work.trace(), in_volume)); });
+    CHECK(why.find("outside the volume") != std::string::npos);
+}
+
+TEST_CASE(
+    "the nearest place on a trace is that of a search one by one, through edits, and no internode is longer than said")
+{
+    std::mt19937 random(47);
+    std::uniform_real_distribution<double> place(0.0, 60.0), lot(0.0, 1.0);
+    Tracing work;
+    const auto voxel = [&] { return glm::dvec3(place(random), place(random), place(random)); };
+    int found = 0, none = 0;
+    for (int step = 0; step < 400; ++step) {
+        const double what = lot(random);
+        if (what < 0.6 || work.trace().nodes().size() < 4)
+            work.perform(work.node_at(lot(random) < 0.05 ? voxel() : 0.2 * voxel()));
+        else if (what < 0.75)
+            work.perform(nearest(voxel()));
+        else if (what < 0.85 && work.trace().selection().node())
+            work.perform(MoveOp{voxel()});
+        else if (what < 0.9 && !work.trace().selection().empty())
+            work.perform(DeleteOp{});
+        else if (work.history.undoable() > 0)
+            work.history.undo(work.document);
+        const TraceGraph& trace = work.trace();
+        double longest = 0.0;
+        for (const auto& [number, internode] : trace.internodes())
+            longest = std::max(longest, trace.length_of(internode));
+        CHECK(longest <= trace.longest_at_most());
+        CHECK(longest * 2.0 >= trace.longest_at_most());
+        const glm::dvec3 point = voxel() * DEFAULTS.spacing;
+        const double reach = 40.0 * lot(random);
+        const auto except = trace.selection().node();
+        std::optional<uint32_t> best;
+        double least = reach;
+        for (const auto& [number, internode] : trace.internodes()) {
+            if (except && (internode.a == *except || internode.b == *except)) continue;
+            const double away = distance_to(trace, internode, point);
+            if (away < least) best = number, least = away;
+        }
+        const auto there = nearest_place(trace, point, reach, except);
+        REQUIRE(there.has_value() == best.has_value());
+        ++(there ? found : none);
+        if (!there) continue;
+        CHECK(glm::distance(there->position, point) == doctest::Approx(least).epsilon(1e-12));
+        CHECK(distance_to(trace, trace.internode(there->internode), there->position) < 1e-9);
+        CHECK(there->share == share_along(trace, trace.internode(there->internode), point));
+    }
+    CHECK(found > 50);
+    CHECK(none > 50);
+}
+
 TEST_CASE("selecting is no step of the history, and what is too far away is not taken")
 {
     Tracing work;
