@@ -105,6 +105,10 @@ class Widgets(Seen):
         near = self.last("probe", "paint_threshold") - 120 - far
         self.assertGreater(far, 20)
         self.assertAlmostEqual(near, far / 10, delta=1.5)   # thresholds of whole numbers
+        # Its word is dragged as the line is.
+        before = self.last("probe", "paint_threshold")
+        self.drag(self.middle_of(self.see("paint")), (-20, 0))
+        self.assertAlmostEqual(self.last("probe", "paint_threshold") - before, -20 * per_pixel, delta=2)
         # The point at 160 and 0.9, which lies where that tells.
         point = (round(x + (160 - 120) / per_pixel), round(top + self.HEIGHT * (1 - 0.9 ** 0.5)))
         self.drag(point, (20, 10))
@@ -139,6 +143,12 @@ class Widgets(Seen):
         begin = self.last("unpainted", "opacity")
         self.assertGreater(at_mouse - begin, 0.1)
         self.assertAlmostEqual(finely - begin, (at_mouse - begin) / 10, delta=0.03)
+        self.finish()
+
+    def test_distance_blending_ends_where_all_of_the_far_end_is_the_other_colour(self):
+        self.open_panel("light")
+        self.drag(self.middle_of(self.until(lambda: self.after("Blend size"), "the size of blending")), (500, 0))
+        self.assertEqual(self.last("blend", "size"), 1)
         self.finish()
 
     def test_escape_closes_the_colour_picker_and_nothing_else(self):

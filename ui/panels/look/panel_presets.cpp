@@ -62,7 +62,7 @@ void draw_colors(const TransferFunction& function, const VolumeStatistics& stati
     constexpr float COLUMN = 2.0f;
     const float width = COLORS_WIDTH * ImGui::GetFontSize();
     const ImVec2 corner = ImGui::GetItemRectMax();
-    const float left = corner.x - width, top = ImGui::GetItemRectMin().y + 1.0f, bottom = corner.y - 1.0f;
+    const float left = corner.x - width, top = ImGui::GetItemRectMin().y + 2.0f, bottom = corner.y - 2.0f;
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.AddRectFilled({left, top}, {corner.x, bottom}, ImU32(ThemeColor{ColorRole::chart}));
     const auto [least, most] = statistics.range();

@@ -192,14 +192,22 @@ void draw(const CurveAxes& axes, const Model& model, const WidgetState& state)
 // ---- The mouse
 
 void begin_drag(const CurveAxes& axes, const TransferCurve& curve, const TransferCurve::Found& found,
-                const glm::vec2& mouse, WidgetState& state)
+                const TransferCurve::Lines& lines, const glm::vec2& mouse, WidgetState& state)
 {
     state.grip = ImGui::GetIO().KeyCtrl ? Grip::all_points : found.grip;
     state.grabbed_at = axes.intensity_at(mouse.x);
-    state.held = FineDrag(mouse, mouse);
-    if (state.grip != Grip::point) return;
-    state.selected = found.point;
-    state.held = FineDrag(mouse, axes.place_of(curve.points()[found.point]));
+    glm::vec2 held = mouse;
+    switch (state.grip) {
+        case Grip::point:
+            state.selected = found.point;
+            held = axes.place_of(curve.points()[found.point]);
+            break;
+        case Grip::paint_threshold: held.x = axes.x_of(lines.paint_threshold); break;
+        case Grip::haptic_threshold: held.x = axes.x_of(lines.haptic_threshold); break;
+        case Grip::nothing:
+        case Grip::all_points: break;
+    }
+    state.held = FineDrag(mouse, held);
 }
 
 /// Finely with Shift, as the wheel.
@@ -259,7 +267,7 @@ void use_mouse(const CurveAxes& axes, const Model& model, WidgetState& state, Ac
     } else if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && found.grip == Grip::haptic_threshold) {
         resets("probe.haptic_threshold", actions);
     } else if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
-        begin_drag(axes, curve, found, mouse, state);
+        begin_drag(axes, curve, found, lines, mouse, state);
     } else if (ImGui::IsMouseClicked(ImGuiMouseButton_Right) && found.grip == Grip::point) {
         state.selected = curve.remove(found.point);
         send(curve, model, actions);
