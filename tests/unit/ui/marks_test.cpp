@@ -38,7 +38,7 @@ struct Panes {
         slice.shot.is_slice = true;
         slice.axis = 2;
         for (const Pane& pane : {view, slice}) world.panes.push_back({.pane = pane, .view = nullptr});
-        world.model.probe_voxel = {50.0, 50.0, 50.0};
+        world.model.probe_voxel = world.model.tool_voxel = {50.0, 50.0, 50.0};
         world.session.probe.brush.radius_voxels = 10.0;
         InteractionSettings& shown = world.session.interaction;
         shown.axes = shown.scale_bar = shown.probe_label = shown.group_legend = false;
@@ -95,6 +95,18 @@ TEST_CASE("The link that a new node would get is drawn before it is made, with i
     CHECK(Panes::says(panes.over(panes.view), "40 mm"));
     panes.world.session.probe.tool = Tool::measure;
     CHECK(!Panes::says(panes.over(panes.view), "40 mm"));
+}
+
+TEST_CASE("Where the trace has drawn the tools a ring says so, and the link leads there")
+{
+    Panes panes;
+    panes.world.trace.select({{0}, {}});
+    panes.world.model.tool_voxel = {45.0, 50.0, 50.0};  // as the middle of what is touched
+    CHECK(Panes::says(panes.over(panes.view), "30 mm"));
+    CHECK(ends_around(panes.over(panes.view), {140.0, 150.0}, 5.0) == 0);
+    panes.world.model.tool_internode = 7;
+    CHECK(ends_around(panes.over(panes.view), {140.0, 150.0}, 5.0) >= 48);
+    CHECK(Panes::says(panes.over(panes.view), "30 mm"));
 }
 
 TEST_CASE("Distances are drawn where they are, in a slice only near its plane")

@@ -50,6 +50,7 @@ public:
             trace_in_slice();
             if (is_for_screen_) brush_ring();
         }
+        if (is_for_screen_) drawn_tool();
         if (is_for_screen_) link();
         measurements();
         if (is_for_screen_) pivot();
@@ -66,6 +67,7 @@ private:
     bool is_main() const { return pane_.kind == Pane::Kind::main; }
     double voxel_along() const { return model_.volume.spacing[std::clamp(pane_.axis, 0, 2)]; }
     glm::dvec3 probe() const { return model_.probe_voxel * model_.volume.spacing; }
+    glm::dvec3 tool() const { return model_.tool_voxel * model_.volume.spacing; }
     std::optional<glm::dvec2> pixel_of(const glm::dvec3& point) const
     {
         const auto at = project(pane_.shot.camera, pixels_, point);
@@ -160,6 +162,17 @@ private:
                glm::all(glm::lessThan(glm::min(a, b), glm::dvec2(pixels_)));
     }
 
+    /// Where a node or a centre line has drawn the tools.
+    void drawn_tool()
+    {
+        if (!model_.tool_node && !model_.tool_internode) return;
+        if (pane_.kind == Pane::Kind::map || pane_.shot.right_eye) return;
+        const auto from = pixel_of(probe()), at = pixel_of(tool());
+        if (!from || !at) return;
+        line(*from, *at, LIGHT);
+        ring(*at, 5.0 * units_, LINK, 2.0);
+    }
+
     /// The link that a node added now would get, with its length.
     void link()
     {
@@ -167,7 +180,7 @@ private:
         const bool adds_nodes = model_.tool() == Tool::trace || model_.tool() == Tool::turn;
         if (!selected || !adds_nodes || model_.is_painting || model_.drags_node) return;
         if (pane_.kind == Pane::Kind::map || pane_.shot.right_eye) return;
-        const glm::dvec3 from = model_.trace.node(*selected).position, to = probe();
+        const glm::dvec3 from = model_.trace.node(*selected).position, to = tool();
         const auto begin = pixel_of(from), end = pixel_of(to);
         if (!begin || !end || glm::distance(*begin, *end) < 8.0 * units_) return;
         dashed(*begin, *end, LINK);
