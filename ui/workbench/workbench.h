@@ -352,6 +352,8 @@ private:
     // Annotation
     void trace(const TraceOp& op);
     TraceOp with_radius(TraceOp op) const;
+    std::optional<ToolPlace> line_at(const Pane& pane, const glm::dvec2& pixel) const;
+    bool add_drawn_node(const ToolPlace& place);
     std::optional<uint32_t> node_in_voxel(const glm::dvec3& voxel) const;
     void select_segment();
     void note_cut(std::optional<std::pair<uint32_t, uint32_t>> ends);

@@ -183,10 +183,46 @@ std::optional<uint32_t> Workbench::node_in_voxel(const glm::dvec3& voxel) const
     return is_there ? nearest : std::nullopt;
 }
 
+/// On the centre line that is drawn at a pixel, if lines are to draw tools; of the selected node's, too.
+std::optional<ToolPlace> Workbench::line_at(const Pane& seen, const glm::dvec2& pixel) const
+{
+    if (!document_->session.probe.touch.to_lines) return std::nullopt;
+    const TraceGraph& trace = document_->annotator.document().trace;
+    const TraceHit hit = trace_hit(trace, seen, pixel, document_->volume());
+    if (!hit.internode || is_hidden(seen, pixel, hit)) return std::nullopt;
+    const TraceInternode& internode = trace.internode(*hit.internode);
+    const glm::dvec3 there = unproject(seen.shot.camera, seen.pixels(), pixel, hit.depth);
+    const glm::dvec3 way = glm::normalize(sight_through(seen.shot.camera, there));
+    const glm::dvec3 a = trace.node(internode.a).position, b = trace.node(internode.b).position;
+    // Where it comes nearest to the line of sight.
+    const auto across = [&](const glm::dvec3& v) { return v - way * glm::dot(v, way); };
+    const glm::dvec3 begin = across(a - there), along = across(b - a);
+    const double square = glm::dot(along, along);
+    const double share = square > 0.0 ? glm::clamp(-glm::dot(begin, along) / square, 0.0, 1.0) : 0.5;
+    return ToolPlace{glm::mix(a, b, share), {}, hit.internode};
+}
+
+/// Returns whether something of the trace has drawn it there.
+bool Workbench::add_drawn_node(const ToolPlace& place)
+{
+    const glm::dvec3& spacing = document_->volume().spacing;
+    const auto op = trace_op_at(place, document_->annotator.document().trace, spacing);
+    if (!op) return false;
+    Actions done = add_node_at(*op);
+    move_probe(place.point, false);
+    done.push_back(PlaceProbe{place.point / spacing});
+    log_instead(done);
+    return true;
+}
+
 /// On what is seen; or where that is wanted in the middle of what the line of sight enters there, in slices as it is.
 void Workbench::act(const NodeAt& action)
 {
     const Pane seen = pane(action.pane);
+    if (const auto line = line_at(seen, action.pixel)) {
+        add_drawn_node(*line);
+        return;
+    }
     const std::optional<glm::dvec3> point = seen_at(seen, action.pixel);
     if (!point) fail("nothing is seen there; expected a place for the node on what is seen");
     glm::dvec3 voxel = *point / document_->volume().spacing;
@@ -195,13 +231,7 @@ void Workbench::act(const NodeAt& action)
         goes_inside ? document_->ball_at(voxel, sight_through(seen.shot.camera, *point)) : std::nullopt;
     if (ball) voxel = ball->middle;
     const glm::dvec3& spacing = document_->volume().spacing;
-    const ToolPlace drawn = document_->tool_place_at(voxel * spacing);
-    if (const auto op = trace_op_at(drawn, document_->annotator.document().trace, spacing)) {
-        Actions done = add_node_at(*op);
-        move_probe(drawn.point, false);
-        done.push_back(PlaceProbe{drawn.point / spacing});
-        return log_instead(done);
-    }
+    if (add_drawn_node(document_->tool_place_at(voxel * spacing))) return;
     if (const auto there = ball ? node_in_voxel(voxel) : std::nullopt) {
         const SelectOp selecting{.near = {}, .number = there, .within_voxels = {}};
         trace(selecting);

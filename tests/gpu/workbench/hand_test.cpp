@@ -306,6 +306,19 @@ TEST_CASE_FIXTURE(OnDevice,
     bench.perform(UndoOp{2});
     CHECK(trace.internodes().size() == 1);
     CHECK(trace.internodes().contains(0));
+    // A click on the line that is drawn is one on it, wherever the volume is seen there.
+    bench.perform(LookFrom{"top"});
+    REQUIRE(turn_until(bench, [&] { return bench.screen().complete(); }));
+    const Pane seen = bench.screen().parts()[0].pane;
+    const auto pixel = project(seen.shot.camera, seen.pixels(), {24.0, 12.0, 14.0});
+    REQUIRE(pixel);
+    bench.perform(Set{R"({"unpainted":{"opacity":0.01}})"});
+    bench.perform(NodeAt{0, pixel->pixel});
+    CHECK(trace.nodes().size() == 4);
+    CHECK(bench.messages().last().find(" divides internode 0") != std::string::npos);
+    const TraceNode& added = trace.node(*trace.selection().node());
+    CHECK(glm::distance(added.position, glm::dvec3(24.0, 12.0, 14.0)) < 1e-6);
+    CHECK(bench.document().touch.probe() == added.position);
     bench.perform(of("to_lines", bench));
     CHECK(bench.messages().last() == "Centre lines draw no tool");
 }
