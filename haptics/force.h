@@ -39,9 +39,10 @@ enum ForceFlag : uint32_t {
 
 /// A push against the way of the hand as it touches something, half a sine wave: what tells a hand where things begin
 /// is the first milliseconds of contact, not its stiffness (Kuchenbecker, Fiene, Niemeyer: Improving contact realism
-/// through event-based haptic feedback, 2006). In proportion to the hand's speed, so that it slows the lightest one,
-/// 30 g of a stylus alone, and never turns it round, and makes no energy. A hand that hardly moves gets none, nor one
-/// that has been off for less than CLICK_PAUSE_NS: one that trembles on a surface feels no buzz.
+/// through event-based haptic feedback, 2006). In proportion to the hand's speed, so that it slows the lightest one, a
+/// Touch's arm of 45 g that nobody holds, by 0.6 of that and never turns it round, and makes no energy. A hand that
+/// hardly moves gets none, nor one that has been off for less than CLICK_PAUSE_NS: one that trembles on a surface feels
+/// no buzz.
 struct ClickMemory {
     glm::dvec3 peak_n{0.0};  ///< of the present one
     uint64_t left_ns = 0;    ///< of the present one; 0: there is none
