@@ -485,6 +485,25 @@ TEST_CASE_FIXTURE(OnDevice, "a stroke that finds nothing says what is there, and
     CHECK(on.is_painted(16, 10));
 }
 
+TEST_CASE_FIXTURE(OnDevice,
+                  "a stroke that finds hardly anything says what is there as well, and one that finds much does not")
+{
+    Plates on(renderer());
+    on.perform(Set{R"({"probe":{"paint_threshold":150,"radius_voxels":6}})"});
+    const auto said_at = [&](double y) {
+        on.perform(PlaceProbe{{16.0, y, 24.0}});
+        on.perform(Paint{true});
+        on.perform(Paint{false});
+        return on.bench.messages().last();
+    };
+    const std::string little = said_at(17.2), much = said_at(13.5);  // both between plate and wall
+    CHECK(on.is_painted(16, 11));
+    CHECK_MESSAGE(little.starts_with("Painted "), little);
+    CHECK_MESSAGE(little.ends_with("; here is value 10, and Ctrl + T sets the threshold from it"), little);
+    CHECK_MESSAGE(much.starts_with("Painted "), much);
+    CHECK_MESSAGE(much.find("here is") == std::string::npos, much);
+}
+
 TEST_CASE_FIXTURE(OnDevice, "undo after a stroke that changed nothing takes no other step back in its place")
 {
     Plates on(renderer());
