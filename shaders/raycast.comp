@@ -58,6 +58,7 @@ layout(constant_id = 12) const uint HAS_SAMPLE_BITS = 0u;
 #endif
 #ifdef SHELLED
 layout(constant_id = 8) const uint SHELL = SHELL_BALL;   // the region's shape
+layout(binding = 19, r32ui) uniform readonly uimage3D cell_ranges;   // minimum | maximum << 16
 #endif
 
 layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
@@ -485,6 +486,15 @@ void main()
         const uint patience = unseen >= AWAY_FROM_SEEN ? LITTLE_PATIENCE : MUCH_PATIENCE;
         if (i > step_before) rises.trough = 0.0;
         unseen = 0u;
+#ifdef SHELLED
+        // Crossings are few: samples are taken up to the next one.
+        const uint first = i;
+        const float next_sample = begin + (float(i) + 0.5) * params.step;
+        if (i < end_step) {
+            add_shells(params, ray, next_sample, shell, sum);
+            waits = shell_waits(params, shell, next_sample, sum);
+        }
+#endif
         bool goes_on;
         do {
             const vec3 position = sample_position(params, ray, begin, i);
@@ -494,8 +504,7 @@ void main()
             goes_on = place.distance == 0u && i < end_step && sum.a < params.opacity_limit;
 #ifdef SHELLED
             const float here = begin + (float(i) + 0.5) * params.step;
-            if (goes_on) add_shells(params, ray, here, shell, sum);
-            waits = waits || (goes_on && shell_waits(params, shell, here, sum));
+            goes_on = goes_on && !waits && (i == first || !shell_comes_before(shell, here));
 #endif
             waits = waits || (goes_on && place.is_missing && sum.a < params.opacity_limit);
             if (goes_on && !waits) {

@@ -1,7 +1,8 @@
 // Thin-shell iso-surface in the region around the probe: where the trilinear field crosses a threshold, solved per cell
 // and not at samples, so that nothing thinner than a step is missed. Along a ray the field in a cell is a cubic; it is
 // split where its derivative is 0, and each piece holds at most one crossing (Marmitt and others 2004, "Fast and
-// accurate ray-voxel intersection techniques for iso-surface ray tracing").
+// accurate ray-voxel intersection techniques for iso-surface ray tracing"). Cells of 4^3 voxels whose ranges say that
+// the field stays on the ray's side of the threshold are passed at once.
 //
 // The inside state of a ray is carried from cell to cell: a crossing lost to rounding at a border is found at the start
 // of the next cell, so there are neither holes nor duplicates. Every variable that outlives an iteration is carried
@@ -135,12 +136,44 @@ float crossing(vec4 c, float low, float high, bool low_is_inside)
     return mix(low, high, a != b ? clamp(a / (a - b), 0.0, 1.0) : 0.5);
 }
 
+// Goes on to a cell of 4^3 voxels (leap.h) in which something may cross, or to the end of what may be searched.
+void pass_clear_cells(const RaycastParams params, const Ray ray, inout Shell shell)
+{
+    bool is_clear;
+    do {
+        ++shell.turns;
+        const float hair = hair_at(shell.from);
+        const vec3 position = position_at(params, ray, shell.from + hair);
+#ifdef PAGED
+        const Place place = place_at(params, position);
+        if (FEEDBACK != 0u && (KEPT != KEPT_ALL || place.is_missing)) note_reached(place);
+        const uint shift = place.level + 2u;
+        const uvec3 cell = uvec3(position) >> shift, in_slot = cell & BRICK_CELLS - 1u;
+        const bool has_range = !place.is_missing && place.slot != NO_SLOT;
+        const uint range = imageLoad(cell_ranges, ivec3(BRICK_CELLS * unpack_slot(place.slot) + in_slot)).x;
+#else
+        const uint shift = 2u;
+        const uvec3 cell = uvec3(position) / CELL_SIZE;
+        const bool has_range = true;
+        const uint range = imageLoad(cell_ranges, ivec3(cell)).x;
+#endif
+        const float least = float(range & 0xffffu) - GUARD_EXACT, most = float(range >> 16u) + GUARD_EXACT;
+        const bool is_on_side = shell.is_inside ? least >= params.shell_code : most < params.shell_code;
+        is_clear = has_range && is_on_side && shell.from < shell.limit && shell.turns < MAX_TURNS;
+        const vec3 lengths = (float(1u << shift) * (vec3(cell) + ray.ahead) - ray.origin) * ray.inverse;
+        const float exit = min(lengths.x, min(lengths.y, lengths.z));
+        shell.from = is_clear ? min(max(exit, shell.from + 2.0 * hair), shell.end) : shell.from;
+    } while (is_clear);
+}
+
 // Finds the next crossing. Sets `next` to NO_SHELL if the region, or what may be searched, ends first.
 void search_shell(const RaycastParams params, const Ray ray, inout Shell shell)
 {
     shell.next = NO_SHELL;
     while (shell.next == NO_SHELL && shell.from < shell.limit && !shell.waits && shell.turns < MAX_TURNS) {
         ++shell.turns;
+        pass_clear_cells(params, ray, shell);
+        const bool goes_on = shell.from < shell.limit;
         const Cell cell = cell_at(params, ray, position_at(params, ray, shell.from + hair_at(shell.from)));
         const float to = min(max(cell.exit, shell.from + 2.0 * hair_at(shell.from)), shell.end);
         const float extent = to - shell.from;
@@ -158,21 +191,25 @@ void search_shell(const RaycastParams params, const Ray ray, inout Shell shell)
             const bool at_low = cubic(c, turns.x) >= 0.0, at_high = cubic(c, turns.y) >= 0.0;
             is_inside = g3 >= 0.0;
             const bool was = shell.is_inside;
-            found = (g0 >= 0.0) != was         ? 0.0
-                    : at_low != was            ? crossing(c, 0.0, turns.x, was)
-                    : at_high != was           ? crossing(c, turns.x, turns.y, was)
-                    : is_inside != was         ? crossing(c, turns.y, 1.0, was)
-                                               : NO_SHELL;
+            // The first piece whose ends lie on different sides; SIMD devices would search all three.
+            const bool in_first = at_low != was, in_middle = !in_first && at_high != was;
+            const vec2 piece = in_first    ? vec2(0.0, turns.x)
+                               : in_middle ? turns
+                                           : vec2(turns.y, 1.0);
+            const float root = crossing(c, piece.x, piece.y, was);
+            found = (g0 >= 0.0) != was                             ? 0.0
+                    : in_first || in_middle || is_inside != was    ? root
+                                                                   : NO_SHELL;
         } else {
             found = shell.is_inside ? 0.0 : NO_SHELL;
         }
-        const bool is_found = found != NO_SHELL && !cell.is_missing;
+        const bool is_found = goes_on && found != NO_SHELL && !cell.is_missing;
         const float at = shell.from + found * extent;
         shell.next = is_found ? at : NO_SHELL;
         shell.is_inside = is_found ? !shell.is_inside : shell.is_inside;
-        shell.from = cell.is_missing ? shell.from : is_found ? at + hair_at(at) : to;
+        shell.from = !goes_on || cell.is_missing ? shell.from : is_found ? at + hair_at(at) : to;
         shell.known = shell.from;
-        shell.waits = cell.is_missing;
+        shell.waits = goes_on && cell.is_missing;
     }
 }
 
@@ -221,10 +258,16 @@ Shell begin_shell(const RaycastParams params, const Ray ray, float begin, float 
     return shell;
 }
 
+// Whether something comes before `s`: a crossing, or what is not known yet.
+bool shell_comes_before(const Shell shell, float s)
+{
+    return (shell.next == NO_SHELL && shell.waits ? shell.known : shell.next) < s;
+}
+
 // Whether a crossing before `s` may not be known yet, or cannot be drawn yet.
 bool shell_waits(const RaycastParams params, const Shell shell, float s, vec4 sum)
 {
-    return shell.waits && sum.a < params.opacity_limit && (shell.next == NO_SHELL ? shell.known : shell.next) < s;
+    return shell.waits && sum.a < params.opacity_limit && shell_comes_before(shell, s);
 }
 
 // Colour and opacity of a crossing in a cell, lit from both sides.

@@ -192,9 +192,11 @@ TEST_CASE("1000 power cuts while work goes on under other names leave the work b
 
 TEST_CASE("100 kills while work goes on under other names leave each work whole")
 {
+    using namespace std::chrono;
     const TemporaryFolder folder;
     std::mt19937 random(6);
     size_t with_new = 0;
+    microseconds longest{30000};  // grows to twice what the first new work takes: much, under a sanitizer
     for (int round = 0; round < 100; ++round) {
         const fs::path desk = folder.path / "desk";
         fs::remove_all(desk);
@@ -211,7 +213,11 @@ TEST_CASE("100 kills while work goes on under other names leave each work whole"
             auto work = open_work(named(desk, "0"), said);
             for (int name = 1;; ++name) save_as(*work, desk, std::to_string(name));
         }
-        std::this_thread::sleep_for(std::chrono::microseconds(random() % 30000));
+        const auto begun = steady_clock::now();
+        while (round == 0 && !fs::exists(desk / "1.json") && steady_clock::now() < begun + minutes(1))
+            std::this_thread::sleep_for(milliseconds(1));
+        longest = std::max(longest, 2 * duration_cast<microseconds>(steady_clock::now() - begun));
+        std::this_thread::sleep_for(microseconds(random() % uint64_t(longest.count())));
         ::kill(child, SIGKILL);
         int status = 0;
         REQUIRE(::waitpid(child, &status, 0) == child);

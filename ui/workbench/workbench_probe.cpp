@@ -194,10 +194,12 @@ void Workbench::stroke_ended()
         is_as_meant && result.voxels() == 0 && result.kept_painted == 0 && !result.stroke.erases();
     if (is_as_meant && !result.stroke.erases() && is_hardly_any(result, document_->volume().spacing))
         said += how_to_reach_this();
-    if (result.voxels() == 0)
+    if (result.voxels() == 0) {
         steps_at_empty_stroke_ = document_->annotator.history().undoable();
-    else
+    } else {
         steps_at_empty_stroke_.reset();
+        document_->painted_at = document_->touch.probe();
+    }
     say(said, is_as_meant && !found_nothing ? Weight::done : Weight::warning);
 }
 

@@ -504,6 +504,27 @@ TEST_CASE_FIXTURE(OnDevice,
     CHECK_MESSAGE(much.find("here is") == std::string::npos, much);
 }
 
+TEST_CASE_FIXTURE(OnDevice, "the probe's ball leaves what it painted to be seen until it moves on")
+{
+    Plates on(renderer());
+    on.perform(Set{R"({"probe":{"paint_threshold":150}})"});
+    const auto ball = [&] { return on.bench.document().probe_look().ball_share; };
+    const auto stroke_at = [&](double y) {
+        on.perform(PlaceProbe{{16.0, y, 24.0}});
+        on.perform(Paint{true});
+        on.perform(Paint{false});
+    };
+    CHECK(ball() == 1.0);
+    stroke_at(10.0);
+    CHECK(ball() < 0.2);
+    stroke_at(10.0);  // there again, with nothing to add
+    CHECK(ball() < 0.2);
+    on.perform(PlaceProbe{{16.0, 11.0, 24.0}});
+    CHECK(ball() == 1.0);
+    stroke_at(26.0);  // finds nothing
+    CHECK(ball() == 1.0);
+}
+
 TEST_CASE_FIXTURE(OnDevice, "undo after a stroke that changed nothing takes no other step back in its place")
 {
     Plates on(renderer());

@@ -155,6 +155,7 @@ ProbeLook Document::probe_look() const
     look.ball_opacity = session.probe.opacity;
     look.has_silhouette = session.probe.silhouette;
     look.has_arrow = session.probe.arrow;
+    if (painted_at == touch.probe()) look.ball_share = BALL_IN_SHELL;
     if (previewer.shown()) {
         look.ball_share = BALL_IN_SHELL;
         look.preview = previewer.shown();

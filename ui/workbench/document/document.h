@@ -64,6 +64,8 @@ struct Document {
     std::optional<glm::dvec3> measuring_from;               ///< the first end of one that has no second yet
     std::optional<glm::dvec3> picked_pivot;                 ///< volume space
     std::optional<std::pair<uint32_t, uint32_t>> cut_ends;  ///< nodes between which the last deletion cut the trace
+    /// The probe where its last stroke ended: until it moves on, its ball leaves what was painted to be seen.
+    std::optional<glm::dvec3> painted_at;
 
     /// Loads everything onto the device again, as its settings now say. Fails as load and create do.
     void load_again(Renderer& renderer);
