@@ -308,10 +308,15 @@ vec3 position_at(const RaycastParams params, const Ray ray, float s)
     return min(ray.origin + s * ray.direction, params.position_limit);
 }
 
-// The middle of a step of the lattice.
+// The middle of a step of the lattice: a length along the ray, and a position.
+float step_middle(const RaycastParams params, float begin, uint step)
+{
+    return begin + (float(step) + 0.5) * params.step;
+}
+
 vec3 sample_position(const RaycastParams params, const Ray ray, float begin, uint step)
 {
-    return position_at(params, ray, begin + (float(step) + 0.5) * params.step);
+    return position_at(params, ray, step_middle(params, begin, step));
 }
 
 // The number of whole steps from `position` that stay inside the empty cube around its cell.
@@ -374,11 +379,49 @@ void accumulate(inout vec4 sum, vec4 look)
 void take(const RaycastParams params, vec4 look, const Place place, float begin, inout uint i, inout vec4 sum,
           inout Rises rises, inout uint unseen, inout Work work)
 {
-    if (PICK != 0u) note_rise(rises, (1.0 - sum.a) * look.a, look.a, begin + (float(i) + 0.5) * params.step);
+    if (PICK != 0u) note_rise(rises, (1.0 - sum.a) * look.a, look.a, step_middle(params, begin, i));
     if (COUNT_WORK != 0u) note_taken(place, work);
     accumulate(sum, look);
     unseen = look.a > 0.0 ? 0u : unseen + 1u;
     ++i;
+}
+
+// Adds samples from step `i` on, up to `until`, a length along the ray, or to `end_step`.
+//
+// SIMD devices run both sides of a branch for all their lanes, so what is cheap, the search for a sample that can be
+// seen, and what is costly are loops of their own, in which lanes stay together as long as it pays.
+void take_samples(const RaycastParams params, const Ray ray, float begin, uint end_step, float until, inout uint i,
+                  inout vec4 sum, inout Rises rises, inout uint unseen, inout bool waits, inout Work work)
+{
+    const uint first = i;   // is taken, whatever rounding makes of `until`
+    bool is_behind = false;
+    while (i < end_step && sum.a < params.opacity_limit && !waits && !is_behind) {
+        const uint step_before = i;
+        search_sample(params, ray, begin, end_step, i, unseen, work);
+        const uint patience = unseen >= AWAY_FROM_SEEN ? LITTLE_PATIENCE : MUCH_PATIENCE;
+        if (i > step_before) rises.trough = 0.0;
+        unseen = 0u;
+        bool goes_on;
+        do {
+            const vec3 position = sample_position(params, ray, begin, i);
+            const Place place = place_at(params, position);
+            note(place, work);
+            if (COUNT_WORK != 0u) ++work.turns;
+#ifdef SHELLED
+            is_behind = is_behind || (i != first && step_middle(params, begin, i) > until);
+#endif
+            goes_on = place.distance == 0u && i < end_step && sum.a < params.opacity_limit && !is_behind;
+            waits = waits || (goes_on && place.is_missing && sum.a < params.opacity_limit);
+            if (goes_on && !waits) {
+                const vec4 look = sample_look(params, ray, position, 1.0, place);
+                take(params, look, place, begin, i, sum, rises, unseen, work);
+            }
+            goes_on = goes_on && !waits && i < end_step && unseen < patience && sum.a < params.opacity_limit;
+        } while (goes_on);
+        // Drivers may round positions in one loop as they do not in the other, which then disagree about a border.
+        i += uint(i == step_before && !waits && !is_behind);
+        if (COUNT_WORK != 0u) ++work.turns;
+    }
 }
 
 #ifdef SHELLED
@@ -394,9 +437,9 @@ uint bricks_between(vec3 a, vec3 b)
 void main()
 {
     const RaycastParams params = params_block.data;
-    const uvec2 in_part = thread_in_part();
+    const uvec2 in_part = params.drawn_begin + thread_in_part();
+    if (any(greaterThanEqual(in_part, params.drawn_end))) return;
     const uvec2 pixel = params.pixel_begin + in_part;
-    if (any(greaterThanEqual(pixel, params.pixel_end))) return;
 
     const vec2 centre = vec2(pixel) + 0.5;
     const vec3 near = on_plane(params.near_corner, params.near_dx, params.near_dy, centre);
@@ -476,47 +519,19 @@ void main()
     Shell shell = begin_shell(params, ray, begin, end, was_done ? begin : block_end, kept, begins_inside);
 #endif
 
-    // SIMD devices run both sides of a branch for all their lanes, so what is cheap, the search for a sample that can
-    // be seen, and what is costly are loops of their own, in which lanes stay together as long as it pays.
     uint i = first_step;
     uint unseen = AWAY_FROM_SEEN;
+#ifdef SHELLED
+    // Crossings are few, and drawn outside the loops that look for samples and take them.
     while (i < end_step && sum.a < params.opacity_limit && !waits) {
-        const uint step_before = i;
-        search_sample(params, ray, begin, end_step, i, unseen, work);
-        const uint patience = unseen >= AWAY_FROM_SEEN ? LITTLE_PATIENCE : MUCH_PATIENCE;
-        if (i > step_before) rises.trough = 0.0;
-        unseen = 0u;
-#ifdef SHELLED
-        // Crossings are few: samples are taken up to the next one.
-        const uint first = i;
-        const float next_sample = begin + (float(i) + 0.5) * params.step;
-        if (i < end_step) {
-            add_shells(params, ray, next_sample, shell, sum);
-            waits = shell_waits(params, shell, next_sample, sum);
-        }
-#endif
-        bool goes_on;
-        do {
-            const vec3 position = sample_position(params, ray, begin, i);
-            const Place place = place_at(params, position);
-            note(place, work);
-            if (COUNT_WORK != 0u) ++work.turns;
-            goes_on = place.distance == 0u && i < end_step && sum.a < params.opacity_limit;
-#ifdef SHELLED
-            const float here = begin + (float(i) + 0.5) * params.step;
-            goes_on = goes_on && !waits && (i == first || !shell_comes_before(shell, here));
-#endif
-            waits = waits || (goes_on && place.is_missing && sum.a < params.opacity_limit);
-            if (goes_on && !waits) {
-                const vec4 look = sample_look(params, ray, position, 1.0, place);
-                take(params, look, place, begin, i, sum, rises, unseen, work);
-            }
-            goes_on = goes_on && !waits && i < end_step && unseen < patience && sum.a < params.opacity_limit;
-        } while (goes_on);
-        // Drivers may round positions in one loop as they do not in the other, which then disagree about a border.
-        i += uint(i == step_before && !waits);
-        if (COUNT_WORK != 0u) ++work.turns;
+        const float next_sample = step_middle(params, begin, i);
+        add_shells(params, ray, next_sample, shell, sum);
+        waits = shell_waits(params, shell, next_sample, sum);
+        take_samples(params, ray, begin, end_step, known_until(shell), i, sum, rises, unseen, waits, work);
     }
+#else
+    take_samples(params, ray, begin, end_step, NO_SHELL, i, sum, rises, unseen, waits, work);
+#endif
     if (KEPT == KEPT_ALL) i = min(i, steps);   // leaps go beyond the end
     // Nobody but the device ends the loop before its end; and the last block may end before the ray.
     bool is_cut_short = i < (is_last ? steps : end_step) && sum.a < params.opacity_limit && !waits && !was_done;

@@ -57,7 +57,9 @@ struct RaycastParams {
     vec3 far_dy;
     uvec2 pixel_begin;  ///< the part of the picture to draw
     uvec2 pixel_end;
-    uvec2 target;    ///< texel of pixel_begin
+    uvec2 target;       ///< texel of pixel_begin
+    uvec2 drawn_begin;  ///< pixels of the part that this dispatch draws, from pixel_begin on; set by raycast()
+    uvec2 drawn_end;
     vec3 box_lower;  ///< the drawn part of the volume, voxel space
     vec3 box_upper;
     vec3 position_limit;  ///< an ulp before the volume's end: samples in its upper faces belong to the last voxel

@@ -21,6 +21,8 @@ namespace {
 /// below 65535 as well.
 constexpr uint64_t LANES = 8;
 constexpr uint64_t MAX_BLOCKS = 4096;
+/// Around the pixels of an iso-surface: rays are rounded, and groups of threads are as wide as they may be.
+constexpr double SHELL_MARGIN = 1.0, SHELL_ALIGNED = 16.0;  // pixels
 
 /// Steps of a ray that one dispatch may take.
 uint64_t steps_of_block(const VolumeBinding& volume, const RaycastInput& input, bool is_shelled)
@@ -136,10 +138,38 @@ void expect_next(FrameGraph& graph, const Choice& now, const RaycastInput& input
     });
 }
 
-Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, bool is_shelled,
-                       Resource target, std::optional<Resource>& rays)
+/// Pixels of the part, from its first one on, that are drawn by one kernel.
+struct Area {
+    glm::uvec2 begin{0}, end{0};
+    bool is_shelled = false;
+    bool is_empty() const { return begin.x >= end.x || begin.y >= end.y; }
+};
+
+/// An iso-surface costs rays that never meet it as much again, so they are drawn without: above, below, and on both
+/// sides of its pixels.
+std::vector<Area> areas_of(const RaycastInput& input, bool is_shelled)
 {
-    const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
+    const glm::uvec2 size = input.params.pixel_end - input.params.pixel_begin;
+    if (!is_shelled) return {{{0, 0}, size}};
+    const ShellPixels pixels = shell_pixels(input.params);
+    const Area shell{pixels.begin, pixels.end, true};
+    if (shell.is_empty()) return {{{0, 0}, size}};
+    const Area candidates[] = {shell,
+                               {{0, 0}, {size.x, shell.begin.y}},
+                               {{0, shell.end.y}, size},
+                               {{0, shell.begin.y}, {shell.begin.x, shell.end.y}},
+                               {{shell.end.x, shell.begin.y}, {size.x, shell.end.y}}};
+    std::vector<Area> areas;
+    for (const Area& area : candidates)
+        if (!area.is_empty()) areas.push_back(area);
+    return areas;
+}
+
+/// `is_begun`: other pixels of the target, and of `rays`, have been drawn before.
+Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, bool is_shelled,
+                       Resource target, std::optional<Resource>& rays, bool is_begun)
+{
+    const glm::uvec2 pixels = input.params.drawn_end - input.params.drawn_begin;
     const KernelVariant kernel = kernel_of(choice_of(volume, input, is_shelled, rays.has_value()), input);
     Pass pass = graph.compute(kernel.first, "raycast");
     for (const auto& [name, value] : kernel.second) pass.constant(name, value);
@@ -172,38 +202,80 @@ Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastIn
         if (!rays) {
             static_cast<void>(pass.write("rays", graph.create("rays", picture_desc(Format::rgba32_float, {1, 1}))));
         } else {
-            rays = is_first ? pass.write("rays", *rays) : pass.modify("rays", *rays);
+            rays = is_first && !is_begun ? pass.write("rays", *rays) : pass.modify("rays", *rays);
         }
     }
     pixel_groups(pass, pixels, input.group_width, input.tile);
     // Rays in waiting keep what they have gathered elsewhere.
     const bool continues = input.params.first_step > 0 && !input.waiting;
-    return continues ? pass.modify("color", target) : pass.write("color", target);
+    return continues || is_begun ? pass.modify("color", target) : pass.write("color", target);
 }
 
 }  // namespace
+
+ShellPixels shell_pixels(const gpu::RaycastParams& params)
+{
+    const ShellPixels all{glm::uvec2(0), params.pixel_end - params.pixel_begin};
+    const glm::dvec3 near(params.near_corner), far(params.far_corner);
+    const glm::dvec3 normal = glm::cross(glm::dvec3(params.near_dx), glm::dvec3(params.near_dy));
+    const double depth = glm::dot(normal, far - near);
+    glm::dvec2 lower(1e30), upper(-1e30);
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 side(corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0);
+        const glm::dvec3 point = glm::dvec3(params.shell_center) + side * glm::dvec3(params.shell_reach);
+        // The plane through the point that is parallel to those on which rays begin and end.
+        const double t = glm::dot(normal, point - near) / depth;
+        const auto between = [&](const glm::vec3& a, const glm::vec3& b) {
+            return (1.0 - t) * glm::dvec3(a) + t * glm::dvec3(b);
+        };
+        const glm::dvec3 dx = between(params.near_dx, params.far_dx), dy = between(params.near_dy, params.far_dy);
+        const glm::dvec3 from = point - between(params.near_corner, params.far_corner);
+        // dx and dy need not be square to each other in voxel space.
+        const double xx = glm::dot(dx, dx), xy = glm::dot(dx, dy), yy = glm::dot(dy, dy);
+        const double along_x = glm::dot(from, dx), along_y = glm::dot(from, dy);
+        const glm::dvec2 pixel =
+            glm::dvec2(yy * along_x - xy * along_y, xx * along_y - xy * along_x) / (xx * yy - xy * xy);
+        const bool is_ahead = t >= 0.0 && glm::abs(pixel.x) < 1e9 && glm::abs(pixel.y) < 1e9;  // and is a number
+        if (!is_ahead) return all;
+        lower = glm::min(lower, pixel);
+        upper = glm::max(upper, pixel);
+    }
+    const glm::dvec2 size(all.end), first(params.pixel_begin);
+    const glm::dvec2 begin = glm::floor((lower - SHELL_MARGIN - first) / SHELL_ALIGNED) * SHELL_ALIGNED;
+    const glm::dvec2 end = glm::ceil((upper + SHELL_MARGIN - first) / SHELL_ALIGNED) * SHELL_ALIGNED;
+    return {glm::clamp(begin, glm::dvec2(0.0), size), glm::clamp(end, glm::dvec2(0.0), size)};
+}
 
 Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, Resource target)
 {
     const bool is_shelled = input.shell != gpu::SHELL_NONE && !input.pick;
     const uint64_t steps = input.slice ? 1 : steps_of_ray(input.params);
-    const uint64_t steps_each = steps_of_block(volume, input, is_shelled);
-    const uint64_t blocks = std::min((steps + steps_each - 1) / steps_each, MAX_BLOCKS);
-    std::optional<Resource> rays;
-    if (input.waiting) rays = input.waiting->state;
-    if (!input.waiting && is_shelled && blocks > 1)
-        rays =
-            graph.create("rays", picture_desc(Format::rgba32_float, input.params.pixel_end - input.params.pixel_begin));
     const uint64_t before = input.waiting && input.waiting->have_begun ? 1 : 0;
-    RaycastInput block = input;
-    for (uint64_t i = before; i < before + blocks; ++i) {
-        block.params.first_step = uint32_t(i * steps_each);
-        block.params.end_step = uint32_t((i + 1) * steps_each);
-        block.params.is_last_block = i + 1 == blocks;
-        target = raycast_block(graph, volume, block, is_shelled, target, rays);
+    std::optional<Resource> waiting_rays;
+    if (input.waiting) waiting_rays = input.waiting->state;
+    bool is_begun = false, keeps_rays = input.waiting;
+    for (const Area& area : areas_of(input, is_shelled)) {
+        const uint64_t steps_each = steps_of_block(volume, input, area.is_shelled);
+        const uint64_t blocks = std::min((steps + steps_each - 1) / steps_each, MAX_BLOCKS);
+        std::optional<Resource> of_area;  ///< unless all wait
+        if (!input.waiting && area.is_shelled && blocks > 1)
+            of_area = graph.create(
+                "rays", picture_desc(Format::rgba32_float, input.params.pixel_end - input.params.pixel_begin));
+        keeps_rays = keeps_rays || of_area;
+        RaycastInput block = input;
+        block.params.drawn_begin = area.begin;
+        block.params.drawn_end = area.end;
+        for (uint64_t i = before; i < before + blocks; ++i) {
+            block.params.first_step = uint32_t(i * steps_each);
+            block.params.end_step = uint32_t((i + 1) * steps_each);
+            block.params.is_last_block = i + 1 == blocks;
+            target = raycast_block(graph, volume, block, area.is_shelled, target,
+                                   input.waiting ? waiting_rays : of_area, is_begun);
+        }
+        is_begun = true;
     }
-    expect_next(graph, choice_of(volume, input, is_shelled, rays.has_value()), input);
-    if (input.waiting) *input.waiting = {*rays, true};
+    expect_next(graph, choice_of(volume, input, is_shelled, keeps_rays), input);
+    if (input.waiting) *input.waiting = {*waiting_rays, true};
     return target;
 }
 

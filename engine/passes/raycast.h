@@ -47,6 +47,14 @@ struct RaycastInput {
     RaysInWaiting* waiting = nullptr;  ///< of paged bricks; null: rays wait for nothing
 };
 
+/// Pixels of a part, from its first one on.
+struct ShellPixels {
+    glm::uvec2 begin{0}, end{0};
+};
+/// No ray outside of them meets the region of params.shell_*. All pixels of the part where that cannot be told: where
+/// the region begins before the rays do.
+ShellPixels shell_pixels(const gpu::RaycastParams& params);
+
 /// Draws pixels params.pixel_begin ... pixel_end into `target`, an rgba32_float picture: linear light, premultiplied,
 /// over the background. Returns its new version, and updates `volume.pages->reached`. Long rays take a pass for each
 /// block of their steps; of a ray that is longer than the largest number of blocks reaches, and of one that the device

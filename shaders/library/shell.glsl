@@ -258,16 +258,16 @@ Shell begin_shell(const RaycastParams params, const Ray ray, float begin, float 
     return shell;
 }
 
-// Whether something comes before `s`: a crossing, or what is not known yet.
-bool shell_comes_before(const Shell shell, float s)
+// The length along the ray up to which there is no crossing.
+float known_until(const Shell shell)
 {
-    return (shell.next == NO_SHELL && shell.waits ? shell.known : shell.next) < s;
+    return shell.next == NO_SHELL && shell.waits ? shell.known : shell.next;
 }
 
 // Whether a crossing before `s` may not be known yet, or cannot be drawn yet.
 bool shell_waits(const RaycastParams params, const Shell shell, float s, vec4 sum)
 {
-    return shell.waits && sum.a < params.opacity_limit && shell_comes_before(shell, s);
+    return shell.waits && sum.a < params.opacity_limit && known_until(shell) < s;
 }
 
 // Colour and opacity of a crossing in a cell, lit from both sides.

@@ -1,10 +1,12 @@
 """Scripts from pipes, what a run prints, undoing too much, Ctrl-C, and the example of the help."""
 import json
 import os
+import re
 import signal
 import subprocess
 import time
 import unittest
+from pathlib import Path
 
 from harness import ENVIRONMENT, PROGRESS, SHVR, CliTest, Volume
 from test_annotate import paint
@@ -96,6 +98,15 @@ class Script(CliTest):
             self.assertEqual((project / "shvr" / "paint.offset").exists(), number == 1)
 
 
+def catches(program, number):
+    """Whether a process has a handler for a signal, as its status says: slow ones take a while to come to that."""
+    try:
+        status = Path(f"/proc/{program.pid}/status").read_text()
+    except FileNotFoundError:
+        return False
+    return bool(int(re.search(r"SigCgt:\s*(\w+)", status)[1], 16) >> number - 1 & 1)
+
+
 class Stopped(CliTest):
     """Ctrl-C and SIGTERM end every command in a sentence, and leave no half of a file."""
 
@@ -134,7 +145,8 @@ class Stopped(CliTest):
             for number, name in ((signal.SIGINT, "Ctrl-C"), (signal.SIGTERM, "SIGTERM")):
                 with self.subTest(command=command[0], signal=name):
                     program = self.start(*command)
-                    time.sleep(0.5)
+                    self.wait_for(lambda: catches(program, number), program)
+                    time.sleep(0.3)  # into its work
                     self.assertIsNone(program.poll())
                     status = self.check_stopped(program, number, f"shvr: stopped by {name}; no file is left half")
                     self.assertIn(status, (1, -number))  # by the signal where the work had not begun

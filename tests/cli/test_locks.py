@@ -3,7 +3,7 @@ import json
 import random
 import unittest
 
-from harness import CliTest, Volume
+from harness import PROGRESS, CliTest, Volume
 
 
 def paint(brush, region, group, threshold, radius, path, **more):
@@ -31,7 +31,8 @@ class Locks(CliTest):
     def said(self, operations, *arguments):
         result = self.check("annotate", self.session, "--script", self.write_script("script.jsonl", operations),
                             *arguments)
-        return [line.split("script.jsonl", 1)[1] for line in result.stderr.splitlines() if "script.jsonl" in line]
+        return [line.split("script.jsonl", 1)[1] for line in result.stderr.splitlines()
+                if "script.jsonl" in line and not PROGRESS.search(line)]
 
     def test_every_brush_against_python(self):
         for brush in ("fill", "flood", "speckle"):
