@@ -38,11 +38,12 @@ TEST_CASE("no ray outside the pixels of an iso-surface meets its region, and the
         info.size = Size3(40, 60, 50);
         info.spacing = glm::dvec3(in(0.5, 2.0), in(0.5, 2.0), in(0.5, 4.0));
         Camera camera;
-        camera.projection = trial % 3 == 0 ? Projection::orthographic : Projection::perspective;
+        camera.projection = trial % 3 == 0 ? Camera::Projection::orthographic : Camera::Projection::perspective;
         const glm::dvec3 extent = glm::dvec3(info.size) * info.spacing;
         camera.eye = extent * glm::dvec3(in(-1.5, 2.5), in(-1.5, 2.5), in(-1.5, 2.5));
         camera.target = extent * glm::dvec3(in(0.2, 0.8), in(0.2, 0.8), in(0.2, 0.8));
         camera.up = {0.1, 0.2, 1.0};
+        camera.height = glm::length(extent);
         const RayPlanes planes = ray_planes(camera, {SIDE, SIDE}, info);
         if (planes.empty) continue;
         gpu::RaycastParams params{};
