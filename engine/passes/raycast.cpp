@@ -275,6 +275,11 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
         is_begun = true;
     }
     expect_next(graph, choice_of(volume, input, is_shelled, keeps_rays), input);
+    if (is_shelled) {  // and around the region
+        const Choice plain = choice_of(volume, input, false, input.waiting);
+        graph.expect(kernel_of(plain, input));
+        expect_next(graph, plain, input);
+    }
     if (input.waiting) *input.waiting = {*waiting_rays, true};
     return target;
 }

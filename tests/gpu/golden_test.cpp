@@ -104,8 +104,7 @@ const Mutation MUTATIONS[] = {
 /// Made of the kernels' own source, one line of which is wrong.
 const Mistake MISTAKES[] = {
     {"samples at the front of a step", "step_coarse", "raycast.comp",
-     "return position_at(params, ray, begin + (float(step) + 0.5) * params.step);",
-     "return position_at(params, ray, begin + float(step) * params.step);"},
+     "return begin + (float(step) + 0.5) * params.step;", "return begin + float(step) * params.step;"},
     {"the half vector not normalised", "tubes_opaque", "library/shade.glsl", "sum / sum_length", "0.5 * sum"},
     {"normals that point inwards", "tubes_opaque", "library/shade.glsl", "-slope * inversesqrt", "slope * inversesqrt"},
     {"no fading of faint gradients", "tubes_translucent", "library/shade.glsl", "square / (square + fade)", "1.0"},

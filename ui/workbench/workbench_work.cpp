@@ -64,6 +64,7 @@ void Workbench::act(const RevertOp&)
 void Workbench::act(const Screenshot& action)
 {
     if (!action.is_large) {
+        document_->painted_at.reset();  // a picture is drawn again from its session, which knows no smaller ball
         screenshots_.take();
         return say("The screenshot will be taken when the picture is sharp");
     }
