@@ -117,7 +117,8 @@ KernelVariant kernel_of(const Choice& choice, const RaycastInput& input)
 }
 
 /// What a person may do next: paint, bring an iso-surface or something with a surface into the picture, click.
-void expect_next(FrameGraph& graph, const Choice& now, const RaycastInput& input)
+/// `kept_of_shell`: what rays keep where there is an iso-surface.
+void expect_next(FrameGraph& graph, const Choice& now, const RaycastInput& input, uint32_t kept_of_shell)
 {
     const auto expect = [&](const auto& change) {
         Choice next = now;
@@ -129,7 +130,10 @@ void expect_next(FrameGraph& graph, const Choice& now, const RaycastInput& input
     if (!now.is_surfaced) expect([](Choice& next) { next.is_surfaced = true; });
     if (now.shell == gpu::SHELL_NONE)
         for (const uint32_t shell : {gpu::SHELL_BALL, gpu::SHELL_BOX})
-            expect([&](Choice& next) { next.shell = shell; });
+            expect([&](Choice& next) {
+                next.shell = shell;
+                next.kept = kept_of_shell;
+            });
     expect([](Choice& next) {
         next.picks = true;
         next.is_shaded = next.feedback = false;
@@ -253,7 +257,7 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
     const uint64_t before = input.waiting && input.waiting->have_begun ? 1 : 0;
     std::optional<Resource> waiting_rays;
     if (input.waiting) waiting_rays = input.waiting->state;
-    bool is_begun = false, keeps_rays = input.waiting;
+    bool is_begun = false;
     for (const Area& area : areas_of(input, is_shelled)) {
         const uint64_t steps_each = steps_of_block(volume, input, area.is_shelled);
         const uint64_t blocks = std::min((steps + steps_each - 1) / steps_each, MAX_BLOCKS);
@@ -261,7 +265,6 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
         if (!input.waiting && area.is_shelled && blocks > 1)
             of_area = graph.create(
                 "rays", picture_desc(Format::rgba32_float, input.params.pixel_end - input.params.pixel_begin));
-        keeps_rays = keeps_rays || of_area;
         RaycastInput block = input;
         block.params.drawn_begin = area.begin;
         block.params.drawn_end = area.end;
@@ -274,12 +277,13 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
         }
         is_begun = true;
     }
-    expect_next(graph, choice_of(volume, input, is_shelled, keeps_rays), input);
-    if (is_shelled) {  // and around the region
-        const Choice plain = choice_of(volume, input, false, input.waiting);
-        graph.expect(kernel_of(plain, input));
-        expect_next(graph, plain, input);
-    }
+    const bool shell_keeps_rays = input.waiting || steps > steps_of_block(volume, input, true);
+    const Choice shelled = choice_of(volume, input, true, shell_keeps_rays);
+    if (is_shelled) expect_next(graph, shelled, input, shelled.kept);
+    // Also around an iso-surface's region.
+    const Choice plain = choice_of(volume, input, false, input.waiting);
+    if (is_shelled) graph.expect(kernel_of(plain, input));
+    expect_next(graph, plain, input, shelled.kept);
     if (input.waiting) *input.waiting = {*waiting_rays, true};
     return target;
 }
