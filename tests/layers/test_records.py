@@ -50,7 +50,7 @@ class Records(CliTest):
         result = run("render", session, "-o", self.folder / "there.pfm",
                      environment={"VK_INSTANCE_LAYERS": "VK_LAYER_SHVR_limits", "SHVR_LIMITS": "bare"})
         self.assertEqual(result.returncode, 1)
-        self.assertIn("it allows 4 storage images in a kernel; expected at least 12", result.stderr)
+        self.assertIn("it allows 4 storage images in a kernel; expected at least 13", result.stderr)
 
     def test_paint_has_the_same_voxels(self):
         session = self.session("paint.json", [50, 40, 70], size=[24, 16])
