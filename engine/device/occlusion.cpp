@@ -445,8 +445,12 @@ OcclusionCellsInput Occlusion::cells_input(int level, double stretch, const std:
                     .brick_counts = glm::uvec3(brick_counts(volume_->info().size))};
     const TableRange range = table_range(look_->function, volume_->window(), false);
     set_table(input.params, range);
-    for (const glm::vec4& entry : bake_table(look_->function, stretch, range.samples).looks)
-        input.opacities.push_back(entry.a);
+    glm::dvec2 sums(0.0);
+    for (const glm::vec4& entry : bake_table(look_->function, stretch, range.samples).looks) {
+        const double opacity = double(entry.a);
+        input.opacities.push_back({entry.a, glm::vec2(sums), glm::vec2(sums - glm::dvec2(glm::vec2(sums)))});
+        sums += glm::dvec2(opacity, opacity * opacity);
+    }
     input.mask = mask;
     for (const double opacity : look_->groups)
         input.group_opacities.push_back(float(opacity_of_step(opacity, stretch)));
@@ -463,8 +467,10 @@ void Occlusion::add_cells(FrameGraph& graph, const VolumeBinding& volume, Occlus
     }
     for (const auto& [level, list] : jobs) {
         counts_.cells += list.size();
-        const double stretched = occlusion_taps(radius_of(level)).stretched;
-        occlusion_cells(graph, volume, images, cells_input(level, std::ldexp(stretched, level), mask), list);
+        const std::array<double, 2> stretches = occlusion_taps(radius_of(level)).stretches;
+        OcclusionCellsInput input = cells_input(level, std::ldexp(stretches[0], level), mask);
+        input.params.far_exponent = float(0.25 * stretches[1] / stretches[0]);
+        occlusion_cells(graph, volume, images, input, list);
     }
 }
 
@@ -478,8 +484,11 @@ void Occlusion::add_values(FrameGraph& graph, const VolumeBinding& volume, Occlu
                          .visible_intervals = look_->visibility.visible_intervals,
                          .near = {}};
     for (int above = 0; above < volume_->levels() - level; ++above)
-        input.exponents[size_t(above)] =
-            float(std::ldexp(input.taps.stretched / occlusion_taps(radius_of(level + above)).stretched, -above));
+        for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) {
+            const double of_above = occlusion_taps(radius_of(level + above)).stretches[size];
+            input.exponents[size * gpu::OCCLUSION_LEVELS + size_t(above)] =
+                float(std::ldexp(input.taps.stretches[size] / of_above, -above));
+        }
     input.params.table_lower = look_->visibility.params.table_lower;
     input.params.table_upper = look_->visibility.params.table_upper;
     input.params.table_scale = look_->visibility.params.table_scale;

@@ -11,18 +11,20 @@ namespace shvr {
 namespace {
 
 /// How far from its voxel a ray may begin.
-constexpr double MAX_OFFSET = double(gpu::OCCLUSION_EDGE_REACH) + double(gpu::OCCLUSION_LIFT);
+constexpr double MAX_OFFSET = double(gpu::OCCLUSION_FURTHEST) + double(gpu::OCCLUSION_LIFT);
 
-/// In units, for a radius of 16: taps in half voxels, in cells of two voxels and in cells of four; the stretches of the
-/// latter grow with the radius. Smaller radii have fewer taps.
-constexpr double NEAR_STRETCH = 1.14;
-constexpr uint32_t FAR_SIZES[] = {0, 0, 1, 1};
-constexpr double FAR_STRETCHES[] = {2, 2, 4, 4};
+/// In units, for a radius of 16: taps in voxels, in cells of two voxels and in cells of four; the stretches of the
+/// latter two grow with the radius. Smaller radii have fewer taps.
+constexpr double NEAR_STRETCH = 1.035;
+constexpr double NEAR_STRETCHES[] = {NEAR_STRETCH, NEAR_STRETCH, 2.0 * NEAR_STRETCH};
+constexpr double NEAR_TOTAL = 4.0 * NEAR_STRETCH;
+constexpr uint32_t FAR_SIZES[] = {0, 0, 0, 1, 1};
+constexpr double STRETCHES_OF_SIZES[] = {2.077, 2.815};
+constexpr double MAX_STRETCH_2 = 8.6;  ///< beyond, only those of cells of four grow
 constexpr uint32_t MAX_APRON = 14;     ///< in cells of any size, for the largest radius
 constexpr double MAX_STRETCHED = 1.2;  ///< before another tap is added
-static_assert(std::size(FAR_STRETCHES) == gpu::OCCLUSION_SIZES * gpu::OCCLUSION_FAR_TAPS);
-static_assert((gpu::OCCLUSION_NEAR_TAPS - 0.5) * NEAR_STRETCH + MAX_OFFSET + 0.5 < gpu::OCCLUSION_NEAR_APRON + 1);
-static_assert(2.0 * double(gpu::OCCLUSION_EDGE_REACH) + 0.5 < gpu::OCCLUSION_NEAR_APRON);
+static_assert(std::size(FAR_SIZES) == gpu::OCCLUSION_TAPS_2 + gpu::OCCLUSION_TAPS_4);
+static_assert(3.0 * NEAR_STRETCH + MAX_OFFSET + 0.5 < gpu::OCCLUSION_NEAR_APRON + 1);
 static_assert(gpu::OCCLUSION_NEAR_APRON_PAGED >= gpu::OCCLUSION_NEAR_APRON + gpu::BRICK_APRON);
 
 /// Angle between successive directions: the golden angle.
@@ -64,18 +66,23 @@ OcclusionTaps occlusion_taps(double radius, bool is_paged)
         result.taps.push_back({float(begin + 0.5 * stretch), float(stretch)});
         begin += stretch;
     };
-    result.near_stretch = std::min(NEAR_STRETCH, radius / gpu::OCCLUSION_NEAR_TAPS);
-    for (uint32_t i = 0; i < gpu::OCCLUSION_NEAR_TAPS; ++i) add(result.near_stretch);
+    const double near = std::min(1.0, radius / NEAR_TOTAL);
+    result.near_stretch = near * NEAR_STRETCH;
+    for (const double stretch : NEAR_STRETCHES) add(near * stretch);
     result.end.fill(gpu::OCCLUSION_NEAR_TAPS);
     const double rest = radius - begin;
     double covered = 0.0;
     size_t count = 0;
-    while (rest > 1e-6 && count < std::size(FAR_STRETCHES) && rest > MAX_STRETCHED * covered)
-        covered += FAR_STRETCHES[count++];
-    if (count > 0) result.stretched = rest / covered;
+    while (rest > 1e-6 && count < std::size(FAR_SIZES) && rest > MAX_STRETCHED * covered)
+        covered += STRETCHES_OF_SIZES[FAR_SIZES[count++]];
+    const double grown = count > 0 ? rest / covered : 1.0;
+    const size_t of_2 = std::min<size_t>(count, gpu::OCCLUSION_TAPS_2), of_4 = count - of_2;
+    result.stretches = {grown * STRETCHES_OF_SIZES[0], grown * STRETCHES_OF_SIZES[1]};
+    if (of_4 > 0 && result.stretches[0] > MAX_STRETCH_2)
+        result.stretches = {MAX_STRETCH_2, (rest - double(of_2) * MAX_STRETCH_2) / double(of_4)};
     for (size_t i = 0; i < count; ++i) {
         const uint32_t size = FAR_SIZES[i];
-        add(result.stretched * FAR_STRETCHES[i]);
+        add(result.stretches[size]);
         for (uint32_t later = size; later < gpu::OCCLUSION_SIZES; ++later) ++result.end[later + 1];
         const double cell = 2 << size;
         result.aprons[size] = uint32_t(std::ceil((double(result.taps.back().distance) + max_offset) / cell));
@@ -115,7 +122,7 @@ void bind_opacities(Pass& pass, const OcclusionCellsInput& input)
         pass.read("mask_table", input.mask->mask_table);
         pass.block("group_opacities", std::span<const float>(input.group_opacities));
     }
-    pass.block("opacities", std::span<const float>(input.opacities));
+    pass.block("opacities", std::span<const gpu::OcclusionEntry>(input.opacities));
 }
 
 void bind_leap(Pass& pass, const VolumeBinding& volume)
@@ -199,17 +206,18 @@ void occlusion_bake(FrameGraph& graph, const VolumeBinding& volume, OcclusionBin
     params.cell_counts = volume.cell_counts;
     constexpr gpu::OcclusionTap UNUSED{.distance = 0.0f, .stretch = 0.0f};
     std::ranges::fill(params.near_taps, UNUSED);
-    std::ranges::fill(params.far_taps, UNUSED);
+    std::ranges::fill(params.taps_2, UNUSED);
+    std::ranges::fill(params.taps_4, UNUSED);
     const OcclusionTaps& taps = input.taps;
     for (uint32_t i = 0; i < taps.end[0]; ++i) params.near_taps[i] = taps.taps[i];
-    for (uint32_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) {
-        for (uint32_t i = taps.end[size]; i < taps.end[size + 1]; ++i)
-            params.far_taps[gpu::OCCLUSION_FAR_TAPS * size + i - taps.end[size]] = taps.taps[i];
-        params.far_exponents[size] = float(taps.stretched * (2 << size) / std::max(taps.near_stretch, 1e-3));
-    }
+    for (uint32_t i = taps.end[0]; i < taps.end[1]; ++i) params.taps_2[i - taps.end[0]] = taps.taps[i];
+    for (uint32_t i = taps.end[1]; i < taps.end[2]; ++i) params.taps_4[i - taps.end[1]] = taps.taps[i];
+    params.far_exponent = float(taps.stretches[1] / std::max(taps.near_stretch, 1e-3));
+    params.voxels = input.near.params;
     pass.block("params_block", std::span<const gpu::OcclusionBakeParams>(&params, 1));
     pass.block("jobs", jobs);
     pass.block("bricks_around", around);
+    pass.block("opacities", std::span<const gpu::OcclusionEntry>(input.near.opacities));
     pass.block("visible_intervals", std::span<const uint32_t>(input.visible_intervals));
     read_atlas(pass, volume);
     pass.read("near", scratch.near);

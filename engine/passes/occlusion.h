@@ -18,7 +18,7 @@ struct OcclusionBinding {
 
 /// Temporary data gathered for a slice of bricks: images for as many jobs, at most OCCLUSION_SLICE.
 struct OcclusionScratch {
-    Resource near;                                        ///< r32ui, see near_opacity
+    Resource near;                                        ///< r32ui, ramps
     std::array<Resource, gpu::OCCLUSION_SIZES> around{};  ///< r32ui, cells with aprons
 };
 ResourceDesc occlusion_near_desc(uint32_t jobs, bool is_paged);
@@ -29,10 +29,10 @@ struct OcclusionTaps {
     double radius = 0.0;
     double first = 0.0;                   ///< length that light always passes
     std::vector<gpu::OcclusionTap> taps;  ///< the nearest first; their stretches and `first` make the radius
-    std::array<uint32_t, gpu::OCCLUSION_SIZES + 1> end{};  ///< end of the near taps, then of each cell size's
-    double near_stretch = 0.0;                             ///< of each near tap
-    double stretched = 1.0;                                ///< stretch of a tap in cells, in sides of those cells
-    std::array<uint32_t, gpu::OCCLUSION_SIZES> aprons{};   ///< cells around a brick that taps may reach
+    std::array<uint32_t, gpu::OCCLUSION_SIZES + 1> end{};          ///< end of the near taps, then of each cell size's
+    double near_stretch = 0.0;                                     ///< of the first near tap
+    std::array<double, gpu::OCCLUSION_SIZES> stretches{1.0, 1.0};  ///< of a tap in cells of each size
+    std::array<uint32_t, gpu::OCCLUSION_SIZES> aprons{};           ///< cells around a brick that taps may reach
 };
 /// The largest radius, in units of any level.
 inline constexpr double OCCLUSION_MAX_RADIUS = gpu::OCCLUSION_REACH * gpu::BRICK_SIZE - 4.0;
@@ -48,8 +48,8 @@ void occlusion_reset(FrameGraph& graph, OcclusionBinding& occlusion, std::span<c
 void occlusion_begin(FrameGraph& graph, OcclusionBinding& occlusion);
 
 struct OcclusionCellsInput {
-    gpu::OcclusionCellsParams params;  ///< all but the mask
-    std::vector<float> opacities;      ///< for each entry of the table
+    gpu::OcclusionCellsParams params;            ///< all but the mask
+    std::vector<gpu::OcclusionEntry> opacities;  ///< for each entry of the table
     std::optional<MaskBinding> mask;
     std::vector<float> group_opacities;  ///< 256; used with a mask
 };
@@ -60,9 +60,9 @@ void occlusion_cells(FrameGraph& graph, const VolumeBinding& volume, OcclusionBi
 struct OcclusionInput {
     gpu::OcclusionBakeParams params;  ///< all but what follows from the other inputs
     OcclusionTaps taps;
-    std::vector<uint32_t> visible_intervals;               ///< engine/look/transfer_function.h
-    std::array<float, gpu::OCCLUSION_LEVELS> exponents{};  ///< as in OcclusionGatherParams
-    OcclusionCellsInput near;                              ///< opacities of the near taps' stretch
+    std::vector<uint32_t> visible_intervals;                                      ///< engine/look/transfer_function.h
+    std::array<float, gpu::OCCLUSION_SIZES * gpu::OCCLUSION_LEVELS> exponents{};  ///< as in OcclusionGatherParams
+    OcclusionCellsInput near;  ///< opacities of the first near tap's stretch
 };
 /// Jobs of one level, at most OCCLUSION_SLICE. `around`: for each job the bricks around it, see OcclusionJob.
 void occlusion_bake(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& occlusion,

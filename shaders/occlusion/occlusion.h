@@ -16,16 +16,20 @@
 // So a ray begins where what is seen begins, however deep in the edge its voxel lies: on a plane all light arrives, and
 // in a hollow the wall is as near as it is. tests/reference/occlusion.h has all of it in double.
 //
-// "Cells" hold the opacity of the medium, in two coarse copies of every brick, of 2^3 and 4^3 voxels. A cell's three
-// codes are the opacities of paths through it along x, y and z, each the mean over its columns: a wall stops what
-// crosses it, however thin, and not what runs beside it. They are those of the stretch of a ray that a cell stands for,
-// 2 or 4 units times a factor that makes all of them as long as the radius. Opacity = (code / 255)^2; the square root
-// puts more codes where opacities are small. A ray takes their mean, weighted with the squares of its direction.
+// A "ramp" says in 32 bits how opaque a cube is from place to place: the plane that fits its densities, through the
+// transfer function, as an opacity that rises in a straight line from 0 to a top. Where it rises, and over how long,
+// follows from the function's mean and mean square over the densities of the cube, which are sums over its table. Ramps
+// have a surface where it is inside a cube, so nothing is taken out of them for the half-space behind it.
 //
-// "Near" is the opacity right around a voxel, in steps of half a voxel: at steep surfaces, whole voxels are too coarse
-// for rays that pass close by. It is computed from densities and gradients for each brick in turn, with the
-// surroundings of the brick, and then discarded; so are copies of the cells around the brick, which let rays read from
-// one piece of memory.
+// "Cells" hold the opacity of the medium, in two coarse copies of every brick. Those of 2^3 voxels are ramps. Those of
+// 4^3 have three codes, the opacities of paths through it along x, y and z, each the mean over its columns: a wall
+// stops what crosses it, however thin, and not what runs beside it. Opacity = (code / 255)^2; the square root puts more
+// codes where opacities are small. A ray takes their mean, weighted with the squares of its direction. Both are those
+// of the stretch of a ray that a cell stands for, which grows with the radius.
+//
+// "Near" are ramps of voxels. They are made from densities and gradients for each brick in turn, with the surroundings
+// of the brick, and then discarded; so are copies of the cells around the brick, which let rays read from one piece of
+// memory. A voxel that paint or a cut holds has that opacity throughout.
 //
 // "Values" are the result, 255 where all light arrives, in slots like those of the density atlas, aprons included. Of a
 // resident volume a brick's values are written to the aprons of its neighbours. A paged brick's aprons are computed
@@ -65,6 +69,15 @@ struct OcclusionCellsJob {
     uint slot;
 };
 
+/// Of the transfer function: an opacity, and sums over the entries before this one, of opacities and of their squares.
+/// The sums are two floats each, a value and what it lacks: where much is opaque at lower densities, the sums over a
+/// few translucent entries are small differences of large numbers.
+struct OcclusionEntry {
+    float opacity;
+    vec2 sums;
+    vec2 rests;
+};
+
 struct OcclusionCellsParams {
     float table_lower;  ///< as in RaycastParams
     float table_upper;
@@ -74,6 +87,7 @@ struct OcclusionCellsParams {
     vec3 lower;  ///< what blocks light, voxels of level 0; everything outside is empty
     vec3 upper;
     uvec3 brick_counts;  ///< of level 0
+    float far_exponent;  ///< from the opacities of this to those of cells of 4 for each voxel
 };
 
 /// A brick whose values are computed: OCCLUSION_SPLIT workgroups.
@@ -88,16 +102,30 @@ struct OcclusionGatherParams {
     OcclusionCellsParams voxels;
     uvec3 cell_counts;  ///< of the leap grid
     uint reach;
-    uint aprons[OCCLUSION_SIZES];       ///< in cells of each size
-    float exponents[OCCLUSION_LEVELS];  ///< from the cells of a level above to the stretches of this one's taps
+    uint aprons[OCCLUSION_SIZES];  ///< in cells of each size
+    /// From the cells of a level above to the stretches of this one's taps.
+    float exponents[OCCLUSION_SIZES * OCCLUSION_LEVELS];
 };
 
-/// Opacity of a voxel's eight octants: 8 bits for their maximum, coded as in cells, and 3 bits for each octant, in
-/// sevenths of the maximum. Uniform and empty media are exact.
-SHARED_FUNCTION float near_opacity(uint packed, uint octant)
+/// A ramp's bits: 8 for the top, coded as in cells; 6 for the height in the middle, above a half of the top, and 6 for
+/// the slope across the cube along each axis, in these parts of the top. Of RAMP_HELD: paint or a cut holds it.
+SHARED_CONST float RAMP_HEIGHTS = 20.0f, RAMP_SLOPES = 10.0f;
+SHARED_CONST int RAMP_HELD = 31;
+
+SHARED_FUNCTION uint ramp_bits(uint top, int height, ivec3 slope)
 {
-    const float greatest = float(packed & 255u);
-    return greatest * greatest * float(packed >> (8u + 3u * octant) & 7u) * (1.0f / (7.0f * 65025.0f));
+    return top | (uint(height) & 63u) << 8u | (uint(slope.x) & 63u) << 14u | (uint(slope.y) & 63u) << 20u |
+           uint(slope.z) << 26u;
+}
+
+SHARED_FUNCTION int ramp_height(uint packed)
+{
+    return int(packed << 18u) >> 26;
+}
+
+SHARED_FUNCTION ivec3 ramp_slope(uint packed)
+{
+    return ivec3(int(packed << 12u) >> 26, int(packed << 6u) >> 26, int(packed) >> 26);
 }
 
 /// Where the scratch images hold a job, in bricks.

@@ -1,6 +1,6 @@
 // How much light reaches every potentially visible voxel of a brick, by the definition in occlusion.h. A ray takes
-// three samples in half voxels, two in cells of two voxels and two in cells of four. PAGED: cells are those of paged
-// bricks.
+// three samples in ramps of voxels, three in ramps of cells of two voxels and two in cells of four. PAGED: cells are
+// those of paged bricks.
 // variants: PAGED FILTERED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -28,22 +28,27 @@ layout(binding = 8, r32ui) uniform readonly uimage3D leap;
 #endif
 layout(binding = 9, scalar) readonly buffer VisibleIntervals { uint before[]; } visible_intervals;
 
+layout(binding = 10, scalar) readonly buffer Opacities { OcclusionEntry entries[]; } opacities;   // as for gathering
+
 #include "occlusion_around.glsl"
 #ifdef PAGED
 #define STACKED 20
 #endif
 #include "../library/voxel_code.glsl"
+#include "occlusion_opacity.glsl"
 
 OcclusionBakeParams params;
 #include "../library/occupancy.glsl"
 
-// Found by search: least errors over the cases of tests/gpu/occlusion_light_test.cpp. A cell counts as this much nearer
-// to the surface than it is, in units; ...
-const float MARGIN_HALVES = 0.12, MARGIN_2 = 0.1, MARGIN_4 = 0.6;
+// Found by search: least errors over the cases of tests/gpu/occlusion_light_test.cpp. A cell of 4 counts as this much
+// nearer to the surface than it is, in units; ...
+const float MARGIN_4 = 0.853;
 // ... that much more of it is taken to be the surface's; ...
-const float WALL_4 = 1.6;
+const float WALL_4 = 8.2;
 // ... and what stops light does so this much earlier than evenly along the stretch.
-const float BEND_2 = 0.2, BEND_4 = 0.06;
+const float BEND_4 = 0.08;
+// Ramps are softened the more, the further away they are, as rays stand for what is around them.
+const float SOFT_NEAR[] = {1.25, 0.874, 0.734}, SOFT_2[] = {0.751, 0.59, 0.527};
 
 const uint CELLS_OF_ONE = BRICK_CELLS * BRICK_CELLS * BRICK_CELLS / OCCLUSION_SPLIT;
 const uint VOXELS_OF_CELL = CELL_SIZE * CELL_SIZE * CELL_SIZE;
@@ -179,60 +184,82 @@ void list_voxels(const OcclusionJob job)
 // above 0 where they are truncated; so the arithmetic is the same wherever a brick, or its apron, begins.
 const int NEAR_AHEAD = 4, CELLS_AHEAD = 64;
 
-// From positions in that block to texels of the scratch images, which hold jobs stacked along z.
+// From positions in that block to texels of the scratch images, which hold jobs stacked along z; in those positions,
+// what blocks light: everything outside is empty.
 struct Block {
     ivec3 to_near, to_2, to_4;
+    vec3 lower, upper;
 };
 
-Block block_of(ivec3 voxel)
+Block block_of(const OcclusionJob of, ivec3 voxel)
 {
     const ivec3 first = voxel & ~3;
     const ivec3 job = ivec3(scratch_place(gl_WorkGroupID.x));
+    const vec3 begin = vec3(ivec3(BRICK_SIZE * of.brick) + first);
+    const float share = 1.0 / float(1u << params.voxels.level);
     const int side_2 = int((BRICK_SIZE >> 1u) + 2u * params.aprons[0]);
     const int side_4 = int((BRICK_SIZE >> 2u) + 2u * params.aprons[1]);
     return Block(first + (int(NEAR_APRON) - NEAR_AHEAD) + int(NEAR_SIDE) * job,
                  (first >> 1) + (int(params.aprons[0]) - CELLS_AHEAD / 2) + side_2 * job,
-                 (first >> 2) + (int(params.aprons[1]) - CELLS_AHEAD / 4) + side_4 * job);
+                 (first >> 2) + (int(params.aprons[1]) - CELLS_AHEAD / 4) + side_4 * job,
+                 share * params.voxels.lower - begin, share * params.voxels.upper - begin);
 }
 
-// Opacity of half a voxel over the stretch of a near tap.
-float near_at(const Block block, ivec3 half_voxel)
-{
-    const uint packed = imageLoad(near, (half_voxel >> 1) + block.to_near).x;
-    const ivec3 half_of = half_voxel & 1;
-    return near_opacity(packed, uint(half_of.x | half_of.y << 1 | half_of.z << 2));
-}
-
-// `place` in voxels from the block's corner.
-float near_between(const Block block, vec3 place)
-{
-    const vec3 lattice = 2.0 * place + (2.0 * float(NEAR_AHEAD) - 0.5);
-    const ivec3 c = ivec3(lattice);
-    const vec3 f = lattice - vec3(c);
-    const vec4 v = mix(vec4(near_at(block, c), near_at(block, c + ivec3(0, 1, 0)), near_at(block, c + ivec3(0, 0, 1)),
-                            near_at(block, c + ivec3(0, 1, 1))),
-                       vec4(near_at(block, c + ivec3(1, 0, 0)), near_at(block, c + ivec3(1, 1, 0)),
-                            near_at(block, c + ivec3(1, 0, 1)), near_at(block, c + ivec3(1, 1, 1))), f.x);
-    const vec2 w = mix(v.xz, v.yw, f.y);
-    return mix(w.x, w.y, f.z);
-}
-
-// What a ray samples at: cells of one size, or half voxels. Positions are in these.
-struct Lattice {
-    vec3 origin;    // where rays begin
-    float height;   // of the surface, as dot(heights, position)
-    float wall;     // opacity of the half-space behind the surface over the stretch of a tap
+// Densities along the normal on one side of a voxel: a cubic as far as the neighbours, level beyond.
+struct Course {
+    vec4 factors;
+    float least, most;
 };
 
-// The surface at a voxel, and what cells hold of the half-space behind it: that stops no ray which leaves it.
+// `to`: to the neighbours on that side along the axes; `rise`: voxels along each axis for each unit.
+Course course_of(ivec3 texel, ivec3 to, vec3 rise, float own)
+{
+    const ivec3 x = ivec3(to.x, 0, 0), y = ivec3(0, to.y, 0), z = ivec3(0, 0, to.z);
+    const vec3 one = vec3(code_at(texel + x), code_at(texel + y), code_at(texel + z));
+    const vec3 two = vec3(code_at(texel + y + z), code_at(texel + x + z), code_at(texel + x + y));
+    const float three = code_at(texel + to), ones = one.x + one.y + one.z, twos = two.x + two.y + two.z;
+    const vec3 squares = vec3(rise.y * rise.z, rise.x * rise.z, rise.x * rise.y);
+    Course course;
+    course.factors.x = own;
+    course.factors.y = dot(rise, one - own);
+    course.factors.z = dot(squares, two - (ones - one) + own);
+    course.factors.w = squares.z * rise.z * (three - twos + ones - own);
+    const vec3 least = min(one, two), most = max(one, two);
+    course.least = min(min(own, three), min(least.x, min(least.y, least.z)));
+    course.most = max(max(own, three), max(most.x, max(most.y, most.z)));
+    return course;
+}
+
+// `along` in units.
+float opacity_along(const Course course, float along)
+{
+    const vec4 f = course.factors;
+    const float code = f.x + along * (f.y + along * (f.z + along * f.w));
+    return opacity_of(params.voxels, clamp(code, course.least, course.most));
+}
+
+// The opacity that the voxel there is held at, whatever its density; below 0: none.
+float held_at(const Block block, vec3 place)
+{
+    const ivec3 voxel = ivec3(place + float(NEAR_AHEAD));
+    const vec3 centre = vec3(voxel) - (float(NEAR_AHEAD) - 0.5);
+    const bool is_inside = all(greaterThanEqual(centre, block.lower)) && all(lessThan(centre, block.upper));
+    const uint packed = imageLoad(near, voxel + block.to_near).x;
+    const float top = float(packed & 255u);
+    const float held = ramp_height(packed) == RAMP_HELD ? top * top * (1.0 / 65025.0) : -1.0;
+    return is_inside ? held : 0.0;
+}
+
+// The surface at a voxel, and what cells of 4 hold of the half-space behind it: that stops no ray which leaves it.
 struct Surface {
     vec3 normal;
     float strength;
-    vec3 place;    // where rays begin, voxels from the block's corner
-    vec3 heights;  // units along the normal for each voxel
-    vec3 scale;    // the part of a cell's columns along each axis that are behind it: base - scale * height in cells
+    vec3 place;     // where rays begin, voxels from the block's corner
+    vec3 heights;   // units along the normal for each voxel
+    vec3 scale;     // the part of a cell's columns along each axis that are behind it: base - scale * height in cells
     vec3 base;
-    Lattice halves, cells_2, cells_4;
+    float height;   // of the surface, as dot(heights, position) in cells
+    float wall;     // opacity of the half-space behind the surface over the stretch of a tap
 };
 
 float saturated(float share)
@@ -241,14 +268,7 @@ float saturated(float share)
     return 1.0 - rest * rest;
 }
 
-Lattice lattice_of(const Surface s, float per_voxel, int ahead, float margin, float wall)
-{
-    const vec3 origin = (s.place + float(ahead)) * per_voxel;
-    const float lift = (margin - s.strength * OCCLUSION_LIFT) * per_voxel;
-    return Lattice(origin, dot(origin - 0.5, s.heights) + lift, s.strength * wall);
-}
-
-Surface surface_at(const Block block, vec3 centre, vec3 slope)
+Surface surface_at(const Block block, ivec3 texel, vec3 centre, vec3 slope)
 {
     Surface s;
     const float square = dot(slope, slope), fade = params.gradient_fade * params.gradient_fade;
@@ -257,12 +277,20 @@ Surface surface_at(const Block block, vec3 centre, vec3 slope)
     const vec3 step = s.normal * params.inverse_spacing;
     const float apart = OCCLUSION_EDGE_REACH / float(OCCLUSION_EDGE_TAPS);
     float before[OCCLUSION_EDGE_TAPS], behind[OCCLUSION_EDGE_TAPS], most = 0.0, clear = 1.0;
-    for (uint i = 0u; i < OCCLUSION_EDGE_TAPS; ++i) {
-        const float along = (float(i) + 0.5) * apart;
-        before[i] = near_between(block, centre + along * step);
-        behind[i] = near_between(block, centre - along * step);
-        most = max(most, behind[i]);
-        clear = min(clear, before[i]);
+    const ivec3 to = ivec3(lessThan(vec3(0.0), step)) * 2 - 1;
+    const vec3 rise = abs(step);
+    const float own = code_at(texel), reach = 1.0 / max(rise.x, max(rise.y, rise.z));
+    const Course in_front = course_of(texel, to, rise, own), at_back = course_of(texel, -to, rise, own);
+    for (uint pair = 0u; pair < OCCLUSION_EDGE_TAPS / 2u; ++pair) {
+        const vec3 between = float(2u * pair + 1u) * apart * step;
+        const float held_before = held_at(block, centre + between), held_behind = held_at(block, centre - between);
+        for (uint i = 2u * pair; i < 2u * pair + 2u; ++i) {
+            const float within = min((float(i) + 0.5) * apart, reach);
+            before[i] = held_before < 0.0 ? opacity_along(in_front, within) : held_before;
+            behind[i] = held_behind < 0.0 ? opacity_along(at_back, within) : held_behind;
+            most = max(most, behind[i]);
+            clear = min(clear, before[i]);
+        }
     }
     most = max(most, before[0]);
     const float inverse = 1.0 / max(most, 1e-6);
@@ -272,16 +300,16 @@ Surface surface_at(const Block block, vec3 centre, vec3 slope)
         greatest = max(greatest, saturated(behind[i] * inverse));
         offset += apart * (least + greatest - 1.0);
     }
-    if (most < 1e-6) offset = 0.0;
+    offset = most < 1e-6 ? 0.0 : clamp(offset, -OCCLUSION_FURTHEST, OCCLUSION_FURTHEST);
     s.place = centre + s.strength * (offset + OCCLUSION_LIFT) * step;
     s.heights = s.normal / params.inverse_spacing;
     const vec3 extent = abs(s.heights), across = extent.yzx + extent.zxy;
     s.scale = 1.0 / max(across, 0.1);
     s.base = 0.5 + 0.5 * extent * s.scale;
     const float left = clamp((1.0 - most) / max(1.0 - clear, 1e-6), 1e-4, 1.0);
-    s.halves = lattice_of(s, 2.0, NEAR_AHEAD, MARGIN_HALVES, 1.0 - left);
-    s.cells_2 = lattice_of(s, 0.5, CELLS_AHEAD, MARGIN_2, 1.0 - pow(left, params.far_exponents[0]));
-    s.cells_4 = lattice_of(s, 0.25, CELLS_AHEAD, MARGIN_4, WALL_4 * (1.0 - pow(left, params.far_exponents[1])));
+    s.wall = s.strength * WALL_4 * (1.0 - pow(left, params.far_exponent));
+    const float lift = MARGIN_4 - s.strength * OCCLUSION_LIFT;
+    s.height = dot((s.place + float(CELLS_AHEAD)) * 0.25 - 0.5, s.heights) + 0.25 * lift;
     return s;
 }
 
@@ -293,30 +321,46 @@ float beyond_surface(float opacity, float of_surface)
 }
 
 // `leaves`: 1 if the ray leaves the surface, otherwise 0.
-float near_tap(const Surface s, const Block block, ivec3 half_voxel, float leaves)
-{
-    const float height = dot(vec3(half_voxel), s.heights) - s.halves.height;
-    return beyond_surface(near_at(block, half_voxel), leaves * s.halves.wall * clamp(0.5 - height, 0.0, 1.0));
-}
-
-float cell_tap(const Surface s, const Lattice lattice, ivec3 cell, uint packed, vec3 weights, float leaves)
+float cell_tap(const Surface s, ivec3 cell, uint packed, vec3 weights, float leaves)
 {
     const vec3 code = vec3(uvec3(packed, packed >> 8u, packed >> 16u) & 255u);
     const float opacity = dot(weights, code * code) * (1.0 / 65025.0);
-    const float height = dot(vec3(cell), s.heights) - lattice.height;
+    const float height = dot(vec3(cell), s.heights) - s.height;
     const vec3 behind = clamp(s.base - height * s.scale, 0.0, 1.0);
-    return beyond_surface(opacity, leaves * lattice.wall * dot(weights, behind));
+    return beyond_surface(opacity, leaves * s.wall * dot(weights, behind));
 }
 
-// x: light left; y: light that arrived.
-vec2 after(vec2 light, float stretch, float stopped, float bend)
+// x: light left; y: light that arrived. `left` of it over the stretch, `half_left` over half of it.
+vec2 after(vec2 light, float stretch, float left, float half_left)
 {
-    return vec2(light.x * (1.0 - stopped), light.y + light.x * stretch * (1.0 - stopped * (0.5 + bend * stopped)));
+    return vec2(light.x * left, light.y + light.x * stretch * half_left);
 }
 
-vec2 after_near(vec2 light, float stretch, float stopped)
+vec2 after_cell(vec2 light, float stretch, float stopped)
 {
-    return vec2(light.x * (1.0 - stopped), light.y + light.x * stretch * sqrt(1.0 - stopped));
+    return vec2(light.x * (1.0 - stopped), light.y + light.x * stretch * (1.0 - stopped * (0.5 + BEND_4 * stopped)));
+}
+
+// Light left of a ray over the stretch of a ramp, that far from the middle of the cube, which is 1 a side. A ramp is
+// `softened` about the middle of its rise.
+float ramp_left(uint packed, vec3 from_middle, float softened)
+{
+    const float along = dot(vec3(ramp_slope(packed)), from_middle);
+    const float rise = float(ramp_height(packed)) + RAMP_HEIGHTS / RAMP_SLOPES * along;
+    const float top = float(packed & 255u), share = clamp(0.5 + softened / RAMP_HEIGHTS * rise, 0.0, 1.0);
+    return 1.0 - top * top * (1.0 / 65025.0) * share;   // 255^2 times that is 1 in floats, too
+}
+
+float near_left(const Block block, vec3 place, float softened)
+{
+    const ivec3 voxel = ivec3(place);
+    return ramp_left(imageLoad(near, voxel + block.to_near).x, place - (vec3(voxel) + 0.5), softened);
+}
+
+float left_of_2(const Block block, vec3 place, float softened)
+{
+    const ivec3 cell = ivec3(place);
+    return ramp_left(imageLoad(around_2, cell + block.to_2).x, place - (vec3(cell) + 0.5), softened);
 }
 
 // Light that arrives along a ray, in units. No buffer is read and nothing is a loop: SIMD devices would go lane by
@@ -324,35 +368,36 @@ vec2 after_near(vec2 light, float stretch, float stopped)
 float along(const Surface s, const Block block, vec3 direction, float leaves, ivec3 in_block)
 {
     const vec3 step = direction * params.inverse_spacing, weights = direction * direction;
-    const ivec3 half_0 = ivec3(s.halves.origin + 2.0 * params.near_taps[0].distance * step);
-    const ivec3 half_1 = ivec3(s.halves.origin + 2.0 * params.near_taps[1].distance * step);
-    const ivec3 half_2 = ivec3(s.halves.origin + 2.0 * params.near_taps[2].distance * step);
+    const vec3 begin = s.place + float(NEAR_AHEAD);
+    const vec3 near_0 = begin + params.near_taps[0].distance * step;
+    const vec3 near_1 = begin + params.near_taps[1].distance * step;
+    const vec3 near_2 = begin + params.near_taps[2].distance * step;
     const ivec3 own = in_block + NEAR_AHEAD;
-    float stop_0 = near_tap(s, block, half_0, leaves), stop_1 = near_tap(s, block, half_1, leaves);
-    float stop_2 = near_tap(s, block, half_2, leaves);
-    stop_2 = half_2 >> 1 == own ? 0.0 : stop_2;
-    stop_1 = half_1 >> 1 == own ? min(stop_1, stop_2) : stop_1;
-    stop_0 = half_0 >> 1 == own ? min(stop_0, stop_1) : stop_0;
-    vec2 light = after_near(vec2(1.0, params.first), params.near_taps[0].stretch, stop_0);
-    light = after_near(light, params.near_taps[1].stretch, stop_1);
-    light = after_near(light, params.near_taps[2].stretch, stop_2);
+    float left_0 = near_left(block, near_0, SOFT_NEAR[0]), left_1 = near_left(block, near_1, SOFT_NEAR[1]);
+    // The stretch of the last is twice that of the others.
+    float half_2 = near_left(block, near_2, SOFT_NEAR[2]);
+    half_2 = ivec3(near_2) == own ? 1.0 : half_2;
+    const float left_2 = half_2 * half_2;
+    left_1 = ivec3(near_1) == own ? max(left_1, left_2) : left_1;
+    left_0 = ivec3(near_0) == own ? max(left_0, left_1) : left_0;
+    vec2 light = after(vec2(1.0, params.first), params.near_taps[0].stretch, left_0, sqrt(left_0));
+    light = after(light, params.near_taps[1].stretch, left_1, sqrt(left_1));
+    light = after(light, params.near_taps[2].stretch, left_2, half_2);
 
-    const ivec3 cell_0 = ivec3(s.cells_2.origin + 0.5 * params.far_taps[0].distance * step);
-    const ivec3 cell_1 = ivec3(s.cells_2.origin + 0.5 * params.far_taps[1].distance * step);
-    const ivec3 cell_2 = ivec3(s.cells_4.origin + 0.25 * params.far_taps[2].distance * step);
-    const ivec3 cell_3 = ivec3(s.cells_4.origin + 0.25 * params.far_taps[3].distance * step);
-    const uint packed_0 = imageLoad(around_2, cell_0 + block.to_2).x;
-    const uint packed_1 = imageLoad(around_2, cell_1 + block.to_2).x;
-    const uint packed_2 = imageLoad(around_4, cell_2 + block.to_4).x;
-    const uint packed_3 = imageLoad(around_4, cell_3 + block.to_4).x;
-    const float far_0 = cell_tap(s, s.cells_2, cell_0, packed_0, weights, leaves);
-    const float far_1 = cell_tap(s, s.cells_2, cell_1, packed_1, weights, leaves);
-    const float far_2 = cell_tap(s, s.cells_4, cell_2, packed_2, weights, leaves);
-    const float far_3 = cell_tap(s, s.cells_4, cell_3, packed_3, weights, leaves);
-    light = after(light, params.far_taps[0].stretch, far_0, BEND_2);
-    light = after(light, params.far_taps[1].stretch, far_1, BEND_2);
-    light = after(light, params.far_taps[2].stretch, far_2, BEND_4);
-    return after(light, params.far_taps[3].stretch, far_3, BEND_4).y;
+    const vec3 from_2 = 0.5 * (s.place + float(CELLS_AHEAD)), from_4 = 0.5 * from_2;
+    const float far_0 = left_of_2(block, from_2 + 0.5 * params.taps_2[0].distance * step, SOFT_2[0]);
+    const float far_1 = left_of_2(block, from_2 + 0.5 * params.taps_2[1].distance * step, SOFT_2[1]);
+    const float far_2 = left_of_2(block, from_2 + 0.5 * params.taps_2[2].distance * step, SOFT_2[2]);
+    light = after(light, params.taps_2[0].stretch, far_0, sqrt(far_0));
+    light = after(light, params.taps_2[1].stretch, far_1, sqrt(far_1));
+    light = after(light, params.taps_2[2].stretch, far_2, sqrt(far_2));
+
+    const ivec3 cell_0 = ivec3(from_4 + 0.25 * params.taps_4[0].distance * step);
+    const ivec3 cell_1 = ivec3(from_4 + 0.25 * params.taps_4[1].distance * step);
+    const uint packed_0 = imageLoad(around_4, cell_0 + block.to_4).x;
+    const uint packed_1 = imageLoad(around_4, cell_1 + block.to_4).x;
+    light = after_cell(light, params.taps_4[0].stretch, cell_tap(s, cell_0, packed_0, weights, leaves));
+    return after_cell(light, params.taps_4[1].stretch, cell_tap(s, cell_1, packed_1, weights, leaves)).y;
 }
 
 // Stores the value at the voxel and at its copies in other bricks; those of paged bricks compute their own. Aprons that
@@ -394,7 +439,7 @@ void main()
         const bool is_apron = false;
         const ivec3 voxel = voxel_of(listed >> 6u, listed & 63u);
 #endif
-        const Block block = block_of(voxel);
+        const Block block = block_of(job, voxel);
         const ivec3 in_block = voxel & 3;
 
         const ivec3 texel = texel_of(job, voxel);
@@ -402,7 +447,7 @@ void main()
                            vec3(code_at(texel + ivec3(1, 0, 0)) - code_at(texel - ivec3(1, 0, 0)),
                                 code_at(texel + ivec3(0, 1, 0)) - code_at(texel - ivec3(0, 1, 0)),
                                 code_at(texel + ivec3(0, 0, 1)) - code_at(texel - ivec3(0, 0, 1)));
-        const Surface surface = surface_at(block, vec3(in_block) + 0.5, slope);
+        const Surface surface = surface_at(block, texel, vec3(in_block) + 0.5, slope);
         // Two vectors that are square to the normal and to each other (Duff et al. 2017).
         const vec3 n = surface.normal;
         const float up = n.z < 0.0 ? -1.0 : 1.0, a = -1.0 / (up + n.z), b = n.x * n.y * a;

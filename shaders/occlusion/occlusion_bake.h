@@ -5,14 +5,18 @@
 
 SHARED_BEGIN
 
-/// Samples of a ray: in half voxels, and in cells of each size.
+/// Samples of a ray: in voxels, and in cells of each size.
 SHARED_CONST uint OCCLUSION_NEAR_TAPS = 3u;
-SHARED_CONST uint OCCLUSION_FAR_TAPS = 2u;
-/// Along the normal, on each side of a voxel, evenly spaced: where the medium ends.
-SHARED_CONST uint OCCLUSION_EDGE_TAPS = 4u;
+SHARED_CONST uint OCCLUSION_TAPS_2 = 3u;
+SHARED_CONST uint OCCLUSION_TAPS_4 = 2u;
+/// Along the normal, on each side of a voxel, evenly spaced: where the medium ends. Two by two in one voxel as good as
+/// always, so that two share what paint and cuts hold.
+SHARED_CONST uint OCCLUSION_EDGE_TAPS = 6u;
 SHARED_CONST float OCCLUSION_EDGE_REACH = 1.5f;
-/// Rays begin this far in front of the edge.
-SHARED_CONST float OCCLUSION_LIFT = 0.07f;
+/// Rays begin this far in front of the edge: of these few samples the error is least so.
+SHARED_CONST float OCCLUSION_LIFT = 0.13f;
+/// The edge is at most so far from the voxel, in units: what rays reach is bounded.
+SHARED_CONST float OCCLUSION_FURTHEST = 1.2f;
 /// A sample along a ray: one cell's opacity, applied to `stretch` units of the ray.
 struct OcclusionTap {
     float distance;
@@ -41,8 +45,10 @@ struct OcclusionBakeParams {
     uvec3 cell_counts;  ///< of the leap grid
     /// The nearest first; unused ones have a stretch of 0.
     OcclusionTap near_taps[OCCLUSION_NEAR_TAPS];
-    OcclusionTap far_taps[OCCLUSION_SIZES * OCCLUSION_FAR_TAPS];
-    float far_exponents[OCCLUSION_SIZES];  ///< from the stretch of a near tap to that of these
+    OcclusionTap taps_2[OCCLUSION_TAPS_2];
+    OcclusionTap taps_4[OCCLUSION_TAPS_4];
+    float far_exponent;           ///< from the stretch of the first near tap to that of a tap in cells of 4
+    OcclusionCellsParams voxels;  ///< as for gathering
 };
 
 SHARED_END

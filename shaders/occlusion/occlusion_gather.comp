@@ -1,5 +1,5 @@
-// Gathers what rays of a brick sample from the bricks around it (occlusion.h): octants of voxels, made from densities
-// and gradients, and copies of the cells.
+// Gathers what rays of a brick sample from the bricks around it (occlusion.h): ramps of voxels, made from densities and
+// gradients, and copies of the cells.
 // variants: PAGED FILTERED MASKED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -11,7 +11,7 @@
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 layout(binding = 0, scalar) readonly buffer Params { OcclusionGatherParams data; } params_block;
 layout(binding = 1, scalar) readonly buffer Jobs { OcclusionJob list[]; } jobs;
-layout(binding = 2, scalar) readonly buffer Opacities { float values[]; } opacities;   // over the stretch of a near tap
+layout(binding = 2, scalar) readonly buffer Opacities { OcclusionEntry entries[]; } opacities;   // over a tap's stretch
 #ifdef FILTERED
 layout(binding = 3) uniform sampler3D atlas;
 #else
@@ -35,6 +35,7 @@ layout(binding = 13, r32ui) uniform writeonly uimage3D around_4;
 #define STACKED 20
 #endif
 #include "../library/voxel_code.glsl"
+#include "occlusion_ramp.glsl"
 
 const uint CELLS_A_SIDE = NEAR_SIDE / CELL_SIZE;
 const uint CELLS_OF_ALL = CELLS_A_SIDE * CELLS_A_SIDE * CELLS_A_SIDE;
@@ -71,24 +72,30 @@ uint near_of(const OcclusionGatherParams params, const OcclusionJob job, ivec3 v
     const vec3 slope = (behind - before) / (2.0 * side);
     // A coarse voxel covers several: this one lies off its centre.
     const vec3 beside = vec3(voxel & int((1u << above) - 1u)) + 0.5 - 0.5 * side;
-    const float code = middle + dot(slope, beside);
+    // Densities bend at the middle of a voxel: by this much their mean in it differs.
+    const float bend = dot(before + behind - 2.0 * middle, vec3(0.125 / side));
+    const float code = middle + dot(slope, beside) + bend;
     // Nothing is more extreme than its neighbours: where these show nothing, cells are not occupied and never read.
     const vec3 least = min(before, behind), most = max(before, behind);
     const float lower = min(middle, min(least.x, min(least.y, least.z)));
     const float upper = max(middle, max(most.x, max(most.y, most.z)));
     const vec3 centre = float(1u << params.voxels.level) * (vec3(ivec3(BRICK_SIZE * job.brick) + voxel) + 0.5);
     const float held = entry != 0u ? opacity_held(params.voxels, centre) : 0.0;
-    float halves[8], greatest = 0.0;
-    for (uint octant = 0u; octant < 8u; ++octant) {
-        const vec3 corner = vec3(octant & 1u, octant >> 1u & 1u, octant >> 2u) - 0.5;
-        const float of_half = clamp(code + 0.5 * dot(slope, corner), lower, upper);
-        halves[octant] = held < 0.0 ? opacity_of(params.voxels, of_half) : held;
-        greatest = max(greatest, halves[octant]);
-    }
-    uint packed = uint(255.0 * sqrt(min(greatest, 1.0)) + 0.5);
-    for (uint octant = 0u; octant < 8u; ++octant)
-        packed |= uint(7.0 * halves[octant] / max(greatest, 1e-20) + 0.5) << (8u + 3u * octant);
-    return (packed & 255u) != 0u ? packed : 0u;
+    const uint ramp = ramp_of(params.voxels, clamp(code, lower, upper), slope, lower, upper,
+                              STEEPEST_OF_VOXELS);
+    return held < 0.0 ? ramp : held_ramp(held);
+}
+
+// What a ramp of a coarser level has for one of the cells that it covers, for the stretch of a tap of this level.
+uint part_of_ramp(uint packed, ivec3 cell, int above, float exponent)
+{
+    const float share = 1.0 / float(1 << above);
+    const vec3 offset = share * (vec3(cell & (1 << above) - 1) + 0.5) - 0.5, slope = vec3(ramp_slope(packed));
+    const float height = float(ramp_height(packed)) + RAMP_HEIGHTS / RAMP_SLOPES * dot(slope, offset);
+    const float top = float(packed & 255u), left = pow(max(1.0 - top * top / 65025.0, 0.0), exponent);
+    const uint code = uint(255.0 * sqrt(1.0 - left) + 0.5);
+    const uint bits = ramp_bits(code, int(round(clamp(height, -30.0, 30.0))), ivec3(round(share * slope)));
+    return code == 0u ? 0u : bits;
 }
 
 // Codes of a cell of a coarser level, for the stretch of a tap of this one.
@@ -119,7 +126,10 @@ void copy_cells(const OcclusionGatherParams params, const OcclusionJob job, uint
         const ivec3 from = int(BRICK_SIZE >> shift) * ivec3(unpack_slot(entry)) +
                            (in_brick_of(job, voxel, above) >> shift);
         uint packed = size == 0u ? imageLoad(cells_2, from).x : imageLoad(cells_4, from).x;
-        if (are_coarser) packed = stretched(packed, params.exponents[above]);
+        if (are_coarser && size == 0u)
+            packed = part_of_ramp(packed, int(BRICK_SIZE) * ivec3(job.brick) + voxel >> 1, above,
+                                  params.exponents[above]);
+        if (are_coarser && size == 1u) packed = stretched(packed, params.exponents[OCCLUSION_LEVELS + above]);
         if (size == 0u)
             imageStore(around_2, texel + behind, uvec4(packed));
         else

@@ -1,4 +1,5 @@
-// How opaque a voxel is to light (occlusion.h). Needs `opacities`; if MASKED, `mask` from binding 6 on.
+// How opaque a voxel is to light (occlusion.h). Needs `opacities`, of OcclusionEntry; if MASKED, `mask` from binding 6
+// on.
 #ifdef MASKED
 layout(binding = 6, r8ui) uniform readonly uimage3D mask;
 #define MASK_TABLE_BINDING 7
@@ -10,12 +11,26 @@ layout(binding = 8, scalar) readonly buffer GroupOpacities { float values[]; } g
 #include "../library/mask.glsl"
 #endif
 
-float opacity_of(const OcclusionCellsParams params, float code)
+// Of a code: its opacity, and sums of opacities and of their squares over the table's entries up to there, in two
+// parts.
+struct Sums {
+    float opacity;
+    vec2 sums, rests;
+};
+
+Sums sums_at(const OcclusionCellsParams params, float code)
 {
     const float last = float(params.table_entries - 1u);
-    const float at = clamp((code - params.table_lower) * params.table_scale, 0.0, last);
-    const float opacity = opacities.values[uint(at + 0.5)];
-    return code >= params.table_lower && code <= params.table_upper ? opacity : 0.0;
+    const float at = clamp((code - params.table_lower) * params.table_scale, 0.0, last) + 0.5;
+    const OcclusionEntry entry = opacities.entries[uint(at)];
+    const vec2 each = vec2(entry.opacity, entry.opacity * entry.opacity);
+    const bool is_inside = code >= params.table_lower && code <= params.table_upper;
+    return Sums(is_inside ? entry.opacity : 0.0, entry.sums, entry.rests + fract(at) * each);
+}
+
+float opacity_of(const OcclusionCellsParams params, float code)
+{
+    return sums_at(params, code).opacity;
 }
 
 // The opacity that paint and the cut give a voxel, whatever its density; below 0: none. `centre` in voxels of level 0.

@@ -119,7 +119,8 @@ Members occlusion_bake_params()
             MEMBER(OcclusionBakeParams, table_scale),     MEMBER(OcclusionBakeParams, table_entries),
             MEMBER(OcclusionBakeParams, guard),           MEMBER(OcclusionBakeParams, aprons),
             MEMBER(OcclusionBakeParams, cell_counts),     MEMBER(OcclusionBakeParams, near_taps),
-            MEMBER(OcclusionBakeParams, far_taps),        MEMBER(OcclusionBakeParams, far_exponents)};
+            MEMBER(OcclusionBakeParams, taps_2),          MEMBER(OcclusionBakeParams, taps_4),
+            MEMBER(OcclusionBakeParams, far_exponent),    MEMBER(OcclusionBakeParams, voxels)};
 }
 
 Members occlusion_gather_params()
@@ -134,7 +135,13 @@ Members occlusion_cells_params()
     return {MEMBER(OcclusionCellsParams, table_lower), MEMBER(OcclusionCellsParams, table_upper),
             MEMBER(OcclusionCellsParams, table_scale), MEMBER(OcclusionCellsParams, table_entries),
             MEMBER(OcclusionCellsParams, level),       MEMBER(OcclusionCellsParams, lower),
-            MEMBER(OcclusionCellsParams, upper),       MEMBER(OcclusionCellsParams, brick_counts)};
+            MEMBER(OcclusionCellsParams, upper),       MEMBER(OcclusionCellsParams, brick_counts),
+            MEMBER(OcclusionCellsParams, far_exponent)};
+}
+
+Members occlusion_entry()
+{
+    return {MEMBER(OcclusionEntry, opacity), MEMBER(OcclusionEntry, sums), MEMBER(OcclusionEntry, rests)};
 }
 
 gpu::KernelInterface interface_of(const std::string& name)
@@ -183,6 +190,8 @@ TEST_CASE("members of shared structs lie where C++ puts them")
         check_members(kernel, "params_block", occlusion_cells_params());
         check_members(kernel, "jobs", {MEMBER(OcclusionCellsJob, brick), MEMBER(OcclusionCellsJob, slot)});
     }
+    for (const char* kernel : {"occlusion_bake", "occlusion_gather", "occlusion_cells"})
+        check_members(kernel, "opacities", occlusion_entry());
     for (const char* kernel : {"surfaces", "surfaces_listed"}) {
         check_members(kernel, "params_block", raycast_params());
         check_members(kernel, "surface_params", surface_params());

@@ -9,9 +9,13 @@ namespace shvr::reference {
 
 namespace {
 
-constexpr double EDGE_REACH = 1.5, LIFT = 0.07;
-/// Of half voxels, of cells of two voxels and of four: shaders/occlusion/occlusion_bake.comp.
-constexpr double MARGINS[] = {0.12, 0.1, 0.6}, WALLS[] = {1.0, 1.0, 1.6}, BENDS[] = {0.0, 0.2, 0.06};
+constexpr double EDGE_REACH = 1.5, LIFT = 0.07, LIFT_OF_TAPS = 0.13;
+/// shaders/occlusion/occlusion_bake.comp.
+constexpr int EDGE_TAPS = 6;
+constexpr double FURTHEST = 1.2, MARGIN_4 = 0.853, WALL_4 = 8.2, BEND_4 = 0.08;
+constexpr double SOFT[] = {1.25, 0.874, 0.734, 0.751, 0.59, 0.527};
+/// Of ramps: shaders/occlusion/occlusion.h.
+constexpr double HEIGHTS = 20.0, SLOPES = 10.0, UNEVEN = 230.0;
 
 double saturated(double share)
 {
@@ -63,9 +67,10 @@ double kept(double opacity)
     return code * code / (255.0 * 255.0);
 }
 
-/// Opacities along each axis of the cell that holds a voxel, over the stretch of a tap.
-glm::dvec3 cell_opacities(const VoxelOpacity& opacity, const glm::ivec3& cell, int side, double stretched)
+/// Opacities along each axis of a cell of 4^3 voxels, over the stretch of a tap.
+glm::dvec3 cell_opacities(const VoxelOpacity& opacity, const glm::ivec3& cell, double stretch)
 {
+    constexpr int side = 4;
     glm::dvec3 opacities(0.0);
     for (int axis = 0; axis < 3; ++axis) {
         double through = 0.0;
@@ -75,24 +80,13 @@ glm::dvec3 cell_opacities(const VoxelOpacity& opacity, const glm::ivec3& cell, i
                 for (int k = 0; k < side; ++k) {
                     glm::ivec3 in_cell;
                     in_cell[axis] = k, in_cell[(axis + 1) % 3] = i, in_cell[(axis + 2) % 3] = j;
-                    left *= std::pow(1.0 - opacity(side * cell + in_cell), stretched);
+                    left *= std::pow(1.0 - opacity(side * cell + in_cell), stretch / side);
                 }
                 through += left / (side * side);
             }
         opacities[axis] = kept(std::max(1.0 - through, 0.0));
     }
     return opacities;
-}
-
-/// Opacity over the stretch of a near tap: in sevenths of the voxel's maximum.
-double near_opacity(const HalfOpacity& halves, const glm::ivec3& half_voxel, double stretch)
-{
-    const glm::ivec3 voxel(glm::floor(glm::dvec3(half_voxel) / 2.0)), half = half_voxel - 2 * voxel;
-    double greatest = 0.0;
-    for (int i = 0; i < 8; ++i)
-        greatest = std::max(greatest, opacity_of(halves(voxel, {i & 1, i >> 1 & 1, i >> 2}), stretch));
-    if (greatest == 0.0) return 0.0;
-    return kept(greatest) * std::floor(7.0 * opacity_of(halves(voxel, half), stretch) / greatest + 0.5) / 7.0;
 }
 
 double beyond_surface(double opacity, double of_surface)
@@ -103,19 +97,16 @@ double beyond_surface(double opacity, double of_surface)
 
 /// The half-space behind a surface, and what cells hold of it.
 struct Surface {
-    glm::dvec3 place, normal, heights, wall;
+    glm::dvec3 place, heights;
     double strength, height;  ///< of the surface along the normal
+    double wall;
 
-    double share_of_half(const glm::ivec3& half_voxel) const
-    {
-        const double at = height + MARGINS[0];
-        return std::clamp(0.5 - 2.0 * (glm::dot(0.5 * (glm::dvec3(half_voxel) + 0.5), heights) - at), 0.0, 1.0);
-    }
     /// Of a cell's columns along each axis, those that end in it.
-    glm::dvec3 shares_of_cell(const glm::ivec3& cell, double side) const
+    glm::dvec3 shares_of_cell(const glm::ivec3& cell) const
     {
+        constexpr double side = 4.0;
         const glm::dvec3 extent = glm::abs(heights);
-        const double above = glm::dot(glm::dvec3(cell) + 0.5, heights) - (height + MARGINS[side == 2.0 ? 1 : 2]) / side;
+        const double above = glm::dot(glm::dvec3(cell) + 0.5, heights) - (height + MARGIN_4) / side;
         glm::dvec3 shares;
         for (int axis = 0; axis < 3; ++axis) {
             const double across = std::max(extent.x + extent.y + extent.z - extent[axis], 0.1);
@@ -125,35 +116,34 @@ struct Surface {
     }
 };
 
-Surface surface_of(const std::function<double(const glm::ivec3&)>& near, const OcclusionRays& rays,
-                   const glm::dvec3& centre, const OcclusionSide& side)
+Surface surface_of(const EdgeOpacity& edge, const OcclusionRays& rays, const glm::dvec3& centre,
+                   const OcclusionSide& side)
 {
-    const auto between = [&](const glm::dvec3& place) {
-        const glm::dvec3 lattice = 2.0 * place - 0.5, corner = glm::floor(lattice), f = lattice - corner;
-        double sum = 0.0;
-        for (int i = 0; i < 8; ++i) {
-            const glm::ivec3 offset(i & 1, i >> 1 & 1, i >> 2);
-            const glm::dvec3 weight = glm::mix(1.0 - f, f, glm::dvec3(offset));
-            sum += weight.x * weight.y * weight.z * near(glm::ivec3(corner) + offset);
-        }
-        return sum;
-    };
     const glm::dvec3 step = side.normal * rays.asked.voxels_per_unit;
-    const Profile profile = profile_of([&](double along) { return between(centre + along * step); }, 4);
-    Surface surface{.place = centre + side.strength * (edge_of(profile) + LIFT) * step,
-                    .normal = side.normal,
+    const double pair = 2.0 * EDGE_REACH / EDGE_TAPS;
+    const auto opacity = [&](double along) {
+        const double between = std::copysign((std::floor(std::abs(along) / pair) + 0.5) * pair, along);
+        return edge(centre + along * step, centre + between * step);
+    };
+    const Profile profile = profile_of(opacity, EDGE_TAPS);
+    const double offset = std::clamp(edge_of(profile), -FURTHEST, FURTHEST);
+    Surface surface{.place = centre + side.strength * (offset + LIFT_OF_TAPS) * step,
                     .heights = side.normal / rays.asked.voxels_per_unit,
-                    .wall = glm::dvec3(0.0),
                     .strength = side.strength,
-                    .height = 0.0};
-    surface.height = glm::dot(surface.place, surface.heights) - side.strength * LIFT;
+                    .height = 0.0,
+                    .wall = 0.0};
+    surface.height = glm::dot(surface.place, surface.heights) - side.strength * LIFT_OF_TAPS;
     const double clear = *std::ranges::min_element(profile.before);
     const double left = std::clamp((1.0 - profile.greatest) / std::max(1.0 - std::min(clear, 1.0), 1e-6), 1e-4, 1.0);
-    const double exponent = rays.stretched / rays.near_stretch;
-    for (int i = 0; i < 3; ++i)
-        surface.wall[i] = side.strength * WALLS[i] *
-                          (1.0 - std::pow(left, std::array{1.0, 2.0 * exponent, 4.0 * exponent}[size_t(i)]));
+    surface.wall = side.strength * WALL_4 * (1.0 - std::pow(left, rays.stretch_of_4 / rays.near_stretch));
     return surface;
+}
+
+double left_of(const OcclusionRamp& ramp, const glm::dvec3& place, double soft)
+{
+    OcclusionRamp softened = ramp;
+    softened.height *= soft, softened.slope *= soft;
+    return softened.left(place - glm::floor(place) - 0.5);
 }
 
 }  // namespace
@@ -227,38 +217,69 @@ double occlusion_by_steps(const FieldOpacity& opacity, const std::vector<glm::dv
     return sum / double(directions.size());
 }
 
-double occlusion_by_taps(const VoxelOpacity& opacity, const HalfOpacity& halves, const OcclusionRays& rays,
-                         const glm::ivec3& voxel, const OcclusionSide& side)
+double OcclusionRamp::left(const glm::dvec3& from_middle) const
 {
-    const auto near = [&](const glm::ivec3& half) { return near_opacity(halves, half, rays.near_stretch); };
-    const Surface surface = surface_of(near, rays, glm::dvec3(voxel) + 0.5, side);
+    return 1.0 - top * std::clamp(0.5 + height + glm::dot(slope, from_middle), 0.0, 1.0);
+}
+
+OcclusionRamp occlusion_ramp(double top, double level, double squares, const glm::dvec3& direction, double steepest)
+{
+    const double steepness = 1.0 / std::max(6.0 * (level - squares), 1.0 / steepest);
+    const double share = std::min(UNEVEN * std::max(squares - level * level, 0.0), 1.0);
+    OcclusionRamp ramp{.top = kept(std::clamp(top, 0.0, 1.0))};
+    ramp.height = std::round(std::clamp(HEIGHTS * (level - 0.5) * steepness, -30.0, 30.0)) / HEIGHTS;
+    for (int axis = 0; axis < 3; ++axis)
+        ramp.slope[axis] = std::round(std::clamp(SLOPES * share * steepness * direction[axis], -31.0, 31.0)) / SLOPES;
+    return ramp;
+}
+
+OcclusionRamp occlusion_ramp(const std::array<double, 8>& opacities)
+{
+    double sum = 0.0, squares = 0.0;
+    glm::dvec3 slope(0.0);
+    for (int i = 0; i < 8; ++i) {
+        const double each = opacities[size_t(i)];
+        sum += each / 8.0, squares += each * each / 8.0;
+        slope += each / 4.0 * (2.0 * glm::dvec3(i & 1, i >> 1 & 1, i >> 2) - 1.0);
+    }
+    const double top = *std::ranges::max_element(opacities), whole = std::max(top, 1e-10);
+    return occlusion_ramp(top, sum / whole, squares / (whole * whole), slope / std::max(glm::length(slope), 1e-6),
+                          STEEPEST_OF_CELLS);
+}
+
+double occlusion_by_taps(const OcclusionMedium& medium, const OcclusionRays& rays, const glm::ivec3& voxel,
+                         const OcclusionSide& side)
+{
+    const Surface surface = surface_of(medium.edge, rays, glm::dvec3(voxel) + 0.5, side);
     double sum = 0.0;
     for (const glm::dvec3& direction : occlusion_directions(rays.count, side, rays.asked.full_sphere)) {
         const glm::dvec3 step = direction * rays.asked.voxels_per_unit, weights = direction * direction;
-        const glm::dvec3 wall = glm::dot(direction, side.normal) > 1e-4 ? surface.wall : glm::dvec3(0.0);
-        std::vector<double> stops;
+        const double wall = glm::dot(direction, side.normal) > 1e-4 ? surface.wall : 0.0;
+        std::vector<double> lefts;
         std::vector<bool> leaves;
         for (const OcclusionTap& tap : rays.taps) {
             const glm::dvec3 place = surface.place + tap.distance * step;
+            const size_t number = lefts.size();
             leaves.push_back(glm::ivec3(glm::floor(place)) != voxel);
-            if (tap.side == 0) {
-                const glm::ivec3 half(glm::floor(2.0 * place));
-                stops.push_back(beyond_surface(near(half), wall.x * surface.share_of_half(half)));
+            if (tap.side == 1) {
+                const double left = left_of(medium.voxel(glm::ivec3(glm::floor(place))), place, SOFT[number]);
+                lefts.push_back(std::pow(left, tap.stretch / rays.near_stretch));
+            } else if (tap.side == 2) {
+                lefts.push_back(left_of(medium.cell(glm::ivec3(glm::floor(place / 2.0))), place / 2.0, SOFT[number]));
             } else {
-                const glm::ivec3 cell(glm::floor(place / double(tap.side)));
-                const double found = glm::dot(weights, cell_opacities(opacity, cell, tap.side, rays.stretched));
-                const double own = glm::dot(weights, surface.shares_of_cell(cell, tap.side));
-                stops.push_back(beyond_surface(found, (tap.side == 2 ? wall.y : wall.z) * own));
+                const glm::ivec3 cell(glm::floor(place / 4.0));
+                const double found = glm::dot(weights, cell_opacities(medium.opacity, cell, rays.stretch_of_4));
+                lefts.push_back(1.0 - beyond_surface(found, wall * glm::dot(weights, surface.shares_of_cell(cell))));
             }
         }
-        for (size_t i = std::min<size_t>(stops.size(), 3); i-- > 0;)
-            if (!leaves[i]) stops[i] = i + 1 < 3 ? std::min(stops[i], stops[i + 1]) : 0.0;
+        for (size_t i = std::min<size_t>(lefts.size(), 3); i-- > 0;)
+            if (!leaves[i]) lefts[i] = i + 1 < 3 ? std::max(lefts[i], lefts[i + 1]) : 1.0;
         double left = 1.0, light = rays.first;
-        for (size_t i = 0; i < stops.size(); ++i) {
-            const double a = stops[i], bend = BENDS[rays.taps[i].side / 2];
+        for (size_t i = 0; i < lefts.size(); ++i) {
+            const double stopped = 1.0 - lefts[i];
             light += left * rays.taps[i].stretch *
-                     (rays.taps[i].side == 0 ? std::sqrt(1.0 - a) : 1.0 - a * (0.5 + bend * a));
-            left *= 1.0 - a;
+                     (rays.taps[i].side == 4 ? 1.0 - stopped * (0.5 + BEND_4 * stopped) : std::sqrt(lefts[i]));
+            left *= lefts[i];
         }
         sum += light / rays.asked.radius;
     }
@@ -268,8 +289,23 @@ double occlusion_by_taps(const VoxelOpacity& opacity, const HalfOpacity& halves,
 double occlusion_by_taps(const VoxelOpacity& opacity, const OcclusionRays& rays, const glm::ivec3& voxel,
                          const OcclusionSide& side)
 {
-    const HalfOpacity halves = [&](const glm::ivec3& of, const glm::ivec3&) { return opacity(of); };
-    return occlusion_by_taps(opacity, halves, rays, voxel, side);
+    const auto of_voxel = [&](const glm::ivec3& at) { return opacity_of(opacity(at), rays.near_stretch); };
+    const OcclusionMedium medium{
+        .opacity = opacity,
+        .voxel =
+            [&](const glm::ivec3& at) {
+                return occlusion_ramp(of_voxel(at), 1.0, 1.0, glm::dvec3(0.0), STEEPEST_OF_VOXELS);
+            },
+        .cell =
+            [&](const glm::ivec3& cell) {
+                std::array<double, 8> opacities{};
+                for (int i = 0; i < 8; ++i)
+                    opacities[size_t(i)] =
+                        opacity_of(opacity(2 * cell + glm::ivec3(i & 1, i >> 1 & 1, i >> 2)), rays.stretch_of_2);
+                return occlusion_ramp(opacities);
+            },
+        .edge = [&](const glm::dvec3& place, const glm::dvec3&) { return of_voxel(glm::ivec3(glm::floor(place))); }};
+    return occlusion_by_taps(medium, rays, voxel, side);
 }
 
 }  // namespace shvr::reference

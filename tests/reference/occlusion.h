@@ -3,6 +3,7 @@
 // and steps as one likes, and the few samples a ray by which the device computes it. Positions are in voxels, lengths
 // along rays in units.
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -14,9 +15,6 @@ namespace shvr::reference {
 using FieldOpacity = std::function<double(const glm::dvec3&)>;
 /// Opacity of one unit for any voxel; 0 outside the volume.
 using VoxelOpacity = std::function<double(const glm::ivec3&)>;
-/// Opacity of one unit for every half of a voxel: the voxel, and 0 or 1 along each axis.
-using HalfOpacity = std::function<double(const glm::ivec3&, const glm::ivec3&)>;
-
 /// How much of a surface is at a voxel (0 ... 1), and its normal.
 struct OcclusionSide {
     glm::dvec3 normal{0.0, 0.0, 1.0};
@@ -46,19 +44,45 @@ double occlusion_by_steps(const FieldOpacity& opacity, const std::vector<glm::dv
 
 struct OcclusionTap {
     double distance, stretch;
-    int side;  ///< of the cell that is sampled, in voxels; 0: half a voxel
+    int side;  ///< of the cell that is sampled, in voxels
 };
 struct OcclusionRays {
     OcclusionAsked asked;
     uint32_t count = 32;
     double first = 0.0;  ///< units that light always passes
     std::vector<OcclusionTap> taps;
-    double near_stretch = 1.0;
-    double stretched = 1.0;  ///< of a tap in cells, in sides of those cells
+    double near_stretch = 1.0;                      ///< of the first tap in voxels
+    double stretch_of_2 = 1.0, stretch_of_4 = 1.0;  ///< of taps in cells
 };
-double occlusion_by_taps(const VoxelOpacity& opacity, const HalfOpacity& halves, const OcclusionRays& rays,
-                         const glm::ivec3& voxel, const OcclusionSide& side);
-/// For volumes in which all halves of a voxel are equal.
+
+/// How opaque a cube is from place to place, as the device keeps it (shaders/occlusion/occlusion.h).
+struct OcclusionRamp {
+    double top = 0.0, height = 0.0;
+    glm::dvec3 slope{0.0};
+
+    double left(const glm::dvec3& from_middle) const;
+};
+/// How steeply ramps may rise across their cube (shaders/occlusion/occlusion_ramp.glsl).
+constexpr double STEEPEST_OF_VOXELS = 3.3, STEEPEST_OF_CELLS = 2.6;
+/// From the mean of the opacity in the cube and of its square, of a top of 1, and the direction in which it rises, at
+/// most so steeply.
+OcclusionRamp occlusion_ramp(double top, double level, double squares, const glm::dvec3& direction, double steepest);
+/// From the opacities of the eight voxels of a cell, x fastest.
+OcclusionRamp occlusion_ramp(const std::array<double, 8>& opacities);
+
+/// The opacity at a place, if the voxel at the other one is kept: the middle between two samples.
+using EdgeOpacity = std::function<double(const glm::dvec3&, const glm::dvec3&)>;
+
+/// What the device samples of a medium.
+struct OcclusionMedium {
+    VoxelOpacity opacity;
+    std::function<OcclusionRamp(const glm::ivec3&)> voxel;  ///< over the stretch of the first tap
+    std::function<OcclusionRamp(const glm::ivec3&)> cell;   ///< of 2^3 voxels, over the stretch of a tap
+    EdgeOpacity edge;                                       ///< as `voxel`, along the normal
+};
+double occlusion_by_taps(const OcclusionMedium& medium, const OcclusionRays& rays, const glm::ivec3& voxel,
+                         const OcclusionSide& side);
+/// With every voxel the same throughout.
 double occlusion_by_taps(const VoxelOpacity& opacity, const OcclusionRays& rays, const glm::ivec3& voxel,
                          const OcclusionSide& side);
 

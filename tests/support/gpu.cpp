@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <doctest/doctest.h>
@@ -90,15 +91,16 @@ TestVolume noise_volume(const glm::ivec3& size, uint32_t seed)
 double value_at(const TestVolume& volume, const glm::dvec3& voxel)
 {
     const glm::dvec3 lattice = voxel - 0.5, corner = glm::floor(lattice), f = lattice - corner;
-    double sum = 0.0;
+    double sum = 0.0, least = std::numeric_limits<double>::infinity(), most = -least;
     for (int i = 0; i < 8; ++i) {
         const glm::ivec3 half(i & 1, i >> 1 & 1, i >> 2);
         const glm::ivec3 at = glm::clamp(glm::ivec3(corner) + half, glm::ivec3(0), volume.size - 1);
         const glm::dvec3 weights = glm::mix(1.0 - f, f, glm::dvec3(half));
-        sum += weights.x * weights.y * weights.z *
-               volume.voxels[size_t(at.x + volume.size.x * (at.y + volume.size.y * at.z))];
+        const double corner_value = volume.voxels[size_t(at.x + volume.size.x * (at.y + volume.size.y * at.z))];
+        sum += weights.x * weights.y * weights.z * corner_value;
+        least = std::min(least, corner_value), most = std::max(most, corner_value);
     }
-    return sum;
+    return std::clamp(sum, least, most);  // rounding must not pass the end of a transfer function
 }
 
 std::unique_ptr<VolumeSource> source_of(const TestVolume& volume)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "engine/device/look_table.h"
 #include "engine/passes/occlusion.h"
@@ -60,7 +61,9 @@ std::vector<double> occlusion_values(OnDevice& device)
 ExpectedOcclusion::ExpectedOcclusion(const TestVolume& volume, const Session& session)
     : volume_(volume),
       session_(session),
-      samples_(table_range(session.transfer_function, volume.window(), false).samples)
+      samples_(table_range(session.transfer_function, volume.window(), false).samples),
+      near_(table_of(rays().near_stretch)),
+      far_(table_of(rays().stretch_of_2))
 {
     for (int z = 0; z < volume.size.z; ++z)
         for (int y = 0; y < volume.size.y; ++y)
@@ -91,20 +94,86 @@ double ExpectedOcclusion::opacity_of_code(double code) const
     return function.at(samples_.lower + per_entry * std::floor((code - samples_.lower) / per_entry + 0.5)).a;
 }
 
-/// Density and slope of one octant of a voxel, a quarter of a voxel from its centre, within what its neighbours have.
-double ExpectedOcclusion::half_opacity(const glm::ivec3& at, const glm::ivec3& half) const
+ExpectedOcclusion::Table ExpectedOcclusion::table_of(double stretch) const
 {
-    if (!is_kept(at)) return 0.0;
-    double of_half = code(at), lower = of_half, upper = of_half;
+    Table table{.opacities = {}, .sums = {0.0}, .squares = {0.0}};
+    for (const glm::vec4& entry : bake_table(session_.transfer_function, stretch, samples_).looks) {
+        const double opacity = double(entry.a);
+        table.opacities.push_back(opacity);
+        table.sums.push_back(table.sums.back() + opacity);
+        table.squares.push_back(table.squares.back() + opacity * opacity);
+    }
+    return table;
+}
+
+glm::dvec3 ExpectedOcclusion::sums_at(const Table& table, double code) const
+{
+    const TransferFunction& function = session_.transfer_function;
+    const double per_entry = (samples_.upper - samples_.lower) / (samples_.entries - 1);
+    const double at = std::clamp((code - samples_.lower) / per_entry, 0.0, samples_.entries - 1.0) + 0.5;
+    const auto entry = size_t(at);
+    const double part = at - double(entry), opacity = table.opacities[entry];
+    const bool is_inside = code >= function.lower() && code <= function.upper();
+    return {is_inside ? opacity : 0.0, table.sums[entry] + part * opacity,
+            table.squares[entry] + part * opacity * opacity};
+}
+
+/// As in shaders/occlusion/occlusion_ramp.glsl.
+reference::OcclusionRamp ExpectedOcclusion::ramp_of(const Table& table, double middle, const glm::dvec3& slope,
+                                                    double least, double most, double steepest) const
+{
+    const double per_entry = (samples_.upper - samples_.lower) / (samples_.entries - 1);
+    const double steep = glm::length(slope), half_width = std::max(0.5 * steep, 0.5 * per_entry);
+    const double lower = middle - half_width, upper = middle + half_width;
+    const double from = std::clamp(lower, least, most), to = std::clamp(upper, least, most);
+    const glm::dvec3 at_from = sums_at(table, from), at_to = sums_at(table, to);
+    const auto mean_of = [&](double of_from, double of_to, double between) {
+        return (between * per_entry + (from - lower) * of_from + (upper - to) * of_to) / (2.0 * half_width);
+    };
+    const double mean = mean_of(at_from.x, at_to.x, at_to.y - at_from.y);
+    const double squares = mean_of(at_from.x * at_from.x, at_to.x * at_to.x, at_to.z - at_from.z);
+    const double top = std::max({at_from.x, at_to.x, squares / std::max(mean, 1e-10)}), whole = std::max(top, 1e-10);
+    const double up = at_to.x < at_from.x ? -1.0 : 1.0;
+    return reference::occlusion_ramp(top, std::min(mean / whole, 1.0), std::min(squares / (whole * whole), 1.0),
+                                     up / std::max(steep, 1e-6) * slope, steepest);
+}
+
+/// From a voxel's density and those of its six neighbours.
+reference::OcclusionRamp ExpectedOcclusion::ramp_of_voxel(const glm::ivec3& at) const
+{
+    if (!is_kept(at)) return {};
+    const double middle = code(at);
+    double mean = middle, lower = middle, upper = middle;
+    glm::dvec3 slope(0.0);
     for (int axis = 0; axis < 3; ++axis) {
         glm::ivec3 step(0);
         step[axis] = 1;
         const double before = code(at - step), behind = code(at + step);
-        of_half += (half[axis] - 0.5) * 0.25 * (behind - before);
+        slope[axis] = 0.5 * (behind - before);
+        mean += 0.125 * (before + behind - 2.0 * middle);
         lower = std::min({lower, before, behind});
         upper = std::max({upper, before, behind});
     }
-    return opacity_of_code(std::clamp(of_half, lower, upper));
+    return ramp_of(near_, std::clamp(mean, lower, upper), slope, lower, upper, reference::STEEPEST_OF_VOXELS);
+}
+
+/// From the densities of its eight voxels; where not all of them are seen, from their opacities.
+reference::OcclusionRamp ExpectedOcclusion::ramp_of_cell(const glm::ivec3& cell) const
+{
+    std::array<double, 8> opacities{}, codes{};
+    bool are_kept = true;
+    glm::dvec3 slope(0.0);
+    for (size_t i = 0; i < 8; ++i) {
+        const glm::ivec3 corner(i & 1, i >> 1 & 1, i >> 2), at = 2 * cell + corner;
+        codes[i] = code(at);
+        opacities[i] = is_kept(at) ? sums_at(far_, codes[i]).x : 0.0;
+        are_kept = are_kept && is_kept(at);
+        slope += 0.25 * codes[i] * (2.0 * glm::dvec3(corner) - 1.0);
+    }
+    if (!are_kept) return reference::occlusion_ramp(opacities);
+    const double mean = std::accumulate(codes.begin(), codes.end(), 0.0) / 8.0;
+    const auto [least, most] = std::ranges::minmax(codes);
+    return ramp_of(far_, mean, 2.0 * slope, least, most, reference::STEEPEST_OF_CELLS);
 }
 
 double ExpectedOcclusion::opacity(const glm::ivec3& at) const
@@ -142,11 +211,12 @@ reference::OcclusionRays ExpectedOcclusion::rays() const
                                   .count = session_.light.occlusion.rays,
                                   .first = taps.first,
                                   .taps = {},
-                                  .near_stretch = std::max(taps.near_stretch, 1e-3),
-                                  .stretched = taps.stretched};
+                                  .near_stretch = taps.taps.empty() ? 1.0 : taps.near_stretch,
+                                  .stretch_of_2 = taps.stretches[0],
+                                  .stretch_of_4 = taps.stretches[1]};
     for (uint32_t i = 0; i < taps.taps.size(); ++i)
         rays.taps.push_back({double(taps.taps[i].distance), double(taps.taps[i].stretch),
-                             i < taps.end[0]   ? 0
+                             i < taps.end[0]   ? 1
                              : i < taps.end[1] ? 2
                                                : 4});
     return rays;
@@ -154,9 +224,20 @@ reference::OcclusionRays ExpectedOcclusion::rays() const
 
 double ExpectedOcclusion::by_taps(const glm::ivec3& at) const
 {
-    return reference::occlusion_by_taps(
-        [&](const glm::ivec3& v) { return opacity(v); },
-        [&](const glm::ivec3& v, const glm::ivec3& half) { return half_opacity(v, half); }, rays(), at, side(at));
+    const reference::OcclusionSide of_voxel = side(at);
+    const glm::dvec3 centre = glm::dvec3(at) + 0.5, step = glm::abs(of_voxel.normal * asked().voxels_per_unit);
+    const double reach = 1.0 / std::max({step.x, step.y, step.z});
+    // Beyond a voxel's neighbours the density stays as it is there.
+    const auto edge = [&](const glm::dvec3& place, const glm::dvec3& between) {
+        const double along = glm::length((place - centre) / asked().voxels_per_unit);
+        const glm::dvec3 within = centre + (place - centre) * std::min(1.0, reach / along);
+        return is_kept(glm::ivec3(glm::floor(between))) ? sums_at(near_, value_at(volume_, within)).x : 0.0;
+    };
+    return reference::occlusion_by_taps({.opacity = [&](const glm::ivec3& v) { return opacity(v); },
+                                         .voxel = [&](const glm::ivec3& v) { return ramp_of_voxel(v); },
+                                         .cell = [&](const glm::ivec3& cell) { return ramp_of_cell(cell); },
+                                         .edge = edge},
+                                        rays(), at, of_voxel);
 }
 
 double ExpectedOcclusion::defined(const glm::ivec3& at, uint32_t directions, int steps) const

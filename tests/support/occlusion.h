@@ -29,17 +29,28 @@ public:
     double defined(const glm::ivec3& voxel, uint32_t directions, int steps) const;
 
 private:
+    /// Of the function's table: opacities of a stretch, and sums over the entries before each, as the device has them.
+    struct Table {
+        std::vector<double> opacities, sums, squares;
+    };
+    Table table_of(double stretch) const;
+    /// The opacity at a code, and the two sums up to there.
+    glm::dvec3 sums_at(const Table& table, double code) const;
     double code(const glm::ivec3& at) const;
     bool is_kept(const glm::ivec3& at) const;
     double opacity_of_code(double code) const;
-    double half_opacity(const glm::ivec3& at, const glm::ivec3& half) const;
+    reference::OcclusionRamp ramp_of(const Table& table, double middle, const glm::dvec3& slope, double least,
+                                     double most, double steepest) const;
+    reference::OcclusionRamp ramp_of_voxel(const glm::ivec3& at) const;
+    reference::OcclusionRamp ramp_of_cell(const glm::ivec3& cell) const;
     reference::OcclusionSide side(const glm::ivec3& at) const;
     reference::OcclusionAsked asked() const;
     reference::OcclusionRays rays() const;
 
     const TestVolume& volume_;
     const Session& session_;
-    Samples samples_;  ///< of the function, as the device's table has them
+    Samples samples_;   ///< of the function, as the device's table has them
+    Table near_, far_;  ///< over a tap in voxels, in cells of 2
     std::vector<double> opacities_;
 };
 

@@ -24,10 +24,11 @@ OcclusionRays rays_of(double radius, uint32_t count)
                        .first = taps.first,
                        .taps = {},
                        .near_stretch = std::max(taps.near_stretch, 1e-3),
-                       .stretched = taps.stretched};
+                       .stretch_of_2 = taps.stretches[0],
+                       .stretch_of_4 = taps.stretches[1]};
     for (uint32_t i = 0; i < taps.taps.size(); ++i)
         rays.taps.push_back({double(taps.taps[i].distance), double(taps.taps[i].stretch),
-                             i < taps.end[0]   ? 0
+                             i < taps.end[0]   ? 1
                              : i < taps.end[1] ? 2
                                                : 4});
     return rays;
@@ -78,7 +79,7 @@ TEST_CASE("the error falls with more rays, faster than that of random ones")
     test::check_below("1024 rays", many, 1e-3);
 }
 
-TEST_CASE("an even medium has the closed form: over steps exactly, by its definition and with seven samples nearly")
+TEST_CASE("an even medium has the closed form: over steps exactly, by its definition and with eight samples nearly")
 {
     for (const double a : {0.001, 0.01, 0.05, 0.2, 0.5}) {
         CAPTURE(a);
@@ -90,7 +91,7 @@ TEST_CASE("an even medium has the closed form: over steps exactly, by its defini
         const double extinction = -std::log1p(-a), expected = -std::expm1(-extinction * 16.0) / (extinction * 16.0);
         test::check_below("definition", std::abs(occlusion_defined(even, {}, {0, 0, 0}, {}, 8, 1000) - expected), 1e-5);
         const double found = occlusion_by_taps([&](const glm::ivec3&) { return a; }, rays_of(16.0, 8), {0, 0, 0}, {});
-        test::check_below("seven samples", std::abs(found - expected), 0.012);
+        test::check_below("eight samples", std::abs(found - expected), 0.012);
     }
 }
 
@@ -125,7 +126,7 @@ TEST_CASE("the definition meets the closed forms of sharp surfaces, wherever in 
     }
 }
 
-TEST_CASE("seven samples see planes, gaps and walls within a few hundredths of the closed form")
+TEST_CASE("eight samples see planes, gaps and walls within a few hundredths of the closed form")
 {
     const double radius = 16.0;
     const auto compare = [&](const char* what, const VoxelOpacity& opacity, const OcclusionSide& side, double expected,
@@ -147,11 +148,12 @@ TEST_CASE("seven samples see planes, gaps and walls within a few hundredths of t
     compare(
         "floor and wall", [](const glm::ivec3& v) { return v.z <= 3 || v.x > 5 ? 1.0 : 0.0; }, up,
         over_plane(4.5 / radius), 0.03);
-    // A wall of one voxel stops what crosses it, whichever cells it is in.
+    // A wall of one voxel stops what crosses it, whichever cells it is in. Planes fit one badly whose opacity is all or
+    // nothing; as densities have walls, tests/gpu/occlusion_light_test.cpp has a sheet on a floor.
     for (int x = 5; x < 13; ++x)
         compare(
             "floor and thin wall", [&](const glm::ivec3& v) { return v.z <= 3 || v.x == x ? 1.0 : 0.0; }, up,
-            over_plane((x - 1.5) / radius), 0.07);
+            over_plane((x - 1.5) / radius), 0.095);
 }
 
 TEST_CASE("a voxel does not shadow itself, and a radius below one voxel sees nothing")
@@ -174,8 +176,8 @@ TEST_CASE("looks cover the radius without gaps, within the bricks that are at ha
         CAPTURE(radius);
         const OcclusionTaps taps = occlusion_taps(radius);
         CHECK(taps.end[0] <= gpu::OCCLUSION_NEAR_TAPS);
-        for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size)
-            CHECK(taps.end[size + 1] - taps.end[size] <= gpu::OCCLUSION_FAR_TAPS);
+        CHECK(taps.end[1] - taps.end[0] <= gpu::OCCLUSION_TAPS_2);
+        CHECK(taps.end[2] - taps.end[1] <= gpu::OCCLUSION_TAPS_4);
         CHECK(taps.end[2] == taps.taps.size());
         double sum = taps.first;
         for (const gpu::OcclusionTap& tap : taps.taps) {
