@@ -151,6 +151,7 @@ TEST_CASE_FIXTURE(OnDevice,
         const glm::dvec3 across = glm::normalize(glm::dvec3(2.0, -1.0, 0.0));
         return std::max(-to_plane(p), 0.5 - std::abs(glm::dot(p - CENTRE, across) - 6.0));
     };
+    const auto uneven = [](const glm::dvec3& p) { return 0.8 + 0.004 * std::sin(p.x / 3.0 + p.y / 5.0); };
     const auto light_in = [](double opacity) {
         const double optical = -std::log1p(-opacity) * RADIUS;
         return -std::expm1(-optical) / optical;
@@ -180,8 +181,8 @@ TEST_CASE_FIXTURE(OnDevice,
         {"noise of 5 voxels, translucent", noise(5.0, 6.0), -1.0, 1, 0.02, 0.02, 2.0, 0.27},
         {"sheet on a floor", wall_on_floor, -1.0, 1, 0.02, 0.026, 2.0, 1.0, false, 0.4},
         {"even medium", [](const glm::dvec3&) { return 0.89; }, light_in(0.3), 0.01, 0.01, 0.01, 2.0, 0.3},
-        {"even medium, thin", [](const glm::dvec3&) { return 0.89; }, light_in(0.004), 0.01, 0.01, 0.01, 2.0, 0.004,
-         false, 0.9, true},
+        {"even medium, thin, densities uneven", uneven, light_in(0.004), 0.001, 0.001, 0.001, 2.0, 0.004, false, 0.9,
+         true},
     };
     for (const Case& c : cases) {
         CAPTURE(c.name);
