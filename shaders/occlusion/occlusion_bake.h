@@ -9,8 +9,8 @@ SHARED_BEGIN
 SHARED_CONST uint OCCLUSION_NEAR_TAPS = 3u;
 SHARED_CONST uint OCCLUSION_TAPS_2 = 3u;
 SHARED_CONST uint OCCLUSION_TAPS_4 = 2u;
-/// Along the normal, on each side of a voxel, evenly spaced: where the medium ends. Two by two in one voxel as good as
-/// always, so that two share what paint and cuts hold.
+/// Along the normal, on each side of a voxel, evenly spaced: where the medium ends. Nearly always two and two lie in
+/// one voxel, so they share what paint and cuts hold there.
 SHARED_CONST uint OCCLUSION_EDGE_TAPS = 6u;
 SHARED_CONST float OCCLUSION_EDGE_REACH = 1.5f;
 /// Rays begin this far in front of the edge: of these few samples the error is least so.

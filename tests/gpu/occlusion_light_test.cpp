@@ -158,7 +158,7 @@ TEST_CASE_FIXTURE(OnDevice,
     };
     const std::vector<Case> cases{
         {"hollow, radius 4", ball(4.0), in_ball(4.0), 0.03, 0.02, 0.02},
-        {"hollow, radius 6", ball(6.0), in_ball(6.0), 0.03, 0.02, 0.02},
+        {"hollow, radius 6", ball(6.0), in_ball(6.0), 0.03, 0.015, 0.015},
         {"hollow, radius 10", ball(10.0), in_ball(10.0), 0.03, 0.02, 0.02},
         {"hollow, radius 6, hard", ball(6.0), in_ball(6.0), 0.03, 0.02, 0.02, 1.0},
         {"slit of 2", slit(2.0), under_ceiling(2.0), 0.031, 0.02, 0.02},
