@@ -332,12 +332,14 @@ VkResult Memory::allocate_from_driver(uint64_t bytes, uint32_t allowed, const Ob
     return result;
 }
 
-/// Small buffers alone: images beside buffers have to keep a distance that devices choose. False: it gets its own.
+/// Small objects alone. False: it gets its own.
 bool Memory::allocate_in_block(Object& object, const VkMemoryRequirements& needs)
 {
-    if (object.image || needs.size > MemoryBlock::MAX_SHARE) return false;
+    if (needs.size > MemoryBlock::MAX_SHARE) return false;
+    const bool is_image = object.image != VK_NULL_HANDLE;
     const auto take = [&](MemoryBlock& block) {
-        if (block.placement != object.placement || !(needs.memoryTypeBits >> block.type & 1)) return false;
+        if (block.placement != object.placement || block.holds_images != is_image) return false;
+        if (!(needs.memoryTypeBits >> block.type & 1)) return false;
         const std::optional<uint64_t> offset = block.take(needs.size, needs.alignment);
         if (!offset) return false;
         object.memory = block.memory;
@@ -354,12 +356,13 @@ bool Memory::allocate_in_block(Object& object, const VkMemoryRequirements& needs
         return false;
     try {
         std::byte* const mapped = object.placement == Placement::device ? nullptr : map(memory);
-        blocks_.push_back(std::make_unique<MemoryBlock>(memory, object.placement, type, mapped));
+        blocks_.push_back(std::make_unique<MemoryBlock>(memory, object.placement, is_image, type, mapped));
     } catch (...) {
         free_to_driver(memory);
         throw;
     }
-    device_.set_name(VK_OBJECT_TYPE_DEVICE_MEMORY, reinterpret_cast<uint64_t>(memory), "small buffers");
+    device_.set_name(VK_OBJECT_TYPE_DEVICE_MEMORY, reinterpret_cast<uint64_t>(memory),
+                     is_image ? "small images" : "small buffers");
     return take(*blocks_.back());
 }
 
@@ -386,9 +389,10 @@ void Memory::destroy(Object& object) noexcept
     if (!object.block) return free_to_driver(object.memory);
     object.block->give_back(object.offset);
     if (!object.block->is_empty()) return;
-    // One empty block of a kind is kept: the next small buffer would bring it back.
+    // One empty block of a kind is kept: the next small object would bring it back.
     const auto is_spare = [&](const auto& other) {
-        return other.get() != object.block && other->is_empty() && other->placement == object.block->placement;
+        return other.get() != object.block && other->is_empty() && other->placement == object.block->placement &&
+               other->holds_images == object.block->holds_images;
     };
     if (std::ranges::none_of(blocks_, is_spare)) return;
     free_to_driver(object.block->memory);

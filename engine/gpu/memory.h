@@ -2,8 +2,8 @@
 // Device memory with accounting: every buffer and image has a name, its bytes are counted by name, and two budgets
 // (device, host) are hard limits. Every allocation is checked against its budget first; where it does not fit, or where
 // the driver has none left, idle memory is freed. Small buffers share allocations (memory_block.h), of which drivers
-// allow few. What is given back while the device may still use it is freed once that is over; nobody waits, unless its
-// bytes are needed at once.
+// allow few, and so do small images. What is given back while the device may still use it is freed once that is over;
+// nobody waits, unless its bytes are needed at once.
 //
 // One thread at a time.
 

@@ -1,6 +1,6 @@
 #pragma once
-// An allocation that small buffers share: drivers allow few allocations, 4096 at least, and take long for each. Knows
-// where in it there is room, and nothing of Vulkan but the handle. One thread at a time.
+// An allocation that small buffers share, or small images: drivers allow few allocations, 4096 at least, and take long
+// for each. Knows where in it there is room, and nothing of Vulkan but the handle. One thread at a time.
 
 #include <cstddef>
 #include <cstdint>
@@ -24,8 +24,8 @@ public:
     /// What is larger has an allocation of its own.
     static constexpr uint64_t MAX_SHARE = BYTES / 8;
 
-    MemoryBlock(VkDeviceMemory of, Placement where, uint32_t memory_type, std::byte* begin)
-        : memory(of), placement(where), type(memory_type), mapped(begin)
+    MemoryBlock(VkDeviceMemory of, Placement where, bool of_images, uint32_t memory_type, std::byte* begin)
+        : memory(of), placement(where), holds_images(of_images), type(memory_type), mapped(begin)
     {}
     /// Where there is room for so many bytes, which are then in use; null: nowhere. `alignment`: a power of two.
     std::optional<uint64_t> take(uint64_t bytes, uint64_t alignment);
@@ -34,6 +34,7 @@ public:
 
     const VkDeviceMemory memory;
     const Placement placement;
+    const bool holds_images;  ///< alone: beside buffers they would have to keep a distance that devices choose
     const uint32_t type;
     std::byte* const mapped;  ///< null: it is not
 

@@ -59,8 +59,9 @@ struct Prepared {
 
 /// The first half of the list at the top of frame.h.
 Prepared prepare(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part,
-                 bool feedback)
+                 bool feedback, bool rays_wait = false)
 {
+    if (!rays_wait) scene.volume().let_rays_wait(false);
     const double step_voxels = look_at(scene, look, shot, part);
     Prepared prepared;
     RaycastInput& input = prepared.input;
@@ -200,7 +201,7 @@ Drawn draw(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, 
 {
     const bool has_ball = look.shows_meshes && whole_part.probe && whole_part.probe->ball_opacity > 0.0;
     const PicturePart part = has_ball ? whole_part : without_ball(whole_part);
-    Prepared prepared = prepare(graph, scene, look, shot, part, true);
+    Prepared prepared = prepare(graph, scene, look, shot, part, true, waiting != nullptr);
     prepared.input.count_work = count_work;
     Drawn drawn;
     if (!shot.right_eye) {

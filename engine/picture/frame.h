@@ -65,7 +65,8 @@ struct Drawn {
 };
 /// Adds the passes that draw a part of what `shot` sees into `target`, an rgba32_float picture: linear light,
 /// premultiplied, over the background. The graph must be submitted before any graph made later. `waiting`: rays go on
-/// where they waited for bricks in the graph before; it is the same part, and the volume lets rays wait.
+/// where they waited for bricks in the graph before; it is the same part, and the volume lets rays wait. Null: the
+/// volume lets none wait any more.
 Drawn draw(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part,
            Resource target, bool count_work = false, WaitingRays* waiting = nullptr);
 /// What all parts of a shot need before their rays are followed, whatever their size: tables, directory, surfaces. The

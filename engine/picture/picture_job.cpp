@@ -253,6 +253,7 @@ void PictureJob::step(bool waits)
             return;
     } catch (const gpu::MemoryError& error) {
         rounds_.reset();
+        scene().volume().let_rays_wait(false);
         if (under_way_) {
             catch_up();
             return parts_.push_back(part);  // alone there may be room for it
@@ -348,15 +349,20 @@ bool PictureJob::draw_completely(const PicturePart& part, bool waits)
         if (area_of(part) != PixelBox{glm::uvec2(0), part.pixels}.area()) volume.forget_visits();
         rounds_.emplace(Rounds{.part = part});
     }
-    if (!draw_rounds(waits)) return false;
-    std::vector<gpu::PassReport> passes = std::move(rounds_->passes);
+    if (!rounds_->rays) {
+        if (!draw_rounds(waits)) return false;
+        const bool is_limited = volume.state() != DeviceVolume::State::complete;
+        if (is_limited && area_of(part) > MAX_WAITING_PIXELS) {
+            rounds_.reset();
+            for (const PicturePart& quarter : quarters_of(part)) parts_.push_back(quarter);
+            return true;
+        }
+        if (is_limited) begin_waiting();
+    }
+    if (rounds_->rays && !draw_waiting(waits)) return false;
+    finish(part, std::move(rounds_->passes));
     rounds_.reset();
-    if (volume.state() == DeviceVolume::State::complete)
-        finish(part, std::move(passes));
-    else if (area_of(part) <= MAX_WAITING_PIXELS)
-        draw_waiting(part);
-    else
-        for (const PicturePart& quarter : quarters_of(part)) parts_.push_back(quarter);
+    volume.let_rays_wait(false);
     return true;
 }
 
@@ -383,40 +389,39 @@ bool PictureJob::draw_rounds(bool waits)
     }
 }
 
+void PictureJob::begin_waiting()
+{
+    const PicturePart part = rounds_->part;
+    rounds_.emplace(Rounds{.part = part, .round = 1});
+    rounds_->rays.emplace(renderer_.memory(), part.end - part.begin, pictures_of(pane().shot, part.probe));
+    rounds_->waits_for_light = !pane().shot.is_slice && scene().has_occlusion(look_);
+}
+
 /// Draws a part whose rays need more bricks than there is room for. In every round the bricks that rays wait for are
 /// loaded, the nearest first, as many as there is room for; so some ray goes on, and bricks are passed from near to
-/// far.
-void PictureJob::draw_waiting(const PicturePart& part)
+/// far. Where others have drawn since the last step, which rays wait for what is found out again.
+bool PictureJob::draw_waiting(bool waits)
 {
     DeviceVolume& volume = scene().volume();
-    WaitingRays rays(renderer_.memory(), part.end - part.begin, pictures_of(pane().shot, part.probe));
-    std::vector<gpu::PassReport> passes;
-    bool waits_for_light = !pane().shot.is_slice && scene().has_occlusion(look_);
-    std::function<bool(const BrickKey&)> is_ready;
-    if (waits_for_light) is_ready = [&scene = scene()](const BrickKey& key) { return scene.occlusion().is_lit(key); };
-    volume.let_rays_wait(true, is_ready);
-    const std::unique_ptr<DeviceVolume, void (*)(DeviceVolume*)> ends(&volume,
-                                                                      [](DeviceVolume* v) { v->let_rays_wait(false); });
-    for (int round = 1;; ++round) {
+    const auto is_lit = [&scene = scene()](const BrickKey& key) { return scene.occlusion().is_lit(key); };
+    for (;; ++rounds_->round) {
+        volume.let_rays_wait(true, rounds_->waits_for_light ? std::function<bool(const BrickKey&)>(is_lit) : nullptr);
+        if (!volume.has_rays_waiting()) {
+            append(rounds_->passes, draw(rounds_->part, &*rounds_->rays));
+            if (!volume.has_rays_waiting()) return true;
+            if (rounds_->waits_for_light && !volume.limit_visits(scene().occlusion().reach())) {
+                // In vain: rays go on with what light there is.
+                note_limited();
+                volume.let_rays_wait(false);
+                volume.want_around({});
+                rounds_->waits_for_light = false;
+                continue;
+            }
+        }
+        const Progress progress = progress_of(rounds_->part, rounds_->round);
+        if (!(rounds_->waits_for_light ? renew_occlusion(progress, waits) : load(progress, waits))) return false;
         volume.forget_visits();
-        append(passes, draw(part, &rays));
-        if (!volume.has_rays_waiting()) break;
-        const Progress progress = progress_of(part, round);
-        if (waits_for_light && volume.limit_visits(scene().occlusion().reach())) {
-            static_cast<void>(renew_occlusion(progress, true));
-            continue;
-        }
-        if (waits_for_light) {  // in vain: rays go on with what light there is
-            note_limited();
-            volume.let_rays_wait(false);
-            volume.let_rays_wait(true);
-            volume.want_around({});
-            waits_for_light = false;
-            continue;
-        }
-        scene().advance(true, progress);
     }
-    finish(part, std::move(passes));
 }
 
 /// The light of one brick needs more bricks than there is room for.

@@ -30,8 +30,8 @@ public:
     /// or drawn by rays that wait for them. Where nothing is paged, and a GPU draws, waits for the part before, so that
     /// the device has work while that one's pixels are taken. Hands on the rows of a band that is done.
     ///
-    /// `waits` false: for no brick that is read, unless rays wait for bricks; the next step goes on with the part, and
-    /// others may look at the volume meanwhile.
+    /// `waits` false: for no brick that is read; the next step goes on with the part, and others may look at the volume
+    /// and draw meanwhile.
     void step(bool waits = true);
     /// The last step left a part whose bricks are still to come, or their light.
     bool is_waiting() const { return rounds_.has_value(); }
@@ -63,7 +63,8 @@ private:
     bool draw_completely(const PicturePart& part, bool waits);
     bool draw_rounds(bool waits);
     bool has_given_way(const PicturePart& part, const std::string& why);
-    void draw_waiting(const PicturePart& part);
+    void begin_waiting();
+    bool draw_waiting(bool waits);
     void note_limited();
     void finish(const PicturePart& part, std::vector<gpu::PassReport> passes);
     bool load(const Progress& progress, bool waits);
@@ -92,6 +93,9 @@ private:
         int round = 0;          ///< of which its light is renewed, it is drawn, and its bricks are loaded
         bool is_drawn = false;  ///< in this round
         std::vector<gpu::PassReport> passes{};
+        /// Where its rays wait for bricks, or for their light as well.
+        std::optional<WaitingRays> rays{};
+        bool waits_for_light = false;
     };
     std::optional<Rounds> rounds_;         ///< begun by draw_completely
     std::optional<UnderWay> under_way_;    ///< begun by draw_ahead

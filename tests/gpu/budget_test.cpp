@@ -15,12 +15,14 @@ namespace {
 
 using Source = std::shared_ptr<const VolumeSource>;
 constexpr VolumeStatistics BYTES{.minimum = 0.0, .maximum = 255.0};
+constexpr uint64_t LARGE_MIB = 1024;
 
 struct Scenery {
     Session session;
     RenderOptions options;
     Document document;
     std::optional<Camera> camera{};  ///< null: from the front
+    bool is_crowded = false;         ///< a small budget has no room for the bricks of one ray
 };
 
 Scenery scenery_of(const VolumeInfo& info, const glm::uvec2& pixels)
@@ -65,6 +67,7 @@ Picture picture_of(const Source& source, const Scenery& scenery, uint64_t device
     const Camera camera = scenery.camera.value_or(camera_looking("front", source->info()));
     Picture picture = renderer.render(scenery.session, camera, scenery.options);
     CHECK(renderer.memory().peak_device_bytes() <= device_mib << 20);
+    if (scenery.is_crowded && device_mib < LARGE_MIB) CHECK(renderer.volume().counts()->evictions > 0);
     for (const std::string& message : renderer.device().take_validation_messages()) FAIL_CHECK(message);
     return picture;
 }
@@ -73,7 +76,7 @@ void check_budgets(const char* name, const Source& source, const Scenery& scener
                    const std::vector<uint64_t>& device_mib)
 {
     CAPTURE(std::string(name));
-    const Picture expected = picture_of(source, scenery, 1024);
+    const Picture expected = picture_of(source, scenery, LARGE_MIB);
     CHECK(expected.complete);
     for (const uint64_t mib : device_mib) {
         CAPTURE(mib);
@@ -134,14 +137,15 @@ TEST_CASE("a volume that a budget does not hold is drawn as fine as one that is 
 
 TEST_CASE("a ray passes more bricks than there is room for")
 {
-    // 132 bricks along x, each of which shows something; a budget of 16 MiB has room for 127.
-    const Source source = open_procedural({.kind = "fog", .size = {4224, 34, 20}, .seed = 5});
+    // 232 bricks along x, each of which shows something; a budget of 16 MiB has room for 199.
+    const Source source = open_procedural({.kind = "fog", .size = {7424, 34, 20}, .seed = 5});
     Scenery plain = scenery_of(source->info(), {4, 3});
     plain.session.light.shaded = false;
     plain.session.transfer_function = TransferFunction({{50.0, glm::dvec3(0.9, 0.2, 0.1), 1e-4},
                                                         {110.0, glm::dvec3(0.2, 0.9, 0.3), 5e-4},
                                                         {170.0, glm::dvec3(0.3, 0.4, 1.0), 2e-4}});
-    plain.camera = camera_along({.size = {4224, 34, 20}}, {1.0, 0.002, 0.001}, 16.0);
+    plain.camera = camera_along({.size = {7424, 34, 20}}, {1.0, 0.001, 0.0005}, 16.0);
+    plain.is_crowded = true;
     // Most of the time goes into preparing a device and its kernels for each, so what goes together is drawn together.
     const std::pair<const char*, std::function<void(Scenery&)>> kinds[] = {
         {"translucent, two eyes, less colour",
@@ -153,14 +157,14 @@ TEST_CASE("a ray passes more bricks than there is room for")
         {"pre-integration and paint, an opaque surface far behind",
          [](Scenery& s) {
              s.session.render.preintegration = true;
-             s.session.surfaces = {{{4100, 17, 10}, {4100, 17, 10}, 6.0, 6.0, glm::dvec3(0.1, 0.9, 0.3)}};
+             s.session.surfaces = {{{7300, 17, 10}, {7300, 17, 10}, 6.0, 6.0, glm::dvec3(0.1, 0.9, 0.3)}};
              s.document.mask.apply({.brick = 100, .runs = {{.first = 9000, .last = 19000, .before = 0, .after = 3}}},
                                    Direction::forwards);
          }},
         {"an iso-surface",
          [](Scenery& s) {
-             s.options.probe = ProbeLook{.center = {2112.0, 17.0, 10.0},
-                                         .radius = 2200.0,
+             s.options.probe = ProbeLook{.center = {3712.0, 17.0, 10.0},
+                                         .radius = 3900.0,
                                          .color = RED,
                                          .ball_share = 0.0,
                                          .shell = ShellLook{.threshold = 110.0, .opacity = 0.01, .is_box = true}};
@@ -168,7 +172,7 @@ TEST_CASE("a ray passes more bricks than there is room for")
         {"shading and ambient occlusion",
          [](Scenery& s) {
              s.session.light.shaded = true;
-             s.session.light.occlusion = {.strength = 1.0, .radius = 7.0, .rays = 4};
+             s.session.light.occlusion = {.strength = 1.0, .radius = 24.0, .rays = 4, .curve = 50.0};
          }},
     };
     for (const auto& [name, change] : kinds) {
@@ -241,7 +245,7 @@ TEST_CASE("bands of rows have the bits of a picture drawn whole, lines over them
     scenery.options.probe->preview = nullptr;
     for (const Arrangement arrangement : {Arrangement::single, Arrangement::overview, Arrangement::slices}) {
         scenery.session.view.arrangement = arrangement;
-        const ImageF whole = picture_of(source, scenery, 1024).image;
+        const ImageF whole = picture_of(source, scenery, LARGE_MIB).image;
         Renderer renderer({.device = {.validation = true}, .budget = {0, 4 << 20}, .threads = 1});
         renderer.load(source, BYTES, scenery.session.render);
         ImageF image{600, 0, {}};

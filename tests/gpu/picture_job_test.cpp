@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <filesystem>
+#include <functional>
 #include <mutex>
 #include <thread>
 
@@ -52,6 +53,13 @@ public:
         let_ = waited_for_ > 0 ? ALL : reads;
         changed_.notify_all();
     }
+    /// Lets the readers read a little, while nobody waits for them.
+    void read_a_little()
+    {
+        let(8);
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        let(0);
+    }
     int reads() const
     {
         const std::scoped_lock lock(mutex_);
@@ -98,14 +106,36 @@ struct SlowlyRead {
         gated->let(ALL);
         for (const std::string& message : renderer.device().take_validation_messages()) FAIL_CHECK(message);
     }
-    /// Lets the readers read a little, while nobody waits for them.
-    void read_a_little() const
-    {
-        gated->let(8);
-        std::this_thread::sleep_for(std::chrono::milliseconds(2));
-        gated->let(0);
-    }
 };
+
+/// Draws the picture in steps, none of which may wait for a brick. After each that left some to come a little is read,
+/// and after every fifth of them `others` come in between.
+void check_steps(Renderer& renderer, const Session& session, const Camera& camera, const RenderOptions& options,
+                 Gated& gated, const ImageF& expected, const std::function<void()>& others)
+{
+    ImageF image{expected.width, 0, {}};
+    PictureJob job(renderer, session, camera, options, [&](const ImageF& rows) {
+        image.height += rows.height;
+        image.rgba.insert(image.rgba.end(), rows.rgba.begin(), rows.rgba.end());
+    });
+    gated.let(0);
+    int waiting = 0;
+    for (int steps = 0; !job.is_done() && gated.waited_for() == 0; ++steps) {
+        REQUIRE(steps < 20'000);
+        const int before = gated.reads();
+        job.step(false);
+        CHECK(gated.reads() == before);
+        if (!job.is_waiting()) continue;
+        gated.read_a_little();
+        if (++waiting % 5 == 0) others();
+    }
+    REQUIRE(gated.waited_for() == 0);  // by a step
+    CHECK(waiting > 10);
+    const Picture picture = job.take();
+    for (const std::string& warning : picture.warnings) FAIL_CHECK(warning);
+    CHECK(picture.complete);
+    CHECK(different_bits(image, expected) == 0);
+}
 
 }  // namespace
 
@@ -164,29 +194,43 @@ TEST_CASE("a picture in parts has the bits of one drawn whole, resident and with
 
 TEST_CASE_FIXTURE(SlowlyRead, "a picture whose steps wait for no brick has the same bits, whoever looks in between")
 {
-    ImageF image{101, 0, {}};
-    PictureJob job(renderer, session, camera, {.part_pixels = 48}, [&](const ImageF& rows) {
-        image.height += rows.height;
-        image.rgba.insert(image.rgba.end(), rows.rgba.begin(), rows.rgba.end());
+    check_steps(renderer, session, camera, {.part_pixels = 48}, *gated, expected, [&] {
+        look_at(renderer.scene(), session.look(), Shot(camera_looking("left", tubes->info())),
+                {.pixels = {40, 30}, .begin = glm::uvec2(0), .end = {40, 30}});
     });
-    gated->let(0);
-    int waiting = 0;
-    for (int steps = 0; !job.is_done() && gated->waited_for() == 0; ++steps) {
-        REQUIRE(steps < 20'000);
-        const int before = gated->reads();
-        job.step(false);
-        CHECK(gated->reads() == before);
-        if (!job.is_waiting()) continue;
-        ++waiting;
-        read_a_little();
-        if (steps % 5 == 4)
-            look_at(renderer.scene(), session.look(), Shot(camera_looking("left", tubes->info())),
-                    {.pixels = {40, 30}, .begin = glm::uvec2(0), .end = {40, 30}});
+}
+
+TEST_CASE("rays that wait for bricks wait for no disk where a step must not, whoever draws in between")
+{
+    // 232 bricks along x, each of which shows something; a budget of 16 MiB has room for 199.
+    const std::shared_ptr<const VolumeSource> fog = open_procedural({.kind = "fog", .size = {7424, 34, 20}, .seed = 5});
+    Session session;
+    session.transfer_function =
+        TransferFunction({{50.0, glm::dvec3(0.9, 0.2, 0.1), 1e-4}, {170.0, glm::dvec3(0.3, 0.4, 1.0), 5e-4}});
+    session.render.size = {4, 3};
+    session.render.sampling = Sampling::exact;
+    const Camera camera = camera_along({.size = {7424, 34, 20}}, {1.0, 0.001, 0.0005}, 16.0);
+    ImageF unlit;
+    for (const bool is_lit : {false, true}) {
+        CAPTURE(is_lit);
+        if (is_lit) session.light.occlusion = {.strength = 1.0, .radius = 24.0, .rays = 4, .curve = 50.0};
+        Renderer large({.device = {.validation = true}, .threads = 2});
+        large.load(fog, {.minimum = 0.0, .maximum = 255.0}, session.render, is_lit);
+        const ImageF expected = large.render(session, camera).image;
+        if (is_lit) CHECK(different_bits(expected, unlit) > 0);
+        unlit = expected;
+        const auto gated = std::make_shared<Gated>(fog);
+        gated->let(ALL);
+        Renderer small({.device = {.validation = true}, .budget = {16 << 20, 0}, .threads = 2});
+        small.load(gated, {.minimum = 0.0, .maximum = 255.0}, session.render, is_lit);
+        check_steps(small, session, camera, {}, *gated, expected, [&] {
+            small.executor().run(prepared(small.scene(), session.look(), Shot(camera_looking("front", fog->info())),
+                                          {.pixels = {40, 30}, .begin = glm::uvec2(0), .end = {40, 30}}));
+        });
+        CHECK(small.volume().counts()->evictions > 0);
+        gated->let(ALL);
+        for (const std::string& message : small.device().take_validation_messages()) FAIL_CHECK(message);
     }
-    REQUIRE(gated->waited_for() == 0);  // by a step
-    CHECK(waiting > 10);
-    CHECK(job.take().complete);
-    CHECK(different_bits(image, expected) == 0);
 }
 
 TEST_CASE_FIXTURE(SlowlyRead, "a large screenshot waits for its bricks beside the window, which shows its own view")
@@ -226,7 +270,7 @@ TEST_CASE_FIXTURE(SlowlyRead, "a large screenshot waits for its bricks beside th
         said = screenshots.advance(screen, folder / "scan", true, texts, [] { return ui::Figure(); }).said;
         CHECK(gated->reads() == before);
         was_held = was_held || screen.is_held();
-        read_a_little();
+        gated->read_a_little();
     }
     REQUIRE(gated->waited_for() == 0);  // by a turn of the window
     CHECK(is_followed);

@@ -159,7 +159,7 @@ class Faults(Window):
         x, y = self.start_with_faults(session)
         self.paint_at(x, y, 3)
         for size, fault in [((700, 500), "vkCreateSwapchainKHR:1:out_of_device_memory"),
-                            ((800, 560), "vkAllocateMemory:1:out_of_device_memory"),
+                            ((960, 640), "vkAllocateMemory:1:out_of_device_memory"),
                             ((640, 480), "vkCreateImage:1:out_of_host_memory"),
                             ((720, 620), "vkCreateImageView:1:out_of_device_memory"),
                             ((760, 520), "vkCreateFramebuffer:1:out_of_device_memory"),

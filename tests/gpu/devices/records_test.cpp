@@ -1,5 +1,6 @@
 // The engine on devices with other limits (tests/layers/records.h): views wider than 3-D images, and automatic budgets.
 
+#include <functional>
 #include <tuple>
 
 #include <doctest/doctest.h>
@@ -211,20 +212,27 @@ TEST_CASE("a GPU draws the next part of a picture while one is taken, to the bit
     CHECK(two[8] == 1.0);
 }
 
-TEST_CASE("small buffers share allocations, of which a device may allow few")
+TEST_CASE("small buffers share allocations, of which a device may allow few, and so do small images")
 {
     On device("minimum");
-    std::vector<gpu::Storage> kept;
-    const uint64_t before = device->memory().allocations();
-    for (int i = 0; i < 500; ++i) kept.push_back(device->memory().create("small", buffer_desc(1000 + 16 * i)));
-    CHECK(device->memory().allocations() - before <= 5);
-    const uint64_t made = device->memory().allocations_made();
-    for (int i = 0; i < 500; i += 2) kept[size_t(i)].reset();
-    for (int i = 0; i < 500; i += 2)
-        kept[size_t(i)] = device->memory().create("small", buffer_desc(1000 + 16 * i), gpu::Placement::device);
-    CHECK(device->memory().allocations_made() == made);
-    kept.clear();
-    CHECK(device->memory().allocations() - before <= 1);  // one is kept for the next small buffer
+    const std::function<ResourceDesc(uint32_t)> kinds[] = {
+        [](uint32_t i) { return buffer_desc(1000 + 16 * i); },
+        [](uint32_t i) {
+            return picture_desc(Format::rgba8_unorm, {16, 16 + i / 4});
+        }};
+    for (const auto& desc : kinds) {
+        const auto create = [&](uint32_t i) { return device->memory().create("small", desc(i)); };
+        std::vector<gpu::Storage> kept;
+        const uint64_t before = device->memory().allocations();
+        for (uint32_t i = 0; i < 500; ++i) kept.push_back(create(i));
+        CHECK(device->memory().allocations() - before <= 8);
+        const uint64_t made = device->memory().allocations_made();
+        for (uint32_t i = 0; i < 500; i += 2) kept[i].reset();
+        for (uint32_t i = 0; i < 500; i += 2) kept[i] = create(i);
+        CHECK(device->memory().allocations_made() == made);
+        kept.clear();
+        CHECK(device->memory().allocations() - before <= 1);  // one is kept for the next small one
+    }
 }
 
 TEST_CASE("paint is drawn as long as it fits, though there is no room for more of it")
