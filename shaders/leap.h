@@ -43,9 +43,20 @@ struct LeapBoundParams {
     uvec3 changed_end;
 };
 
+SHARED_CONST uint SAMPLE_BITS_AHEAD = 24u;
+SHARED_CONST uint SAMPLE_BIT_PARTS = 32768u;
+/// Voxels along z of volumes with sample bits: parts have 31 bits. Along y there may be four times as many.
+SHARED_CONST uint SAMPLE_BITS_SIZE = 4095u;
+SHARED_CONST float SAMPLE_BITS_REACH = 4.0f;
+
 /// Sample bits: whether a sample may show anything, by the eight voxels that it lies between. Its place is that of the
 /// upper ones, floor(position - 0.5) + 1, no further than the volume's last voxel. Two texels per cell, of two planes
 /// along z each: bit x + 4 y + 16 z.
+///
+/// Rays find the places of SAMPLE_BITS_AHEAD samples by whole parts of a voxel: SAMPLE_BIT_PARTS along x, four times as
+/// many along y and sixteen times along z. So a sample may be taken for one of the neighbouring voxels, as far away as
+/// its own coordinates may be wrong and the parts round; bits are guarded against that for rays whose ends are at most
+/// SAMPLE_BITS_REACH times the volume's longest side apart, along each axis, and others do without.
 struct SampleBitsParams {
     uvec3 cell_begin;  ///< the cells to compute
     uvec3 cell_end;

@@ -36,13 +36,13 @@ void main()
 {
     const uvec3 cell = params.cell_begin + gl_GlobalInvocationID;
     if (any(greaterThanEqual(cell, params.cell_end))) return;
-    // Samples between the centres of these voxels and of those before them lie in up to eight cells.
-    bool is_empty = true, is_painted = false;
-    [[unroll]] for (uint i = 0u; i < 8u; ++i) {
+    // Samples between the centres of these voxels and of those before them lie in up to eight cells; taken for one of
+    // the next voxels, in any of those around.
+    const bool is_empty = imageLoad(leap, ivec3(cell)).x >> LEAP_DISTANCE_SHIFT > 1u;
+    bool is_painted = false;
+    [[unroll]] for (uint i = 0u; i < 8u && !is_empty; ++i) {
         const uvec3 before = uvec3(i & 1u, i >> 1u & 1u, i >> 2u);
-        const uint entry = imageLoad(leap, ivec3(cell - min(cell, before))).x;
-        is_empty = is_empty && entry >> LEAP_DISTANCE_SHIFT > 0u;
-        is_painted = is_painted || (entry & LEAP_PAINTED) != 0u;
+        is_painted = is_painted || (imageLoad(leap, ivec3(cell - min(cell, before))).x & LEAP_PAINTED) != 0u;
     }
     uvec2 bits = uvec2(is_painted ? ALL : 0u);
     if (!is_empty && !is_painted) {

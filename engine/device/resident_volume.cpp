@@ -164,7 +164,10 @@ void ResidentVolume::create_images()
     cell_ranges_ = create("cell ranges", shape->cells);
     leap_ = create("leap grid", shape->cells);
     const ResourceDesc bits = image_desc(Format::r32_uint, shape->cells.texels * glm::uvec3(1, 1, 2));
-    if (codes_ != AtlasCodes::filtered && memory_.can_create(bits)) sample_bits_ = create("sample bits", bits);
+    const glm::uvec3 most = gpu::SAMPLE_BITS_SIZE * glm::uvec3(16, 4, 1);
+    if (codes_ != AtlasCodes::filtered && glm::all(glm::lessThanEqual(glm::uvec3(info().size), most)) &&
+        memory_.can_create(bits))
+        sample_bits_ = create("sample bits", bits);
     for (gpu::Storage& scratch : leap_scratch_) scratch = create("leap scratch", shape->cells);
 }
 

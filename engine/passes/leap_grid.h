@@ -6,7 +6,8 @@
 //
 //   occupancy -> scratch[0] -> distance along x -> scratch[1] -> along y -> scratch[0] -> along z -> leap
 //
-// The sample bits, where the volume has room for them, follow the last stage and every patch: 84 loads per cell.
+// The sample bits, where the volume has room for them, follow the last stage and every patch: at most 84 loads
+// per cell.
 //
 // A patch makes the grid correct at once after a few cells changed, but some leaps are shorter than necessary until the
 // four stages have run. One thread per cell, few loads.

@@ -68,6 +68,21 @@ struct Choice {
     uint32_t kept = gpu::KEPT_NOTHING;
 };
 
+/// Whether all rays of the part are short enough for sample bits (shaders/leap.h), as they are unless the angle of view
+/// is extreme.
+bool finds_sample_bits(const gpu::RaycastParams& params)
+{
+    const glm::vec3& limit = params.position_limit;
+    const float most = gpu::SAMPLE_BITS_REACH * std::max({limit.x, limit.y, limit.z});
+    const auto is_near = [&](float x, float y) {
+        const glm::vec3 apart = params.far_corner - params.near_corner + x * (params.far_dx - params.near_dx) +
+                                y * (params.far_dy - params.near_dy);
+        return glm::all(glm::lessThanEqual(glm::abs(apart), glm::vec3(most)));
+    };
+    const glm::vec2 begin = params.pixel_begin, end = params.pixel_end;
+    return is_near(begin.x, begin.y) && is_near(end.x, begin.y) && is_near(begin.x, end.y) && is_near(end.x, end.y);
+}
+
 Choice choice_of(const VolumeBinding& volume, const RaycastInput& input, bool is_shelled, bool keeps_rays)
 {
     return {.is_paged = volume.pages.has_value(),
@@ -78,7 +93,7 @@ Choice choice_of(const VolumeBinding& volume, const RaycastInput& input, bool is
             .of_codes = constants_of_codes(volume, volume.pages.has_value()),
             .shell = is_shelled ? input.shell : gpu::SHELL_NONE,
             .feedback = volume.pages && volume.pages->feedback,
-            .has_sample_bits = volume.sample_bits.has_value(),
+            .has_sample_bits = volume.sample_bits && finds_sample_bits(input.params),
             .is_shaded = input.shaded,
             .picks = input.pick,
             .kept = input.waiting ? gpu::KEPT_ALL

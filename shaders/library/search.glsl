@@ -20,15 +20,28 @@ bool may_be_seen(const RaycastParams params, vec3 position, const Place place)
 #ifdef BITTED
 // Where there are sample bits (leap.h), a sample costs one load until one may show something.
 
-const uint BITS_AHEAD = 16u;   // in a turn
 // Cells: leaps from places with less around them are not worth a loop. In noise nearly all are short.
 const uint NEAR = 1u;
 
-bool bit_is_set(const RaycastParams params, vec3 position)
+// Which of the samples from step `i` on have their bits set; the lowest is that of step `i`. Places are found by whole
+// parts of a voxel (leap.h), which is a fraction of the work: from the voxels' first bits on coordinates lie side by
+// side, as in the number of a bit.
+uint bits_ahead(const RaycastParams params, const Ray ray, float begin, uint i)
 {
-    const ivec3 upper = min(ivec3(floor(position - 0.5)) + 1, ivec3(params.position_limit));
-    const uint bits = imageLoad(sample_bits, ivec3(upper.xy >> 2, upper.z >> 1)).x;
-    return (bits >> uint((upper.x & 3) | (upper.y & 3) << 2 | (upper.z & 1) << 4) & 1u) != 0u;
+    const vec3 parts = vec3(SAMPLE_BIT_PARTS, SAMPLE_BIT_PARTS << 2, SAMPLE_BIT_PARTS << 4);
+    const uvec3 last = (uvec3(params.position_limit) + 1u) * uvec3(parts) - 1u;
+    const uvec3 ahead = uvec3(ivec3(round(ray.direction * (params.step * parts))));
+    uvec3 place = uvec3(ivec3((sample_position(params, ray, begin, i) + 0.5) * parts));
+    uint found = 0u;
+    [[unroll]] for (uint k = 0u; k < SAMPLE_BITS_AHEAD; ++k) {
+        const uvec3 held = min(place, last);   // a ray may leave the volume; what is there is not used
+        const uint bits = imageLoad(sample_bits, ivec3(held / (uvec3(parts) * uvec3(4u, 4u, 2u)))).x;
+        const uint bit = (held.x & 3u * uint(parts.x) | held.y & 3u * uint(parts.y) | held.z & uint(parts.z)) /
+                         SAMPLE_BIT_PARTS;
+        found |= (bits >> bit & 1u) << k;
+        place += ahead;
+    }
+    return found;
 }
 
 // As search_sample.
@@ -50,12 +63,9 @@ void search_bits(const RaycastParams params, const Ray ray, float begin, uint en
                 if (COUNT_WORK != 0u) ++work.leaps;
             }
         } while (leaps_on);
-        bool is_found = false;
-        uint passed = 0u;
-        [[unroll]] for (uint k = 0u; k < BITS_AHEAD; ++k) {
-            is_found = is_found || bit_is_set(params, sample_position(params, ray, begin, min(i + k, end_step - 1u)));
-            passed += uint(!is_found);
-        }
+        const uint found = bits_ahead(params, ray, begin, i);
+        const bool is_found = found != 0u;
+        const uint passed = is_found ? uint(findLSB(found)) : SAMPLE_BITS_AHEAD;
         if (i < end_step) {
             i = min(i + passed, end_step);
             unseen += passed;

@@ -90,6 +90,42 @@ TEST_CASE_FIXTURE(OnDevice, "leaping over empty space changes no bit, under 1000
     CHECK(with_leaps < without);  // otherwise nothing was leapt over
 }
 
+TEST_CASE_FIXTURE(OnDevice, "a sample that rounding takes for one of the next voxels is seen")
+{
+    // Nothing shows along the rays until sample 23, 1.8e-4 voxels past the centre of voxel 26, of which voxel 27 makes
+    // it shine. Samples begin 1e-4 before such a centre and gain 1.2e-5 a step, which parts of a voxel round away, so
+    // that its place in those (shaders/leap.h) is one before voxel 26. No cell is empty.
+    constexpr double SHOWN = 32768.0;
+    load(volume_of({48, 8, 8}, [](const glm::dvec3& voxel) {
+        if (voxel.x == 27.5 || voxel.y < 2.0 || voxel.y > 6.0) return 65535.0;
+        return voxel.x == 26.5 ? SHOWN - 2.0 : 0.0;
+    }));
+    Session session = plain_session({{SHOWN, GREEN, 0.0}, {65535.0, GREEN, 0.5}}, {4, 4});
+    session.cut = {{3.0 - 1e-4, 0.0, 0.0}, {27.2, 8.0, 8.0}};
+    session.render.step_voxels = 1.000012;
+    const Camera camera = camera_along(volume(), {1.0, 0.0, 0.0}, 0.5);
+    const ImageF leaping = draw(session, camera);
+    session.render.skip_empty_space = false;
+    const ImageF whole = draw(session, camera);
+    check_below("differing bits", double(different_bits(leaping, whole)), 0.0);
+    session.cut.upper.x = 25.0;
+    CHECK(different_bits(whole, draw(session, camera)) > 0);
+}
+
+TEST_CASE_FIXTURE(OnDevice, "leaping changes no bit under the widest angles of view")
+{
+    load(noise_volume({41, 37, 33}, 5));
+    Session session = plain_session({{64000.0, GREEN, 0.0}, {65535.0, RED, 0.5}}, {24, 16});
+    for (const double fov : {60.0, 110.0, 150.0, 170.0}) {
+        CAPTURE(fov);
+        session.render.skip_empty_space = true;
+        const Camera camera = perspective({-12.0, 14.0, 20.0}, {20.0, 18.0, 16.0}, fov);
+        const ImageF leaping = draw(session, camera);
+        session.render.skip_empty_space = false;
+        check_below("differing bits", double(different_bits(leaping, draw(session, camera))), 0.0);
+    }
+}
+
 TEST_CASE_FIXTURE(OnDevice, "where brick borders fall changes no bit")
 {
     // The same voxels in three places, with brick borders in different positions. Camera, planes and steps are chosen
