@@ -23,6 +23,7 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/formats/dicom/dicom_jpeg.h"
+#include "engine/formats/dicom/dicom_rle.h"
 
 namespace shvr {
 namespace {
@@ -345,6 +346,7 @@ std::optional<DicomFile> read_dicom_file(const std::filesystem::path& path)
         check_rescale(reader.GetFile(), path);
         read_values(reader.GetFile().GetDataSet(), *layout, file);
         if (is_jpeg(layout->transfer_syntax)) check_jpeg_headers(input, layout->fragments, file.columns, file.rows);
+        if (is_rle(layout->transfer_syntax)) check_rle_headers(input, layout->fragments, int64_t(bytes_of(file.type)));
     } catch (const Error&) {
         throw;
     } catch (const std::exception& error) {

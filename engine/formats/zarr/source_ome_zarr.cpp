@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/formats/choice.h"
 #include "engine/formats/header_fields.h"
 #include "engine/formats/readers.h"
@@ -404,7 +405,7 @@ std::unique_ptr<VolumeSource> open_group(const ZarrPlace& place, const ZarrNode&
         return name != "zarr.json" && name != ".zattrs" && name != ".zgroup" && name != ".zarray";
     });
     if (has_no_zarr && !first.empty())
-        fail(path.string(), ": has no zarr.json at its root; it holds ", first,
+        fail(path.string(), ": has no zarr.json at its root; it holds ", in_quotes(first),
              " and no OME-Zarr: unpack it, and open what is in it");
     fail(path.string(), ": has no zarr.json ", place.prefix.empty() ? "at its root" : "here",
          "; expected a zipped OME-Zarr: zip the content of its folder, not the folder");

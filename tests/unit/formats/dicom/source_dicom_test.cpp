@@ -523,18 +523,44 @@ TEST_CASE("damaged DICOM slices are errors, and nothing is written to standard e
     CHECK(std::string(std::istreambuf_iterator<char>(read), {}) == "");
 }
 
+/// What is said of a slice whose only picture is coded as the transfer syntax says.
+std::string refusal_of_coded(const TemporaryFolder& folder, const std::string& transfer_syntax,
+                             const std::string& picture)
+{
+    Dicom slice = slice_of(0);
+    slice.transfer_syntax = transfer_syntax;
+    slice.elements.erase(PIXELS);
+    const auto item = [](int element, const std::string& bytes) {
+        return little(0xfffe, 2) + little(element, 2) + little(bytes.size(), 4) + bytes;
+    };
+    return refusal(folder.write("a.dcm", slice.file() + little(0x7fe0, 2) + little(0x10, 2) + std::string("OB\0\0", 4) +
+                                             little(0xffffffff, 4) + item(0xe000, "") + item(0xe000, picture) +
+                                             item(0xe0dd, "")));
+}
+
+TEST_CASE("run-length encoded pictures whose header GDCM would read beyond are refused in words")
+{
+    const TemporaryFolder folder;
+    const auto coded = [&](const std::vector<uint32_t>& header, const std::string& segments) {
+        std::string picture;
+        for (size_t i = 0; i < 16; ++i) picture += little(i < header.size() ? header[i] : 0, 4);
+        return refusal_of_coded(folder, "1.2.840.10008.1.2.5", picture + segments);
+    };
+    const std::string run("\xed\0\xed\1", 4);  // of 20 pixels, the high bytes and the low ones
+    CHECK(contains(coded({0x003e0002, 64, 66}, run), "has 4063234 segments; expected 2, one for each byte of a pixel"));
+    CHECK(contains(coded({0, 64, 66}, run), "has 0 segments; expected 2"));
+    CHECK(contains(coded({1, 64}, run), "has 1 segments; expected 2"));
+    CHECK(contains(coded({2, 60, 66}, run), "segment 1 of a run-length encoded picture begins at byte 60"));
+    CHECK(contains(coded({2, 64, 62}, run), "begins at byte 62 of it; expected 64 to 68"));
+    CHECK(contains(coded({2, 64, 0xfffffff0}, run), "begins at byte 4294967280 of it; expected 64 to 68"));
+    CHECK(contains(refusal_of_coded(folder, "1.2.840.10008.1.2.5", "short."), "has 6 bytes; expected a header of 64"));
+}
+
 TEST_CASE("what GDCM's decoders would end the program at is refused in words")
 {
     const TemporaryFolder folder;
     const auto encapsulated = [&](const std::string& picture) {
-        Dicom slice = slice_of(0);
-        slice.transfer_syntax = "1.2.840.10008.1.2.4.70";
-        slice.elements.erase(PIXELS);
-        return refusal(folder.write("a.dcm", slice.file() + little(0x7fe0, 2) + little(0x10, 2) +
-                                                 std::string("OB\0\0", 4) + little(0xffffffff, 4) + little(0xfffe, 2) +
-                                                 little(0xe000, 2) + little(0, 4) + little(0xfffe, 2) +
-                                                 little(0xe000, 2) + little(picture.size(), 4) + picture +
-                                                 little(0xfffe, 2) + little(0xe0dd, 2) + little(0, 4)));
+        return refusal_of_coded(folder, "1.2.840.10008.1.2.4.70", picture);
     };
     const Dicom plain = slice_of(0);
     const auto big = [](int number) { return std::string{char(number >> 8), char(number & 255)}; };
