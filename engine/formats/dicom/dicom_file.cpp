@@ -77,12 +77,14 @@ class Values {
 public:
     explicit Values(std::vector<const DataSet*> sets) : sets_(std::move(sets)) {}
 
-    std::string text(const Tag& tag) const
+    std::string text(const Tag& tag) const { return std::string(trimmed(untrimmed(tag))); }
+    /// As it is stored, up to a 0.
+    std::string untrimmed(const Tag& tag) const
     {
         const gdcm::ByteValue* value = find(tag);
         if (value == nullptr) return {};
         const std::string_view bytes(value->GetPointer(), value->GetLength());
-        return std::string(trimmed(bytes.substr(0, bytes.find('\0'))));
+        return std::string(bytes.substr(0, bytes.find('\0')));
     }
     /// Decimal strings, separated by backslashes; empty if one of them is not a number.
     std::vector<double> decimals(const Tag& tag) const
@@ -270,7 +272,9 @@ void read_values(const DataSet& set, const DicomLayout& layout, DicomFile& file)
     file.rows = values.short_number(Tag(0x0028, 0x0010), 0);
     if (file.columns == 0 || file.rows == 0) refuse(file, "Rows or Columns", "missing or 0", "1 to 65535");
     const int64_t samples = values.short_number(Tag(0x0028, 0x0002), 1);
-    const std::string colors = values.text(Tag(0x0028, 0x0004));
+    // One space fills it up to an even length; GDCM's readers of pictures end the program at anything else beside it.
+    std::string colors = values.untrimmed(Tag(0x0028, 0x0004));
+    if (colors.ends_with(' ')) colors.pop_back();
     if (samples != 1 || (!colors.empty() && colors != "MONOCHROME1" && colors != "MONOCHROME2")) {
         refuse(file, "Photometric Interpretation", in_quotes(colors),
                "MONOCHROME1 or MONOCHROME2, which have one sample per pixel");

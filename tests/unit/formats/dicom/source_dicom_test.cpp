@@ -585,6 +585,9 @@ TEST_CASE("what GDCM's decoders would end the program at is refused in words")
     CHECK(contains(encapsulated(start + frame(0xc5, 8, 5, 1) + scan), "unknown kind or depth"));
     CHECK(contains(encapsulated(start + frame(0xc3, 16, 5, 3) + scan), "5x4 pixels of 3 components; expected 5x4"));
     CHECK(contains(encapsulated(start + frame(0xc3, 16, 6, 1) + scan), "6x4 pixels of 1 components; expected 5x4"));
+    Dicom colored = plain;
+    colored.elements[0x00280004] = {"CS", "MONOCHROME2\t"};
+    CHECK(contains(refusal(folder.write("a.dcm", colored.file())), "Photometric Interpretation is \"MONOCHROME2?\""));
     // What passes is for GDCM, which has no pixels to decode here.
     CHECK(contains(
         encapsulated(start + std::string("\xff\xff\xe0\0\x10JFIF\0\x01\x02\0\0\x01\0\x01\0\0", 19) + good + scan),
