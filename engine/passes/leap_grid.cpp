@@ -68,7 +68,9 @@ float guard_of_sample_bits(const glm::uvec3& cell_counts)
 void sample_bits(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input)
 {
     if (!volume.sample_bits) return;
-    const CellBox cells{input.changed.begin, glm::min(input.changed.end + 1u, volume.cell_counts)};
+    // Cells on either side of the changed ones read their voxels, or whether they are empty.
+    const CellBox cells{input.changed.begin - glm::min(input.changed.begin, glm::uvec3(1)),
+                        glm::min(input.changed.end + 1u, volume.cell_counts)};
     Pass pass = graph.compute("sample_bits");
     pass.read("leap", volume.leap);
     read_atlas(pass, volume);
