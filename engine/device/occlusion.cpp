@@ -80,8 +80,10 @@ uint64_t Occlusion::scratch_bytes(const gpu::DeviceTraits& traits, uint64_t devi
     return slice_bytes(slice_for(traits, device_budget));
 }
 
-void Occlusion::create(const glm::uvec3& slots)
+void Occlusion::create(const DeviceVolume& volume)
 {
+    const glm::uvec3 slots = volume.atlas_slots();
+    const glm::uvec3 of_cells = is_paged_ ? slots : glm::uvec3(brick_counts(volume.info().size));
     slice_ = slice_for(memory_.device().traits(), memory_.device_budget());
     const auto create_image = [&](const char* name, const ResourceDesc& desc) {
         return memory_.create(name, desc, gpu::Placement::device, "ambient occlusion");
@@ -90,8 +92,8 @@ void Occlusion::create(const glm::uvec3& slots)
     near_ = create_image("occlusion scratch", occlusion_near_desc(slice_, is_paged_));
     for (uint32_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) {
         cells_[size] =
-            create_image("occlusion cells", image_desc(Format::r32_uint, (gpu::BRICK_SIZE >> (size + 1)) * slots));
-        around_[size] = create_image("occlusion scratch", occlusion_around_desc(size, slice_));
+            create_image("occlusion cells", image_desc(Format::r32_uint, (gpu::BRICK_SIZE >> (size + 1)) * of_cells));
+        if (is_paged_) around_[size] = create_image("occlusion scratch", occlusion_around_desc(size, slice_));
     }
     images_are_new_ = true;
 }
@@ -138,7 +140,7 @@ void Occlusion::look(const Look& look, const DeviceVolume& volume, const DeviceM
     if (volume_ != &volume) {
         clear();
         is_paged_ = volume.counts().has_value();
-        create(volume.atlas_slots());
+        create(volume);
         volume_ = &volume;
     }
     if (std::exchange(mask_, &mask) != &mask)
@@ -515,7 +517,7 @@ void Occlusion::add_values(FrameGraph& graph, const VolumeBinding& volume, Occlu
     }
     counts_.values += jobs.size();
     OcclusionScratch scratch{.near = graph.import("occlusion scratch", near_.import())};
-    for (size_t size = 0; size < around_.size(); ++size)
+    for (size_t size = 0; is_paged_ && size < around_.size(); ++size)
         scratch.around[size] = graph.import("occlusion scratch", around_[size].import());
     occlusion_bake(graph, volume, images, scratch, input, jobs, bricks_around);
 }

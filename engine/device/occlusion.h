@@ -92,7 +92,7 @@ private:
     };
     using Entries = std::unordered_map<BrickKey, Entry, BrickKeyHash>;
 
-    void create(const glm::uvec3& slots);
+    void create(const DeviceVolume& volume);
     template <class Set>
     void mark(const std::vector<BrickKey>& keys, const Set& set);
     void sync();

@@ -163,7 +163,7 @@ void gather(FrameGraph& graph, const VolumeBinding& volume, const OcclusionBindi
     read_atlas(pass, volume);
     bind_leap(pass, volume);
     group_each(pass, jobs.size(), gpu::OCCLUSION_SPLIT);
-    for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) {
+    for (size_t size = 0; volume.pages && size < gpu::OCCLUSION_SIZES; ++size) {
         pass.read(CELL_NAMES[size], occlusion.cells[size]);
         scratch.around[size] = pass.write(AROUND_NAMES[size], scratch.around[size]);
     }
@@ -221,7 +221,11 @@ void occlusion_bake(FrameGraph& graph, const VolumeBinding& volume, OcclusionBin
     pass.block("visible_intervals", std::span<const uint32_t>(input.visible_intervals));
     read_atlas(pass, volume);
     pass.read("near", scratch.near);
-    for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) pass.read(AROUND_NAMES[size], scratch.around[size]);
+    for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size)
+        if (volume.pages)
+            pass.read(AROUND_NAMES[size], scratch.around[size]);
+        else
+            pass.read(CELL_NAMES[size], occlusion.cells[size]);
     bind_leap(pass, volume);
     group_each(pass, jobs.size(), gpu::OCCLUSION_SPLIT);
     occlusion.values = pass.write("values", occlusion.values);

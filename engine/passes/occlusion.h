@@ -10,16 +10,17 @@
 
 namespace shvr {
 
-/// Images of slots, as many as the density atlas has.
 struct OcclusionBinding {
-    Resource values;                                     ///< r8ui, BRICK_TEXELS a side
-    std::array<Resource, gpu::OCCLUSION_SIZES> cells{};  ///< r32ui; half of BRICK_SIZE a side, a quarter
+    Resource values;  ///< r8ui, in slots of BRICK_TEXELS a side, as many as the density atlas has
+    /// r32ui; a brick is half of BRICK_SIZE a side, and a quarter. Paged ones are in slots, those of a resident volume
+    /// side by side as in the volume.
+    std::array<Resource, gpu::OCCLUSION_SIZES> cells{};
 };
 
 /// Temporary data gathered for a slice of bricks: images for as many jobs, at most OCCLUSION_SLICE.
 struct OcclusionScratch {
     Resource near;                                        ///< r32ui, ramps
-    std::array<Resource, gpu::OCCLUSION_SIZES> around{};  ///< r32ui, cells with aprons
+    std::array<Resource, gpu::OCCLUSION_SIZES> around{};  ///< r32ui, cells with aprons; of paged bricks
 };
 ResourceDesc occlusion_near_desc(uint32_t jobs, bool is_paged);
 ResourceDesc occlusion_around_desc(uint32_t size, uint32_t jobs);

@@ -28,8 +28,9 @@
 // of the stretch of a ray that a cell stands for, which grows with the radius.
 //
 // "Near" are ramps of voxels. They are made from densities and gradients for each brick in turn, with the surroundings
-// of the brick, and then discarded; so are copies of the cells around the brick, which let rays read from one piece of
-// memory. A voxel that paint or a cut holds has that opacity throughout.
+// of the brick, and then discarded; so are copies of the cells around a paged brick, which let rays read from one piece
+// of memory. Cells of a resident volume lie side by side as in the volume, so nothing is copied. A voxel that paint or
+// a cut holds has that opacity throughout.
 //
 // "Values" are the result, 255 where all light arrives, in slots like those of the density atlas, aprons included. Of a
 // resident volume a brick's values are written to the aprons of its neighbours. A paged brick's aprons are computed

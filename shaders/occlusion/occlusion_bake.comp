@@ -18,8 +18,16 @@ layout(binding = 3) uniform sampler3D atlas;
 layout(binding = 3, r32ui) uniform readonly uimage3D atlas;
 #endif
 layout(binding = 4, r32ui) uniform readonly uimage3D near;
+#ifdef PAGED
 layout(binding = 5, r32ui) uniform readonly uimage3D around_2;
 layout(binding = 6, r32ui) uniform readonly uimage3D around_4;
+#else
+// Outside the volume reads are 0 (robustImageAccess): empty.
+layout(binding = 5, r32ui) uniform readonly uimage3D cells_2;
+layout(binding = 6, r32ui) uniform readonly uimage3D cells_4;
+#define around_2 cells_2
+#define around_4 cells_4
+#endif
 layout(binding = 7, r8ui) uniform writeonly uimage3D values;
 #ifdef PAGED
 layout(binding = 8, r8ui) uniform readonly uimage3D cell_leap;
@@ -56,8 +64,8 @@ const float SOFT_NEAR[] = {1.25, 0.874, 0.734}, SOFT_2[] = {0.751, 0.59, 0.527};
 // above 0 where they are truncated; so the arithmetic is the same wherever a brick, or its apron, begins.
 const int NEAR_AHEAD = 4, CELLS_AHEAD = 64;
 
-// From positions in that block to texels of the scratch images, which hold jobs stacked along z; in those positions,
-// what blocks light: everything outside is empty.
+// From positions in that block to texels: of the scratch images, which hold jobs stacked along z, and of the cells,
+// which those of a resident volume are read from. In those positions, what blocks light: everything outside is empty.
 struct Block {
     ivec3 to_near, to_2, to_4;
     vec3 lower, upper;
@@ -69,11 +77,16 @@ Block block_of(const OcclusionJob of, ivec3 voxel)
     const ivec3 job = ivec3(scratch_place(gl_WorkGroupID.x));
     const vec3 begin = vec3(ivec3(BRICK_SIZE * of.brick) + first);
     const float share = 1.0 / float(1u << params.voxels.level);
-    const int side_2 = int((BRICK_SIZE >> 1u) + 2u * params.aprons[0]);
-    const int side_4 = int((BRICK_SIZE >> 2u) + 2u * params.aprons[1]);
+    const int side_2 = int(BRICK_SIZE >> 1u), side_4 = int(BRICK_SIZE >> 2u);
+#ifdef PAGED
+    const ivec2 aprons = ivec2(params.aprons[0], params.aprons[1]);
+    const ivec3 brick_2 = aprons[0] + (side_2 + 2 * aprons[0]) * job;
+    const ivec3 brick_4 = aprons[1] + (side_4 + 2 * aprons[1]) * job;
+#else
+    const ivec3 brick_2 = side_2 * ivec3(of.brick), brick_4 = side_4 * ivec3(of.brick);
+#endif
     return Block(first + (int(NEAR_APRON) - NEAR_AHEAD) + int(NEAR_SIDE) * job,
-                 (first >> 1) + (int(params.aprons[0]) - CELLS_AHEAD / 2) + side_2 * job,
-                 (first >> 2) + (int(params.aprons[1]) - CELLS_AHEAD / 4) + side_4 * job,
+                 (first >> 1) - CELLS_AHEAD / 2 + brick_2, (first >> 2) - CELLS_AHEAD / 4 + brick_4,
                  share * params.voxels.lower - begin, share * params.voxels.upper - begin);
 }
 

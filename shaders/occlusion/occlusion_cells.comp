@@ -82,7 +82,11 @@ void main()
 {
     const OcclusionCellsParams params = params_block.data;
     const OcclusionCellsJob job = jobs.list[gl_WorkGroupID.x];
-    const uvec3 slot = unpack_slot(job.slot);
+#ifdef PAGED
+    const uvec3 place = unpack_slot(job.slot);
+#else
+    const uvec3 place = job.brick;
+#endif
     for (uint z = 0u; z < 8u; ++z) {
         const uvec3 block = uvec3(gl_LocalInvocationID.xy, z);   // of 4^3 voxels
         // Light left by columns of four voxels: along x by yz, along y by xz, along z by xy.
@@ -105,7 +109,7 @@ void main()
             left_x[of_cube.y + 2u * of_cube.z] *= x;
             left_y[of_cube.x + 2u * of_cube.z] *= y;
             left_z[of_cube.x + 2u * of_cube.y] *= z;
-            imageStore(cells_2, ivec3(BRICK_SIZE / 2u * slot + half_block),
+            imageStore(cells_2, ivec3(BRICK_SIZE / 2u * place + half_block),
                        uvec4(ramp_of_cell(params, codes, found, is_held)));
         }
         vec3 through = vec3(0.0);
@@ -113,6 +117,6 @@ void main()
         for (uint i = 0u; i < 4u; ++i)
             through += vec3(dot(pow(left_x[i], exponent), vec4(1.0)), dot(pow(left_y[i], exponent), vec4(1.0)),
                             dot(pow(left_z[i], exponent), vec4(1.0)));
-        imageStore(cells_4, ivec3(BRICK_SIZE / 4u * slot + block), code_of(1.0 - through / 16.0));
+        imageStore(cells_4, ivec3(BRICK_SIZE / 4u * place + block), code_of(1.0 - through / 16.0));
     }
 }

@@ -1,5 +1,5 @@
 // Gathers what rays of a brick sample from the bricks around it (occlusion.h): ramps of voxels, made from densities and
-// gradients, and copies of the cells.
+// gradients, and copies of the cells of paged bricks: those of a resident volume lie side by side.
 // variants: PAGED FILTERED MASKED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -23,11 +23,13 @@ layout(binding = 5, r8ui) uniform readonly uimage3D cell_leap;
 #else
 layout(binding = 5, r32ui) uniform readonly uimage3D leap;
 #endif
-layout(binding = 9, r32ui) uniform readonly uimage3D cells_2;
-layout(binding = 10, r32ui) uniform readonly uimage3D cells_4;
-layout(binding = 11, r32ui) uniform writeonly uimage3D near;
+layout(binding = 9, r32ui) uniform writeonly uimage3D near;
+#ifdef PAGED
+layout(binding = 10, r32ui) uniform readonly uimage3D cells_2;
+layout(binding = 11, r32ui) uniform readonly uimage3D cells_4;
 layout(binding = 12, r32ui) uniform writeonly uimage3D around_2;
 layout(binding = 13, r32ui) uniform writeonly uimage3D around_4;
+#endif
 
 #include "occlusion_around.glsl"
 #include "occlusion_opacity.glsl"
@@ -86,6 +88,7 @@ uint near_of(const OcclusionGatherParams params, const OcclusionJob job, ivec3 v
     return held < 0.0 ? ramp : held_ramp(held);
 }
 
+#ifdef PAGED
 // What a ramp of a coarser level has for one of the cells that it covers, for the stretch of a tap of this level.
 uint part_of_ramp(uint packed, ivec3 cell, int above, float exponent)
 {
@@ -136,6 +139,7 @@ void copy_cells(const OcclusionGatherParams params, const OcclusionJob job, uint
             imageStore(around_4, texel + behind, uvec4(packed));
     }
 }
+#endif
 
 void main()
 {
@@ -145,9 +149,6 @@ void main()
     load_around(job, params.reach);
     if (lane == 0u) cell_count = 0u;
     barrier();
-    bool is_any_coarser = false;
-    for (uint i = 0u; i < OCCLUSION_AROUND; ++i)
-        is_any_coarser = is_any_coarser || (i < around_count(params.reach) && around[i] >> OCCLUSION_LEVEL_SHIFT > 0u);
     for (uint i = lane; i < CELLS_OF_ONE; i += 64u) {
         const uint cell = i * OCCLUSION_SPLIT + share;
         if (cell >= CELLS_OF_ALL) continue;
@@ -163,10 +164,15 @@ void main()
         const uint packed = near_of(params, job, texel - int(NEAR_APRON));
         imageStore(near, texel + int(NEAR_SIDE) * behind, uvec4(packed));
     }
+#ifdef PAGED
+    bool is_any_coarser = false;
+    for (uint i = 0u; i < OCCLUSION_AROUND; ++i)
+        is_any_coarser = is_any_coarser || (i < around_count(params.reach) && around[i] >> OCCLUSION_LEVEL_SHIFT > 0u);
     // Work that is rarely there is skipped by the loops' ends.
     const uint end_of_coarser = is_any_coarser ? ~0u : 0u;
     copy_cells(params, job, 0u, false, ~0u);
     copy_cells(params, job, 1u, false, ~0u);
     copy_cells(params, job, 0u, true, end_of_coarser);
     copy_cells(params, job, 1u, true, end_of_coarser);
+#endif
 }
