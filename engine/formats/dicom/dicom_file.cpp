@@ -217,8 +217,7 @@ DicomFrame read_frame(const Values& values, DicomFile& file, const ValueRange& s
         frame.position = glm::dvec3(p[0], p[1], p[2]);
     }
     if (const std::vector<double> a = values.decimals(Tag(0x0020, 0x0037)); a.size() == 6) {
-        const glm::dvec3 x(a[0], a[1], a[2]);
-        const glm::dvec3 y(a[3], a[4], a[5]);
+        const glm::dvec3 x(a[0], a[1], a[2]), y(a[3], a[4], a[5]);
         frame.has_orientation = glm::length(glm::cross(x, y)) > 0.1 && glm::length(x) < 2.0 && glm::length(y) < 2.0;
         if (frame.has_orientation) {
             frame.along_x = glm::normalize(x);
@@ -332,6 +331,17 @@ void check_rescale(const gdcm::File& file, const std::filesystem::path& path)
         fail(path.string(), ": Rescale Slope is missing beside Rescale Intercept; expected both, or neither");
 }
 
+/// Of files before DICOM. GDCM's readers of pictures end the program at other words, or take rows for columns.
+void check_recognition(const DataSet& set, const std::filesystem::path& path)
+{
+    const gdcm::DataElement& code = set.GetDataElement(Tag(0x0008, 0x0010));
+    if (code.IsEmpty()) return;  // or not there
+    const gdcm::ByteValue* value = code.GetByteValue();
+    const std::string text = value ? std::string(value->GetPointer(), value->GetLength()) : "a sequence";
+    if (text != "ACR-NEMA 1.0" && text != "ACR-NEMA 2.0")
+        fail(path.string(), ": Recognition Code is ", in_quotes(text), "; expected none, ACR-NEMA 1.0 or ACR-NEMA 2.0");
+}
+
 }  // namespace
 
 std::optional<DicomFile> read_dicom_file(const std::filesystem::path& path)
@@ -348,6 +358,7 @@ std::optional<DicomFile> read_dicom_file(const std::filesystem::path& path)
         if (!reader.ReadUpToTag(pixels, {pixels})) fail(path.string(), ": GDCM cannot read it; expected a DICOM file");
         check_types(reader.GetFile().GetDataSet(), path);
         check_rescale(reader.GetFile(), path);
+        check_recognition(reader.GetFile().GetDataSet(), path);
         read_values(reader.GetFile().GetDataSet(), *layout, file);
         if (is_jpeg(layout->transfer_syntax)) check_jpeg_headers(input, layout->fragments, file.columns, file.rows);
         if (is_rle(layout->transfer_syntax)) check_rle_headers(input, layout->fragments, int64_t(bytes_of(file.type)));
@@ -362,25 +373,22 @@ std::optional<DicomFile> read_dicom_file(const std::filesystem::path& path)
 std::vector<std::byte> read_dicom_pixels(const DicomFile& file, size_t frame, size_t bytes)
 {
     std::vector<std::byte> pixels(bytes);
-    const auto index = unsigned(frame);
     try {
         const Turn turn;
         gdcm::ImageRegionReader reader;
         reader.SetFileName(file.path.c_str());
         gdcm::BoxRegion region;
-        region.SetDomain(0, unsigned(file.columns - 1), 0, unsigned(file.rows - 1), index, index);
+        region.SetDomain(0, unsigned(file.columns - 1), 0, unsigned(file.rows - 1), unsigned(frame), unsigned(frame));
         reader.SetRegion(region);
         if (reader.ReadInformation() && reader.ComputeBufferLength() == bytes &&
-            reader.ReadIntoBuffer(reinterpret_cast<char*>(pixels.data()), bytes)) {
+            reader.ReadIntoBuffer(reinterpret_cast<char*>(pixels.data()), bytes))
             return pixels;
-        }
         // It can read some encodings only as a whole.
         gdcm::ImageReader whole;
         whole.SetFileName(file.path.c_str());
         if (file.frames.size() == 1 && whole.Read() && whole.GetImage().GetBufferLength() == bytes &&
-            whole.GetImage().GetBuffer(reinterpret_cast<char*>(pixels.data()))) {
+            whole.GetImage().GetBuffer(reinterpret_cast<char*>(pixels.data())))
             return pixels;
-        }
     } catch (const std::exception& error) {
         fail(file.path.string(), ": slice ", frame + 1, " cannot be decoded (", in_quotes(error.what()),
              "); expected pixel data that GDCM can decode");
