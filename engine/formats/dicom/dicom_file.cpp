@@ -1,22 +1,11 @@
 #include "engine/formats/dicom/dicom_file.h"
 
-#include <gdcmBoxRegion.h>
-#include <gdcmDict.h>
-#include <gdcmDicts.h>
-#include <gdcmGlobal.h>
-#include <gdcmImageReader.h>
-#include <gdcmImageRegionReader.h>
 #include <gdcmReader.h>
 #include <gdcmSequenceOfItems.h>
-#include <gdcmTrace.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
-#include <mutex>
-#include <ostream>
-#include <set>
 #include <string_view>
 #include <utility>
 
@@ -24,6 +13,7 @@
 #include "engine/base/text.h"
 #include "engine/formats/dicom/dicom_jpeg.h"
 #include "engine/formats/dicom/dicom_rle.h"
+#include "engine/formats/dicom/gdcm_turn.h"
 
 namespace shvr {
 namespace {
@@ -35,40 +25,6 @@ constexpr int64_t MAX_FRAMES = 65536;
 /// A larger decoded slice must have a minimum of bytes in its file; no codec compresses real slices better.
 constexpr int64_t LARGE_SLICE = int64_t{64} << 20;
 constexpr int64_t MAX_EXPANSION = 1000;
-/// The storage class of pictures of magnetic resonance.
-constexpr std::string_view RESONANCE = "1.2.840.10008.5.1.4.1.1.4";
-
-/// Held while GDCM runs, which it silences: GDCM would write to standard error, and its decoders to C's `stderr`, which
-/// therefore points to /dev/null meanwhile (the GNU C library allows assigning it; file descriptor 2, which sanitizers
-/// and C++ use, is left alone).
-class Turn {
-public:
-    Turn() : lock_(mutex())
-    {
-        static std::FILE* const silence = std::fopen("/dev/null", "we");
-        if (silence != nullptr) stderr = silence;
-        static std::ostream nowhere(nullptr);
-        static const bool once = [] {
-            gdcm::Trace::SetStream(nowhere);
-            gdcm::Trace::DebugOff();
-            gdcm::Trace::WarningOff();
-            gdcm::Trace::ErrorOff();
-            return true;
-        }();
-        static_cast<void>(once);
-    }
-    Turn(const Turn&) = delete;
-    ~Turn() { stderr = kept_; }
-
-private:
-    static std::mutex& mutex()
-    {
-        static std::mutex mutex;
-        return mutex;
-    }
-    std::lock_guard<std::mutex> lock_;
-    std::FILE* kept_ = stderr;
-};
 
 // ---- Values ---------------------------------------------------------------------------------------------------------
 
@@ -77,14 +33,13 @@ class Values {
 public:
     explicit Values(std::vector<const DataSet*> sets) : sets_(std::move(sets)) {}
 
-    std::string text(const Tag& tag) const { return std::string(trimmed(untrimmed(tag))); }
-    /// As it is stored, up to a 0.
-    std::string untrimmed(const Tag& tag) const
+    /// Up to a 0, without what fills it up.
+    std::string text(const Tag& tag) const
     {
         const gdcm::ByteValue* value = find(tag);
         if (value == nullptr) return {};
         const std::string_view bytes(value->GetPointer(), value->GetLength());
-        return std::string(bytes.substr(0, bytes.find('\0')));
+        return std::string(trimmed(bytes.substr(0, bytes.find('\0'))));
     }
     /// Decimal strings, separated by backslashes; empty if one of them is not a number.
     std::vector<double> decimals(const Tag& tag) const
@@ -180,7 +135,7 @@ private:
     fail(file.path.string(), ": ", field, " is ", found, "; expected ", expected);
 }
 
-VoxelType read_type(const DicomFile& file, const Values& values, std::optional<ValueRange>& stored)
+VoxelType read_type(DicomFile& file, const Values& values, std::optional<ValueRange>& stored)
 {
     const int64_t allocated = values.short_number(Tag(0x0028, 0x0100), 0);
     const int64_t bits = values.short_number(Tag(0x0028, 0x0101), allocated);
@@ -189,6 +144,12 @@ VoxelType read_type(const DicomFile& file, const Values& values, std::optional<V
         refuse(file, "Bits Allocated", std::to_string(allocated), "8, 16 or 32");
     }
     if (bits < 1 || bits > allocated) refuse(file, "Bits Stored", std::to_string(bits), "1 to Bits Allocated");
+    const int64_t high = values.short_number(Tag(0x0028, 0x0102), bits - 1);
+    if (high < bits - 1 || high >= allocated)
+        refuse(file, "High Bit", std::to_string(high), sentence(bits - 1, ", to Bits Allocated - 1").c_str());
+    file.stored.bits = int(bits);
+    file.stored.high_bit = int(high);
+    file.stored.is_signed = is_signed;
     const double values_there_are = std::ldexp(1.0, int(bits));
     stored = is_signed ? ValueRange{-0.5 * values_there_are, 0.5 * values_there_are - 1.0}
                        : ValueRange{0.0, values_there_are - 1.0};
@@ -271,9 +232,7 @@ void read_values(const DataSet& set, const DicomLayout& layout, DicomFile& file)
     file.rows = values.short_number(Tag(0x0028, 0x0010), 0);
     if (file.columns == 0 || file.rows == 0) refuse(file, "Rows or Columns", "missing or 0", "1 to 65535");
     const int64_t samples = values.short_number(Tag(0x0028, 0x0002), 1);
-    // One space fills it up to an even length; GDCM's readers of pictures end the program at anything else beside it.
-    std::string colors = values.untrimmed(Tag(0x0028, 0x0004));
-    if (colors.ends_with(' ')) colors.pop_back();
+    const std::string colors = values.text(Tag(0x0028, 0x0004));
     if (samples != 1 || (!colors.empty() && colors != "MONOCHROME1" && colors != "MONOCHROME2")) {
         refuse(file, "Photometric Interpretation", in_quotes(colors),
                "MONOCHROME1 or MONOCHROME2, which have one sample per pixel");
@@ -293,55 +252,6 @@ void read_values(const DataSet& set, const DicomLayout& layout, DicomFile& file)
     }
 }
 
-/// What GDCM's readers of pictures look at by the dictionary's types; they end the program at a value of another type.
-bool is_of_pictures(const Tag& tag)
-{
-    static const std::set<Tag> OTHERS{Tag(0x0018, 0x0088), Tag(0x0018, 0x1164), Tag(0x0020, 0x0032),
-                                      Tag(0x0020, 0x0037), Tag(0x3004, 0x000c)};
-    return tag.GetGroup() == 0x0028 || OTHERS.contains(tag);
-}
-
-/// Fails at a value whose type is not the dictionary's; also within sequences, whose depth was checked
-/// (dicom_layout.h).
-void check_types(const DataSet& set, const std::filesystem::path& path)
-{
-    const gdcm::Dict& dictionary = gdcm::Global::GetInstance().GetDicts().GetPublicDict();
-    for (const gdcm::DataElement& element : set.GetDES()) {
-        const gdcm::VR known = dictionary.GetDictEntry(element.GetTag()).GetVR(), stated = element.GetVR();
-        const bool is_read = is_of_pictures(element.GetTag()) && known != gdcm::VR::INVALID;
-        if (is_read && stated != gdcm::VR::INVALID && !known.Compatible(stated))
-            fail(path.string(), ": element ", element.GetTag(), " is of type ", stated, "; expected ", known);
-        if (!(stated & gdcm::VR::SQ)) continue;
-        const gdcm::SmartPointer<gdcm::SequenceOfItems> items = element.GetValueAsSQ();
-        for (gdcm::SequenceOfItems::SizeType i = 1; items && i <= items->GetNumberOfItems(); ++i)
-            check_types(items->GetItem(i).GetNestedDataSet(), path);
-    }
-}
-
-/// GDCM's readers of pictures end the program where magnetic resonance states an intercept and no slope.
-void check_rescale(const gdcm::File& file, const std::filesystem::path& path)
-{
-    const DataSet& set = file.GetDataSet();
-    const Tag intercept(0x0028, 0x1052), slope(0x0028, 0x1053), storage(0x0008, 0x0016), modality(0x0008, 0x0060);
-    if (!set.FindDataElement(intercept) && !set.FindDataElement(slope)) return;
-    const Values values({&set}), header({&file.GetHeader()});
-    const bool is_resonance = values.text(storage) == RESONANCE || values.text(modality) == "MR" ||
-                              header.text(Tag(0x0002, 0x0002)) == RESONANCE;
-    if (is_resonance && values.text(slope).empty())
-        fail(path.string(), ": Rescale Slope is missing beside Rescale Intercept; expected both, or neither");
-}
-
-/// Of files before DICOM. GDCM's readers of pictures end the program at other words, or take rows for columns.
-void check_recognition(const DataSet& set, const std::filesystem::path& path)
-{
-    const gdcm::DataElement& code = set.GetDataElement(Tag(0x0008, 0x0010));
-    if (code.IsEmpty()) return;  // or not there
-    const gdcm::ByteValue* value = code.GetByteValue();
-    const std::string text = value ? std::string(value->GetPointer(), value->GetLength()) : "a sequence";
-    if (text != "ACR-NEMA 1.0" && text != "ACR-NEMA 2.0")
-        fail(path.string(), ": Recognition Code is ", in_quotes(text), "; expected none, ACR-NEMA 1.0 or ACR-NEMA 2.0");
-}
-
 }  // namespace
 
 std::optional<DicomFile> read_dicom_file(const std::filesystem::path& path)
@@ -349,18 +259,17 @@ std::optional<DicomFile> read_dicom_file(const std::filesystem::path& path)
     const InputFile input = open_input_file(path);
     const std::optional<DicomLayout> layout = check_dicom_layout(input);
     if (!layout || layout->pixel_bytes == 0) return {};
-    const Turn turn;
+    const GdcmTurn turn;
     gdcm::Reader reader;
     reader.SetFileName(path.c_str());
     const Tag pixels(0x7fe0, 0x0010);
-    DicomFile file{.path = path};
+    DicomFile file{.path = path, .stored = {.layout = *layout}};
     try {
         if (!reader.ReadUpToTag(pixels, {pixels})) fail(path.string(), ": GDCM cannot read it; expected a DICOM file");
-        check_types(reader.GetFile().GetDataSet(), path);
-        check_rescale(reader.GetFile(), path);
-        check_recognition(reader.GetFile().GetDataSet(), path);
         read_values(reader.GetFile().GetDataSet(), *layout, file);
         if (is_jpeg(layout->transfer_syntax)) check_jpeg_headers(input, layout->fragments, file.columns, file.rows);
+        if (is_jpeg_2000(layout->transfer_syntax))
+            check_jpeg_2000_headers(input, layout->fragments, file.columns, file.rows);
         if (is_rle(layout->transfer_syntax)) check_rle_headers(input, layout->fragments, int64_t(bytes_of(file.type)));
     } catch (const Error&) {
         throw;
@@ -368,33 +277,6 @@ std::optional<DicomFile> read_dicom_file(const std::filesystem::path& path)
         fail(path.string(), ": GDCM cannot read it (", in_quotes(error.what()), "); expected a DICOM file");
     }
     return file;
-}
-
-std::vector<std::byte> read_dicom_pixels(const DicomFile& file, size_t frame, size_t bytes)
-{
-    std::vector<std::byte> pixels(bytes);
-    try {
-        const Turn turn;
-        gdcm::ImageRegionReader reader;
-        reader.SetFileName(file.path.c_str());
-        gdcm::BoxRegion region;
-        region.SetDomain(0, unsigned(file.columns - 1), 0, unsigned(file.rows - 1), unsigned(frame), unsigned(frame));
-        reader.SetRegion(region);
-        if (reader.ReadInformation() && reader.ComputeBufferLength() == bytes &&
-            reader.ReadIntoBuffer(reinterpret_cast<char*>(pixels.data()), bytes))
-            return pixels;
-        // It can read some encodings only as a whole.
-        gdcm::ImageReader whole;
-        whole.SetFileName(file.path.c_str());
-        if (file.frames.size() == 1 && whole.Read() && whole.GetImage().GetBufferLength() == bytes &&
-            whole.GetImage().GetBuffer(reinterpret_cast<char*>(pixels.data())))
-            return pixels;
-    } catch (const std::exception& error) {
-        fail(file.path.string(), ": slice ", frame + 1, " cannot be decoded (", in_quotes(error.what()),
-             "); expected pixel data that GDCM can decode");
-    }
-    fail(file.path.string(), ": slice ", frame + 1, " cannot be decoded; expected ", file.columns, "x", file.rows,
-         " pixels of ", name_of(file.type), " in a format that GDCM can decode");
 }
 
 }  // namespace shvr

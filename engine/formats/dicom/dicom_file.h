@@ -1,12 +1,13 @@
 #pragma once
-// One DICOM file as GDCM reads it: the description of its slices, and their pixels. Only this file's .cpp uses GDCM.
-// GDCM keeps process-wide state, so its calls are serialised; any thread may call these.
+// One DICOM file: the description of its slices, as GDCM reads it, and their pixels. GDCM keeps process-wide state, so
+// its calls are serialised; any thread may call these.
 
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/formats/dicom/dicom_layout.h"
 #include "engine/formats/rescaled.h"
 
 namespace shvr {
@@ -21,8 +22,17 @@ struct DicomFrame {
     Rescale rescale{};
 };
 
+/// How its pixels are stored.
+struct DicomStored {
+    DicomLayout layout{};
+    int bits = 0;      ///< of a pixel, at most those of its type
+    int high_bit = 0;  ///< the highest of them
+    bool is_signed = false;
+};
+
 struct DicomFile {
     std::filesystem::path path{};
+    DicomStored stored{};
     std::string series_uid{};
     std::string series_description{};
     int64_t series_number = 0;
@@ -43,7 +53,8 @@ struct DicomFile {
 /// or of a kind that forms no volume.
 std::optional<DicomFile> read_dicom_file(const std::filesystem::path& path);
 
-/// The pixels of one frame as stored, x fastest, in native byte order; `bytes` is their expected size.
+/// The pixels of one frame, x fastest, in native byte order; `bytes` is their expected size. Plain ones are read as
+/// they lie in the file; coded ones are decoded by GDCM, which sees them alone and nothing else of the file.
 std::vector<std::byte> read_dicom_pixels(const DicomFile& file, size_t frame, size_t bytes);
 
 }  // namespace shvr

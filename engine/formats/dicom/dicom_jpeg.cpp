@@ -1,5 +1,6 @@
 #include "engine/formats/dicom/dicom_jpeg.h"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 
@@ -7,6 +8,8 @@
 
 namespace shvr {
 namespace {
+
+constexpr std::string_view PREFIX = "1.2.840.10008.1.2.4.";  ///< of the transfer syntaxes of JPEG's standards
 
 enum Marker : uint8_t {
     TEM = 0x01,
@@ -22,8 +25,20 @@ enum Marker : uint8_t {
     START = 0xd8,
     END = 0xd9,
     SCAN = 0xda,
-    JFIF = 0xe0
+    JFIF = 0xe0,
+    LS_FRAME = 0xf7  ///< ITU-T T.87
 };
+
+struct Size {
+    int64_t columns, rows, components;
+};
+
+void check_size(const InputFile& file, const Size& found, int64_t columns, int64_t rows)
+{
+    if (found.columns != columns || found.rows != rows || found.components != 1)
+        fail(file.path.string(), ": a JPEG picture has ", found.columns, "x", found.rows, " pixels of ",
+             found.components, " components; expected ", columns, "x", rows, " of one, as the file's header says");
+}
 
 class Header {
 public:
@@ -57,14 +72,14 @@ public:
 private:
     static bool is_frame(uint8_t marker)
     {
-        return marker >= BASELINE && marker <= LAST_FRAME && marker != HUFFMAN_TABLES && marker != RESERVED_FRAME &&
-               marker != ARITHMETIC_TABLES;
+        return marker == LS_FRAME || (marker >= BASELINE && marker <= LAST_FRAME && marker != HUFFMAN_TABLES &&
+                                      marker != RESERVED_FRAME && marker != ARITHMETIC_TABLES);
     }
 
     [[noreturn]] void refuse(std::string_view what, int64_t at) const
     {
         fail(file_.path.string(), ": a JPEG picture ", what, " at byte ", at,
-             "; expected a header as ITU-T T.81 defines it");
+             "; expected a header as ITU-T T.81 or T.87 defines it");
     }
 
     uint8_t byte(int64_t at) const
@@ -94,12 +109,11 @@ private:
         if (length < 8) refuse("has a segment with a wrong length", at_);
         const int bits = byte(at_ + 2), components = byte(at_ + 7);
         // Writers put 12 bits into baseline frames, too.
-        const bool is_known =
-            marker == PROGRESSIVE ? bits == 8 || bits == 12 : marker <= LOSSLESS && bits >= 2 && bits <= 16;
+        const bool is_known = marker == PROGRESSIVE
+                                  ? bits == 8 || bits == 12
+                                  : (marker <= LOSSLESS || marker == LS_FRAME) && bits >= 2 && bits <= 16;
         if (!is_known) refuse("is of an unknown kind or depth", at_);
-        if (number(at_ + 5) != columns || number(at_ + 3) != rows || components != 1)
-            fail(file_.path.string(), ": a JPEG picture has ", number(at_ + 5), "x", number(at_ + 3), " pixels of ",
-                 components, " components; expected ", columns, "x", rows, " of one, as the file's header says");
+        check_size(file_, {number(at_ + 5), number(at_ + 3), components}, columns, rows);
     }
 
     const InputFile& file_;
@@ -110,10 +124,15 @@ private:
 
 bool is_jpeg(const std::string& transfer_syntax)
 {
-    // .50 to .66: processes 1 to 29; .70: process 14 with predictor 1. From .80 on: other standards.
-    constexpr std::string_view PREFIX = "1.2.840.10008.1.2.4.";
+    // .50 to .66: processes 1 to 29; .70: process 14 with predictor 1; .80, .81: JPEG-LS. Then other standards.
     return transfer_syntax.size() == PREFIX.size() + 2 && transfer_syntax.starts_with(PREFIX) &&
-           transfer_syntax[PREFIX.size()] >= '5' && transfer_syntax[PREFIX.size()] <= '7';
+           transfer_syntax[PREFIX.size()] >= '5' && transfer_syntax[PREFIX.size()] <= '8';
+}
+
+bool is_jpeg_2000(const std::string& transfer_syntax)
+{
+    return transfer_syntax.size() == PREFIX.size() + 2 && transfer_syntax.starts_with(PREFIX) &&
+           transfer_syntax[PREFIX.size()] == '9';
 }
 
 void check_jpeg_headers(const InputFile& file, std::span<const DicomLayout::Fragment> fragments, int64_t columns,
@@ -128,6 +147,28 @@ void check_jpeg_headers(const InputFile& file, std::span<const DicomLayout::Frag
             fail(file.path.string(), ": Pixel Data at byte ", fragment.at,
                  " begins no JPEG picture; expected one, as the transfer syntax says");
         is_first = false;
+    }
+}
+
+void check_jpeg_2000_headers(const InputFile& file, std::span<const DicomLayout::Fragment> fragments, int64_t columns,
+                             int64_t rows)
+{
+    for (const DicomLayout::Fragment& fragment : fragments) {
+        // Start of codestream, SIZ: its length and capabilities, the grid, where the picture begins in it, tiles.
+        std::array<std::byte, 42> bytes{};
+        const size_t there = file.read_some(
+            fragment.at, std::span(bytes).first(size_t(std::min<int64_t>(fragment.bytes, int64_t(bytes.size())))));
+        constexpr std::array START_OF_PICTURE{std::byte{0xff}, std::byte{0x4f}, std::byte{0xff}, std::byte{0x51}};
+        if (!std::ranges::equal(std::span(bytes).first(4), START_OF_PICTURE)) continue;
+        if (there < bytes.size())
+            fail(file.path.string(), ": a JPEG 2000 picture at byte ", fragment.at, " has ", there,
+                 " bytes; expected a header of ", bytes.size());
+        const auto number = [&](size_t at, size_t count) {
+            int64_t value = 0;
+            for (size_t i = 0; i < count; ++i) value = value << 8 | std::to_integer<int64_t>(bytes[at + i]);
+            return value;
+        };
+        check_size(file, {number(8, 4) - number(16, 4), number(12, 4) - number(20, 4), number(40, 2)}, columns, rows);
     }
 }
 

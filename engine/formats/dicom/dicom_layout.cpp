@@ -62,6 +62,7 @@ public:
                  ", which compresses the header as well; expected one that does not");
         }
         const Encoding encoding{syntax != "1.2.840.10008.1.2", syntax == "1.2.840.10008.1.2.2"};
+        layout_.is_big_endian = encoding.big_endian;
         walk_elements(at, file_.bytes, encoding, 0, false);
         return layout_;
     }
@@ -183,6 +184,8 @@ private:
         const int64_t value_end = end_of(element, end);
         if (is_pixels) {
             layout_.pixel_bytes = element.length;
+            layout_.pixels_at = element.value_at;
+            layout_.pixels_are_words = std::string_view(element.type.data(), 2) == "OW";
         } else if (holds_items(element, encoding)) {
             walk_items(element.value_at, value_end, inside, depth + 1, false, false);
         }

@@ -15,6 +15,9 @@ namespace shvr {
 struct DicomLayout {
     std::string transfer_syntax;  ///< its UID
     int64_t pixel_bytes = 0;      ///< of Pixel Data, as stored; 0 if there is none
+    int64_t pixels_at = 0;        ///< where they begin, if not encapsulated
+    bool is_big_endian = false;
+    bool pixels_are_words = false;  ///< of type OW: two bytes in the file's order, though a pixel may be one byte
     bool is_encapsulated = false;
     struct Fragment {
         int64_t at = 0, bytes = 0;

@@ -258,6 +258,17 @@ TEST_CASE("compressed DICOM slices equal the ones they were made of")
         const auto source = open_volume(folder.path);
         CHECK(source->info().spacing == glm::dvec3(0.5, 0.5, 1.25));
         CHECK(voxels_of<int16_t>(*source) == expected);
+        // A picture that is not of the size that the file states is refused, not shown out of step.
+        std::string bytes = bytes_of_file(folder.path / "dicom_0");
+        for (const auto& [tag, side] : {std::pair(0x10, 96), std::pair(0x11, 64)}) {
+            const size_t at = bytes.find(little(0x28, 2) + little(uint64_t(tag), 2) + "US");
+            REQUIRE(at != std::string::npos);
+            bytes.replace(at + 8, 2, little(uint64_t(side), 2));
+        }
+        const TemporaryFolder turned;
+        const std::string said = refusal(turned.write("a.dcm", bytes));
+        if (syntax != gdcm::TransferSyntax::RLELossless)  // which has no size of its own
+            CHECK(contains(said, "a JPEG picture has 96x64 pixels of 1 components; expected 64x96 of one"));
     }
 }
 
@@ -585,28 +596,93 @@ TEST_CASE("what GDCM's decoders would end the program at is refused in words")
     CHECK(contains(encapsulated(start + frame(0xc5, 8, 5, 1) + scan), "unknown kind or depth"));
     CHECK(contains(encapsulated(start + frame(0xc3, 16, 5, 3) + scan), "5x4 pixels of 3 components; expected 5x4"));
     CHECK(contains(encapsulated(start + frame(0xc3, 16, 6, 1) + scan), "6x4 pixels of 1 components; expected 5x4"));
-    Dicom colored = plain;
-    colored.elements[0x00280004] = {"CS", "MONOCHROME2\t"};
-    CHECK(contains(refusal(folder.write("a.dcm", colored.file())), "Photometric Interpretation is \"MONOCHROME2?\""));
     // What passes is for GDCM, which has no pixels to decode here.
     CHECK(contains(
         encapsulated(start + std::string("\xff\xff\xe0\0\x10JFIF\0\x01\x02\0\0\x01\0\x01\0\0", 19) + good + scan),
         "slice 1 cannot be decoded"));
+}
 
-    constexpr uint32_t MODALITY = 0x00080060, STORAGE = 0x00080016;
+TEST_CASE("what else a DICOM file holds does not matter to its pixels, however odd")
+{
+    const TemporaryFolder folder;
+    const std::vector<int16_t> expected = voxels_of<int16_t>(*open_volume(folder.write("a.dcm", slice_of(0).file())));
+    const auto check = [&](const Dicom& slice) {
+        CHECK(voxels_of<int16_t>(*open_volume(folder.write("a.dcm", slice.file()))) == expected);
+    };
+    const auto with = [&](uint32_t tag, const char* type, const std::string& bytes) {
+        Dicom slice = slice_of(0);
+        slice.elements[tag] = {type, bytes};
+        return slice;
+    };
+    check(with(0x00280004, "CS", "MONOCHROME2\t"));
+    check(with(0x00080010, "SH", "1.2.3.1 "));            // a recognition code, as before DICOM
+    check(with(0x00080010, "SH", "ACRNEMA_LIBIDO_1.1"));  // of files whose rows are columns
+    check(with(0x00280006, "US", ""));                    // how samples of several colours lie
+    check(with(0x00280120, "SQ", ""));
+    check(with(0x60010010, "US", "\1\0"));  // overlays: private, of another type, with bits of the pixels
+    check(with(0x60000010, "LO", "four"));
+    check(with(0x60000100, "US", std::string("\1\0", 2)));
+    check(with(0x50000005, "US", ""));  // curves
+    check(with(0x00880200, "SQ", ""));  // an icon
     for (const bool by_modality : {false, true}) {
         Dicom slice = slice_of(0);
         if (by_modality)
-            slice.text(MODALITY, "CS", "MR");
+            slice.text(0x00080060, "CS", "MR");
         else
-            slice.text(STORAGE, "UI", "1.2.840.10008.5.1.4.1.1.4");
-        slice.text(INTERCEPT, "DS", "-1024");
-        slice.elements.erase(SLOPE);
-        CHECK(contains(refusal(folder.write("a.dcm", slice.file())),
-                       "Rescale Slope is missing beside Rescale Intercept; expected both, or neither"));
-        slice.text(SLOPE, "DS", "1");
-        CHECK(open_volume(folder.write("a.dcm", slice.file()))->info().size.x == 5);
+            slice.text(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.4");
+        slice.text(INTERCEPT, "DS", "-1024");  // without a slope
+        const auto shifted = open_volume(folder.write("a.dcm", slice.file()));
+        CHECK(voxels_of<int32_t>(*shifted)[0] == expected[0] - 1024);
     }
+}
+
+TEST_CASE("of the bits of a DICOM pixel only those that are stored count, with their sign")
+{
+    const TemporaryFolder folder;
+    const auto first_of = [&](int bits, int high, bool is_signed, uint16_t number) {
+        Dicom slice = slice_of(0);
+        slice.number(0x00280101, uint16_t(bits)).number(0x00280102, uint16_t(high));
+        slice.number(0x00280103, uint16_t(is_signed));
+        slice.elements[PIXELS].bytes.replace(0, 2, little(number, 2));
+        const auto source = open_volume(folder.write("a.dcm", slice.file()));
+        return is_signed ? int(voxels_of<int16_t>(*source)[0]) : int(voxels_of<uint16_t>(*source)[0]);
+    };
+    CHECK(first_of(12, 11, false, 0xf123) == 0x123);
+    CHECK(first_of(12, 11, true, 0x0fff) == -1);
+    CHECK(first_of(12, 11, true, 0x7801) == -0x7ff);
+    CHECK(first_of(12, 15, false, 0x123f) == 0x123);
+    CHECK(first_of(12, 13, true, 0xfffc) == -1);
+    CHECK(first_of(16, 15, true, 0x8000) == -0x8000);
+    Dicom slice = slice_of(0);
+    slice.number(0x00280102, 16);
+    CHECK(contains(refusal(folder.write("a.dcm", slice.file())), "High Bit is 16; expected 15, to Bits Allocated - 1"));
+}
+
+TEST_CASE("coded frames of a DICOM file are its fragments, one each")
+{
+    const TemporaryFolder folder;
+    const auto item = [](int element, const std::string& bytes) {
+        return little(0xfffe, 2) + little(element, 2) + little(bytes.size(), 4) + bytes;
+    };
+    const auto picture = [](char value) {  // 20 pixels, run-length encoded: the high bytes and the low ones
+        std::string bytes = little(2, 4) + little(64, 4) + little(66, 4) + std::string(52, '\0');
+        return bytes + std::string("\xed\0\xed", 3) + value;
+    };
+    const auto file = [&](const char* frames) {
+        Dicom dicom = image_of(0);
+        dicom.transfer_syntax = "1.2.840.10008.1.2.5";
+        dicom.text(0x00280008, "IS", frames).elements.erase(PIXELS);
+        return dicom.file() + little(0x7fe0, 2) + little(0x10, 2) + std::string("OB\0\0", 4) + little(0xffffffff, 4) +
+               item(0xe000, "") + item(0xe000, picture(3)) + item(0xe000, picture(4)) + item(0xe0dd, "");
+    };
+    const std::vector<int16_t> voxels = voxels_of<int16_t>(*open_volume(folder.write("a.dcm", file("2"))));
+    CHECK(voxels == [] {
+        std::vector<int16_t> expected(20, 3);
+        expected.resize(40, 4);
+        return expected;
+    }());
+    CHECK(contains(refusal(folder.write("a.dcm", file("3"))),
+                   "Pixel Data has 2 fragments; expected 3, one for each frame"));
 }
 
 TEST_CASE("boxes of a DICOM volume come from any thread")

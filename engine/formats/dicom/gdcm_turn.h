@@ -1,0 +1,44 @@
+#pragma once
+// A turn at GDCM, which keeps state of the whole process. For the files of this folder that call it.
+
+#include <gdcmTrace.h>
+
+#include <cstdio>
+#include <mutex>
+#include <ostream>
+
+namespace shvr {
+
+/// Held while GDCM runs, which it silences: GDCM would write to standard error, and its decoders to C's `stderr`, which
+/// therefore points to /dev/null meanwhile (the GNU C library allows assigning it; file descriptor 2, which sanitizers
+/// and C++ use, is left alone).
+class GdcmTurn {
+public:
+    GdcmTurn() : lock_(mutex())
+    {
+        static std::FILE* const silence = std::fopen("/dev/null", "we");
+        if (silence != nullptr) stderr = silence;
+        static std::ostream nowhere(nullptr);
+        static const bool once = [] {
+            gdcm::Trace::SetStream(nowhere);
+            gdcm::Trace::DebugOff();
+            gdcm::Trace::WarningOff();
+            gdcm::Trace::ErrorOff();
+            return true;
+        }();
+        static_cast<void>(once);
+    }
+    GdcmTurn(const GdcmTurn&) = delete;
+    ~GdcmTurn() { stderr = kept_; }
+
+private:
+    static std::mutex& mutex()
+    {
+        static std::mutex mutex;
+        return mutex;
+    }
+    std::lock_guard<std::mutex> lock_;
+    std::FILE* kept_ = stderr;
+};
+
+}  // namespace shvr
