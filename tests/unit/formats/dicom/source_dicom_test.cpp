@@ -258,8 +258,20 @@ TEST_CASE("compressed DICOM slices equal the ones they were made of")
         const auto source = open_volume(folder.path);
         CHECK(source->info().spacing == glm::dvec3(0.5, 0.5, 1.25));
         CHECK(voxels_of<int16_t>(*source) == expected);
-        // A picture that is not of the size that the file states is refused, not shown out of step.
         std::string bytes = bytes_of_file(folder.path / "dicom_0");
+        if (syntax != gdcm::TransferSyntax::RLELossless) {  // whose frames are one fragment each (PS3.5, A.4)
+            const std::string item = little(0xfffe, 2) + little(0xe000, 2);
+            const size_t table = bytes.find(item), first = bytes.find(item, table + 8);
+            REQUIRE(first != std::string::npos);
+            const auto length = size_t(uint8_t(bytes[first + 4]) | uint8_t(bytes[first + 5]) << 8);
+            std::string split = bytes;
+            split.replace(first + 4, 4, little(100, 4));
+            split.insert(first + 108, item + little(length - 100, 4));
+            const TemporaryFolder apart;
+            const std::vector<int16_t> found = voxels_of<int16_t>(*open_volume(apart.write("a.dcm", split)));
+            CHECK(std::ranges::equal(found, std::span(expected).first(found.size())));
+        }
+        // A picture that is not of the size that the file states is refused, not shown out of step.
         for (const auto& [tag, side] : {std::pair(0x10, 96), std::pair(0x11, 64)}) {
             const size_t at = bytes.find(little(0x28, 2) + little(uint64_t(tag), 2) + "US");
             REQUIRE(at != std::string::npos);
