@@ -31,7 +31,7 @@ class Waits(Seen):
             self.stroke((x, y), (x + 6, y + 3), (x - 6, y + 5 + turn), pause_s=0)
             self.until(lambda: len([1 for action in self.done() if action["op"] == "paint_here"]) > strokes, "stroke")
             self.wander(10)
-        self.until(lambda: self.frame()["frame"] > begun + 3, "frames")
+        self.see_frames(begun + 3)
         self.assertEqual(self.waits(), [])
         self.finish()
         # And that the layer would have told: the device is idle before it goes.
@@ -39,9 +39,15 @@ class Waits(Seen):
 
     def rests_in_size(self):
         """The first images of a swapchain are waited for, since some drivers are slow to make them."""
-        begun = self.frame()["frame"]
-        self.wander(10)
-        self.until(lambda: self.frame()["frame"] > begun + 8, "frames")
+        self.see_frames(self.frame()["frame"] + 8)
+
+    def see_frames(self, number):
+        """Moves the pointer until so many have been drawn: once the picture is sharp, nothing else asks for one, and a
+        busy machine answers several moves by one."""
+        def seen():
+            self.wander(10)
+            return self.frame()["frame"] > number
+        self.until(seen, "frames")
 
 
 if __name__ == "__main__":
