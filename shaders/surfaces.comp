@@ -3,9 +3,12 @@
 //   LISTED   there is a list of surfaces, besides the probe
 // variants: LISTED
 //
+// Rays of a tile that meets few surfaces take those that surface_tiles.comp has listed for it, others search the boxes:
+// the same is found, since the nearest counts and not the order.
+//
 // Nodes are visited in blocks, one dispatch each, because some devices end a thread's loops after 65535 turns, without
 // a word. Between blocks the target holds what a ray has met: its length, the surface's index in two parts, and whether
-// the ray begins inside.
+// the ray begins inside. Listed ones are looked at in the last block.
 //
 // Surfaces are solid: a ray that starts inside one (the near plane cuts it, or the eye is in it) hits it at its start,
 // facing the eye. The volume's cutting planes do not cut surfaces.
@@ -27,6 +30,7 @@ layout(binding = 2, rgba32f) uniform image2D surfaces;
 #ifdef LISTED
 layout(binding = 3, scalar) readonly buffer Nodes { SurfaceNode nodes[]; } surface_nodes;
 layout(binding = 4, scalar) readonly buffer List { Surface list[]; } surface_list;
+layout(binding = 5, scalar) readonly buffer Tiles { uint words[]; } surface_tiles;
 #endif
 
 #include "library/counters.glsl"
@@ -71,14 +75,21 @@ vec3 from_origin(const SurfaceParams scene, const Surface surface)
     return sum;
 }
 
+void meet(const SurfaceParams scene, const Line line, float begin, uint index, inout Hit hit)
+{
+    const Surface surface = surface_list.list[index];
+    const vec3 from = from_origin(scene, surface) - line.origin;
+    consider(surface_range(surface, from, line.direction), begin, surface.number, index, hit);
+}
+
 // Every variable that outlives an iteration is carried through the loop: on devices that run it until the last lane is
 // done, finished lanes keep only those.
-void search(const SurfaceParams scene, const Line line, float begin, inout Hit hit)
+void search(const SurfaceParams scene, const Line line, float begin, uint first_node, inout Hit hit)
 {
     const vec3 safe = mix(line.direction, vec3(1e-20), lessThan(abs(line.direction), vec3(1e-20)));
     const vec3 inverse = 1.0 / safe;
     const vec3 origin = scene.origin + line.origin;
-    uint node = scene.first_node;
+    uint node = first_node;
     while (node < scene.end_node) {
         const SurfaceNode box = surface_nodes.nodes[node];
         const vec3 a = (box.lower - scene.slack - origin) * inverse;
@@ -88,11 +99,7 @@ void search(const SurfaceParams scene, const Line line, float begin, inout Hit h
         const float exit = min(min(high.x, high.y), min(high.z, hit.at)) + scene.slack;
         const bool is_met = entry <= exit;
         const uint end = is_met ? box.end : box.begin;
-        for (uint i = box.begin; i < end; ++i) {
-            const Surface surface = surface_list.list[i];
-            const vec3 from = from_origin(scene, surface) - line.origin;
-            consider(surface_range(surface, from, line.direction), begin, surface.number, i, hit);
-        }
+        for (uint i = box.begin; i < end; ++i) meet(scene, line, begin, i, hit);
         node = is_met ? node + 1u : box.skip;
     }
     count(COUNTER_CUT_SHORT, uint(node < scene.end_node));
@@ -124,12 +131,24 @@ void main()
     const float end = (scene.end - scene.middle) * length_to_far;
 
     Hit hit = Hit(end, false, 0u, PROBE_INDEX);  // at the far plane itself nothing is nearer
-    if (PROBE != 0u && scene.first_node == 0u)
+#ifdef LISTED
+    const uvec2 tile = in_part / SURFACE_TILE;
+    const uint tiles_a_row = surface_tiles_of(params.pixel_end - params.pixel_begin).x;
+    const uint words = (tile.y * tiles_a_row + tile.x) * SURFACE_TILE_WORDS, count = surface_tiles.words[words];
+    const bool is_listed = count <= SURFACES_IN_TILE;
+    if (is_listed && scene.is_last_block == 0u) return;
+    const bool is_first = is_listed || scene.first_node == 0u;
+#else
+    const bool is_first = true;
+#endif
+    if (PROBE != 0u && is_first)
         consider(ball_range(scene.probe_center - line.origin, line.direction, scene.probe_radius), begin, PROBE_INDEX,
                  PROBE_INDEX, hit);
 #ifdef LISTED
-    if (scene.first_node > 0u) hit = unpacked_hit(imageLoad(surfaces, ivec2(in_part)));
-    search(scene, line, begin, hit);
+    if (!is_first) hit = unpacked_hit(imageLoad(surfaces, ivec2(in_part)));
+    const uint end_of_tile = is_listed ? count : 0u;
+    for (uint i = 0u; i < end_of_tile; ++i) meet(scene, line, begin, surface_tiles.words[words + 1u + i], hit);
+    search(scene, line, begin, is_listed ? scene.end_node : scene.first_node, hit);
     if (scene.is_last_block == 0u) {
         imageStore(surfaces, ivec2(in_part), packed_hit(hit));
         return;

@@ -52,6 +52,17 @@ struct SurfaceParams {
     vec3 probe_color;  ///< linear light
 };
 
+/// Surfaces are listed for tiles of so many pixels a side, from the first pixel of the part on: how many its rays may
+/// meet, and which. Where there are more than that, rays look for theirs among the boxes.
+SHARED_CONST uint SURFACE_TILE = 8u;
+SHARED_CONST uint SURFACES_IN_TILE = 63u;
+SHARED_CONST uint SURFACE_TILE_WORDS = 1u + SURFACES_IN_TILE;
+
+SHARED_FUNCTION uvec2 surface_tiles_of(uvec2 pixels)
+{
+    return (pixels + SURFACE_TILE - 1u) / SURFACE_TILE;
+}
+
 /// The length where a ray meets no surface.
 SHARED_CONST float NO_SURFACE = 1e30f;
 

@@ -14,7 +14,20 @@ namespace {
 /// thread's loops. A node is visited once at most, so lanes in step do not take each other's turns.
 constexpr uint32_t NODES_OF_BLOCK = 32768 / 6;
 
-Resource surfaces_block(FrameGraph& graph, const SurfacesInput& input, Resource target)
+/// Lists the surfaces of each tile; the words that earlier blocks have written.
+Resource tiles_block(FrameGraph& graph, const SurfacesInput& input, Resource tiles)
+{
+    const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
+    Pass pass = graph.compute("surface_tiles");
+    pass.block("params_block", std::span(&input.params, 1));
+    pass.block("surface_params", std::span(&input.scene, 1));
+    pass.read("surface_nodes", input.listed->nodes);
+    pass.read("surface_list", input.listed->list);
+    pass.dispatch(glm::uvec3(gpu::surface_tiles_of(pixels), 1));
+    return input.scene.first_node > 0 ? pass.modify("surface_tiles", tiles) : pass.write("surface_tiles", tiles);
+}
+
+Resource surfaces_block(FrameGraph& graph, const SurfacesInput& input, Resource target, Resource tiles)
 {
     const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
     Pass pass = graph.compute("surfaces", {{"LISTED", input.listed.has_value()}});
@@ -23,6 +36,7 @@ Resource surfaces_block(FrameGraph& graph, const SurfacesInput& input, Resource 
     if (input.listed) {
         pass.read("surface_nodes", input.listed->nodes);
         pass.read("surface_list", input.listed->list);
+        pass.read("surface_tiles", tiles);
     }
     pass.constant("GROUP_WIDTH", input.group_width);
     pass.constant("SHININESS_SQUARINGS", shininess_squarings(input.params.shininess));
@@ -38,14 +52,21 @@ Resource surfaces(FrameGraph& graph, const SurfacesInput& input)
 {
     const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
     const uint32_t nodes = input.listed ? input.scene.node_count : 0;
-    Resource target = graph.create("surfaces", picture_desc(Format::rgba32_float, pixels));
-    SurfacesInput block = input;
+    std::vector<SurfacesInput> blocks;
     for (uint32_t first = 0; first == 0 || first < nodes; first += NODES_OF_BLOCK) {
+        SurfacesInput& block = blocks.emplace_back(input);
         block.scene.first_node = first;
         block.scene.end_node = std::min(first + NODES_OF_BLOCK, nodes);
         block.scene.is_last_block = first + NODES_OF_BLOCK >= nodes;
-        target = surfaces_block(graph, block, target);
     }
+    Resource tiles;
+    if (input.listed) {
+        const glm::uvec2 counts = gpu::surface_tiles_of(pixels);
+        tiles = graph.create("surface tiles", buffer_desc(uint64_t{counts.x} * counts.y * SURFACE_TILE_BYTES));
+        for (const SurfacesInput& block : blocks) tiles = tiles_block(graph, block, tiles);
+    }
+    Resource target = graph.create("surfaces", picture_desc(Format::rgba32_float, pixels));
+    for (const SurfacesInput& block : blocks) target = surfaces_block(graph, block, target, tiles);
     return target;
 }
 

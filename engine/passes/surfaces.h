@@ -24,6 +24,9 @@ struct SurfacesInput {
     glm::uvec2 tile{0};        ///< as RaycastInput's
 };
 
+/// The device takes this for each tile of a part, besides the image.
+inline constexpr uint64_t SURFACE_TILE_BYTES = sizeof(uint32_t) * gpu::SURFACE_TILE_WORDS;
+
 /// An image of the part's size: lit colour in linear light, and the length along each pixel's ray at which a surface
 /// ends it, gpu::NO_SURFACE where none does. It lasts for this frame only.
 Resource surfaces(FrameGraph& graph, const SurfacesInput& input);

@@ -6,7 +6,7 @@
 //              [leap_occupancy -> leap_distance x, y, z; or leap_bound, leap_occupancy] | of a resident volume
 //   occlusion  [start occlusion -> reset occlusion values, clear occlusion cells]
 //   tables     [upload transfer function] [upload groups]
-//   surfaces   [upload surface nodes, upload surface list] [surfaces]                  (a trace, the probe's ball)
+//   surfaces   [upload surface nodes, upload surface list] [surface_tiles] [surfaces]  (a trace, the probe's ball)
 //   preview    [preview]                                                               (what a brush would change)
 //   rays       raycast, one thread a pixel
 //   preview    [preview_over]

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <utility>
 
+#include "engine/passes/surfaces.h"
+
 namespace shvr {
 
 namespace {
@@ -44,12 +46,16 @@ constexpr uint64_t MAX_WAITING_PIXELS = 64 * 64;
 /// Bytes on the device for a pixel of a part, as frame.cpp adds images.
 uint64_t device_bytes_per_pixel(const Scene& scene, const Shot& shot, const std::optional<ProbeLook>& probe)
 {
-    uint64_t images_of_eye = 0;
-    if (!shot.is_slice && (scene.has_surfaces() || (probe && probe->ball_share > 0.0))) ++images_of_eye;
-    if (probe && probe->preview) images_of_eye += 2;
+    constexpr uint64_t LISTED_BYTES = SURFACE_TILE_BYTES / (gpu::SURFACE_TILE * gpu::SURFACE_TILE);
+    uint64_t of_eye = 0;
+    if (!shot.is_slice && scene.has_surfaces())
+        of_eye += PIXEL_BYTES + LISTED_BYTES;
+    else if (!shot.is_slice && probe && probe->ball_share > 0.0)
+        of_eye += PIXEL_BYTES;
+    if (probe && probe->preview) of_eye += 2 * PIXEL_BYTES;
     const int pictures = pictures_of(shot, probe), eyes = shot.right_eye ? 2 : 1;
-    if (pictures > eyes) images_of_eye = 2 * images_of_eye + 1;
-    return PIXEL_BYTES * (1 + (shot.right_eye ? 2 * (1 + images_of_eye) : images_of_eye));
+    if (pictures > eyes) of_eye = 2 * of_eye + PIXEL_BYTES;
+    return PIXEL_BYTES + (shot.right_eye ? 2 * (PIXEL_BYTES + of_eye) : of_eye);
 }
 
 /// Some rows of a pane in parts, the first one last.

@@ -192,7 +192,7 @@ TEST_CASE("members of shared structs lie where C++ puts them")
     }
     for (const char* kernel : {"occlusion_bake", "occlusion_gather", "occlusion_cells"})
         check_members(kernel, "opacities", occlusion_entry());
-    for (const char* kernel : {"surfaces", "surfaces_listed"}) {
+    for (const char* kernel : {"surfaces", "surfaces_listed", "surface_tiles"}) {
         check_members(kernel, "params_block", raycast_params());
         check_members(kernel, "surface_params", surface_params());
     }

@@ -358,3 +358,32 @@ TEST_CASE_FIXTURE(Surfaces, "the hierarchy finds what asking every surface finds
     }
     CHECK(hits > 5000);
 }
+
+TEST_CASE_FIXTURE(Surfaces, "rays find the same in their tile's list and, where it is full, among the boxes")
+{
+    const std::vector<SurfaceLook> rods = random_rods(gpu::SURFACES_IN_TILE, 96, 30.0, 3.0);  // seed 96
+    pixels = {67, 53};
+    size_t hits = 0, misses = 0;
+    for (const Camera& camera : {orthographic(MIDDLE, {1, 2, 3}, 120.0), orthographic(MIDDLE, {0, 1, 0}, 0.7),
+                                 orthographic(rods[0].from + glm::dvec3(0, 0, rods[0].radius_from), {0, 1, 0}, 1e-4),
+                                 perspective(MIDDLE, {10.0, 50.0, 70.0}, 90.0),
+                                 perspective({-1e6, 50, 50}, MIDDLE, 0.01), perspective({50, 50, -70}, MIDDLE, 40.0)}) {
+        const Sight listed = look(rods, camera);
+        // One that all rays meet behind the others, as often as fills every list.
+        const glm::dvec3 ahead = glm::normalize(camera.target - camera.eye);
+        std::vector<SurfaceLook> crowded = rods;
+        crowded.resize(2 * rods.size() + 1, ball(MIDDLE + 5000.0 * ahead, 4800.0));
+        const Sight searched = look(crowded, camera);
+        for (size_t i = 0; i < listed.seen.size(); ++i) {
+            if (listed.seen[i].a < gpu::NO_SURFACE) {
+                ++hits;
+                CHECK((searched.seen[i] == listed.seen[i]));
+            } else {
+                ++misses;
+                CHECK((searched.seen[i].a > 100.0f));
+            }
+        }
+    }
+    CHECK(hits > 2000);
+    CHECK(misses > 2000);
+}

@@ -1,0 +1,94 @@
+// Which surfaces the rays of a tile may meet (surfaces.h): one thread per tile of SURFACE_TILE^2 pixels. The rays of
+// neighbouring pixels meet nearly the same ones, so that boxes are asked once a tile instead of once a ray.
+//
+// Between the four planes through a tile's edges lie all its rays, whether they are parallel or come from one point. A
+// surface is left out only where all of it is behind one of the planes, by more than rounding may be off.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "raycast.h"
+#include "surfaces.h"
+
+layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
+
+layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
+layout(binding = 1, scalar) readonly buffer Scene { SurfaceParams data; } surface_params;
+layout(binding = 3, scalar) readonly buffer Nodes { SurfaceNode nodes[]; } surface_nodes;
+layout(binding = 4, scalar) readonly buffer List { Surface list[]; } surface_list;
+layout(binding = 5, scalar) buffer Tiles { uint words[]; } surface_tiles;
+
+// Normals are off by a few ulps, over distances that the slack of boxes knows; and tiles reach half a pixel beyond
+// their rays.
+const float SLACKS = 8.0;
+
+struct Side {
+    vec3 point;    // relative to the scene's origin
+    vec3 normal;   // unit, inwards
+};
+
+// `corner` in pixels, the tile's middle `to_middle` from there; `edge`: which way the tile's edge goes.
+Side side_of(const SurfaceParams scene, vec2 corner, vec2 to_middle, vec3 edge)
+{
+    const vec3 along = scene.along_corner + corner.x * scene.along_dx + corner.y * scene.along_dy;
+    const vec3 across = cross(along / length(along), edge / max(length(edge), 1e-30));
+    const vec3 normal = across / max(length(across), 1e-30);
+    const float middle = dot(normal, to_middle.x * scene.middle_dx + to_middle.y * scene.middle_dy);
+    return Side(scene.middle_corner + corner.x * scene.middle_dx + corner.y * scene.middle_dy,
+                middle < 0.0 ? -normal : normal);
+}
+
+// `middle` relative to the scene's origin.
+bool box_may_be_met(const Side sides[4], vec3 middle, vec3 half_size, float slack)
+{
+    bool may = true;
+    for (uint i = 0u; i < 4u; ++i)
+        may = may && dot(sides[i].normal, middle - sides[i].point) + dot(abs(sides[i].normal), half_size) >= -slack;
+    return may;
+}
+
+bool surface_may_be_met(const Side sides[4], const Surface surface, vec3 from, float slack)
+{
+    bool may = true;
+    for (uint i = 0u; i < 4u; ++i) {
+        const float first = dot(sides[i].normal, from - sides[i].point);
+        const float other = first + dot(sides[i].normal, surface.along);
+        may = may && max(first + surface.radius_from, other + surface.radius_to) >= -slack;
+    }
+    return may;
+}
+
+void main()
+{
+    const RaycastParams params = params_block.data;
+    const SurfaceParams scene = surface_params.data;
+    const uvec2 tiles = surface_tiles_of(params.pixel_end - params.pixel_begin);
+    const uvec2 tile = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(tile, tiles))) return;
+    const uint words = (tile.y * tiles.x + tile.x) * SURFACE_TILE_WORDS;
+
+    const vec2 lower = vec2(params.pixel_begin + SURFACE_TILE * tile), upper = lower + float(SURFACE_TILE);
+    const vec2 half_tile = vec2(0.5 * float(SURFACE_TILE));
+    const Side sides[4] = Side[4](side_of(scene, lower, half_tile, scene.middle_dx),
+                                  side_of(scene, lower, half_tile, scene.middle_dy),
+                                  side_of(scene, upper, -half_tile, scene.middle_dx),
+                                  side_of(scene, upper, -half_tile, scene.middle_dy));
+    const float slack = SLACKS * scene.slack;
+
+    uint count = scene.first_node > 0u ? surface_tiles.words[words] : 0u;
+    uint node = scene.first_node;
+    while (node < scene.end_node && count <= SURFACES_IN_TILE) {
+        const SurfaceNode box = surface_nodes.nodes[node];
+        const bool is_met = box_may_be_met(sides, 0.5 * (box.lower + box.upper) - scene.origin,
+                                           0.5 * (box.upper - box.lower), slack);
+        const uint end = is_met ? box.end : box.begin;
+        for (uint i = box.begin; i < end; ++i) {
+            const Surface surface = surface_list.list[i];
+            if (!surface_may_be_met(sides, surface, surface.from - scene.origin, slack)) continue;
+            if (count < SURFACES_IN_TILE) surface_tiles.words[words + 1u + count] = i;
+            ++count;
+        }
+        node = is_met ? node + 1u : box.skip;
+    }
+    // Full, and also where a device has ended the loop.
+    surface_tiles.words[words] = node < scene.end_node ? SURFACES_IN_TILE + 1u : count;
+}
