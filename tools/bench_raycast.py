@@ -322,7 +322,7 @@ def main():
         scene = summary_of(rounds[name], mapper_names)
         scene["visible_share"] = visible_share(volume.with_suffix(".raw"), side, SCENES[name][0])
         scene["shvr"]["start_to_picture_ms"] = draw_with_shvr(path, path.with_suffix(".shvr.pfm"))
-        if REFERENCE.exists() and SCENES[name][2] is None:  # the reference has no occlusion: tests/gpu/occlusion_test.cpp
+        if REFERENCE.exists() and SCENES[name][2] is None:  # the reference has no occlusion: tests/gpu/occlusion/occlusion_test.cpp
             reference = reference_of(path, volume)
             for drawn in ("shvr", *(f"vtk_{m}" for m in mapper_names)):
                 scene[drawn.removeprefix("vtk_")]["error"] = error_of(path.with_suffix(f".{drawn}.pfm"), reference)

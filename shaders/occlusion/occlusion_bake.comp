@@ -48,8 +48,8 @@ layout(binding = 10, scalar) readonly buffer Opacities { OcclusionEntry entries[
 OcclusionBakeParams params;
 #include "../library/occupancy.glsl"
 
-// Found by search: least errors over the cases of tests/gpu/occlusion_light_test.cpp. A cell of 4 counts as this much
-// nearer to the surface than it is, in units; ...
+// Found by search: least errors over the cases of tests/gpu/occlusion/occlusion_light_test.cpp. A cell of 4 counts as
+// this much nearer to the surface than it is, in units; ...
 const float MARGIN_4 = 0.853;
 // ... that much more of it is taken to be the surface's; ...
 const float WALL_4 = 8.2;

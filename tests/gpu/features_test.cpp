@@ -82,8 +82,10 @@ const std::vector<Feature> FEATURES{
      [](Scenery& s) {
          s.session.surfaces = {{{10, 10, 10}, {40, 30, 35}, 2.0, 4.0, GREEN}};
      },
-     {"surface_tiles", "surfaces", "surfaces_listed", "raycast_surfaced", "upload surface list", "upload surface nodes"},
-     {"surfaces", "surface tiles", "surface list", "surface list to upload", "surface nodes", "surface nodes to upload"}},
+     {"surface_tiles", "surfaces", "surfaces_listed", "raycast_surfaced", "upload surface list",
+      "upload surface nodes"},
+     {"surfaces", "surface tiles", "surface list", "surface list to upload", "surface nodes",
+      "surface nodes to upload"}},
     {"cutting planes",
      [](Scenery& s) {
          s.session.cut = {{5, 6, 7}, {40, 38, 36}};

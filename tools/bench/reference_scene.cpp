@@ -14,7 +14,7 @@ namespace {
 
 constexpr double LARGEST_CODE = 65535.0;
 // Of the definition of ambient occlusion, which is far nearer to its limit with these than pictures are
-// (tests/gpu/occlusion_test.cpp).
+// (tests/gpu/occlusion/occlusion_test.cpp).
 constexpr uint32_t OCCLUSION_DIRECTIONS = 128;
 constexpr int OCCLUSION_STEPS = 32;
 

@@ -1,5 +1,5 @@
 // The definition of ambient occlusion, without a device: closed forms, for the sum over steps and for the few taps that
-// approximate it. tests/gpu/occlusion_test.cpp tests whether the device computes these values.
+// approximate it. tests/gpu/occlusion/occlusion_test.cpp tests whether the device computes these values.
 
 #include "engine/passes/occlusion.h"
 
@@ -149,7 +149,7 @@ TEST_CASE("eight samples see planes, gaps and walls within a few hundredths of t
         "floor and wall", [](const glm::ivec3& v) { return v.z <= 3 || v.x > 5 ? 1.0 : 0.0; }, up,
         over_plane(4.5 / radius), 0.03);
     // A wall of one voxel stops what crosses it, whichever cells it is in. Planes fit one badly whose opacity is all or
-    // nothing; as densities have walls, tests/gpu/occlusion_light_test.cpp has a sheet on a floor.
+    // nothing; as densities have walls, tests/gpu/occlusion/occlusion_light_test.cpp has a sheet on a floor.
     for (int x = 5; x < 13; ++x)
         compare(
             "floor and thin wall", [&](const glm::ivec3& v) { return v.z <= 3 || v.x == x ? 1.0 : 0.0; }, up,

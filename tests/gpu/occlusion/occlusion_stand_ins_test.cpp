@@ -1,5 +1,5 @@
 // Ambient light in a view whose budget has no room for all the bricks that it comes from: coarser ones stand in for
-// them. Pictures say so and are drawn without light (budget_test.cpp); a view shows what it can.
+// them. Pictures say so and are drawn without light (tests/gpu/budget_test.cpp); a view shows what it can.
 
 #include <doctest/doctest.h>
 
