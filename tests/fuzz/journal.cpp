@@ -62,8 +62,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
             passes([&] {
                 for (size_t i = 0; i < undoable; ++i) work.undo();
                 for (size_t i = 0; i < undoable; ++i) work.redo();
-                expect(held(work.document()) == state,
-                       "a document that differs after all was undone and done again");
+                expect(held(work.document()) == state, "a document that differs after all was undone and done again");
             });
             state = bytes_of(work.document());
         }
