@@ -1,9 +1,10 @@
 """Hands: the tools of the mouse, strokes that jump, clicks that select, trace and measure, and slices; by real events."""
 import json
 import re
+import time
 import unittest
 
-from test_view import WINDOW, Window
+from test_view import PATIENCE_S, WINDOW, Window
 
 
 class Hands(Window):
@@ -21,6 +22,16 @@ class Hands(Window):
 
     def click(self, x, y, pause_s=0.6):
         self.do("mousemove", x, y, "sleep", 0.1, "click", 1, pause_s=pause_s)
+
+    def save(self, session):
+        """Waits until the session's file is another one: something in it must have changed."""
+        before = session.stat().st_mtime_ns
+        self.do("key", "ctrl+s", pause_s=0)
+        end = time.monotonic() + PATIENCE_S
+        while session.stat().st_mtime_ns == before:
+            self.assertLess(time.monotonic(), end, "nothing is saved")
+            time.sleep(0.02)
+        return json.loads(session.read_text())
 
     def camera_of(self, session):
         return json.loads(session.read_text())["cameras"].get("window")
@@ -109,11 +120,9 @@ class Hands(Window):
         self.do("keydown", "ctrl", pause_s=0.1)
         self.drag((right, above), (right + 20, above + 10), (right + 40, above + 20))
         self.do("keyup", "ctrl", pause_s=0.1)
-        self.do("key", "ctrl+s", pause_s=0.7)
-        dragged = json.loads(session.read_text())["view"]["slices"]
+        dragged = self.save(session)["view"]["slices"]
         self.do("key", "b", pause_s=0.5)
-        self.do("key", "ctrl+s", pause_s=0.7)
-        automatic = json.loads(session.read_text())["view"]["slices"]
+        automatic = self.save(session)["view"]["slices"]
         report = self.finish()
         self.assertGreater(report["voxels_in_group"].get("3", 0), 20, report["messages"])
         self.assertNotEqual((dragged["black"], dragged["white"]), (automatic["black"], automatic["white"]))

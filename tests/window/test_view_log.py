@@ -57,6 +57,7 @@ class Log(Seen):
         # Other view, panes, brush and tool; none of it is saved.
         self.do("mousemove", x, y, "mousedown", 1, "mousemove", x + 60, y + 20, "mouseup", 1)
         journal = session.with_suffix(".journal")
+        self.until(lambda: journal.exists(), "journal")
         size = journal.stat().st_size
         keys = ["F6", "7", "End", "x"]
         self.assertIn("set probe.tool", self.what_follows(lambda: self.do(*[word for key in keys for word in ("key", key)]),
