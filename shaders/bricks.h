@@ -61,15 +61,16 @@ SHARED_FUNCTION uvec3 mask_slot_origin(uint packed_slot)
     return BRICK_SIZE * unpack_slot(packed_slot);
 }
 
-/// Where the search for a painted brick starts in a hashed table (Teschner and others 2003), and the uints of its
-/// entries: x | y << 16, z, slot.
-SHARED_FUNCTION uint mask_hash(uvec3 brick)
+/// The two places, before they are taken by the table's size, at which a hashed table has a painted brick: a hash of
+/// Teschner and others (2003) and a sum with other primes.
+SHARED_FUNCTION uvec2 mask_places(uvec3 brick)
 {
-    return brick.x * 73856093u ^ brick.y * 19349663u ^ brick.z * 83492791u;
+    const uvec2 hash = uvec2(brick.x * 73856093u ^ brick.y * 19349663u ^ brick.z * 83492791u,
+                             brick.x * 2654435761u + brick.y * 2246822519u + brick.z * 3266489917u);
+    return hash ^ hash >> 15u;
 }
+/// The uints of its entries: x | y << 16, z, slot. Before them is the index of the last one, a power of two minus one.
 SHARED_CONST uint MASK_ENTRY = 3u;
-/// A brick is at its hash or within this many entries from there.
-SHARED_CONST uint MASK_PROBES = 4u;
 
 SHARED_END
 #endif

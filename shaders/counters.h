@@ -18,6 +18,13 @@ SHARED_CONST uint COUNTER_CUT_SHORT = 7u;
 SHARED_CONST uint COUNTER_DENSITY_READS = 8u;  // texels of the atlas, or taps of its filter, that samples asked for
 SHARED_CONST uint COUNTER_TURNS = 9u;          // of the loops along a ray, but those of a fixed length
 
+SHARED_CONST uint COUNTERS_IN_ROW = 16u;
+/// Where a group counts; neighbours in other rows. `rows` is a power of two.
+SHARED_FUNCTION uint counter_row(uvec3 group, uint rows)
+{
+    return (group.x + 8u * group.y) & (rows - 1u);
+}
+
 /// The loops of one thread take no more together in a dispatch. Some devices end loops after 65535, without a word.
 SHARED_CONST uint MAX_TURNS = 32768u;
 

@@ -4,6 +4,7 @@
 #include <bit>
 #include <utility>
 
+#include "engine/bricks/painted_table.h"
 #include "engine/device/device_volume.h"
 #include "engine/volume/grid.h"
 
@@ -74,6 +75,7 @@ void DeviceMask::clear()
     table_.reset();
     slots_.clear();
     free_slots_.clear();
+    is_table_stale_ = true;
 }
 
 void DeviceMask::update(const Mask& mask, std::span<const int64_t> bricks)
@@ -99,7 +101,8 @@ void DeviceMask::send(const Mask& mask, std::span<const int64_t> bricks)
         send_bricks(mask, mask.painted_bricks());
     else
         send_bricks(mask, bricks);
-    send_table(mask);
+    if (is_table_stale_) send_table(mask);
+    is_table_stale_ = false;
 }
 
 /// Gives slots to painted bricks without one, and takes them from bricks that are no longer painted. Returns true if
@@ -114,6 +117,7 @@ bool DeviceMask::give_slots(const Mask& mask, std::span<const int64_t> bricks)
         } else if (known != slots_.end()) {
             free_slots_.push_back(known->second);
             slots_.erase(known);
+            is_table_stale_ = true;
         }
     }
     const bool grows = added.size() > free_slots_.size();
@@ -121,6 +125,7 @@ bool DeviceMask::give_slots(const Mask& mask, std::span<const int64_t> bricks)
         grow(slots_.size() + added.size());
         added = mask.painted_bricks();
     }
+    is_table_stale_ |= !added.empty();
     for (const int64_t brick : added) {
         if (!slots_.try_emplace(brick, free_slots_.back()).second) continue;  // it was listed twice
         free_slots_.pop_back();
@@ -176,29 +181,12 @@ std::vector<uint32_t> DeviceMask::dense_table(const Mask& mask) const
     return entries;
 }
 
-/// The index of the last entry (a power of two minus one), then the entries: as few as keep every brick near its hash.
 std::vector<uint32_t> DeviceMask::hashed_table(const Mask& mask) const
 {
     const glm::i64vec3 counts = mask.brick_counts();
-    std::vector<uint32_t> table;
-    const auto insert = [&](int64_t brick, uint32_t slot) {
-        const glm::uvec3 at(position_of(brick, counts));
-        for (uint32_t probe = 0; probe < gpu::MASK_PROBES; ++probe) {
-            uint32_t* entry = &table[1 + size_t((gpu::mask_hash(at) + probe) & table[0]) * gpu::MASK_ENTRY];
-            if (entry[2] != 0) continue;
-            entry[0] = at.x | at.y << 16;
-            entry[1] = at.z;
-            entry[2] = slot;
-            return true;
-        }
-        return false;
-    };
-    for (size_t places = std::bit_ceil(2 * slots_.size() + 16);; places *= 2) {
-        table.assign(1 + places * gpu::MASK_ENTRY, 0);
-        table[0] = uint32_t(places - 1);
-        if (std::ranges::all_of(slots_, [&](const auto& painted) { return insert(painted.first, painted.second); }))
-            return table;
-    }
+    std::vector<PaintedBrick> painted;
+    for (const auto& [brick, slot] : slots_) painted.push_back({glm::uvec3(position_of(brick, counts)), slot});
+    return painted_table(painted);
 }
 
 void DeviceMask::submit(FrameGraph graph)

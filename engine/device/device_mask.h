@@ -28,7 +28,7 @@ public:
     /// The slot of a painted brick; gpu::NO_SLOT if it is not on the device.
     uint32_t slot_of(int64_t brick) const;
     bool empty() const { return slots_.empty(); }
-    bool is_stale() const { return is_stale_; }  ///< an update failed
+    bool is_stale() const { return is_stale_; }
     /// Boxes of voxels, one for each painted brick of a volume of that size.
     std::vector<VoxelBox> bricks(const Size3& size) const;
     /// Handles for a graph; nothing while nothing is painted.
@@ -52,7 +52,8 @@ private:
     std::vector<uint32_t> free_slots_;
     gpu::Storage atlas_, table_;
     std::vector<gpu::Submission> in_flight_;
-    bool is_stale_ = false;
+    bool is_stale_ = false;       ///< an update failed
+    bool is_table_stale_ = true;  ///< slots were given or taken since it was sent
 };
 
 }  // namespace shvr

@@ -24,6 +24,9 @@ namespace shvr::gpu {
 
 /// Work counters of one pass, as the kernel counted them (shaders/counters.h names them).
 inline constexpr size_t COUNTERS = 16;
+/// Rows of counters of a pass that counts what each of its threads does (a power of two): kernels spread their groups
+/// over them, the report has the sums.
+inline constexpr size_t COUNTER_ROWS = 64;
 
 struct PassReport {
     std::string name;
@@ -39,6 +42,7 @@ struct PassReport {
     uint64_t bytes = 0;              ///< total size of the resources it binds: what it may touch
     std::string barrier;             ///< "compute -> transfer", empty if none
     std::vector<uint64_t> counters;  ///< empty where the kernel has none
+    uint32_t counted_rows = 0;       ///< rows of counters in which something was counted
     /// Threads that ran, as the device counts them; null: it was not asked, cannot tell, or the pass is in too many
     /// submissions.
     std::optional<uint64_t> invocations;

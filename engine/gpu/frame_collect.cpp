@@ -1,5 +1,7 @@
 // A graph on its way through the queue (frame_in_flight.h), and what it brings back.
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstring>
 #include <utility>
@@ -8,6 +10,21 @@
 #include "engine/gpu/live_trace.h"
 
 namespace shvr::gpu {
+
+namespace {
+
+void add_counters(PassReport& report, std::span<const std::byte> rows)
+{
+    report.counters.assign(COUNTERS, 0);
+    for (; !rows.empty(); rows = rows.subspan(COUNTER_ROW_BYTES)) {
+        std::array<uint64_t, COUNTERS> row;
+        std::memcpy(row.data(), rows.data(), COUNTER_ROW_BYTES);
+        report.counted_rows += std::ranges::any_of(row, [](uint64_t value) { return value != 0; });
+        for (size_t i = 0; i < COUNTERS; ++i) report.counters[i] += row[i];
+    }
+}
+
+}  // namespace
 
 void Submission::Frame::submit()
 {
@@ -124,8 +141,7 @@ FrameResult Submission::Frame::collect()
         if (const auto& barrier = compiled.steps[i].barrier)
             report.barrier = names_of(barrier->from) + " -> " + names_of(barrier->to);
         if (prepared[i].kernel && prepared[i].kernel->interface().slot("counters")) {
-            report.counters.resize(COUNTERS);
-            std::memcpy(report.counters.data(), counters->mapped().data() + prepared[i].counters_offset, COUNTER_BYTES);
+            add_counters(report, counters->mapped().subspan(prepared[i].counters_offset, counter_bytes));
         }
         result.passes.push_back(std::move(report));
     }

@@ -11,7 +11,7 @@
 
 namespace shvr::gpu {
 
-inline constexpr uint64_t COUNTER_BYTES = COUNTERS * sizeof(uint64_t);
+inline constexpr uint64_t COUNTER_ROW_BYTES = COUNTERS * sizeof(uint64_t);
 
 inline uint64_t aligned(uint64_t bytes, uint64_t alignment)
 {
@@ -44,6 +44,7 @@ struct Submission::Frame {
     Storage* blocks = nullptr;
     Storage* counters = nullptr;
     Storage* work_counters = nullptr;  // where kernels count, if they count much: copied to `counters` at the end
+    uint64_t counter_bytes = 0;        // of each pass
     std::unique_ptr<FrameObjects> objects;
     bool is_timed = false;
     std::vector<size_t> counted_steps;  // per query of statistics

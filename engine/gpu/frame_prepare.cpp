@@ -51,7 +51,9 @@ void Submission::Frame::prepare()
     }
     read_backs.resize(graph.read_back_count());
 
-    uint64_t block_bytes = 0, counter_bytes = 0;
+    const bool are_copied = counts_work();
+    counter_bytes = are_copied ? COUNTER_ROWS * COUNTER_ROW_BYTES : COUNTER_ROW_BYTES;
+    uint64_t block_bytes = 0, all_counter_bytes = 0;
     is_timed = (options.timestamps || IS_TRACED) && executor.device_.traits().timestamp_bits > 0;
     FrameObjects::Needs needs{.queries = is_timed ? uint32_t(compiled.steps.size()) * 2 : 0};
     constexpr uint32_t QUERIES_OF_STEP = 64;
@@ -69,16 +71,15 @@ void Submission::Frame::prepare()
         prepared[i].kernel = &executor.kernels_.get(data.kernel, data.constants);
         for (const auto& [name, bytes] : data.blocks) block_bytes += aligned(bytes.size(), alignment);
         if (interface.slot("counters")) {
-            prepared[i].counters_offset = counter_bytes;
-            counter_bytes += aligned(COUNTER_BYTES, alignment);
+            prepared[i].counters_offset = all_counter_bytes;
+            all_counter_bytes += aligned(counter_bytes, alignment);
         }
         for (const KernelInterface::Slot& slot : interface.slots) ++needs.descriptors[slot.type];
         ++needs.sets;
     }
     if (block_bytes) blocks = &take("blocks", buffer_desc(block_bytes), placement_of(block_bytes));
-    if (counter_bytes) {
-        const bool are_copied = counts_work();
-        counters = &take("counters", buffer_desc(counter_bytes), Placement::download, !are_copied);
+    if (all_counter_bytes) {
+        counters = &take("counters", buffer_desc(all_counter_bytes), Placement::download, !are_copied);
         if (are_copied)
             work_counters = &take("work counters", counters->desc(), Placement::device);
         else
@@ -125,7 +126,7 @@ void Submission::Frame::write_descriptors(const PassData& data, const Prepared& 
                 aligned(block->second.size(), executor.device_.traits().limits.minStorageBufferOffsetAlignment);
         } else {
             const Storage& counted = work_counters ? *work_counters : *counters;
-            buffers[i] = {executor.memory_.object(counted.import().id).buffer, step.counters_offset, COUNTER_BYTES};
+            buffers[i] = {executor.memory_.object(counted.import().id).buffer, step.counters_offset, counter_bytes};
         }
         const bool is_buffer = slot.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
         writes.push_back({.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,

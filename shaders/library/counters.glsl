@@ -1,4 +1,6 @@
 // Counters, 64 bits wide on devices without 64-bit atomics: a carry is added when the low half wraps.
+// A group counts in a row of its own while there are enough rows, since additions to one place wait for each other; the
+// host adds the rows.
 #include "../counters.h"
 
 layout(binding = 15, scalar) buffer Counters { uvec2 values[]; } counters;
@@ -6,6 +8,8 @@ layout(binding = 15, scalar) buffer Counters { uvec2 values[]; } counters;
 void count(uint counter, uint amount)
 {
     if (amount == 0u) return;
-    const uint before = atomicAdd(counters.values[counter].x, amount);
-    if (before + amount < before) atomicAdd(counters.values[counter].y, 1u);
+    const uint rows = uint(counters.values.length()) / COUNTERS_IN_ROW;
+    const uint at = counter_row(gl_WorkGroupID, rows) * COUNTERS_IN_ROW + counter;
+    const uint before = atomicAdd(counters.values[at].x, amount);
+    if (before + amount < before) atomicAdd(counters.values[at].y, 1u);
 }

@@ -1,5 +1,6 @@
 // Bricks and leaps are bookkeeping: they must not change one bit of a picture.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
@@ -191,6 +192,22 @@ TEST_CASE_FIXTURE(OnDevice, "work is counted exactly")
     CHECK(counted[gpu::COUNTER_BRICKS_VISITED] == 64 * 2);
     CHECK(counted[gpu::COUNTER_BRICKS_SKIPPED] == 0);
     CHECK(counted == work(session, camera_along(volume(), {0.0, 0.0, 1.0}, 64.0)));
+}
+
+static_assert(gpu::COUNTERS_IN_ROW == gpu::COUNTERS);
+
+TEST_CASE_FIXTURE(OnDevice, "groups count in rows of their own, and the report has the sums")
+{
+    load(constant_volume({64, 64, 64}, 30000.0));
+    Session session = plain_session(uniform_points(RED, 0.001), {128, 256});  // 8 x 64 groups of 16 x 4 pixels
+    session.render.step_voxels = 0.5;
+    const Camera camera = camera_along(volume(), {0.0, 0.0, 1.0}, 64.0);
+    const Picture picture = renderer().render(session, camera, {.count_work = true});
+    const auto pass = std::ranges::find(picture.passes, "raycast", &gpu::PassReport::name);
+    REQUIRE(pass != picture.passes.end());
+    CHECK(pass->counted_rows == gpu::COUNTER_ROWS);
+    CHECK(pass->counters[gpu::COUNTER_RAYS] == 128 * 256);
+    CHECK(pass->counters[gpu::COUNTER_SAMPLES] == 128 * 256 * 128);
 }
 
 TEST_CASE_FIXTURE(OnDevice, "a volume that is loaded anew has none of the paint of the last one")

@@ -1,0 +1,45 @@
+#include "engine/bricks/painted_table.h"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+namespace shvr {
+
+namespace {
+
+constexpr size_t FEWEST_ENTRIES = 16;
+/// A brick that finds its place taken moves the one that is there to its other place, and so on. Where half of the
+/// entries are free few bricks move more than a dozen.
+constexpr int MOST_MOVES = 500;
+
+/// Puts `brick` into `entries`; false where it and those it would move find no place.
+bool insert(std::vector<PaintedBrick>& entries, PaintedBrick brick)
+{
+    const uint32_t last = uint32_t(entries.size() - 1);
+    uint32_t at = gpu::mask_places(brick.brick).x & last;
+    for (int moves = 0; moves < MOST_MOVES; ++moves) {
+        std::swap(entries[at], brick);
+        if (brick.slot == gpu::NO_SLOT) return true;
+        const glm::uvec2 places = gpu::mask_places(brick.brick) & last;
+        at = places.x == at ? places.y : places.x;
+    }
+    return false;
+}
+
+}  // namespace
+
+std::vector<uint32_t> painted_table(std::span<const PaintedBrick> bricks)
+{
+    std::vector<PaintedBrick> entries;
+    for (size_t count = std::bit_ceil(2 * bricks.size() + FEWEST_ENTRIES);; count *= 2) {
+        entries.assign(count, {});
+        if (std::ranges::all_of(bricks, [&](const PaintedBrick& brick) { return insert(entries, brick); })) break;
+    }
+    std::vector<uint32_t> table{uint32_t(entries.size() - 1)};
+    table.reserve(1 + entries.size() * gpu::MASK_ENTRY);
+    for (const auto& [brick, slot] : entries) table.insert(table.end(), {brick.x | brick.y << 16, brick.z, slot});
+    return table;
+}
+
+}  // namespace shvr

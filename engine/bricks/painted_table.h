@@ -1,0 +1,24 @@
+#pragma once
+// Finds the slots of painted bricks where a table of all bricks would be too large: a hash table in which each brick is
+// at one of two places (cuckoo hashing, Pagh and Rodler 2004). Kernels look at both, always, which takes six loads and
+// no loop.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "shaders/bricks.h"
+
+namespace shvr {
+
+struct PaintedBrick {
+    glm::uvec3 brick;   ///< in bricks of the mask, below 65536 along x and y
+    uint32_t slot = 0;  ///< never gpu::NO_SLOT, which is what free entries have
+};
+
+/// The table, as shaders/library/mask.glsl reads it: the index of its last entry, then its entries
+/// (gpu::MASK_ENTRY). It has at least two for a brick, and more only where no order of that many keeps all bricks at
+/// their places.
+std::vector<uint32_t> painted_table(std::span<const PaintedBrick> bricks);
+
+}  // namespace shvr
