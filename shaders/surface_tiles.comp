@@ -13,9 +13,9 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 
 layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
 layout(binding = 1, scalar) readonly buffer Scene { SurfaceParams data; } surface_params;
-layout(binding = 3, scalar) readonly buffer Nodes { SurfaceNode nodes[]; } surface_nodes;
-layout(binding = 4, scalar) readonly buffer List { Surface list[]; } surface_list;
-layout(binding = 5, scalar) buffer Tiles { uint words[]; } surface_tiles;
+layout(binding = 5, r32ui) uniform uimage2D surface_tiles;
+
+#include "library/surface_list.glsl"
 
 // Normals are off by a few ulps, over distances that the slack of boxes knows; and tiles reach half a pixel beyond
 // their rays.
@@ -64,7 +64,6 @@ void main()
     const uvec2 tiles = surface_tiles_of(params.pixel_end - params.pixel_begin);
     const uvec2 tile = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(tile, tiles))) return;
-    const uint words = (tile.y * tiles.x + tile.x) * SURFACE_TILE_WORDS;
 
     const vec2 lower = vec2(params.pixel_begin + SURFACE_TILE * tile), upper = lower + float(SURFACE_TILE);
     const vec2 half_tile = vec2(0.5 * float(SURFACE_TILE));
@@ -74,21 +73,23 @@ void main()
                                   side_of(scene, upper, -half_tile, scene.middle_dy));
     const float slack = SLACKS * scene.slack;
 
-    uint count = scene.first_node > 0u ? surface_tiles.words[words] : 0u;
+    const ivec2 counted = ivec2(surface_tile_texel(tile, 0u));
+    uint count = scene.first_node > 0u ? imageLoad(surface_tiles, counted).x : 0u;
     uint node = scene.first_node;
     while (node < scene.end_node && count <= SURFACES_IN_TILE) {
-        const SurfaceNode box = surface_nodes.nodes[node];
+        const SurfaceNode box = surface_node(node);
         const bool is_met = box_may_be_met(sides, 0.5 * (box.lower + box.upper) - scene.origin,
                                            0.5 * (box.upper - box.lower), slack);
         const uint end = is_met ? box.end : box.begin;
         for (uint i = box.begin; i < end; ++i) {
-            const Surface surface = surface_list.list[i];
+            const Surface surface = surface_at(i);
             if (!surface_may_be_met(sides, surface, surface.from - scene.origin, slack)) continue;
-            if (count < SURFACES_IN_TILE) surface_tiles.words[words + 1u + count] = i;
+            if (count < SURFACES_IN_TILE)
+                imageStore(surface_tiles, ivec2(surface_tile_texel(tile, 1u + count)), uvec4(i));
             ++count;
         }
         node = is_met ? node + 1u : box.skip;
     }
     // Full, and also where a device has ended the loop.
-    surface_tiles.words[words] = node < scene.end_node ? SURFACES_IN_TILE + 1u : count;
+    imageStore(surface_tiles, counted, uvec4(node < scene.end_node ? SURFACES_IN_TILE + 1u : count));
 }

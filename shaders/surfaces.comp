@@ -28,9 +28,8 @@ layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } param
 layout(binding = 1, scalar) readonly buffer Scene { SurfaceParams data; } surface_params;
 layout(binding = 2, rgba32f) uniform image2D surfaces;
 #ifdef LISTED
-layout(binding = 3, scalar) readonly buffer Nodes { SurfaceNode nodes[]; } surface_nodes;
-layout(binding = 4, scalar) readonly buffer List { Surface list[]; } surface_list;
-layout(binding = 5, scalar) readonly buffer Tiles { uint words[]; } surface_tiles;
+layout(binding = 5, r32ui) uniform readonly uimage2D surface_tiles;
+#include "library/surface_list.glsl"
 #endif
 
 #include "library/counters.glsl"
@@ -77,7 +76,7 @@ vec3 from_origin(const SurfaceParams scene, const Surface surface)
 
 void meet(const SurfaceParams scene, const Line line, float begin, uint index, inout Hit hit)
 {
-    const Surface surface = surface_list.list[index];
+    const Surface surface = surface_at(index);
     const vec3 from = from_origin(scene, surface) - line.origin;
     consider(surface_range(surface, from, line.direction), begin, surface.number, index, hit);
 }
@@ -91,7 +90,7 @@ void search(const SurfaceParams scene, const Line line, float begin, uint first_
     const vec3 origin = scene.origin + line.origin;
     uint node = first_node;
     while (node < scene.end_node) {
-        const SurfaceNode box = surface_nodes.nodes[node];
+        const SurfaceNode box = surface_node(node);
         const vec3 a = (box.lower - scene.slack - origin) * inverse;
         const vec3 b = (box.upper + scene.slack - origin) * inverse;
         const vec3 low = min(a, b), high = max(a, b);
@@ -109,7 +108,7 @@ void search(const SurfaceParams scene, const Line line, float begin, uint first_
 Hit unpacked_hit(const vec4 packed)
 {
     const uint index = uint(packed.y) * INDEX_PART + uint(packed.z);
-    return Hit(packed.x, packed.w != 0.0, index == PROBE_INDEX ? PROBE_INDEX : surface_list.list[index].number, index);
+    return Hit(packed.x, packed.w != 0.0, index == PROBE_INDEX ? PROBE_INDEX : surface_at(index).number, index);
 }
 #endif
 
@@ -133,8 +132,7 @@ void main()
     Hit hit = Hit(end, false, 0u, PROBE_INDEX);  // at the far plane itself nothing is nearer
 #ifdef LISTED
     const uvec2 tile = in_part / SURFACE_TILE;
-    const uint tiles_a_row = surface_tiles_of(params.pixel_end - params.pixel_begin).x;
-    const uint words = (tile.y * tiles_a_row + tile.x) * SURFACE_TILE_WORDS, count = surface_tiles.words[words];
+    const uint count = imageLoad(surface_tiles, ivec2(surface_tile_texel(tile, 0u))).x;
     const bool is_listed = count <= SURFACES_IN_TILE;
     if (is_listed && scene.is_last_block == 0u) return;
     const bool is_first = is_listed || scene.first_node == 0u;
@@ -147,7 +145,8 @@ void main()
 #ifdef LISTED
     if (!is_first) hit = unpacked_hit(imageLoad(surfaces, ivec2(in_part)));
     const uint end_of_tile = is_listed ? count : 0u;
-    for (uint i = 0u; i < end_of_tile; ++i) meet(scene, line, begin, surface_tiles.words[words + 1u + i], hit);
+    for (uint i = 0u; i < end_of_tile; ++i)
+        meet(scene, line, begin, imageLoad(surface_tiles, ivec2(surface_tile_texel(tile, 1u + i))).x, hit);
     search(scene, line, begin, is_listed ? scene.end_node : scene.first_node, hit);
     if (scene.is_last_block == 0u) {
         imageStore(surfaces, ivec2(in_part), packed_hit(hit));
@@ -164,7 +163,7 @@ void main()
     vec3 color = scene.probe_color;
 #ifdef LISTED
     if (hit.index != PROBE_INDEX) {
-        const Surface surface = surface_list.list[hit.index];
+        const Surface surface = surface_at(hit.index);
         // As in surface_range: from the line's point nearest to the surface.
         const vec3 from = from_origin(scene, surface) - line.origin;
         const float shift = dot(from + 0.5 * surface.along, line.direction);

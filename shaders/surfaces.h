@@ -7,25 +7,33 @@
 SHARED_BEGIN
 
 /// The convex hull of two balls (a round cone), or one ball if `along` is 0. The first ball is at `from` + `from_rest`:
-/// the rest holds the digits that a float loses in a large volume.
+/// the rest holds the digits that a float loses in a large volume. As four texels of four words each.
 struct Surface {
     vec3 from;
-    vec3 from_rest;
-    vec3 along;  ///< from the first ball to the second
     float radius_from;
+    vec3 along;       ///< from the first ball to the second
     float radius_to;  ///< neither ball contains the other
-    vec3 color;       ///< linear light
-    uint number;      ///< of two at the same length, the lower number is seen
+    vec3 from_rest;
+    uint number;  ///< of two at the same length, the lower number is seen
+    vec3 color;   ///< linear light
+    uint unused;
 };
 
 /// A box around surfaces. Nodes are in depth-first order: the next one is the first child, or `skip` if there is none.
+/// As three texels of four words each.
 struct SurfaceNode {
     vec3 lower;
+    uint skip;  ///< the next node outside this one
     vec3 upper;
-    uint skip;   ///< the next node outside this one
     uint begin;  ///< surfaces of a leaf; begin == end elsewhere
     uint end;
+    uvec3 unused;
 };
+
+/// Both lie in images, in rows of so many: devices without a cache for buffers read those a thread at a time.
+SHARED_CONST uint SURFACES_IN_ROW = 1024u;
+SHARED_CONST uint SURFACE_TEXELS = 4u;
+SHARED_CONST uint SURFACE_NODE_TEXELS = 3u;
 
 /// The ray of a pixel goes through a point of the middle plane, in the direction from a point of the near plane to one
 /// of the far plane. Points are relative to the middle of that plane, which the user looks at, so that they stay
@@ -53,14 +61,20 @@ struct SurfaceParams {
 };
 
 /// Surfaces are listed for tiles of so many pixels a side, from the first pixel of the part on: how many its rays may
-/// meet, and which. Where there are more than that, rays look for theirs among the boxes.
+/// meet, and which, in a texel for each of the tile's pixels. Where there are more than that, rays look for theirs
+/// among the boxes.
 SHARED_CONST uint SURFACE_TILE = 8u;
-SHARED_CONST uint SURFACES_IN_TILE = 63u;
-SHARED_CONST uint SURFACE_TILE_WORDS = 1u + SURFACES_IN_TILE;
+SHARED_CONST uint SURFACES_IN_TILE = SURFACE_TILE * SURFACE_TILE - 1u;
 
 SHARED_FUNCTION uvec2 surface_tiles_of(uvec2 pixels)
 {
     return (pixels + SURFACE_TILE - 1u) / SURFACE_TILE;
+}
+
+/// The texel of a word of a tile's list: the first is their number.
+SHARED_FUNCTION uvec2 surface_tile_texel(uvec2 tile, uint word)
+{
+    return SURFACE_TILE * tile + uvec2(word % SURFACE_TILE, word / SURFACE_TILE);
 }
 
 /// The length where a ray meets no surface.

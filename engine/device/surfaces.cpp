@@ -16,10 +16,41 @@ constexpr double FAR = 1e20;
 constexpr uint32_t SHORT_GAP = 16;
 
 template <class Value>
+constexpr uint32_t TEXELS = sizeof(Value) / sizeof(glm::uvec4);
+static_assert(TEXELS<gpu::Surface> == gpu::SURFACE_TEXELS && sizeof(gpu::Surface) == 64);
+static_assert(TEXELS<gpu::SurfaceNode> == gpu::SURFACE_NODE_TEXELS && sizeof(gpu::SurfaceNode) == 48);
+
+template <class Value>
+ResourceDesc desc_of(uint64_t values)
+{
+    const uint64_t rows = (values + gpu::SURFACES_IN_ROW - 1) / gpu::SURFACES_IN_ROW;
+    return picture_desc(Format::rgba32_uint,
+                        {TEXELS<Value> * uint32_t(std::min<uint64_t>(values, gpu::SURFACES_IN_ROW)), uint32_t(rows)});
+}
+
+/// Adds the places of values begin ... end, which lie side by side in a buffer from `offset` on: whole rows at once.
+template <class Value>
+void add_regions(uint32_t begin, uint32_t end, uint64_t offset, std::vector<ImageRegion>& regions)
+{
+    while (begin < end) {
+        const uint32_t column = begin % gpu::SURFACES_IN_ROW;
+        const uint32_t rows = column == 0 ? std::max((end - begin) / gpu::SURFACES_IN_ROW, 1u) : 1;
+        const uint32_t count = std::min(end - begin, rows * gpu::SURFACES_IN_ROW - column);
+        regions.push_back({offset,
+                           {TEXELS<Value> * column, begin / gpu::SURFACES_IN_ROW, 0},
+                           {TEXELS<Value> * (count / rows), rows, 1}});
+        begin += count;
+        offset += count * sizeof(Value);
+    }
+}
+
+template <class Value>
 Resource send_all(FrameGraph& graph, const std::string& name, const std::vector<Value>& values, Resource target)
 {
-    return graph.copy(graph.upload<Value>(name + " to upload", values), target, {{0, 0, values.size() * sizeof(Value)}},
-                      "upload " + name);
+    std::vector<ImageRegion> regions;
+    add_regions<Value>(0, uint32_t(values.size()), 0, regions);
+    return graph.copy_to_image(graph.upload<Value>(name + " to upload", values), target, std::move(regions),
+                               "upload " + name);
 }
 
 template <class Value>
@@ -31,19 +62,15 @@ Resource send(FrameGraph& graph, const std::string& name, const std::vector<Valu
     while (!places.empty() && places.back() >= values.size()) places.pop_back();  // removed since
     if (places.empty()) return target;
     std::vector<Value> written;
-    std::vector<BufferRegion> regions;
-    uint32_t next = 0;  // after the last one written
-    for (const uint32_t place : places) {
-        if (regions.empty() || place - next > SHORT_GAP) {
-            regions.push_back({written.size() * sizeof(Value), place * sizeof(Value), 0});
-            next = place;
-        }
-        for (; next <= place; ++next) {
-            written.push_back(values[next]);
-            regions.back().bytes += sizeof(Value);
-        }
+    std::vector<ImageRegion> regions;
+    for (size_t first = 0, last = 0; first < places.size(); first = last + 1) {
+        last = first;
+        while (last + 1 < places.size() && places[last + 1] - places[last] <= SHORT_GAP) ++last;
+        add_regions<Value>(places[first], places[last] + 1, written.size() * sizeof(Value), regions);
+        written.insert(written.end(), values.begin() + places[first], values.begin() + places[last] + 1);
     }
-    return graph.copy(graph.upload<Value>(name + " to upload", written), target, std::move(regions), "upload " + name);
+    return graph.copy_to_image(graph.upload<Value>(name + " to upload", written), target, std::move(regions),
+                               "upload " + name);
 }
 
 double largest(const glm::dvec3& v)
@@ -57,11 +84,11 @@ void SurfaceScene::set(SurfaceForest forest)
 {
     gpu::Storage nodes, list;
     if (!forest.nodes().empty()) {
-        const auto create_buffer = [&](const char* name, uint64_t bytes) {
-            return memory_.create(name, buffer_desc(bytes), gpu::Placement::device, "the surfaces of the trace");
+        const auto create = [&](const char* name, const ResourceDesc& desc) {
+            return memory_.create(name, desc, gpu::Placement::device, "the surfaces of the trace");
         };
-        nodes = create_buffer("surface nodes", forest.max_nodes() * sizeof(gpu::SurfaceNode));
-        list = create_buffer("surface list", forest.max_surfaces() * sizeof(gpu::Surface));
+        nodes = create("surface nodes", desc_of<gpu::SurfaceNode>(forest.max_nodes()));
+        list = create("surface list", desc_of<gpu::Surface>(forest.max_surfaces()));
     }
     nodes_ = std::move(nodes);
     list_ = std::move(list);

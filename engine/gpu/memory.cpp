@@ -89,6 +89,7 @@ VkFormat vulkan_format(Format format)
         case Format::r8_uint: return VK_FORMAT_R8_UINT;
         case Format::r16_unorm: return VK_FORMAT_R16_UNORM;
         case Format::r32_uint: return VK_FORMAT_R32_UINT;
+        case Format::rgba32_uint: return VK_FORMAT_R32G32B32A32_UINT;
         case Format::rgba32_float: return VK_FORMAT_R32G32B32A32_SFLOAT;
         case Format::rgba8_unorm: return VK_FORMAT_R8G8B8A8_UNORM;
     }

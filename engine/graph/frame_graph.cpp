@@ -42,6 +42,7 @@ uint64_t bytes_per_texel(Format format)
         case Format::r8_uint: return 1;
         case Format::r16_unorm: return 2;
         case Format::r32_uint: return 4;
+        case Format::rgba32_uint:
         case Format::rgba32_float: return 16;
         case Format::rgba8_unorm: return 4;
     }
@@ -54,6 +55,7 @@ const char* name_of(Format format)
         case Format::r8_uint: return "r8_uint";
         case Format::r16_unorm: return "r16_unorm";
         case Format::r32_uint: return "r32_uint";
+        case Format::rgba32_uint: return "rgba32_uint";
         case Format::rgba32_float: return "rgba32_float";
         case Format::rgba8_unorm: return "rgba8_unorm";
     }

@@ -31,7 +31,7 @@
 
 namespace shvr {
 
-enum class Format : uint8_t { r8_uint, r16_unorm, r32_uint, rgba32_float, rgba8_unorm };
+enum class Format : uint8_t { r8_uint, r16_unorm, r32_uint, rgba32_uint, rgba32_float, rgba8_unorm };
 uint64_t bytes_per_texel(Format format);
 const char* name_of(Format format);
 

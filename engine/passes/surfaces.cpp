@@ -62,7 +62,7 @@ Resource surfaces(FrameGraph& graph, const SurfacesInput& input)
     Resource tiles;
     if (input.listed) {
         const glm::uvec2 counts = gpu::surface_tiles_of(pixels);
-        tiles = graph.create("surface tiles", buffer_desc(uint64_t{counts.x} * counts.y * SURFACE_TILE_BYTES));
+        tiles = graph.create("surface tiles", picture_desc(Format::r32_uint, gpu::SURFACE_TILE * counts));
         for (const SurfacesInput& block : blocks) tiles = tiles_block(graph, block, tiles);
     }
     Resource target = graph.create("surfaces", picture_desc(Format::rgba32_float, pixels));

@@ -12,7 +12,7 @@ namespace shvr {
 /// Surfaces on the device, and the hierarchy of boxes around them.
 struct SurfaceList {
     Resource nodes;  ///< gpu::SurfaceNode, in depth-first order; params.node_count of them
-    Resource list;   ///< gpu::Surface
+    Resource list;   ///< gpu::Surface; both are rgba32_uint pictures, in rows of gpu::SURFACES_IN_ROW
 };
 
 struct SurfacesInput {
@@ -25,7 +25,7 @@ struct SurfacesInput {
 };
 
 /// The device takes this for each tile of a part, besides the image.
-inline constexpr uint64_t SURFACE_TILE_BYTES = sizeof(uint32_t) * gpu::SURFACE_TILE_WORDS;
+inline constexpr uint64_t SURFACE_TILE_BYTES = sizeof(uint32_t) * gpu::SURFACE_TILE * gpu::SURFACE_TILE;
 
 /// An image of the part's size: lit colour in linear light, and the length along each pixel's ray at which a surface
 /// ends it, gpu::NO_SURFACE where none does. It lasts for this frame only.

@@ -207,13 +207,6 @@ TEST_CASE("members of shared structs lie where C++ puts them")
     check_members(
         "saturation", "push",
         {MEMBER(SaturationParams, target), MEMBER(SaturationParams, size), MEMBER(SaturationParams, saturation)});
-    check_members("surfaces_listed", "surface_nodes",
-                  {MEMBER(SurfaceNode, lower), MEMBER(SurfaceNode, upper), MEMBER(SurfaceNode, skip),
-                   MEMBER(SurfaceNode, begin), MEMBER(SurfaceNode, end)});
-    check_members(
-        "surfaces_listed", "surface_list",
-        {MEMBER(Surface, from), MEMBER(Surface, from_rest), MEMBER(Surface, along), MEMBER(Surface, radius_from),
-         MEMBER(Surface, radius_to), MEMBER(Surface, color), MEMBER(Surface, number)});
     for (const char* kernel : {"brick_leap", "brick_leap_masked"}) {
         check_members(kernel, "push", brick_leap_params());
         check_members(kernel, "jobs", brick_leap_jobs());
