@@ -335,7 +335,9 @@ class EndingEarly(CliTest):
 
     def start(self, **options):
         # A signal that a test sends is no fault for a sanitizer to report.
-        environment = {**ENVIRONMENT, "ASAN_OPTIONS": os.environ.get("ASAN_OPTIONS", "") + ":handle_segv=0"}
+        environment = dict(ENVIRONMENT)
+        for name in ("ASAN_OPTIONS", "TSAN_OPTIONS"):
+            environment[name] = os.environ.get(name, "") + ":handle_segv=0"
         return subprocess.Popen([SHVR, "import", *map(str, self.arguments)], stdout=subprocess.PIPE,
                                 stderr=subprocess.PIPE, text=True, env=environment, **options)
 
