@@ -17,8 +17,8 @@ struct PaintedBrick {
 };
 
 /// The table, as shaders/library/mask.glsl reads it: the index of its last entry, then its entries
-/// (gpu::MASK_ENTRY). It has at least two for a brick, and more only where no order of that many keeps all bricks at
-/// their places.
+/// (gpu::MASK_ENTRY). It has at least two for a brick, and twice as many where not all bricks find a place among those
+/// within a few hundred moves.
 std::vector<uint32_t> painted_table(std::span<const PaintedBrick> bricks);
 
 }  // namespace shvr
