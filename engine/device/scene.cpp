@@ -306,18 +306,35 @@ void Scene::show(const Document& document)
 bool Scene::show(const Document& document, std::span<const Change> changes)
 {
     const Touched touched = touched_by(document, changes);
-    if (!touched.mask_bricks.empty()) update_mask(document.mask, touched.mask_bricks);
-    if (!touched.raised.empty()) update_density(document.density, touched.raised);
     show_trace(document.trace, changes);
+    show(document, touched);
     return !touched.mask_bricks.empty() || !touched.raised.empty();
+}
+
+void Scene::show(const Document& document, const Touched& touched, const std::optional<VoxelBox>& within)
+{
+    // What may fail comes last, so that nothing is forgotten for it.
+    if (!touched.raised.empty()) note_density(document.density, touched.raised);
+    if (!touched.mask_bricks.empty()) update_mask(document.mask, touched.mask_bricks, within);
+    renew_density();
+}
+
+void Scene::catch_up(const Document& document)
+{
+    if (mask_->is_stale()) update_mask(document.mask, {});
+    renew_density();
 }
 
 void Scene::update_mask(const Mask& mask, std::span<const int64_t> bricks, const std::optional<VoxelBox>& within)
 {
-    const std::vector<int64_t> all = mask_->is_stale() ? mask.painted_bricks() : std::vector<int64_t>();
+    note_mask(mask, bricks, within);
+    if (mask_->is_stale()) note_mask(mask, mask.painted_bricks());  // nothing of it is there
     mask_->update(mask, bricks);
+}
+
+void Scene::note_mask(const Mask& mask, std::span<const int64_t> bricks, const std::optional<VoxelBox>& within)
+{
     volume_->note_painted(mask, bricks);
-    if (!all.empty()) volume_->note_painted(mask, all);
     for (const int64_t brick : bricks) {
         VoxelBox voxels = voxels_of({0, position_of(brick, mask.brick_counts())}, info().size);
         occlusion_.changed(voxels);
@@ -329,6 +346,12 @@ void Scene::update_mask(const Mask& mask, std::span<const int64_t> bricks, const
 }
 
 void Scene::update_density(const DensityField& field, std::span<const VoxelBox> changed)
+{
+    note_density(field, changed);
+    renew_density();
+}
+
+void Scene::note_density(const DensityField& field, std::span<const VoxelBox> changed)
 {
     SHVR_CHECK(field.size() == info().size && field.type() == info().type, "the offsets are of another volume");
     std::vector<int64_t> bricks;
@@ -345,8 +368,12 @@ void Scene::update_density(const DensityField& field, std::span<const VoxelBox> 
     std::vector<OffsetSource::Brick> offsets;
     for (const int64_t brick : bricks) offsets.push_back({field.position_of(brick), field.brick(brick)});
     offsets_->set(offsets);
-
     unshown_density_.insert(unshown_density_.end(), changed.begin(), changed.end());
+}
+
+void Scene::renew_density()
+{
+    if (unshown_density_.empty()) return;
     volume_->renew(unshown_density_);
     for (const VoxelBox& box : std::exchange(unshown_density_, {})) {
         occlusion_.changed(box, gpu::BRICK_APRON);

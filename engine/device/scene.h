@@ -85,8 +85,13 @@ public:
     void show(const Document& document);
     /// Shows these changes, which the document already contains: paint, offsets and, once show_surfaces() has been
     /// called, the trace. Returns whether paint or offsets are among them. Frames submitted later see them. Fails where
-    /// voxels cannot be read.
+    /// voxels cannot be read, or memory is too short; then `is_behind`.
     bool show(const Document& document, std::span<const Change> changes);
+    void show(const Document& document, const Touched& touched, const std::optional<VoxelBox>& within = {});
+    /// Paint or offsets are not shown as they are, since an update failed.
+    bool is_behind() const { return mask_->is_stale() || !unshown_density_.empty(); }
+    /// Shows what is not shown yet. Fails as `show`.
+    void catch_up(const Document& document);
     /// The mask has changed in these bricks. `within`: a box that holds all changed voxels.
     void update_mask(const Mask& mask, std::span<const int64_t> bricks, const std::optional<VoxelBox>& within = {});
     /// Offsets have changed in these boxes. Offsets never raise intensities above the volume's window.
@@ -152,6 +157,9 @@ private:
     void drop_occlusion(const std::string& why);
     Occlusion::Look occlusion_look(const Look& look);
     void note_changed(const VoxelBox& voxels, Cause cause);
+    void note_mask(const Mask& mask, std::span<const int64_t> bricks, const std::optional<VoxelBox>& within = {});
+    void note_density(const DensityField& field, std::span<const VoxelBox> changed);
+    void renew_density();
 
     gpu::Executor& executor_;
     gpu::Memory& memory_;

@@ -211,15 +211,42 @@ void Annotator::drop_strokes()
     strokes_.clear();
 }
 
+void Annotator::drop_queries()
+{
+    for (Stroke& stroke : strokes_) stroke.query.drop();
+}
+
+void Annotator::drop_first_stroke()
+{
+    last_stroke_ = strokes_.front().result;
+    strokes_.pop_front();
+}
+
 std::optional<VoxelBox> Annotator::advance()
 {
+    std::optional<VoxelBox> changed = advance_first_stroke();
+    if (is_behind()) catch_up();
+    return changed;
+}
+
+std::optional<VoxelBox> Annotator::advance_first_stroke()
+{
     if (strokes_.empty()) return std::nullopt;
+    constexpr const char* CUT = "; the rest of the stroke is not painted";
     try {
-        return advance_stroke();
-    } catch (const Error&) {
-        last_stroke_ = strokes_.front().result;
-        strokes_.pop_front();  // what cannot be recorded is not painted, nor is the rest of the stroke
-        throw;
+        std::optional<VoxelBox> changed = advance_stroke();
+        if (!strokes_.empty()) strokes_.front().failed_tries = 0;
+        return changed;
+    } catch (const gpu::DeviceLost&) {
+        throw;  // the stroke goes on with the device that is started again
+    } catch (const gpu::MemoryError& error) {
+        strokes_.front().query.drop();
+        if (++strokes_.front().failed_tries < MOST_TRIES) throw;
+        drop_first_stroke();
+        throw gpu::MemoryError(sentence(error.what(), CUT));
+    } catch (const Error& error) {  // what cannot be recorded is not painted
+        drop_first_stroke();
+        fail(error.what(), CUT);
     }
 }
 
@@ -233,9 +260,10 @@ std::optional<VoxelBox> Annotator::advance_stroke()
     }
     if (stroke.next < stroke.positions.size()) {
         FrameOfRegions frame = frame_of_regions(stroke.brush, stroke.positions, stroke.next, renderer_.volume().info());
-        if (!frame.regions.empty() && !stroke.query.ask(stroke.brush, std::move(frame.regions), RegionQuery::Wait::no))
-            return changed;  // its bricks are being loaded
-        stroke.next = frame.end;
+        if (frame.regions.empty())
+            stroke.next = frame.end;
+        else if (stroke.query.ask(stroke.brush, std::move(frame.regions), RegionQuery::Wait::no))
+            stroke.asked_to = frame.end;  // else its bricks are being loaded
     } else if (stroke.has_ended) {
         last_stroke_ = stroke.result;
         ++strokes_done_;
@@ -254,14 +282,17 @@ std::optional<VoxelBox> Annotator::paint_answer()
     stroke.tally.add(document().mask, answered.selection, records.groups, records.offsets);
     std::vector<Change> changes = changes_of(std::move(records));
     if (changes.empty()) {
+        stroke.next = stroke.asked_to;
         stroke.result = stroke.tally.result();
         return std::nullopt;
     }
     const Touched touched = touched_by(document(), changes);
-    if (std::exchange(stroke.is_recorded, true))
+    if (stroke.is_recorded)
         work_->extend(std::move(changes));
     else
         work_->perform({label_of(stroke.brush), std::move(changes)});
+    stroke.is_recorded = true;
+    stroke.next = stroke.asked_to;
     stroke.result = stroke.tally.result();
     VoxelBox box = answers.front().region.box;
     for (const RegionAnswer& answer : answers) box = united(box, answer.region.box);
@@ -272,8 +303,26 @@ std::optional<VoxelBox> Annotator::paint_answer()
 void Annotator::show(const Touched& touched, const std::optional<VoxelBox>& within)
 {
     revision_ += !touched.mask_bricks.empty() || !touched.raised.empty();
-    if (!touched.mask_bricks.empty()) renderer_.scene().update_mask(document().mask, touched.mask_bricks, within);
-    if (!touched.raised.empty()) renderer_.scene().update_density(document().density, touched.raised);
+    try_to_show([&] { renderer_.scene().show(document(), touched, within); });
+}
+
+/// What has been done is done, shown or not.
+template <class Update>
+void Annotator::try_to_show(const Update& update)
+{
+    tries_to_show_ = 0;
+    try {
+        update();
+    } catch (const Error&) {
+        if (!renderer_.scene().is_behind()) throw;
+    }
+}
+
+void Annotator::catch_up()
+{
+    ++tries_to_show_;
+    renderer_.scene().catch_up(document());
+    ++revision_;
 }
 
 // ---- The trace, and the history -------------------------------------------------------------------------------------
@@ -320,7 +369,9 @@ const Command* Annotator::revert()
 
 void Annotator::show(const Command& command)
 {
-    revision_ += renderer_.scene().show(document(), command.changes);
+    const Touched touched = touched_by(document(), command.changes);
+    revision_ += !touched.mask_bricks.empty() || !touched.raised.empty();
+    try_to_show([&] { renderer_.scene().show(document(), command.changes); });
 }
 
 }  // namespace shvr

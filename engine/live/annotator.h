@@ -35,13 +35,16 @@ WorkFiles with_kept_settings(WorkFiles files, const Session& session, const std:
 
 class Annotator {
 public:
+    /// So often what failed for want of memory is tried: with the pauses of a person's window, for 5 s.
+    static constexpr int MOST_TRIES = 20;
+
     /// The volume must be loaded; the mask starts unpainted.
     explicit Annotator(Renderer& renderer);
     /// Goes on with work that is open, perhaps on another thread until now. The caller lets the scene show it.
     Annotator(Renderer& renderer, std::unique_ptr<Work> work);
 
     /// For saving, file names and the trace's selection. Use the functions below to change annotations, so that the
-    /// device shows the change.
+    /// device shows the change. Where it cannot, for want of memory, they do not fail: `is_behind`.
     Work& work() { return *work_; }
     const Work& work() const { return *work_; }
     /// For another annotator; this one is of no use any more.
@@ -84,10 +87,17 @@ public:
     bool stroke_is_open() const { return !strokes_.empty() && !strokes_.back().has_ended; }
     /// Ends all at once: what is painted stays, the rest is dropped.
     void drop_strokes();
-    /// Paints a finished answer of the first stroke and submits the next query. Returns the voxels that may look
-    /// different. Fails where that stroke cannot go on (the brush is too large, or bricks or the journal fail); then
-    /// the rest of it is dropped.
+    /// Asks the device again for what it has not answered yet: it has been started again.
+    void drop_queries();
+    /// Shows what memory was too short for, paints a finished answer of the first stroke and submits the next query.
+    /// Returns the voxels that may look different. Where memory is too short it fails, and goes on when it is called
+    /// again, up to MOST_TRIES times on end; where a stroke cannot go on (that, a brush that is too large, or bricks or
+    /// the journal fail), it fails and drops the rest of it, and says so.
     std::optional<VoxelBox> advance();
+    /// What is painted is not shown as it is: `advance` tries it.
+    bool is_behind() const { return renderer_.scene().is_behind() && tries_to_show_ < MOST_TRIES; }
+    /// Tries it at once; fails where it cannot.
+    void catch_up();
     /// Counts the strokes by hand that are painted to their end.
     uint64_t strokes_done() const { return strokes_done_; }
     /// What the last finished stroke did, by hand or by `paint`.
@@ -118,13 +128,15 @@ private:
     struct Stroke {
         PaintOp brush;
         RegionQuery query;
-        std::vector<glm::dvec3> positions{};  ///< regions for those from `next` on have not been queried yet
+        std::vector<glm::dvec3> positions{};  ///< regions for those from `next` on have not been painted yet
         size_t next = 0;
+        size_t asked_to = 0;               ///< the end of those in the query
         std::optional<glm::dvec3> last{};  ///< the last position of the hand
         bool has_ended = false;
         bool is_recorded = false;  ///< the last command of the history is this stroke's
         StrokeTally tally{brush};
         StrokeResult result = tally.result();  ///< of what is painted
+        int failed_tries = 0;                  ///< on end
     };
     /// The records of an answer.
     struct Records {
@@ -136,17 +148,22 @@ private:
     Answered ask(const PaintOp& op);
     Records records_of(const PaintOp& op, const Answered& answered) const;
     static std::vector<Change> changes_of(Records records);
+    std::optional<VoxelBox> advance_first_stroke();
     std::optional<VoxelBox> advance_stroke();
+    void drop_first_stroke();
     PaintPreview preview_of_answer(const PaintOp& op, const Answered& answered) const;
     std::optional<VoxelBox> paint_answer();
     void show(const Touched& touched, const std::optional<VoxelBox>& within = {});
     void show(const Command& command);
+    template <class Update>
+    void try_to_show(const Update& update);
 
     Renderer& renderer_;
     std::deque<Stroke> strokes_;  ///< the first is being painted; the last alone may be open
     uint64_t strokes_done_ = 0;
     StrokeResult last_stroke_;
     uint64_t revision_ = 0;
+    int tries_to_show_ = 0;  ///< since the last change
     std::unique_ptr<Work> work_;
 };
 

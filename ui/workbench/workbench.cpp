@@ -53,6 +53,7 @@ void Workbench::perform(const Action& action)
     recent_.begin(action);
     logged_instead_.clear();
     std::visit([&](const auto& each) { act(each); }, action);
+    if (options_.is_script && document_ && document_->annotator.is_behind()) document_->annotator.catch_up();
     recent_.note_done();
     if (!log_) return;
     if (logged_instead_.empty()) logged_instead_.push_back(line_of(action));
@@ -131,7 +132,7 @@ void Workbench::act(const Quit& action)
 void Workbench::discard()
 {
     if (!document_ || document_->only_looks() || !document_->annotator.work().disputes().empty()) return;
-    finish_stroke();
+    static_cast<void>(finish_stroke());  // which is discarded
     record_settings();
     const Command* done = nullptr;
     try {
@@ -145,8 +146,7 @@ void Workbench::discard()
 
 // ---- Turns ----------------------------------------------------------------------------------------------------------
 
-template <class Part>
-void Workbench::attempt(Attempt& state, Part part)
+void Workbench::attempt(Attempt& state, const std::function<void()>& part)
 {
     if (options_.now_s() < state.again_s) return;
     try {
@@ -177,8 +177,8 @@ bool Workbench::has_work() const
     if (!jobs_.is_idle() || !savers_.is_idle() || opening_ || reload_ || is_saving()) return true;
     return document_ &&
            (!document_->screen.complete() || document_->annotator.stroke_is_running() || document_->touch.servo() ||
-            is_stirring() || screenshots_.is_writing() || screenshots_.has_large() ||
-            !document_->previewer.is_current() || document_->meter.is_asking());
+            document_->annotator.is_behind() || is_stirring() || screenshots_.is_writing() ||
+            screenshots_.has_large() || !document_->previewer.is_current() || document_->meter.is_asking());
 }
 
 void Workbench::advance()
@@ -207,14 +207,19 @@ void Workbench::follow_stroke()
         say(failure.empty() ? "The journal can be written again: all work is kept" : failure,
             failure.empty() ? Weight::done : Weight::error);
     journal_failure_ = failure;
-    if (!annotator.stroke_is_running()) return;
+    if (!annotator.stroke_is_running() && !annotator.is_behind()) return;
     extend_stroke();
     const uint64_t done = annotator.strokes_done();
-    const bool has_painted = annotator.advance().has_value();
+    advance_stroke();
+    if (annotator.strokes_done() != done) stroke_ended();
+}
+
+void Workbench::advance_stroke()
+{
+    const bool has_painted = document_->annotator.advance().has_value();
     const uint64_t before =
         std::exchange(stroke_uploads_, renderer_.volume().counts().value_or(DeviceVolume::Counts{}).uploads);
     if (has_painted || before != stroke_uploads_) stroke_progress_s_ = options_.now_s();
-    if (annotator.strokes_done() != done) stroke_ended();
 }
 
 void Workbench::follow_look()

@@ -157,8 +157,7 @@ private:
         double failed_s = 0.0;  ///< when that was; 0: never
         double again_s = 0.0;
     };
-    template <class Part>
-    void attempt(Attempt& state, Part part);
+    void attempt(Attempt& state, const std::function<void()>& part);
     void note_failure(Attempt& state, const std::string& why);
 
     // One for each action.
@@ -392,6 +391,8 @@ private:
     void follow_buttons(uint32_t buttons);
     void follow_settings();
     void follow_stroke();
+    void advance_stroke();
+    bool tries_stroke(std::string& unpainted);
     void follow_preview();
     void follow_look();
     void follow_screenshots();

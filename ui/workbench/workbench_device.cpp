@@ -9,7 +9,7 @@ void Workbench::restart_device(const std::function<void()>& make_anew)
     const bool was_painting = document_ && document_->annotator.stroke_is_running();
     drop_large_screenshot("the loss of the device");
     if (document_) {
-        document_->annotator.drop_strokes();
+        document_->annotator.drop_queries();
         document_->previewer.drop();
         document_->meter.drop();
         document_->touch.drop_queries();
@@ -22,8 +22,9 @@ void Workbench::restart_device(const std::function<void()>& make_anew)
     if (document_) load_again();
     load_once_more();
     say(sentence("The graphics device stopped answering and was started again; ",
-                 was_painting ? "of the stroke that was under way a part may be missing, all other work is there"
-                              : "all work is there"),
+                 was_painting && !document_
+                     ? "of the stroke that was under way a part may be missing, all other work is there"
+                     : "all work is there"),
         Weight::warning);
 }
 
@@ -38,6 +39,7 @@ void Workbench::load_again()
         say(sentence("The graphics device was started again, but ", document_->session_path.string(),
                      " cannot be shown on it: ", error.what()),
             Weight::error);
+        document_->annotator.drop_strokes();
         away_ = std::move(document_);
         away_->touch.use(nullptr);  // one servo at a time on a device
     }

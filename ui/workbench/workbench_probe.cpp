@@ -221,6 +221,10 @@ void Workbench::follow_preview()
     document.previewer.want(is_wanted ? std::optional(document.dab()) : std::nullopt);
     try {
         document.previewer.advance();
+    } catch (const gpu::MemoryError&) {
+        throw;  // it may be there the next time
+    } catch (const gpu::DeviceLost&) {
+        throw;
     } catch (const Error& error) {  // a brush that is too large, a file that cannot be read
         document.session.probe.preview = false;
         note_edit();

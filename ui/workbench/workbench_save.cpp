@@ -248,7 +248,7 @@ void Workbench::await_strokes()
     const Annotator& annotator = document_->annotator;
     const double until = options_.now_s() + LONGEST_S;
     while (annotator.stroke_is_running() && !annotator.stroke_is_open() && options_.now_s() < until) {
-        follow_stroke();
+        attempt(painting_, [this] { follow_stroke(); });
         renderer_.scene().advance();
         std::this_thread::sleep_for(TURN);
     }
@@ -256,29 +256,40 @@ void Workbench::await_strokes()
 
 std::string Workbench::finish_stroke()
 {
-    constexpr std::chrono::milliseconds TURN(1);
+    constexpr std::chrono::milliseconds TURN(1), AGAIN(250);
     Annotator& annotator = document_->annotator;
     extend_stroke();
     if (annotator.stroke_is_open()) annotator.end_stroke();
-    double last_progress_s = options_.now_s();
-    uint64_t uploads = 0;
-    try {
-        while (annotator.stroke_is_running()) {
-            const bool has_painted = annotator.advance().has_value();
-            renderer_.scene().advance();
-            const uint64_t uploads_before =
-                std::exchange(uploads, renderer_.volume().counts().value_or(DeviceVolume::Counts{}).uploads);
-            if (has_painted || uploads != uploads_before) last_progress_s = options_.now_s();
-            if (options_.now_s() - last_progress_s > PATIENCE_S) {
-                annotator.drop_strokes();
-                return sentence("its bricks did not arrive within ", PATIENCE_S, " s");
-            }
-            std::this_thread::sleep_for(TURN);
+    std::string unpainted;
+    stroke_progress_s_ = options_.now_s();
+    while (annotator.stroke_is_running()) {
+        const bool was_tried = tries_stroke(unpainted);
+        renderer_.scene().advance();
+        if (options_.now_s() - stroke_progress_s_ > PATIENCE_S) {
+            annotator.drop_strokes();
+            unpainted = sentence("its bricks did not arrive within ", PATIENCE_S, " s");
         }
-    } catch (const Error& error) {
-        return error.what();
+        std::this_thread::sleep_for(was_tried ? TURN : AGAIN);
     }
-    return {};
+    return unpainted;
+}
+
+/// False where memory is too short just now. What cannot be painted at all leaves the reason.
+bool Workbench::tries_stroke(std::string& unpainted)
+{
+    Annotator& annotator = document_->annotator;
+    try {
+        advance_stroke();
+        return true;
+    } catch (const gpu::MemoryError& error) {
+        if (!annotator.stroke_is_running()) unpainted = error.what();
+        return false;
+    } catch (const gpu::DeviceLost&) {
+        throw;
+    } catch (const Error& error) {
+        unpainted = error.what();
+        return true;
+    }
 }
 
 // ---- The spacing ----------------------------------------------------------------------------------------------------
@@ -303,7 +314,7 @@ void Workbench::act(const CorrectSpacing& action)
         if (!action.unit.empty()) session.open_options.unit = action.unit;
     }
     try {
-        finish_stroke();
+        if (const std::string unpainted = finish_stroke(); !unpainted.empty()) say(unpainted, Weight::error);
         begin_save(true);
     } catch (...) {
         session = before;

@@ -268,8 +268,6 @@ std::optional<DicomFile> read_dicom_file(const std::filesystem::path& path)
         if (!reader.ReadUpToTag(pixels, {pixels})) fail(path.string(), ": GDCM cannot read it; expected a DICOM file");
         read_values(reader.GetFile().GetDataSet(), *layout, file);
         if (is_jpeg(layout->transfer_syntax)) check_jpeg_headers(input, layout->fragments, file.columns, file.rows);
-        if (is_jpeg_2000(layout->transfer_syntax))
-            check_jpeg_2000_headers(input, layout->fragments, file.columns, file.rows);
         if (is_rle(layout->transfer_syntax)) check_rle_headers(input, layout->fragments, int64_t(bytes_of(file.type)));
     } catch (const Error&) {
         throw;

@@ -54,7 +54,7 @@ struct DicomFile {
 std::optional<DicomFile> read_dicom_file(const std::filesystem::path& path);
 
 /// The pixels of one frame, x fastest, in native byte order; `bytes` is their expected size. Plain ones are read as
-/// they lie in the file; coded ones are decoded by GDCM, which sees them alone and nothing else of the file.
+/// they lie in the file; coded ones are decoded by GDCM or OpenJPEG, which see them alone and nothing else of the file.
 std::vector<std::byte> read_dicom_pixels(const DicomFile& file, size_t frame, size_t bytes);
 
 }  // namespace shvr

@@ -1,7 +1,6 @@
 #include "engine/formats/dicom/dicom_jpeg.h"
 
 #include <algorithm>
-#include <array>
 #include <string_view>
 
 #include "engine/base/error.h"
@@ -129,12 +128,6 @@ bool is_jpeg(const std::string& transfer_syntax)
            transfer_syntax[PREFIX.size()] >= '5' && transfer_syntax[PREFIX.size()] <= '8';
 }
 
-bool is_jpeg_2000(const std::string& transfer_syntax)
-{
-    return transfer_syntax.size() == PREFIX.size() + 2 && transfer_syntax.starts_with(PREFIX) &&
-           transfer_syntax[PREFIX.size()] == '9';
-}
-
 void check_jpeg_headers(const InputFile& file, std::span<const DicomLayout::Fragment> fragments, int64_t columns,
                         int64_t rows)
 {
@@ -147,28 +140,6 @@ void check_jpeg_headers(const InputFile& file, std::span<const DicomLayout::Frag
             fail(file.path.string(), ": Pixel Data at byte ", fragment.at,
                  " begins no JPEG picture; expected one, as the transfer syntax says");
         is_first = false;
-    }
-}
-
-void check_jpeg_2000_headers(const InputFile& file, std::span<const DicomLayout::Fragment> fragments, int64_t columns,
-                             int64_t rows)
-{
-    for (const DicomLayout::Fragment& fragment : fragments) {
-        // Start of codestream, SIZ: its length and capabilities, the grid, where the picture begins in it, tiles.
-        std::array<std::byte, 42> bytes{};
-        const size_t there = file.read_some(
-            fragment.at, std::span(bytes).first(size_t(std::min<int64_t>(fragment.bytes, int64_t(bytes.size())))));
-        constexpr std::array START_OF_PICTURE{std::byte{0xff}, std::byte{0x4f}, std::byte{0xff}, std::byte{0x51}};
-        if (!std::ranges::equal(std::span(bytes).first(4), START_OF_PICTURE)) continue;
-        if (there < bytes.size())
-            fail(file.path.string(), ": a JPEG 2000 picture at byte ", fragment.at, " has ", there,
-                 " bytes; expected a header of ", bytes.size());
-        const auto number = [&](size_t at, size_t count) {
-            int64_t value = 0;
-            for (size_t i = 0; i < count; ++i) value = value << 8 | std::to_integer<int64_t>(bytes[at + i]);
-            return value;
-        };
-        check_size(file, {number(8, 4) - number(16, 4), number(12, 4) - number(20, 4), number(40, 2)}, columns, rows);
     }
 }
 

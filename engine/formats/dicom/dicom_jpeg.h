@@ -17,9 +17,4 @@ bool is_jpeg(const std::string& transfer_syntax);
 void check_jpeg_headers(const InputFile& file, std::span<const DicomLayout::Fragment> fragments, int64_t columns,
                         int64_t rows);
 
-/// The same for JPEG 2000 (ITU-T T.800, annex A.5): fails where one that begins in a fragment is of another size.
-bool is_jpeg_2000(const std::string& transfer_syntax);
-void check_jpeg_2000_headers(const InputFile& file, std::span<const DicomLayout::Fragment> fragments, int64_t columns,
-                             int64_t rows);
-
 }  // namespace shvr

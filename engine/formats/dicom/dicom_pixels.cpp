@@ -1,5 +1,4 @@
 #include <gdcmFragment.h>
-#include <gdcmJPEG2000Codec.h>
 #include <gdcmJPEGCodec.h>
 #include <gdcmJPEGLSCodec.h>
 #include <gdcmRLECodec.h>
@@ -12,6 +11,7 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/formats/dicom/dicom_file.h"
+#include "engine/formats/dicom/dicom_jpeg_2000.h"
 #include "engine/formats/dicom/gdcm_turn.h"
 
 namespace shvr {
@@ -61,23 +61,39 @@ void read_plain(const DicomFile& file, size_t frame, std::span<std::byte> pixels
     if (layout.is_big_endian && of_number > 1) turn_bytes(pixels, of_number);
 }
 
-/// The coded picture of a frame, as GDCM keeps one.
-gdcm::SmartPointer<gdcm::SequenceOfFragments> fragments_of(const DicomFile& file, size_t frame)
+/// Where the coded picture of a frame lies.
+std::span<const DicomLayout::Fragment> fragments_of(const DicomFile& file, size_t frame)
 {
-    const std::vector<DicomLayout::Fragment>& fragments = file.stored.layout.fragments;
+    const std::span<const DicomLayout::Fragment> fragments = file.stored.layout.fragments;
     const bool is_only = file.frames.size() == 1;
     if (!is_only && fragments.size() != file.frames.size())
         fail(file.path.string(), ": Pixel Data has ", fragments.size(), " fragments; expected ", file.frames.size(),
              ", one for each frame");
+    return is_only ? fragments : fragments.subspan(frame, 1);
+}
+
+/// The coded picture of a frame.
+std::vector<std::byte> bytes_of_picture(const DicomFile& file, size_t frame)
+{
     const std::unique_ptr<VoxelBytes> input = bytes_of_file(open_input_file(file.path), 0);
-    gdcm::SmartPointer<gdcm::SequenceOfFragments> sequence = new gdcm::SequenceOfFragments;
-    for (size_t i = is_only ? 0 : frame; i < (is_only ? fragments.size() : frame + 1); ++i) {
-        std::vector<std::byte> bytes(size_t(fragments[i].bytes));
-        input->read(fragments[i].at, bytes);
-        gdcm::Fragment fragment;
-        fragment.SetByteValue(reinterpret_cast<const char*>(bytes.data()), gdcm::VL(uint32_t(bytes.size())));
-        sequence->AddFragment(fragment);
+    std::vector<std::byte> picture;
+    for (const DicomLayout::Fragment& fragment : fragments_of(file, frame)) {
+        const size_t begin = picture.size();
+        picture.resize(begin + size_t(fragment.bytes));
+        input->read(fragment.at, std::span(picture).subspan(begin));
     }
+    return picture;
+}
+
+/// The same as GDCM keeps one.
+gdcm::SmartPointer<gdcm::SequenceOfFragments> sequence_of(const DicomFile& file, std::span<const std::byte> picture)
+{
+    if (picture.size() > UINT32_MAX)
+        fail(file.path.string(), ": a coded picture has ", picture.size(), " bytes; expected at most ", UINT32_MAX);
+    gdcm::Fragment fragment;
+    fragment.SetByteValue(reinterpret_cast<const char*>(picture.data()), gdcm::VL(uint32_t(picture.size())));
+    gdcm::SmartPointer<gdcm::SequenceOfFragments> sequence = new gdcm::SequenceOfFragments;
+    sequence->AddFragment(fragment);
     return sequence;
 }
 
@@ -105,12 +121,16 @@ bool decodes(const DicomFile& file, const gdcm::DataElement& picture, std::span<
 
 void decode(const DicomFile& file, size_t frame, std::span<std::byte> pixels)
 {
+    const std::vector<std::byte> bytes = bytes_of_picture(file, frame);
+    if (is_jpeg_2000(file.stored.layout.transfer_syntax))
+        return decode_jpeg_2000(sentence(file.path.string(), ": slice ", frame + 1), bytes, file.columns, file.rows,
+                                pixels);
     gdcm::DataElement picture(gdcm::Tag(0x7fe0, 0x0010));
     const GdcmTurn turn;
     try {
-        picture.SetValue(*fragments_of(file, frame));
+        picture.SetValue(*sequence_of(file, bytes));
         if (decodes<gdcm::JPEGCodec>(file, picture, pixels) || decodes<gdcm::JPEGLSCodec>(file, picture, pixels) ||
-            decodes<gdcm::JPEG2000Codec>(file, picture, pixels) || decodes<gdcm::RLECodec>(file, picture, pixels))
+            decodes<gdcm::RLECodec>(file, picture, pixels))
             return;
     } catch (const Error&) {
         throw;

@@ -59,14 +59,12 @@ const Compression* find_compression(int scheme)
 /// The most bytes that `bytes` of the file can decode to.
 int64_t most_decoded(const TiffLayout& layout, int64_t bytes)
 {
-    // A compressed block may consist of its header only.
-    constexpr int64_t SLACK = 4096;
     const Compression* const known = find_compression(layout.compression);
     const int64_t ratio = known == nullptr ? 1 : known->largest_ratio;
     if (ratio == 1) return bytes;
     int64_t most = 0;
     const int64_t factor = ratio > 0 ? ratio : 8 * layout.block_row_bytes();
-    if (__builtin_mul_overflow(bytes + SLACK, factor, &most)) return INT64_MAX;
+    if (__builtin_mul_overflow(bytes, factor, &most)) return INT64_MAX;
     return most;
 }
 
@@ -200,6 +198,10 @@ void check_is_supported(const TiffPage& page, const TiffLayout& layout)
              " bits; expected integers of 8, 16 or 32 bits, unsigned ones of 1 to 16 bits, or floats of 16, 32 or 64 "
              "bits");
     }
+    // Whose one bit for a row is one for the few pixels of a fax, not for thousands of channels.
+    if (known->largest_ratio == 0 && ((layout.samples != 1 && !layout.is_planar) || layout.bits != 1))
+        fail(page.subject(), ": has ", layout.samples, " samples of ", layout.bits, " bits a pixel by ", known->name,
+             "; expected one of 1 bit, as there is in a fax");
     const bool is_jpeg_color = layout.photometric == PHOTOMETRIC_YCBCR && layout.compression == COMPRESSION_JPEG;
     switch (layout.photometric) {
         case PHOTOMETRIC_MINISWHITE:

@@ -280,7 +280,7 @@ TEST_CASE("compressed DICOM slices equal the ones they were made of")
         const TemporaryFolder turned;
         const std::string said = refusal(turned.write("a.dcm", bytes));
         if (syntax != gdcm::TransferSyntax::RLELossless)  // which has no size of its own
-            CHECK(contains(said, "a JPEG picture has 96x64 pixels of 1 components; expected 64x96 of one"));
+            CHECK(contains(said, "picture has 96x64 pixels of 1 components; expected 64x96 of one"));
     }
 }
 

@@ -179,6 +179,22 @@ TEST_CASE("a TIFF cut anywhere is an error, or still says the same")
     CHECK(terminal.text() == "");
 }
 
+TEST_CASE("the memory for a block is no more than its bytes can decode to")
+{
+    const Hostile hostile;
+    // A byte of a fax may be eight white rows, of 1 bit a pixel: of 65024 channels that would be 130 MB.
+    CHECK(contains(hostile.refusal({{256, 4, 1, 4101},
+                                    {257, 4, 1, 4},
+                                    {258, 3, 1, 1},
+                                    {277, 3, 1, 65024},
+                                    {259, 3, 1, COMPRESSION_CCITTFAX4}}),
+                   "has 65024 samples of 1 bits a pixel by CCITT group 4; expected one of 1 bit"));
+    // 64 bytes of Zstandard hold 4 MiB at most, and no more for being few.
+    CHECK(contains(
+        hostile.refusal({{256, 4, 1, 8192}, {257, 4, 1, 8192}, {278, 4, 1, 8192}, {259, 3, 1, COMPRESSION_ZSTD}}),
+        "expected enough for 67108864 bytes of voxels"));
+}
+
 TEST_CASE("a damaged TIFF is read or refused, and libtiff says nothing to the terminal")
 {
     const TemporaryFolder folder;
