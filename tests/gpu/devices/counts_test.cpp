@@ -138,6 +138,27 @@ std::map<std::string, int64_t> calls_of(int rounds, Paging paging, bool grows)
 
 }  // namespace
 
+TEST_CASE("a stroke where paint is already sends its bricks, and no table of all bricks")
+{
+    for (const Paging paging : {Paging::always, Paging::never}) {
+        const auto submits = [&](int strokes) {
+            return calls_in([&] {
+                       Worked worked({160, 96}, paging);
+                       worked.paint(0, true);
+                       const int64_t brick = 0;
+                       for (int i = 0; i < strokes; ++i) {
+                           const auto before = uint8_t(3 + i % 2), after = uint8_t(4 - i % 2);
+                           worked.mask.apply({.brick = brick, .runs = {{3000, 29000, before, after}}},
+                                             Direction::forwards);
+                           worked.renderer.scene().update_mask(worked.mask, {&brick, 1});
+                       }
+                   })
+                .at("vkQueueSubmit2");
+        };
+        CHECK(submits(11) - submits(1) == 10);
+    }
+}
+
 TEST_CASE("turning and painting never wait for the whole device, whatever grows")
 {
     for (const Paging paging : {Paging::never, Paging::always}) {
