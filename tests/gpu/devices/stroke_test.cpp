@@ -50,6 +50,7 @@ struct Desk {
     Renderer renderer{{.device = {.validation = false}, .threads = 1}};
     std::shared_ptr<const VolumeSource> source = open_procedural({.kind = "tubes", .size = {96, 96, 96}, .seed = 3});
     Session session;
+    int times_lost = 0;
 
     Desk()
     {
@@ -83,6 +84,12 @@ struct Desk {
                 renderer.scene().advance();
             } catch (const gpu::MemoryError&) {
                 ++failed;
+            } catch (const gpu::DeviceLost&) {
+                ++times_lost;
+                annotator.drop_queries();
+                renderer.restart();
+                renderer.load(source, {.minimum = 0.0, .maximum = 255.0}, session.render);
+                renderer.scene().show(annotator.document());
             }
         }
         return failed;
@@ -141,6 +148,55 @@ TEST_CASE("a stroke goes on where memory was short for a moment, and is painted 
 
     const ImageF seen = desk.drawn();
     CHECK(different_bits(seen, desk.drawn_anew(annotator.document())) == 0);
+}
+
+TEST_CASE("what could not be shown for want of memory is shown at the next turn")
+{
+    const Faults faults;
+    Desk desk;
+    Annotator annotator(desk.renderer);
+    PaintOp op = desk.brush();
+    op.threshold = 0.0;
+    for (const glm::dvec3& place : {glm::dvec3(20.0), glm::dvec3(75.0)}) {
+        op.path = {place};
+        REQUIRE(annotator.paint(op) > 0);
+    }
+    faults.let_fail("vkEndCommandBuffer:1:out_of_device_memory");
+    CHECK(annotator.undo() != nullptr);  // is done, though it cannot be shown
+    CHECK(annotator.history().undoable() == 1);
+    REQUIRE(annotator.is_behind());
+    static_cast<void>(desk.renderer.scene().take_changed());
+    const uint64_t revision = annotator.revision();
+    static_cast<void>(annotator.advance());
+    CHECK_FALSE(annotator.is_behind());
+    CHECK(annotator.revision() > revision);
+    bool sees_first = false;  // nothing of the mask was there any more
+    for (const Scene::Changed& changed : desk.renderer.scene().take_changed())
+        sees_first = sees_first || glm::all(glm::lessThan(changed.voxels.lower, Size3(20)));
+    CHECK(sees_first);
+    const ImageF seen = desk.drawn();
+    CHECK(different_bits(seen, desk.drawn_anew(annotator.document())) == 0);
+}
+
+TEST_CASE("a stroke under way when the device is lost is painted to its end on the new one")
+{
+    const Faults faults;
+    Desk desk;
+    Annotator whole(desk.renderer);
+    CHECK(desk.paint(whole, [] {}) == 0);
+    for (const char* call : {"vkWaitForFences", "vkQueueSubmit2"}) {
+        CAPTURE(std::string(call));
+        desk.renderer.load(desk.source, {.minimum = 0.0, .maximum = 255.0}, desk.session.render);
+        Annotator annotator(desk.renderer);
+        int turn = 0;
+        desk.paint(annotator, [&] {
+            if (++turn % 20 == 0 && turn < 100) faults.let_fail(sentence(call, ":2:device_lost"));
+        });
+        CHECK(desk.times_lost > 0);
+        CHECK(annotator.strokes_done() == 1);
+        CHECK(annotator.document().mask.voxels_by_group() == whole.document().mask.voxels_by_group());
+        desk.times_lost = 0;
+    }
 }
 
 TEST_CASE("a stroke that memory stays too short for ends, and says that its rest is not painted")
