@@ -238,7 +238,10 @@ std::optional<VoxelBox> Annotator::advance_first_stroke()
         if (!strokes_.empty()) strokes_.front().failed_tries = 0;
         return changed;
     } catch (const gpu::DeviceLost&) {
-        throw;  // the stroke goes on with the device that is started again
+        throw;                                 // the stroke goes on with the device that is started again
+    } catch (const gpu::BudgetError& error) {  // which stays as it is
+        drop_first_stroke();
+        throw gpu::BudgetError(sentence(error.what(), CUT));
     } catch (const gpu::MemoryError& error) {
         strokes_.front().query.drop();
         if (++strokes_.front().failed_tries < MOST_TRIES) throw;
@@ -321,7 +324,12 @@ void Annotator::try_to_show(const Update& update)
 void Annotator::catch_up()
 {
     ++tries_to_show_;
-    renderer_.scene().catch_up(document());
+    try {
+        renderer_.scene().catch_up(document());
+    } catch (const gpu::BudgetError&) {
+        tries_to_show_ = MOST_TRIES;  // it stays as it is until something changes
+        throw;
+    }
     ++revision_;
 }
 

@@ -221,11 +221,11 @@ void Workbench::follow_preview()
     document.previewer.want(is_wanted ? std::optional(document.dab()) : std::nullopt);
     try {
         document.previewer.advance();
-    } catch (const gpu::MemoryError&) {
-        throw;  // it may be there the next time
-    } catch (const gpu::DeviceLost&) {
-        throw;
-    } catch (const Error& error) {  // a brush that is too large, a file that cannot be read
+    } catch (const Error& error) {
+        const bool is_of_budget = dynamic_cast<const gpu::BudgetError*>(&error) != nullptr;
+        if (dynamic_cast<const gpu::DeviceLost*>(&error) != nullptr) throw;
+        if (dynamic_cast<const gpu::MemoryError*>(&error) != nullptr && !is_of_budget) throw;  // there may be some soon
+        // Else it is a brush that is too large, a file that cannot be read.
         document.session.probe.preview = false;
         note_edit();
         document.previewer.want(std::nullopt);
