@@ -238,15 +238,13 @@ std::optional<VoxelBox> Annotator::advance_first_stroke()
         if (!strokes_.empty()) strokes_.front().failed_tries = 0;
         return changed;
     } catch (const gpu::DeviceLost&) {
-        throw;                                 // the stroke goes on with the device that is started again
-    } catch (const gpu::BudgetError& error) {  // which stays as it is
-        drop_first_stroke();
-        throw gpu::BudgetError(sentence(error.what(), CUT));
+        throw;  // the stroke goes on with the device that is started again
     } catch (const gpu::MemoryError& error) {
         strokes_.front().query.drop();
-        if (++strokes_.front().failed_tries < MOST_TRIES) throw;
+        const bool is_of_budget = dynamic_cast<const gpu::BudgetError*>(&error) != nullptr;  // which stays as it is
+        if (!is_of_budget && ++strokes_.front().failed_tries < MOST_TRIES) throw;
         drop_first_stroke();
-        throw gpu::MemoryError(sentence(error.what(), CUT));
+        fail(error.what(), CUT);
     } catch (const Error& error) {  // what cannot be recorded is not painted
         drop_first_stroke();
         fail(error.what(), CUT);

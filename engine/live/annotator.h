@@ -90,9 +90,9 @@ public:
     /// Asks the device again for what it has not answered yet: it has been started again.
     void drop_queries();
     /// Shows what memory was too short for, paints a finished answer of the first stroke and submits the next query.
-    /// Returns the voxels that may look different. Where the driver has too little memory it fails, and goes on when it
-    /// is called again, up to MOST_TRIES times on end; where a stroke cannot go on (that, a brush that is too large, or
-    /// bricks or the journal fail), it fails and drops the rest of it, and says so.
+    /// Returns the voxels that may look different. Where the driver has too little memory it fails with a MemoryError
+    /// and goes on when it is called again, up to MOST_TRIES times on end; where a stroke cannot go on (that, a brush
+    /// that is too large, or bricks or the journal fail), it fails with another, drops the rest of it, and says so.
     std::optional<VoxelBox> advance();
     /// What is painted is not shown as it is: `advance` tries it.
     bool is_behind() const { return renderer_.scene().is_behind() && tries_to_show_ < MOST_TRIES; }

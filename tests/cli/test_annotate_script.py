@@ -83,6 +83,20 @@ class Script(CliTest):
         raised = self.check_json("label", project, "--threshold", "0")["voxels_with_offset"]
         self.assertGreater(raised, 0)
 
+    def test_a_stroke_by_hand_that_is_cut_ends_the_replay_at_its_line(self):
+        session = self.write_session("large.json", volume={"procedural": "tubes", "size": [200] * 3},
+                                     render={"size": [24, 16], "paging": "always"})
+        strokes = [line for radius in (4, 50, 4) for line in (
+            {"op": "set", "values": {"probe": {"brush": "fill", "radius_voxels": radius, "paint_threshold": 1}}},
+            {"op": "place_probe", "voxel": [100, 100, 100]},
+            {"op": "paint_here", "on": True}, {"op": "paint_here", "on": False})]
+        script = self.write_script("strokes.jsonl", strokes)
+        self.check_refused("annotate", session, "--actions", script, "--budget-device", 8, "--quiet",
+                           says=["strokes.jsonl:8: ", "bricks", "; the rest of the stroke is not painted"])
+        exported = self.check_json("export", session)
+        self.assertEqual(exported["voxels_by_group"], {"1": 280})  # voxels whose centres, at halves, lie within 4 of a corner
+        self.check("annotate", session, "--actions", script, "--quiet")  # as the budget is usually
+
     def test_the_example_of_the_help_runs_with_and_without_its_undo(self):
         example = self.check("annotate", "--help").stdout.split("Example:\n")[1].splitlines()
         self.assertIn("shvr annotate scan/ --script strokes.jsonl", example[0])

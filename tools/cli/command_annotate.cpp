@@ -198,6 +198,13 @@ void run_annotate(const AnnotateCommandOptions& options)
                {"journal_bytes", annotator.work().journal().bytes}});
 }
 
+/// All that was begun, which a script does not go on without.
+void finish(ui::Workbench& bench)
+{
+    if (const std::string unpainted = bench.finish_stroke(); !unpainted.empty()) fail(unpainted);
+    while (bench.has_work()) bench.advance();
+}
+
 /// Replays what a person did in the window, as `shvr view --log` wrote it, without a display.
 void run_actions(const AnnotateCommandOptions& options)
 {
@@ -223,7 +230,7 @@ void run_actions(const AnnotateCommandOptions& options)
         work.show(double(done++) / double(actions.size()), {}, -1.0);
         try {
             bench.perform(action);
-            while (bench.has_work() && !bench.document().annotator.stroke_is_open()) bench.advance();
+            if (!bench.document().annotator.stroke_is_open()) finish(bench);
         } catch (const Error& error) {
             fail(name, ":", number, ": ", error.what());
         }

@@ -277,12 +277,10 @@ std::string Workbench::finish_stroke()
 /// False where memory is too short just now. What cannot be painted at all leaves the reason.
 bool Workbench::tries_stroke(std::string& unpainted)
 {
-    Annotator& annotator = document_->annotator;
     try {
-        advance_stroke();
+        follow_stroke();
         return true;
-    } catch (const gpu::MemoryError& error) {
-        if (!annotator.stroke_is_running()) unpainted = error.what();
+    } catch (const gpu::MemoryError&) {
         return false;
     } catch (const gpu::DeviceLost&) {
         throw;

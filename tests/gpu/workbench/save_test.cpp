@@ -62,6 +62,26 @@ TEST_CASE_FIXTURE(OnDevice, "a save whose bricks do not arrive within 20 s is ma
     CHECK(std::filesystem::exists(folder.path / "scan.mask"));
 }
 
+TEST_CASE("finishing strokes tells why one was cut, whatever is painted after it")
+{
+    TemporaryFolder folder;
+    Renderer renderer({.device = {}, .budget = {.device_bytes = uint64_t{12} << 20, .host_bytes = 0}});
+    Workbench bench(renderer, {.has_servo = false});
+    bench.open(write_paged_session(folder.path), {});
+    bench.perform(Set{R"({"probe":{"radius_voxels":50}})"});
+    for (const glm::dvec3& voxel : {glm::dvec3(100.0), glm::dvec3(0.0)}) {  // no room to ask for all of the first
+        bench.perform(PlaceProbe{voxel});
+        bench.perform(Paint{true});
+        bench.perform(Paint{false});
+    }
+    const std::string unpainted = bench.finish_stroke();
+    CHECK(unpainted.find("device memory: a step of the work needs") != std::string::npos);
+    CHECK(unpainted.find("; the rest of the stroke is not painted") != std::string::npos);
+    CHECK(bench.document().annotator.strokes_done() == 1);
+    CHECK(bench.messages().last().starts_with("Painted "));
+    CHECK(bench.finish_stroke().empty());
+}
+
 TEST_CASE_FIXTURE(OnDevice, "a part of a turn that fails is said once, and everything else goes on")
 {
     TemporaryFolder folder;
