@@ -15,6 +15,8 @@ layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } param
 layout(binding = 1, scalar) readonly buffer Scene { SurfaceParams data; } surface_params;
 layout(binding = 5, r32ui) uniform uimage2D surface_tiles;
 
+const uint GROUP_WIDTH = 8u;   // tiles
+#include "library/rays.glsl"
 #include "library/surface_list.glsl"
 
 // Normals are off by a few ulps, over distances that the slack of boxes knows; and tiles reach half a pixel beyond
@@ -62,7 +64,7 @@ void main()
     const RaycastParams params = params_block.data;
     const SurfaceParams scene = surface_params.data;
     const uvec2 tiles = surface_tiles_of(params.pixel_end - params.pixel_begin);
-    const uvec2 tile = gl_GlobalInvocationID.xy;
+    const uvec2 tile = thread_in_part();   // a tile, here
     if (any(greaterThanEqual(tile, tiles))) return;
 
     const vec2 lower = vec2(params.pixel_begin + SURFACE_TILE * tile), upper = lower + float(SURFACE_TILE);

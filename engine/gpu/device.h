@@ -51,8 +51,11 @@ struct DeviceOptions {
 /// Device properties for the rest of the program.
 struct DeviceTraits {
     std::string name;
-    std::string driver;              ///< name and version
-    bool is_cpu = false;             ///< lavapipe and other software devices
+    std::string driver;   ///< name and version
+    bool is_cpu = false;  ///< lavapipe and other software devices
+    /// Of a software device: each takes an equal run of a dispatch's workgroups (lavapipe's do, in the order of their
+    /// numbers), and the dispatch ends with the slowest.
+    uint32_t cpu_threads = 1;
     bool is_integrated = false;      ///< it shares the host's memory
     float nanoseconds_per_tick = 0;  ///< 0: no timestamps
     uint32_t timestamp_bits = 0;

@@ -7,14 +7,25 @@ namespace shvr {
 
 inline constexpr uint32_t GROUP_SIDE = 8;  ///< threads, as the kernels declare
 
-/// One thread per pixel, in groups (GROUP_WIDTH) `group_width` pixels wide. `tile`: pixels of one dispatch, multiples
-/// of the groups; 0: all at once.
-inline void pixel_groups(Pass& pass, const glm::uvec2& pixels, uint32_t group_width,
-                         const glm::uvec2& tile = glm::uvec2(0))
+/// How workgroups share the pixels of a picture (shaders/library/rays.glsl).
+struct PixelGroups {
+    uint32_t width = 8;  ///< pixels along x that a workgroup covers: 8, 16 or 32
+    /// A dispatch is that many layers of groups, each of every `layers`th row of them. Its layers take nearly the same
+    /// time, which the upper and the lower half of a picture do not. Divides the rows of a tile.
+    uint32_t layers = 1;
+    glm::uvec2 tile{0};  ///< pixels of one dispatch, multiples of 64; 0: all at once
+};
+
+/// One thread per pixel.
+inline void pixel_groups(Pass& pass, const glm::uvec2& pixels, const PixelGroups& groups)
 {
-    const glm::uvec2 group(group_width, GROUP_SIDE * GROUP_SIDE / group_width);
-    pass.dispatch(glm::uvec3((pixels + group - 1u) / group * GROUP_SIDE, 1),
-                  glm::uvec3(tile / group * GROUP_SIDE, tile.x > 0));
+    const glm::uvec2 group(groups.width, GROUP_SIDE * GROUP_SIDE / groups.width);
+    const auto threads = [&](const glm::uvec2& count) {
+        return glm::uvec3(GROUP_SIDE * count.x, GROUP_SIDE * ((count.y + groups.layers - 1) / groups.layers),
+                          groups.layers);
+    };
+    const glm::uvec2 all = (pixels + group - 1u) / group;
+    pass.dispatch(threads(all), groups.tile.x > 0 ? threads(groups.tile / group) : glm::uvec3(0));
 }
 
 /// One workgroup for each of `count` jobs, or `depth` of them where they share a job's work.

@@ -1,6 +1,5 @@
 #include "engine/passes/preview.h"
 
-#include "engine/passes/pixel_groups.h"
 #include "engine/passes/raycast.h"
 
 namespace shvr {
@@ -10,7 +9,7 @@ namespace {
 KernelVariant kernel_of(const PreviewInput& input)
 {
     return {variant_of("preview", {{"SURFACED", input.surfaces.has_value()}}),
-            {{"GROUP_WIDTH", input.group_width},
+            {{"GROUP_WIDTH", input.pixel_groups.width},
              {"SHININESS_SQUARINGS", shininess_squarings(input.params.shininess)},
              {"DISTANCE_BLEND", input.params.blend_size > 0.0f},
              {"SLICE", input.slice}}};
@@ -35,7 +34,7 @@ PreviewSeen preview(FrameGraph& graph, const PreviewInput& input)
     pass.block("preview_params", std::span(&input.preview, 1));
     pass.block("preview_words", input.words);
     if (input.surfaces) pass.read("surfaces", *input.surfaces);
-    pixel_groups(pass, pixels, input.group_width);
+    pixel_groups(pass, pixels, {.width = input.pixel_groups.width, .layers = input.pixel_groups.layers});
     PreviewSeen made;
     const Resource nearest = pass.write("nearest", graph.create("preview surfaces", desc));
     if (!input.slice) made.surfaces = nearest;

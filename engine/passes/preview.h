@@ -5,6 +5,7 @@
 #include <span>
 
 #include "engine/graph/frame_graph.h"
+#include "engine/passes/pixel_groups.h"
 #include "shaders/preview.h"
 #include "shaders/raycast.h"
 
@@ -16,7 +17,7 @@ struct PreviewInput {
     std::span<const uint32_t> words;   ///< a bit per voxel, as params.words_per_row says
     std::optional<Resource> surfaces;  ///< of the same pixels; not in slices
     bool slice = false;
-    uint32_t group_width = 8;  ///< as RaycastInput's
+    PixelGroups pixel_groups;
 };
 
 struct PreviewSeen {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/passes/pixel_groups.h"
 #include "shaders/counters.h"
 
 namespace shvr {
@@ -119,7 +118,7 @@ KernelVariant kernel_of(const Choice& choice, const RaycastInput& input)
     constant("SHADED", choice.is_shaded);
     if (choice.is_shaded) constant("SHININESS_SQUARINGS", shininess_squarings(input.params.shininess));
     constant("COUNT_WORK", input.count_work);
-    constant("GROUP_WIDTH", input.group_width);
+    constant("GROUP_WIDTH", input.pixel_groups.width);
     constant("SLICE", input.slice);
     constant("PREINTEGRATED", input.preintegrated ? input.params.opaque_map > 0 ? 2 : 1 : 0);
     if (is_shelled) constant("SHELL", choice.shell);
@@ -224,7 +223,7 @@ Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastIn
             rays = is_first && !is_begun ? pass.write("rays", *rays) : pass.modify("rays", *rays);
         }
     }
-    pixel_groups(pass, pixels, input.group_width, input.tile);
+    pixel_groups(pass, pixels, input.pixel_groups);
     // Rays in waiting keep what they have gathered elsewhere.
     const bool continues = input.params.first_step > 0 && !input.waiting;
     return continues || is_begun ? pass.modify("color", target) : pass.write("color", target);

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/passes/pixel_groups.h"
 #include "engine/passes/volume_binding.h"
 #include "shaders/counters.h"
 #include "shaders/occlusion/occlusion.h"
@@ -37,8 +38,7 @@ struct RaycastInput {
     std::optional<Resource> surfaces;  ///< of the same pixels (engine/passes/surfaces.h)
     bool shaded = true;
     bool count_work = false;
-    uint32_t group_width = 8;          ///< pixels along x that one workgroup covers: 8, 16, 32 or 64
-    glm::uvec2 tile{0};                ///< pixels of one dispatch, multiples of 64; 0 = all at once
+    PixelGroups pixel_groups;
     uint32_t shell = gpu::SHELL_NONE;  ///< otherwise params.shell_* are set
     bool preintegrated = false;        ///< `table` is for steps between two densities
     bool slice = false;                ///< params.slice_* are set: draws what lies half-way along the rays

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <span>
 
-#include "engine/passes/pixel_groups.h"
 #include "engine/passes/raycast.h"
 
 namespace shvr {
@@ -23,7 +22,7 @@ Resource tiles_block(FrameGraph& graph, const SurfacesInput& input, Resource til
     pass.block("surface_params", std::span(&input.scene, 1));
     pass.read("surface_nodes", input.listed->nodes);
     pass.read("surface_list", input.listed->list);
-    pass.dispatch(glm::uvec3(gpu::surface_tiles_of(pixels), 1));
+    pixel_groups(pass, gpu::surface_tiles_of(pixels), {.layers = input.pixel_groups.layers});
     return input.scene.first_node > 0 ? pass.modify("surface_tiles", tiles) : pass.write("surface_tiles", tiles);
 }
 
@@ -38,11 +37,11 @@ Resource surfaces_block(FrameGraph& graph, const SurfacesInput& input, Resource 
         pass.read("surface_list", input.listed->list);
         pass.read("surface_tiles", tiles);
     }
-    pass.constant("GROUP_WIDTH", input.group_width);
+    pass.constant("GROUP_WIDTH", input.pixel_groups.width);
     pass.constant("SHININESS_SQUARINGS", shininess_squarings(input.params.shininess));
     pass.constant("DISTANCE_BLEND", input.params.blend_size > 0.0f);
     pass.constant("PROBE", input.probe);
-    pixel_groups(pass, pixels, input.group_width, input.tile);
+    pixel_groups(pass, pixels, input.pixel_groups);
     return input.scene.first_node > 0 ? pass.modify("surfaces", target) : pass.write("surfaces", target);
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "engine/graph/frame_graph.h"
+#include "engine/passes/pixel_groups.h"
 #include "shaders/raycast.h"
 #include "shaders/surfaces.h"
 
@@ -19,9 +20,8 @@ struct SurfacesInput {
     gpu::RaycastParams params;  ///< the same as the ray caster's: pixels, light and distance blending are read
     gpu::SurfaceParams scene;
     std::optional<SurfaceList> listed;
-    bool probe = false;        ///< scene.probe_* are set
-    uint32_t group_width = 8;  ///< as RaycastInput's
-    glm::uvec2 tile{0};        ///< as RaycastInput's
+    bool probe = false;  ///< scene.probe_* are set
+    PixelGroups pixel_groups;
 };
 
 /// The device takes this for each tile of a part, besides the image.

@@ -1,6 +1,7 @@
 #include "engine/picture/frame.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -14,11 +15,15 @@ namespace shvr {
 
 namespace {
 
-/// Pixels of one dispatch: bounds the time of a single submission on a slow device.
-constexpr glm::uvec2 TILE{128, 128};
-/// Pixels along x that a workgroup of 64 threads covers. On a GPU squares keep similar rays together; a CPU processes a
-/// row of pixels as one vector.
-constexpr uint32_t GROUP_WIDTH_OF_GPU = 8, GROUP_WIDTH_OF_CPU = 16;
+/// A tile bounds the time of a single submission on a slow device. On a GPU squares keep similar rays together; a CPU
+/// takes rows of bricks from its caches, and waits for the last of its threads at the end of each tile. Powers of two:
+/// so the number of dispatches does not depend on that of threads.
+PixelGroups pixel_groups_of(const gpu::DeviceTraits& traits)
+{
+    if (!traits.is_cpu) return {.width = 8, .layers = 1, .tile = {128, 128}};
+    return {.width = 16, .layers = std::min(std::bit_ceil(traits.cpu_threads), 64u), .tile = {256, 256}};
+}
+
 /// Opacity of a preview behind something else, and of one in slices.
 constexpr float PREVIEW_SHARE = 0.55f, PREVIEW_SLICE_SHARE = 0.7f;
 
@@ -78,8 +83,7 @@ Prepared prepare(FrameGraph& graph, Scene& scene, const Look& look, const Shot& 
     input.slice = shot.is_slice;
     input.smooth_borders = look.render.smooth_borders && !shot.is_slice;
     input.preintegrated = look.render.preintegration && !shot.is_slice;
-    input.group_width = scene.traits().is_cpu ? GROUP_WIDTH_OF_CPU : GROUP_WIDTH_OF_GPU;
-    input.tile = TILE;
+    input.pixel_groups = pixel_groups_of(scene.traits());
     if (shot.is_slice) set_slice(input.params, look, scene);
     if (part.probe && !shot.is_slice) set_shell(input, *part.probe, scene);
     return prepared;
@@ -96,8 +100,7 @@ std::optional<Resource> draw_surfaces(FrameGraph& graph, Scene& scene, const Pre
         .scene = scene.surfaces().params(ray_planes(camera, part.pixels, scene.info()), part.pixels, scene.info()),
         .listed = prepared.listed,
         .probe = has_ball,
-        .group_width = input.group_width,
-        .tile = input.tile};
+        .pixel_groups = input.pixel_groups};
     if (has_ball) set_ball(wanted.scene, *part.probe, scene.info());
     return surfaces(graph, wanted);
 }
@@ -131,7 +134,7 @@ Resource draw_contents(FrameGraph& graph, Scene& scene, Prepared& prepared, Rayc
                                .words = {},
                                .surfaces = input.surfaces,
                                .slice = input.slice,
-                               .group_width = input.group_width});
+                               .pixel_groups = input.pixel_groups});
         return raycast(graph, prepared.volume, input, target);
     }
     const PreviewSeen made = preview(graph, {.params = input.params,
@@ -139,7 +142,7 @@ Resource draw_contents(FrameGraph& graph, Scene& scene, Prepared& prepared, Rayc
                                              .words = part.probe->preview->words,
                                              .surfaces = input.surfaces,
                                              .slice = input.slice,
-                                             .group_width = input.group_width});
+                                             .pixel_groups = input.pixel_groups});
     input.surfaces = made.surfaces;
     const Resource picture = raycast(graph, prepared.volume, input, target);
     return preview_over(graph, made.seen, picture,

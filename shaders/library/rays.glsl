@@ -1,12 +1,17 @@
-// The pixel that a thread draws, and where its ray crosses a plane of points. The includer declares GROUP_WIDTH: a
-// group's 64 threads cover GROUP_WIDTH x 64 / GROUP_WIDTH pixels.
+// The pixel that a thread draws, and where its ray crosses a plane of points. The includer declares GROUP_WIDTH, which
+// is 8, 16 or 32: a group's 64 threads cover GROUP_WIDTH x 64 / GROUP_WIDTH pixels. Layers of groups take rows of them
+// in turn (engine/passes/pixel_groups.h).
 
-// The pixel relative to the first pixel of the drawn part.
+// The pixel relative to the first pixel of the drawn part. Each eight threads, which are a vector on CPUs, cover 4 x 2
+// pixels: the nearer rays are, the more alike they are.
 uvec2 thread_in_part()
 {
     const uvec2 group_size = uvec2(GROUP_WIDTH, 64u / GROUP_WIDTH);
-    const uvec2 in_group = uvec2(gl_LocalInvocationIndex % GROUP_WIDTH, gl_LocalInvocationIndex / GROUP_WIDTH);
-    return gl_WorkGroupID.xy * group_size + in_group;
+    const uvec2 group = uvec2(gl_WorkGroupID.x, gl_WorkGroupID.y * gl_NumWorkGroups.z + gl_WorkGroupID.z);
+    const uint eight = gl_LocalInvocationIndex / 8u, in_eight = gl_LocalInvocationIndex % 8u;
+    const uvec2 eights = uvec2(GROUP_WIDTH / 4u, 32u / GROUP_WIDTH);
+    return group * group_size + uvec2(4u, 2u) * uvec2(eight % eights.x, eight / eights.x) +
+           uvec2(in_eight % 4u, in_eight / 4u);
 }
 
 // `centre` in pixels.

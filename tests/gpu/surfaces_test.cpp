@@ -78,6 +78,7 @@ public:
     glm::uvec2 pixels{24, 24};
     glm::vec3 light{0.0f, 0.0f, 1.0f};
     size_t max_in_leaf = SURFACES_IN_LEAF;
+    PixelGroups groups{.tile = {128, 128}};
 
     Surfaces() { info.size = Size3(100); }
 
@@ -91,7 +92,7 @@ public:
         SurfacesInput input{.params = {},
                             .scene = scene.params(planes, pixels, info),
                             .listed = scene.upload(graph),
-                            .tile = {128, 128}};
+                            .pixel_groups = groups};
         input.params.pixel_end = pixels;
         input.params.light = light;
         input.params.diffuse = 1.0f;
@@ -386,4 +387,26 @@ TEST_CASE_FIXTURE(Surfaces, "rays find the same in their tile's list and, where 
     }
     CHECK(hits > 2000);
     CHECK(misses > 2000);
+}
+
+TEST_CASE_FIXTURE(Surfaces, "however workgroups share the pixels of a picture, all are drawn with the same bits")
+{
+    const std::vector<SurfaceLook> rods = random_rods(300, 97, 30.0, 3.0);  // seed 97
+    const Camera camera = perspective({50, 50, -70}, MIDDLE, 60.0);
+    for (const glm::uvec2& size : {glm::uvec2(1, 1), glm::uvec2(3, 70), glm::uvec2(131, 197)}) {
+        pixels = size;
+        groups = {};
+        const std::vector<glm::vec4> seen = look(rods, camera).seen;
+        for (const uint32_t width : {8u, 16u, 32u})
+            for (const uint32_t layers : {1u, 2u, 3u, 8u, 64u})
+                for (const uint32_t tile : {0u, 64u, 128u}) {
+                    groups = {};
+                    look({ball(camera.eye, 1.0)}, camera);  // else what is not drawn may be of the picture before
+                    groups = {.width = width, .layers = layers, .tile = glm::uvec2(tile)};
+                    CAPTURE(width);
+                    CAPTURE(layers);
+                    CAPTURE(tile);
+                    CHECK((look(rods, camera).seen == seen));
+                }
+    }
 }
