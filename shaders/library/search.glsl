@@ -23,6 +23,10 @@ bool may_be_seen(const RaycastParams params, vec3 position, const Place place)
 // Cells: leaps from places with less around them are not worth a loop. In noise nearly all are short.
 const uint NEAR = 1u;
 
+// Samples that a turn asks for their density after their bits: where noise is above a threshold, bits are set in
+// groups.
+const uint ASKED_IN_TURN = 2u;
+
 // Which of the samples from step `i` on have their bits set; the lowest is that of step `i`. Places are found by whole
 // parts of a voxel (leap.h), which is a fraction of the work: from the voxels' first bits on coordinates lie side by
 // side, as in the number of a bit.
@@ -63,24 +67,26 @@ void search_bits(const RaycastParams params, const Ray ray, float begin, uint en
                 if (COUNT_WORK != 0u) ++work.leaps;
             }
         } while (leaps_on);
-        const uint found = bits_ahead(params, ray, begin, i);
-        const bool is_found = found != 0u;
-        const uint passed = is_found ? uint(findLSB(found)) : SAMPLE_BITS_AHEAD;
+        uint found = bits_ahead(params, ray, begin, i), passed = SAMPLE_BITS_AHEAD;
+        const uint from = i;
+        searches = i < end_step;
+        [[unroll]] for (uint k = 0u; k < ASKED_IN_TURN; ++k) {
+            const uint next = uint(max(findLSB(found), 0));
+            const vec3 position = sample_position(params, ray, begin, from + next);
+            const Place place = place_at(params, position);
+            const bool asks = searches && found != 0u && from + next < end_step && place.distance == 0u;
+            const bool is_seen = asks && may_be_seen(params, position, place);
+            if (COUNT_WORK != 0u && asks && !is_seen) note_sample(place, work);
+            passed = is_seen ? next : passed;
+            searches = searches && !is_seen;
+            found &= found - 1u;
+        }
+        if (searches && found != 0u) passed = uint(findLSB(found));
         if (i < end_step) {
             i = min(i + passed, end_step);
             unseen += passed;
         }
-        searches = i < end_step;
-        if (is_found && searches) {
-            const vec3 position = sample_position(params, ray, begin, i);
-            const Place place = place_at(params, position);
-            searches = place.distance > 0u || !may_be_seen(params, position, place);
-            if (searches) {
-                if (COUNT_WORK != 0u && place.distance == 0u) note_sample(place, work);
-                ++i;
-                ++unseen;
-            }
-        }
+        searches = searches && i < end_step;
         ++turn;
         if (COUNT_WORK != 0u) ++work.turns;
     } while (searches && i < end_step && turn < MAX_SEARCH_TURNS);
