@@ -260,23 +260,36 @@ Texels texels_at(vec3 position, const Place place)
     return texels;
 }
 
-// Colour (shaded) and opacity of that part of a step, with its middle at `position`, in the brick at `place`.
-vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float part, const Place place)
+// Rounding may move a ray that runs in a face an ulp outside. Below 0 that still truncates to voxel 0; above, it is
+// clamped.
+vec3 position_at(const RaycastParams params, const Ray ray, float s)
+{
+    return min(ray.origin + s * ray.direction, params.position_limit);
+}
+
+// The density where a step begins or ends, at length `s` along the ray; `texels` are of the step's middle, whose brick
+// reaches that far. One step's end is the next one's beginning, with the same bits if both are in bricks of one level:
+// what is subtracted from a position is whole.
+float value_at_end(const RaycastParams params, const Ray ray, float s, const Texels texels, const Place place)
+{
+    vec3 lattice = position_at(params, ray, s);
+#ifdef PAGED
+    lattice *= uintBitsToFloat(127u - place.level << 23);
+#endif
+    const uvec3 brick = texels.brick * BRICK_SIZE;
+    return value_near(lattice - 0.5 - vec3(brick), texels.to_atlas + ivec3(brick));
+}
+
+// Colour (shaded) and opacity of that part of a step, with its middle at `position`, in the brick at `place`. `ends`:
+// the densities at its beginning and end, where those are classified.
+vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float part, const Place place, vec2 ends)
 {
     const Texels texels = texels_at(position, place);
-    const Density density = density_at(texels.corner + texels.to_atlas, texels.fraction);
+    Density density;
+    if (PREINTEGRATED == 0u || SHADED != 0u) density = density_at(texels.corner + texels.to_atlas, texels.fraction);
     vec4 look;
     if (PREINTEGRATED != 0u) {
-#ifdef PAGED
-        const float per_voxel = uintBitsToFloat(127u - place.level << 23);
-#else
-        const float per_voxel = 1.0;
-#endif
-        const vec3 in_brick = texels.lattice - vec3(texels.brick * BRICK_SIZE);
-        const vec3 half_step = 0.5 * (part * params.step) * per_voxel * ray.direction;
-        const ivec3 first = texels.to_atlas + ivec3(texels.brick * BRICK_SIZE);
-        look = classify_step(params, value_near(in_brick - half_step, first), value_near(in_brick + half_step, first),
-                             part);
+        look = classify_step(params, ends.x, ends.y, part);
     } else {
         look = SLICE != 0u ? slice_look(params, value_of(density)) : classify(params, value_of(density), part);
     }
@@ -301,14 +314,12 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float
     return look;
 }
 
-// Rounding may move a ray that runs in a face an ulp outside. Below 0 that still truncates to voxel 0; above, it is
-// clamped.
-vec3 position_at(const RaycastParams params, const Ray ray, float s)
+// The beginning of a step of the lattice, and its middle: lengths along the ray.
+float step_begin(const RaycastParams params, float begin, uint step)
 {
-    return min(ray.origin + s * ray.direction, params.position_limit);
+    return begin + float(step) * params.step;
 }
 
-// The middle of a step of the lattice: a length along the ray, and a position.
 float step_middle(const RaycastParams params, float begin, uint step)
 {
     return begin + (float(step) + 0.5) * params.step;
@@ -362,7 +373,7 @@ vec4 sliced(const RaycastParams params, const Ray ray, vec3 position, inout Work
     if (place.distance > 0u || waits) return vec4(0.0);
 #endif
     if (COUNT_WORK != 0u) note_taken(place, work);
-    return sample_look(params, ray, position, 1.0, place);
+    return sample_look(params, ray, position, 1.0, place, vec2(0.0));
 }
 
 void accumulate(inout vec4 sum, vec4 look)
@@ -401,6 +412,15 @@ void take_samples(const RaycastParams params, const Ray ray, float begin, uint e
         const uint patience = unseen >= AWAY_FROM_SEEN ? LITTLE_PATIENCE : MUCH_PATIENCE;
         if (i > step_before) rises.trough = 0.0;
         unseen = 0u;
+        // A step's density at its beginning is that at the end of the one before, if that is in a brick of its level.
+        const uint run = i;
+        float front = 0.0;
+        uint level = 0u;
+        if (PREINTEGRATED != 0u) {
+            const vec3 position = sample_position(params, ray, begin, i);
+            const Place place = place_at(params, position);
+            front = value_at_end(params, ray, step_begin(params, begin, i), texels_at(position, place), place);
+        }
         bool goes_on;
         do {
             const vec3 position = sample_position(params, ray, begin, i);
@@ -411,9 +431,18 @@ void take_samples(const RaycastParams params, const Ray ray, float begin, uint e
             is_behind = is_behind || (i != first && step_middle(params, begin, i) > until);
 #endif
             goes_on = place.distance == 0u && i < end_step && sum.a < params.opacity_limit && !is_behind;
+#ifdef PAGED
+            level = i == run ? place.level : level;
+            goes_on = goes_on && (PREINTEGRATED == 0u || place.level == level);
+#endif
             waits = waits || (goes_on && place.is_missing && sum.a < params.opacity_limit);
             if (goes_on && !waits) {
-                const vec4 look = sample_look(params, ray, position, 1.0, place);
+                vec2 ends = vec2(front, 0.0);
+                if (PREINTEGRATED != 0u)
+                    ends.y = value_at_end(params, ray, step_begin(params, begin, i + 1u), texels_at(position, place),
+                                          place);
+                front = ends.y;
+                const vec4 look = sample_look(params, ray, position, 1.0, place, ends);
                 take(params, look, place, begin, i, sum, rises, unseen, work);
             }
             goes_on = goes_on && !waits && i < end_step && unseen < patience && sum.a < params.opacity_limit;
@@ -549,7 +578,13 @@ void main()
             note(place, work);
             waits = place.is_missing;
             if (place.distance == 0u && !waits) {
-                const vec4 look = sample_look(params, ray, position, rest / params.step, place);
+                vec2 ends = vec2(0.0);
+                if (PREINTEGRATED != 0u) {
+                    const Texels texels = texels_at(position, place);
+                    ends.x = value_at_end(params, ray, step_begin(params, begin, steps), texels, place);
+                    ends.y = value_at_end(params, ray, end, texels, place);
+                }
+                const vec4 look = sample_look(params, ray, position, rest / params.step, place, ends);
                 if (COUNT_WORK != 0u) note_taken(place, work);
                 if (PICK != 0u) note_rise(rises, (1.0 - sum.a) * look.a, look.a, end - 0.5 * rest);
                 accumulate(sum, look);

@@ -232,6 +232,38 @@ TEST_CASE("an even medium is as opaque at every level of detail, and where level
     CHECK(loads.size() >= 2);  // not of one level alone
 }
 
+TEST_CASE("pre-integrated steps have the same bits with and without leaps where levels meet")
+{
+    Budgeted all;
+    Session session = session_of(0.3, true);
+    session.transfer_function =
+        TransferFunction({{70.0, glm::dvec3(0.8, 0.3, 0.1), 0.2}, {90.0, glm::dvec3(1.0), 0.4}});
+    session.render.preintegration = true;
+    session.render.step_voxels = 1.0;
+    session.render.size = {60, 45};
+    size_t coarser = 0;
+    for (const char* kind : {"tubes", "speckles"}) {
+        const Source source = open_procedural({.kind = kind, .size = Size3(192), .seed = 3});
+        all.load(source, session, Paging::always);
+        for (const glm::dvec3& target : {glm::dvec3(110, 190, 100), glm::dvec3(20, 150, 60), glm::dvec3(96, 60, 5)})
+            for (const double detail : {0.5, 0.25}) {
+                CAPTURE(std::string(kind));
+                CAPTURE(detail);
+                Camera camera = camera_looking("front", source->info());
+                camera.eye = glm::dvec3(96.0, 10.0, 96.0);
+                camera.target = target;
+                session.render.detail = detail;
+                const ImageF leaping = all.renderer.render(session, camera).image;
+                session.render.skip_empty_space = false;
+                CHECK(different_bits(all.renderer.render(session, camera).image, leaping) == 0);
+                session.render.skip_empty_space = true;
+                session.render.detail = 0.0;
+                coarser += different_bits(all.renderer.render(session, camera).image, leaping);
+            }
+    }
+    CHECK(coarser > 10000);  // levels differ
+}
+
 TEST_CASE("only bricks that rays visit are loaded, each once")
 {
     const Source source = tubes({256, 256, 256});
