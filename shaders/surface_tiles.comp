@@ -59,6 +59,17 @@ bool surface_may_be_met(const Side sides[4], const Surface surface, vec3 from, f
     return may;
 }
 
+// Bits of the tile's quarters in which a surface may be met; `right` and `below` are planes through its middle.
+uint quarters_of(const Side right, const Side below, const Surface surface, vec3 from, float slack)
+{
+    const vec2 first = vec2(dot(right.normal, from - right.point), dot(below.normal, from - below.point));
+    const vec2 other = first + vec2(dot(right.normal, surface.along), dot(below.normal, surface.along));
+    const bvec2 behind = lessThanEqual(min(first - surface.radius_from, other - surface.radius_to), vec2(slack));
+    const bvec2 ahead = greaterThanEqual(max(first + surface.radius_from, other + surface.radius_to), vec2(-slack));
+    const uint row = uint(behind.x) | uint(ahead.x) << 1u;
+    return (behind.y ? row : 0u) | (ahead.y ? row << 2u : 0u);
+}
+
 void main()
 {
     const RaycastParams params = params_block.data;
@@ -73,6 +84,8 @@ void main()
                                   side_of(scene, lower, half_tile, scene.middle_dy),
                                   side_of(scene, upper, -half_tile, scene.middle_dx),
                                   side_of(scene, upper, -half_tile, scene.middle_dy));
+    const Side right = side_of(scene, lower + half_tile, vec2(half_tile.x, 0.0), scene.middle_dy);
+    const Side below = side_of(scene, lower + half_tile, vec2(0.0, half_tile.y), scene.middle_dx);
     const float slack = SLACKS * scene.slack;
 
     const ivec2 counted = ivec2(surface_tile_texel(tile, 0u));
@@ -85,9 +98,13 @@ void main()
         const uint end = is_met ? box.end : box.begin;
         for (uint i = box.begin; i < end; ++i) {
             const Surface surface = surface_at(i);
-            if (!surface_may_be_met(sides, surface, surface.from - scene.origin, slack)) continue;
-            if (count < SURFACES_IN_TILE)
-                imageStore(surface_tiles, ivec2(surface_tile_texel(tile, 1u + count)), uvec4(i));
+            const vec3 from = surface.from - scene.origin;
+            if (!surface_may_be_met(sides, surface, from, slack)) continue;
+            if (count < SURFACES_IN_TILE) {
+                const uint quarters = quarters_of(right, below, surface, from, slack);
+                imageStore(surface_tiles, ivec2(surface_tile_texel(tile, 1u + count)),
+                           uvec4(i | quarters << SURFACE_QUARTER));
+            }
             ++count;
         }
         node = is_met ? node + 1u : box.skip;

@@ -104,6 +104,16 @@ void search(const SurfaceParams scene, const Line line, float begin, uint first_
     count(COUNTER_CUT_SHORT, uint(node < scene.end_node));
 }
 
+// The next of a tile's list, from `next` on, that rays of the pixel's quarter may meet. A loop of its own: SIMD devices
+// run a test in full, whether or not any ray wants it, but no turn of a loop that all have left. Neighbouring pixels
+// are in one quarter.
+uint next_in_quarter(uvec2 tile, uint quarter, uint next, uint count)
+{
+    while (next < count && (imageLoad(surface_tiles, ivec2(surface_tile_texel(tile, 1u + next))).x >> quarter & 1u) == 0u)
+        ++next;
+    return next;
+}
+
 // What earlier blocks have found.
 Hit unpacked_hit(const vec4 packed)
 {
@@ -145,8 +155,13 @@ void main()
 #ifdef LISTED
     if (!is_first) hit = unpacked_hit(imageLoad(surfaces, ivec2(in_part)));
     const uint end_of_tile = is_listed ? count : 0u;
-    for (uint i = 0u; i < end_of_tile; ++i)
-        meet(scene, line, begin, imageLoad(surface_tiles, ivec2(surface_tile_texel(tile, 1u + i))).x, hit);
+    const uint quarter = surface_quarter(in_part);
+    uint next = next_in_quarter(tile, quarter, 0u, end_of_tile);
+    while (next < end_of_tile) {
+        const uint word = imageLoad(surface_tiles, ivec2(surface_tile_texel(tile, 1u + next))).x;
+        meet(scene, line, begin, word & (1u << SURFACE_QUARTER) - 1u, hit);
+        next = next_in_quarter(tile, quarter, next + 1u, end_of_tile);
+    }
     search(scene, line, begin, is_listed ? scene.end_node : scene.first_node, hit);
     if (scene.is_last_block == 0u) {
         imageStore(surfaces, ivec2(in_part), packed_hit(hit));

@@ -61,14 +61,22 @@ struct SurfaceParams {
 };
 
 /// Surfaces are listed for tiles of so many pixels a side, from the first pixel of the part on: how many its rays may
-/// meet, and which, in a texel for each of the tile's pixels. Where there are more than that, rays look for theirs
-/// among the boxes.
+/// meet, and which, in a texel for each of the tile's pixels: an index, and from bit SURFACE_QUARTER on, in which
+/// quarters of the tile. Where there are more than that, rays look for theirs among the boxes.
 SHARED_CONST uint SURFACE_TILE = 8u;
 SHARED_CONST uint SURFACES_IN_TILE = SURFACE_TILE * SURFACE_TILE - 1u;
+SHARED_CONST uint SURFACE_QUARTER = 28u;
 
 SHARED_FUNCTION uvec2 surface_tiles_of(uvec2 pixels)
 {
     return (pixels + SURFACE_TILE - 1u) / SURFACE_TILE;
+}
+
+/// The bit of a pixel's quarter.
+SHARED_FUNCTION uint surface_quarter(uvec2 in_part)
+{
+    const uvec2 half_tile = in_part / (SURFACE_TILE / 2u);
+    return SURFACE_QUARTER + half_tile.x % 2u + 2u * (half_tile.y % 2u);
 }
 
 /// The texel of a word of a tile's list: the first is their number.
