@@ -104,13 +104,17 @@ void search(const SurfaceParams scene, const Line line, float begin, uint first_
     count(COUNTER_CUT_SHORT, uint(node < scene.end_node));
 }
 
+uint listed_word(uvec2 tile, uint number)
+{
+    return imageLoad(surface_tiles, ivec2(surface_tile_texel(tile, 1u + number))).x;
+}
+
 // The next of a tile's list, from `next` on, that rays of the pixel's quarter may meet. A loop of its own: SIMD devices
 // run a test in full, whether or not any ray wants it, but no turn of a loop that all have left. Neighbouring pixels
 // are in one quarter.
 uint next_in_quarter(uvec2 tile, uint quarter, uint next, uint count)
 {
-    while (next < count && (imageLoad(surface_tiles, ivec2(surface_tile_texel(tile, 1u + next))).x >> quarter & 1u) == 0u)
-        ++next;
+    while (next < count && (listed_word(tile, next) >> quarter & 1u) == 0u) ++next;
     return next;
 }
 
@@ -158,8 +162,7 @@ void main()
     const uint quarter = surface_quarter(in_part);
     uint next = next_in_quarter(tile, quarter, 0u, end_of_tile);
     while (next < end_of_tile) {
-        const uint word = imageLoad(surface_tiles, ivec2(surface_tile_texel(tile, 1u + next))).x;
-        meet(scene, line, begin, word & (1u << SURFACE_QUARTER) - 1u, hit);
+        meet(scene, line, begin, listed_word(tile, next) & (1u << SURFACE_QUARTER) - 1u, hit);
         next = next_in_quarter(tile, quarter, next + 1u, end_of_tile);
     }
     search(scene, line, begin, is_listed ? scene.end_node : scene.first_node, hit);
