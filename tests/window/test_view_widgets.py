@@ -148,7 +148,7 @@ class Widgets(Seen):
     def test_distance_blending_ends_where_all_of_the_far_end_is_the_other_colour(self):
         self.open_panel("light")
         self.drag(self.middle_of(self.until(lambda: self.after("Blend size"), "the size of blending")), (500, 0))
-        self.assertEqual(self.last("blend", "size"), 1)
+        self.until(lambda: self.last("blend", "size") == 1, "all of the far end in the other colour")
         self.finish()
 
     def test_escape_closes_the_colour_picker_and_nothing_else(self):
