@@ -65,7 +65,7 @@ struct SurfaceParams {
 /// quarters of the tile. Where there are more than that, rays look for theirs among the boxes.
 SHARED_CONST uint SURFACE_TILE = 8u;
 SHARED_CONST uint SURFACES_IN_TILE = SURFACE_TILE * SURFACE_TILE - 1u;
-SHARED_CONST uint SURFACE_QUARTER = 28u;
+SHARED_CONST uint SURFACE_QUARTER = 28u;  // no image of surfaces has room for an index beyond
 
 SHARED_FUNCTION uvec2 surface_tiles_of(uvec2 pixels)
 {
