@@ -381,7 +381,10 @@ TEST_CASE("where the device has no room for both, what is open is put away, and 
     settle(bench);
     // Cancelled while it is put away, it comes back.
     bench.perform(Open{folder.path / "a.json"});
-    for (int turn = 0; turn < 100000 && bench.is_open(); ++turn) bench.advance();
+    for (int turn = 0; turn < 60'000 && bench.is_open(); ++turn) {
+        bench.advance();
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
     REQUIRE(!bench.model().jobs.empty());
     bench.perform(CancelJob{bench.model().jobs.front().number});
     settle(bench);

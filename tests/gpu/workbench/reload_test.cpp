@@ -59,8 +59,9 @@ TEST_CASE("settings that load the volume once more do so beside the work, and wh
     CHECK(desk.bench.shows_jobs());
     REQUIRE(desk.job("loading scan.json once more"));
     bool was_painted = false;
-    for (int turn = 0; turn < 20000 && desk.job("loading scan.json once more"); ++turn) {
+    for (int turn = 0; turn < 60'000 && desk.job("loading scan.json once more"); ++turn) {
         desk.bench.advance();
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
         if (std::exchange(was_painted, true)) continue;
         CHECK(desk.bench.is_open());
         desk.stroke(3);

@@ -165,8 +165,9 @@ TEST_CASE_FIXTURE(OnDevice, "quitting without saving leaves the files as they ar
         CHECK(bench.take_quit());
         std::string why;
         Workbench::Leave leave = Workbench::Leave::later;
-        for (int turn = 0; turn < 1000 && leave == Workbench::Leave::later; ++turn) {
+        for (int turn = 0; turn < 60'000 && leave == Workbench::Leave::later; ++turn) {
             bench.advance();
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
             leave = bench.leave(why);
         }
         CHECK(leave == Workbench::Leave::now);
