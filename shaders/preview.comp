@@ -91,7 +91,7 @@ void main()
     float at = begin;
     bool goes_on = begin < end;
     bool is_hit = false;
-    while (goes_on) {
+    if (goes_on) do {
         is_hit = is_set(preview, voxel);
         const ivec3 axis = next.x <= next.y && next.x <= next.z ? ivec3(1, 0, 0)
                            : next.y <= next.z                  ? ivec3(0, 1, 0)
@@ -102,7 +102,7 @@ void main()
         voxel = is_hit ? voxel : voxel + axis * direction_sign;
         next = is_hit ? next : next + vec3(axis) * apart;
         goes_on = !is_hit && to < end && is_inside(preview, voxel);
-    }
+    } while (goes_on);
     count(COUNTER_CUT_SHORT, uint(goes_on));   // where a device ends loops
 
 #ifdef SURFACED

@@ -406,7 +406,8 @@ void take_samples(const RaycastParams params, const Ray ray, float begin, uint e
 {
     const uint first = i;   // is taken, whatever rounding makes of `until`
     bool is_behind = false;
-    while (i < end_step && sum.a < params.opacity_limit && !waits && !is_behind) {
+    bool searches_on = i < end_step && sum.a < params.opacity_limit && !waits;
+    if (searches_on) do {
         const uint step_before = i;
         search_sample(params, ray, begin, end_step, i, unseen, work);
         const uint patience = unseen >= AWAY_FROM_SEEN ? LITTLE_PATIENCE : MUCH_PATIENCE;
@@ -450,7 +451,8 @@ void take_samples(const RaycastParams params, const Ray ray, float begin, uint e
         // Drivers may round positions in one loop as they do not in the other, which then disagree about a border.
         i += uint(i == step_before && !waits && !is_behind);
         if (COUNT_WORK != 0u) ++work.turns;
-    }
+        searches_on = i < end_step && sum.a < params.opacity_limit && !waits && !is_behind;
+    } while (searches_on);
 }
 
 #ifdef SHELLED
@@ -552,12 +554,14 @@ void main()
     uint unseen = AWAY_FROM_SEEN;
 #ifdef SHELLED
     // Crossings are few, and drawn outside the loops that look for samples and take them.
-    while (i < end_step && sum.a < params.opacity_limit && !waits) {
+    bool goes_on = i < end_step && sum.a < params.opacity_limit && !waits;
+    if (goes_on) do {
         const float next_sample = step_middle(params, begin, i);
         add_shells(params, ray, next_sample, shell, sum);
         waits = shell_waits(params, shell, next_sample, sum);
         take_samples(params, ray, begin, end_step, known_until(shell), i, sum, rises, unseen, waits, work);
-    }
+        goes_on = i < end_step && sum.a < params.opacity_limit && !waits;
+    } while (goes_on);
 #else
     take_samples(params, ray, begin, end_step, NO_SHELL, i, sum, rises, unseen, waits, work);
 #endif

@@ -59,15 +59,20 @@ bool surface_may_be_met(const Side sides[4], const Surface surface, vec3 from, f
     return may;
 }
 
-// Bits of the tile's quarters in which a surface may be met; `right` and `below` are planes through its middle.
-uint quarters_of(const Side right, const Side below, const Surface surface, vec3 from, float slack)
+// Bits of the tile's blocks in which a surface may be met: `borders` between left and right, and between rows of them.
+uint blocks_of(const Side borders[4], const Surface surface, vec3 from, float slack)
 {
-    const vec2 first = vec2(dot(right.normal, from - right.point), dot(below.normal, from - below.point));
-    const vec2 other = first + vec2(dot(right.normal, surface.along), dot(below.normal, surface.along));
-    const bvec2 behind = lessThanEqual(min(first - surface.radius_from, other - surface.radius_to), vec2(slack));
-    const bvec2 ahead = greaterThanEqual(max(first + surface.radius_from, other + surface.radius_to), vec2(-slack));
-    const uint row = uint(behind.x) | uint(ahead.x) << 1u;
-    return (behind.y ? row : 0u) | (ahead.y ? row << 2u : 0u);
+    vec4 first, along;
+    for (uint i = 0u; i < 4u; ++i) {
+        first[i] = dot(borders[i].normal, from - borders[i].point);
+        along[i] = dot(borders[i].normal, surface.along);
+    }
+    const vec4 other = first + along;
+    const bvec4 before = lessThanEqual(min(first - surface.radius_from, other - surface.radius_to), vec4(slack));
+    const bvec4 beyond = greaterThanEqual(max(first + surface.radius_from, other + surface.radius_to), vec4(-slack));
+    const uint row = uint(before.x) | uint(beyond.x) << 1u;
+    return (before.y ? row : 0u) | (beyond.y && before.z ? row << 2u : 0u) |
+           (beyond.z && before.w ? row << 4u : 0u) | (beyond.w ? row << 6u : 0u);
 }
 
 void main()
@@ -84,31 +89,37 @@ void main()
                                   side_of(scene, lower, half_tile, scene.middle_dy),
                                   side_of(scene, upper, -half_tile, scene.middle_dx),
                                   side_of(scene, upper, -half_tile, scene.middle_dy));
-    const Side right = side_of(scene, lower + half_tile, vec2(half_tile.x, 0.0), scene.middle_dy);
-    const Side below = side_of(scene, lower + half_tile, vec2(0.0, half_tile.y), scene.middle_dx);
+    const vec2 to_right = vec2(half_tile.x, 0.0), below = vec2(0.0, half_tile.y);
+    const Side borders[4] = Side[4](side_of(scene, lower + half_tile, to_right, scene.middle_dy),
+                                    side_of(scene, lower + vec2(half_tile.x, 2.0), below, scene.middle_dx),
+                                    side_of(scene, lower + half_tile, below, scene.middle_dx),
+                                    side_of(scene, lower + vec2(half_tile.x, 6.0), below, scene.middle_dx));
     const float slack = SLACKS * scene.slack;
 
     const ivec2 counted = ivec2(surface_tile_texel(tile, 0u));
     uint count = scene.first_node > 0u ? imageLoad(surface_tiles, counted).x : 0u;
     uint node = scene.first_node;
-    while (node < scene.end_node && count <= SURFACES_IN_TILE) {
+    bool goes_on = node < scene.end_node && count <= SURFACES_IN_TILE;
+    if (goes_on) do {
         const SurfaceNode box = surface_node(node);
         const bool is_met = box_may_be_met(sides, 0.5 * (box.lower + box.upper) - scene.origin,
                                            0.5 * (box.upper - box.lower), slack);
         const uint end = is_met ? box.end : box.begin;
-        for (uint i = box.begin; i < end; ++i) {
+        uint i = box.begin;
+        if (i < end) do {
             const Surface surface = surface_at(i);
             const vec3 from = surface.from - scene.origin;
-            if (!surface_may_be_met(sides, surface, from, slack)) continue;
-            if (count < SURFACES_IN_TILE) {
-                const uint quarters = quarters_of(right, below, surface, from, slack);
+            const bool may_be_met = surface_may_be_met(sides, surface, from, slack);
+            if (may_be_met && count < SURFACES_IN_TILE) {
+                const uint blocks = blocks_of(borders, surface, from, slack);
                 imageStore(surface_tiles, ivec2(surface_tile_texel(tile, 1u + count)),
-                           uvec4(i | quarters << SURFACE_QUARTER));
+                           uvec4(i | blocks << SURFACE_BLOCK));
             }
-            ++count;
-        }
+            count += uint(may_be_met);
+        } while (++i < end);
         node = is_met ? node + 1u : box.skip;
-    }
+        goes_on = node < scene.end_node && count <= SURFACES_IN_TILE;
+    } while (goes_on);
     // Full, and also where a device has ended the loop.
     imageStore(surface_tiles, counted, uvec4(node < scene.end_node ? SURFACES_IN_TILE + 1u : count));
 }

@@ -89,7 +89,7 @@ void search(const SurfaceParams scene, const Line line, float begin, uint first_
     const vec3 inverse = 1.0 / safe;
     const vec3 origin = scene.origin + line.origin;
     uint node = first_node;
-    while (node < scene.end_node) {
+    if (node < scene.end_node) do {
         const SurfaceNode box = surface_node(node);
         const vec3 a = (box.lower - scene.slack - origin) * inverse;
         const vec3 b = (box.upper + scene.slack - origin) * inverse;
@@ -98,9 +98,10 @@ void search(const SurfaceParams scene, const Line line, float begin, uint first_
         const float exit = min(min(high.x, high.y), min(high.z, hit.at)) + scene.slack;
         const bool is_met = entry <= exit;
         const uint end = is_met ? box.end : box.begin;
-        for (uint i = box.begin; i < end; ++i) meet(scene, line, begin, i, hit);
+        uint i = box.begin;
+        if (i < end) do meet(scene, line, begin, i, hit); while (++i < end);
         node = is_met ? node + 1u : box.skip;
-    }
+    } while (node < scene.end_node);
     count(COUNTER_CUT_SHORT, uint(node < scene.end_node));
 }
 
@@ -109,12 +110,12 @@ uint listed_word(uvec2 tile, uint number)
     return imageLoad(surface_tiles, ivec2(surface_tile_texel(tile, 1u + number))).x;
 }
 
-// The next of a tile's list, from `next` on, that rays of the pixel's quarter may meet. A loop of its own: SIMD devices
-// run a test in full, whether or not any ray wants it, but no turn of a loop that all have left. Neighbouring pixels
-// are in one quarter.
-uint next_in_quarter(uvec2 tile, uint quarter, uint next, uint count)
+// The next of a tile's list, from `next` on, that rays of the pixel's block may meet. A loop of its own: SIMD devices
+// run a test in full, whether or not any ray wants it, but no turn of a loop that all have left. Their lanes are in one
+// block (library/rays.glsl).
+uint next_in_block(uvec2 tile, uint block, uint next, uint count)
 {
-    while (next < count && (listed_word(tile, next) >> quarter & 1u) == 0u) ++next;
+    while (next < count && (listed_word(tile, next) >> block & 1u) == 0u) ++next;
     return next;
 }
 
@@ -159,12 +160,12 @@ void main()
 #ifdef LISTED
     if (!is_first) hit = unpacked_hit(imageLoad(surfaces, ivec2(in_part)));
     const uint end_of_tile = is_listed ? count : 0u;
-    const uint quarter = surface_quarter(in_part);
-    uint next = next_in_quarter(tile, quarter, 0u, end_of_tile);
-    while (next < end_of_tile) {
-        meet(scene, line, begin, listed_word(tile, next) & (1u << SURFACE_QUARTER) - 1u, hit);
-        next = next_in_quarter(tile, quarter, next + 1u, end_of_tile);
-    }
+    const uint block = surface_block(in_part);
+    uint next = next_in_block(tile, block, 0u, end_of_tile);
+    if (next < end_of_tile) do {
+        meet(scene, line, begin, listed_word(tile, next) & (1u << SURFACE_BLOCK) - 1u, hit);
+        next = next_in_block(tile, block, next + 1u, end_of_tile);
+    } while (next < end_of_tile);
     search(scene, line, begin, is_listed ? scene.end_node : scene.first_node, hit);
     if (scene.is_last_block == 0u) {
         imageStore(surfaces, ivec2(in_part), packed_hit(hit));

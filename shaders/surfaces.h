@@ -30,6 +30,9 @@ struct SurfaceNode {
     uvec3 unused;
 };
 
+/// At most, in a leaf. Fewer means more boxes to load, more means more rods to intersect.
+SHARED_CONST uint SURFACES_IN_LEAF = 4u;
+
 /// Both lie in images, in rows of so many: devices without a cache for buffers read those a thread at a time.
 SHARED_CONST uint SURFACES_IN_ROW = 1024u;
 SHARED_CONST uint SURFACE_TEXELS = 4u;
@@ -61,22 +64,21 @@ struct SurfaceParams {
 };
 
 /// Surfaces are listed for tiles of so many pixels a side, from the first pixel of the part on: how many its rays may
-/// meet, and which, in a texel for each of the tile's pixels: an index, and from bit SURFACE_QUARTER on, in which
-/// quarters of the tile. Where there are more than that, rays look for theirs among the boxes.
+/// meet, and which, in a texel for each of the tile's pixels: an index, and from bit SURFACE_BLOCK on, in which of the
+/// tile's blocks of 4 x 2 pixels. Where there are more than that, rays look for theirs among the boxes.
 SHARED_CONST uint SURFACE_TILE = 8u;
 SHARED_CONST uint SURFACES_IN_TILE = SURFACE_TILE * SURFACE_TILE - 1u;
-SHARED_CONST uint SURFACE_QUARTER = 28u;  // no image of surfaces has room for an index beyond
+SHARED_CONST uint SURFACE_BLOCK = 24u;  // no scene has 2^24 surfaces
 
 SHARED_FUNCTION uvec2 surface_tiles_of(uvec2 pixels)
 {
     return (pixels + SURFACE_TILE - 1u) / SURFACE_TILE;
 }
 
-/// The bit of a pixel's quarter.
-SHARED_FUNCTION uint surface_quarter(uvec2 in_part)
+/// The bit of a pixel's block: 0 1 in the tile's first two rows, 2 3 below, and so on.
+SHARED_FUNCTION uint surface_block(uvec2 in_part)
 {
-    const uvec2 half_tile = in_part / (SURFACE_TILE / 2u);
-    return SURFACE_QUARTER + half_tile.x % 2u + 2u * (half_tile.y % 2u);
+    return SURFACE_BLOCK + in_part.x / 4u % 2u + 2u * (in_part.y / 2u % 4u);
 }
 
 /// The texel of a word of a tile's list: the first is their number.

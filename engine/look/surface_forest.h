@@ -19,7 +19,8 @@ public:
 
     SurfaceForest() = default;
     /// Keys must differ. Fails as `surface_tree` does. `max_in_leaf` is for tests.
-    SurfaceForest(std::vector<KeyedSurface> surfaces, const VolumeInfo& volume, size_t max_in_leaf = SURFACES_IN_LEAF);
+    SurfaceForest(std::vector<KeyedSurface> surfaces, const VolumeInfo& volume,
+                  size_t max_in_leaf = gpu::SURFACES_IN_LEAF);
 
     /// Removes the surfaces with `keys`, if present, and adds `surfaces`. Returns false, and changes nothing, if a new
     /// forest is as cheap. Fails as `surface_tree` does, and then changes nothing. Memory and time are proportional to
@@ -49,7 +50,7 @@ private:
     void remove(uint64_t key);
     void set_added(const SurfaceTree& tree);
 
-    size_t max_in_leaf_ = SURFACES_IN_LEAF;
+    size_t max_in_leaf_ = gpu::SURFACES_IN_LEAF;
     std::vector<gpu::SurfaceNode> nodes_;
     std::vector<gpu::Surface> list_;
     size_t base_nodes_ = 0, base_list_ = 0;  ///< of the large hierarchy, which comes first

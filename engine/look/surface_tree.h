@@ -40,9 +40,6 @@ std::vector<KeyedSurface> keyed(std::span<const SurfaceLook> surfaces);
 /// 60 bytes each, and at most as many bytes of nodes: below the smallest buffer limit of any device, 128 MiB.
 inline constexpr size_t MAX_SURFACES = 1'000'000;
 
-/// Maximum surfaces per leaf. Fewer means more boxes to load, more means more rods to intersect.
-inline constexpr size_t SURFACES_IN_LEAF = 4;
-
 struct SurfaceTree {
     std::vector<gpu::SurfaceNode> nodes;
     std::vector<gpu::Surface> list;  ///< in the order of the leaves
@@ -52,7 +49,7 @@ struct SurfaceTree {
 /// Fails, naming the surface, if there are more than MAX_SURFACES, or if one is not finite, has no size, or is farther
 /// than 2^20 reference lengths from any place the volume may be. `max_in_leaf` is for tests.
 SurfaceTree surface_tree(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume,
-                         size_t max_in_leaf = SURFACES_IN_LEAF);
+                         size_t max_in_leaf = gpu::SURFACES_IN_LEAF);
 
 /// One of them as it would be in the tree's list. Fails as `surface_tree` does.
 gpu::Surface surface_on_device(const KeyedSurface& surface, const VolumeInfo& volume);

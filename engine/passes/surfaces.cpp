@@ -9,10 +9,6 @@ namespace shvr {
 
 namespace {
 
-/// Nodes that one dispatch may look at: with their surfaces, half of the 65535 turns after which some devices end a
-/// thread's loops. A node is visited once at most, so lanes in step do not take each other's turns.
-constexpr uint32_t NODES_OF_BLOCK = 32768 / 6;
-
 /// Lists the surfaces of each tile; the words that earlier blocks have written.
 Resource tiles_block(FrameGraph& graph, const SurfacesInput& input, Resource tiles)
 {
@@ -52,11 +48,11 @@ Resource surfaces(FrameGraph& graph, const SurfacesInput& input)
     const glm::uvec2 pixels = input.params.pixel_end - input.params.pixel_begin;
     const uint32_t nodes = input.listed ? input.scene.node_count : 0;
     std::vector<SurfacesInput> blocks;
-    for (uint32_t first = 0; first == 0 || first < nodes; first += NODES_OF_BLOCK) {
+    for (uint32_t first = 0; first == 0 || first < nodes; first += input.nodes_in_dispatch) {
         SurfacesInput& block = blocks.emplace_back(input);
         block.scene.first_node = first;
-        block.scene.end_node = std::min(first + NODES_OF_BLOCK, nodes);
-        block.scene.is_last_block = first + NODES_OF_BLOCK >= nodes;
+        block.scene.end_node = std::min(first + input.nodes_in_dispatch, nodes);
+        block.scene.is_last_block = first + input.nodes_in_dispatch >= nodes;
     }
     Resource tiles;
     if (input.listed) {

@@ -16,12 +16,18 @@ struct SurfaceList {
     Resource list;   ///< gpu::Surface; both are rgba32_uint pictures, in rows of gpu::SURFACES_IN_ROW
 };
 
+/// Nodes that one dispatch may look at: some devices end a thread's loops after 65535 turns in all. A node is a turn,
+/// and where lanes go in step, each surface of a leaf that one of them is at; lists are a few hundred more. Each
+/// dispatch costs as much again as one that finds nothing.
+inline constexpr uint32_t NODES_IN_DISPATCH = 60'000 / (2 + gpu::SURFACES_IN_LEAF);
+
 struct SurfacesInput {
     gpu::RaycastParams params;  ///< the same as the ray caster's: pixels, light and distance blending are read
     gpu::SurfaceParams scene;
     std::optional<SurfaceList> listed;
     bool probe = false;  ///< scene.probe_* are set
     PixelGroups pixel_groups;
+    uint32_t nodes_in_dispatch = NODES_IN_DISPATCH;  ///< others are for tests
 };
 
 /// The device takes this for each tile of a part, besides the image.

@@ -170,7 +170,8 @@ void pass_clear_cells(const RaycastParams params, const Ray ray, inout Shell she
 void search_shell(const RaycastParams params, const Ray ray, inout Shell shell)
 {
     shell.next = NO_SHELL;
-    while (shell.next == NO_SHELL && shell.from < shell.limit && !shell.waits && shell.turns < MAX_TURNS) {
+    bool searches = shell.from < shell.limit && !shell.waits && shell.turns < MAX_TURNS;
+    if (searches) do {
         ++shell.turns;
         pass_clear_cells(params, ray, shell);
         const bool goes_on = shell.from < shell.limit;
@@ -210,7 +211,8 @@ void search_shell(const RaycastParams params, const Ray ray, inout Shell shell)
         shell.from = !goes_on || cell.is_missing ? shell.from : is_found ? at + hair_at(at) : to;
         shell.known = shell.from;
         shell.waits = goes_on && cell.is_missing;
-    }
+        searches = !is_found && shell.from < shell.limit && !shell.waits && shell.turns < MAX_TURNS;
+    } while (searches);
 }
 
 // The part of the ray inside the region: the probe's ball or box.
@@ -286,7 +288,8 @@ vec4 shell_look(const RaycastParams params, const Ray ray, const Cell cell, vec3
 // Adds the crossings before `s`.
 void add_shells(const RaycastParams params, const Ray ray, float s, inout Shell shell, inout vec4 sum)
 {
-    while (shell.next < s && sum.a < params.opacity_limit && !shell.waits && shell.turns < MAX_TURNS) {
+    bool is_ahead = shell.next < s && sum.a < params.opacity_limit && !shell.waits && shell.turns < MAX_TURNS;
+    if (is_ahead) do {
         ++shell.turns;
         const vec3 position = position_at(params, ray, shell.next);
         const Cell cell = cell_at(params, ray, position);
@@ -295,5 +298,6 @@ void add_shells(const RaycastParams params, const Ray ray, float s, inout Shell 
             accumulate(sum, shell_look(params, ray, cell, position));
             search_shell(params, ray, shell);
         }
-    }
+        is_ahead = shell.next < s && sum.a < params.opacity_limit && !shell.waits && shell.turns < MAX_TURNS;
+    } while (is_ahead);
 }

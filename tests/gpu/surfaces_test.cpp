@@ -7,6 +7,7 @@
 
 #include <doctest/doctest.h>
 
+#include "shaders/counters.h"
 #include "tests/support/gpu.h"
 
 using namespace shvr;
@@ -77,8 +78,10 @@ public:
     VolumeInfo info;
     glm::uvec2 pixels{24, 24};
     glm::vec3 light{0.0f, 0.0f, 1.0f};
-    size_t max_in_leaf = SURFACES_IN_LEAF;
+    size_t max_in_leaf = gpu::SURFACES_IN_LEAF;
     PixelGroups groups{.tile = {128, 128}};
+    uint32_t nodes_in_dispatch = NODES_IN_DISPATCH;
+    uint64_t rays_cut_short = 0;  // of all looks
 
     Surfaces() { info.size = Size3(100); }
 
@@ -92,13 +95,16 @@ public:
         SurfacesInput input{.params = {},
                             .scene = scene.params(planes, pixels, info),
                             .listed = scene.upload(graph),
-                            .pixel_groups = groups};
+                            .pixel_groups = groups,
+                            .nodes_in_dispatch = nodes_in_dispatch};
         input.params.pixel_end = pixels;
         input.params.light = light;
         input.params.diffuse = 1.0f;
         input.params.inverse_spacing = glm::vec3(1.0f);
         const uint32_t index = graph.read_back(shvr::surfaces(graph, input));
         const gpu::FrameResult result = renderer().executor().run(std::move(graph));
+        for (const gpu::PassReport& pass : result.passes)
+            if (pass.name == "surfaces") rays_cut_short += pass.counters.at(gpu::COUNTER_CUT_SHORT);
         Sight sight{{}, std::vector<glm::vec4>(size_t(pixels.x) * pixels.y)};
         std::memcpy(sight.seen.data(), result.read_backs[index].data(), sight.seen.size() * sizeof(glm::vec4));
         for (uint32_t y = 0; y < pixels.y; ++y)
@@ -348,7 +354,7 @@ TEST_CASE_FIXTURE(Surfaces, "the hierarchy finds what asking every surface finds
     for (const Camera& camera :
          {orthographic(MIDDLE, {1, 2, 3}, 120.0), orthographic(MIDDLE, {0, 1, 0}, 120.0),
           perspective(MIDDLE, {10.0, 50.0, 70.0}, 90.0), perspective({-1e6, 50, 50}, MIDDLE, 0.01)}) {
-        max_in_leaf = SURFACES_IN_LEAF;
+        max_in_leaf = gpu::SURFACES_IN_LEAF;
         const Sight found = look(rods, camera);
         max_in_leaf = rods.size();
         const Sight asked = look(rods, camera);
@@ -387,6 +393,43 @@ TEST_CASE_FIXTURE(Surfaces, "rays find the same in their tile's list and, where 
     }
     CHECK(hits > 2000);
     CHECK(misses > 2000);
+}
+
+TEST_CASE_FIXTURE(Surfaces, "nodes may be looked at in several dispatches, by rays with lists and by those without")
+{
+    std::vector<SurfaceLook> rods = random_rods(400, 98, 30.0, 3.0);  // seed 98
+    pixels = {67, 53};
+    for (const double height : {120.0, 2.0}) {
+        const Camera camera = orthographic(MIDDLE, {1, 2, 3}, height);
+        for (const bool is_crowded : {false, true}) {
+            if (is_crowded) rods.resize(rods.size() + gpu::SURFACES_IN_TILE + 1, ball({500, 1000, 1500}, 1700.0));
+            nodes_in_dispatch = NODES_IN_DISPATCH;
+            const std::vector<glm::vec4> seen = look(rods, camera).seen;
+            for (const uint32_t nodes : {1u, 7u, 100u}) {
+                CAPTURE(nodes);
+                nodes_in_dispatch = nodes;
+                CHECK((look(rods, camera).seen == seen));
+            }
+        }
+        rods.resize(400);
+    }
+}
+
+TEST_CASE_FIXTURE(Surfaces, "no device ends the loops of a dispatch before its nodes")
+{
+    std::vector<SurfaceLook> balls;  // that all rays meet, nearer and nearer
+    Dice dice{std::mt19937(99)};
+    const size_t count = 2 * NODES_IN_DISPATCH;
+    for (size_t i = 0; i < count; ++i) balls.push_back(ball(dice.point(49.0, 51.0), 30.0 + 0.001 * double(i)));
+    pixels = {8, 8};
+    for (const glm::dvec3& direction : {glm::dvec3(1, 2, 3), glm::dvec3(-1, -2, -3), glm::dvec3(0, 1, 0)}) {
+        const Camera camera = orthographic(MIDDLE, direction, 1.0);
+        nodes_in_dispatch = NODES_IN_DISPATCH;
+        const Sight at_once = look(balls, camera);
+        nodes_in_dispatch = 500;
+        CHECK((look(balls, camera).seen == at_once.seen));
+        CHECK(rays_cut_short == 0);
+    }
 }
 
 TEST_CASE_FIXTURE(Surfaces, "however workgroups share the pixels of a picture, all are drawn with the same bits")

@@ -83,7 +83,7 @@ int main()
     try {
         const std::vector<SurfaceLook> rods = random_rods(10000);
         Bench bench;
-        bench.measure({rods[0]}, SURFACES_IN_LEAF);
+        bench.measure({rods[0]}, gpu::SURFACES_IN_LEAF);
         for (const size_t leaf : {1, 2, 4, 8}) bench.measure(rods, leaf);
         bench.measure(rods, rods.size());
     } catch (const Error& error) {

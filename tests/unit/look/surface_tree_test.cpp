@@ -87,16 +87,16 @@ TEST_CASE("every surface is in one leaf, inside every box around it")
     for (const size_t count : {1, 4, 5, 37, 3000}) {
         const SurfaceTree tree = tree_of(rods(count, 100.0, 21));
         CHECK(tree.list.size() == count);
-        check_tree(tree, SURFACES_IN_LEAF);
+        check_tree(tree, gpu::SURFACES_IN_LEAF);
         std::vector<bool> seen(count);
         for (const gpu::Surface& surface : tree.list) seen[surface.number] = true;
         CHECK(std::ranges::count(seen, true) == ptrdiff_t(count));
     }
     // Identical ones, and one that outweighs all others.
-    check_tree(tree_of(std::vector<SurfaceLook>(5000)), SURFACES_IN_LEAF);
+    check_tree(tree_of(std::vector<SurfaceLook>(5000)), gpu::SURFACES_IN_LEAF);
     std::vector<SurfaceLook> uneven = rods(2000, 1e-3, 22);
     uneven.push_back({.from = glm::dvec3(5e5), .to = glm::dvec3(5e5), .radius_from = 3.0, .radius_to = 3.0});
-    check_tree(tree_of(uneven), SURFACES_IN_LEAF);
+    check_tree(tree_of(uneven), gpu::SURFACES_IN_LEAF);
     CHECK(tree_of({}).nodes.empty());
 }
 
@@ -109,7 +109,7 @@ TEST_CASE("a hundred thousand rods are sorted in far less than a second")
     MESSAGE("100000 rods: " << seconds * 1e3 << " ms, " << tree.nodes.size() << " nodes");
     CHECK(seconds < 1.0);
     CHECK(tree.nodes.size() < 2 * tree.list.size());
-    check_tree(tree, SURFACES_IN_LEAF);
+    check_tree(tree, gpu::SURFACES_IN_LEAF);
 }
 
 TEST_CASE("positions keep what a float of their size loses, in units of the finest axis")
