@@ -19,6 +19,7 @@ template <class Value>
 constexpr uint32_t TEXELS = sizeof(Value) / sizeof(glm::uvec4);
 static_assert(TEXELS<gpu::Surface> == gpu::SURFACE_TEXELS && sizeof(gpu::Surface) == 64);
 static_assert(TEXELS<gpu::SurfaceNode> == gpu::SURFACE_NODE_TEXELS && sizeof(gpu::SurfaceNode) == 48);
+static_assert(MAX_SURFACES + SurfaceForest::MAX_SURFACES_ADDED <= 1u << gpu::SURFACE_BLOCK);
 
 template <class Value>
 ResourceDesc desc_of(uint64_t values)

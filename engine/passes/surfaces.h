@@ -17,8 +17,8 @@ struct SurfaceList {
 };
 
 /// Nodes that one dispatch may look at: some devices end a thread's loops after 65535 turns in all. A node is a turn,
-/// and where lanes go in step, each surface of a leaf that one of them is at; lists are a few hundred more. Each
-/// dispatch costs as much again as one that finds nothing.
+/// and where lanes go in step, each surface of a leaf that one of them is at; lists are a few hundred more. Fewer
+/// would cost more dispatches, and one that finds nothing sets up every ray all the same.
 inline constexpr uint32_t NODES_IN_DISPATCH = 60'000 / (2 + gpu::SURFACES_IN_LEAF);
 
 struct SurfacesInput {

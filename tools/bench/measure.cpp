@@ -11,7 +11,6 @@
 #include <memory>
 #include <random>
 #include <thread>
-#include <utility>
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/file.h"
@@ -177,7 +176,6 @@ std::string words_of_volume(const VolumeInfo& info)
 struct Timed {
     std::string name;
     std::function<double()> draw;  ///< milliseconds
-    const void* memory = nullptr;  ///< whose volume it draws
     std::vector<double> milliseconds = {};
 };
 
@@ -232,15 +230,10 @@ Measured first_look_of_peer(Peer& peer, const PeerRun& run, const ImageF& refere
 
 void time_in_turns(std::vector<Timed>& timed, int rounds, const std::function<void(double)>& tell)
 {
-    // To and fro, so that a machine that grows slower or faster does so for all. What follows another's volume is drawn
-    // once before: with that in the caches, a picture of 512^3 voxels takes up to 3.5 times as long as the next ones.
-    const void* in_caches = nullptr;
+    // To and fro, so that a machine that grows slower or faster does so for all.
     for (int round = 0; round < rounds; ++round) {
         tell(double(round) / rounds);
-        for (Timed& each : timed) {
-            if (std::exchange(in_caches, each.memory) != each.memory) each.draw();
-            each.milliseconds.push_back(each.draw());
-        }
+        for (Timed& each : timed) each.milliseconds.push_back(each.draw());
         std::ranges::reverse(timed);
     }
 }
@@ -302,8 +295,8 @@ MeasuredScene measure_scene(const Scene& scene, const MeasureOptions& options)
         measured.result.runs.push_back(first_look_of_peer(*peer, run, measured.pictures.reference, measured.pictures));
 
     std::vector<Timed> timed;
-    for (Prepared& each : prepared) timed.push_back({each.run->name, [&each] { return steady_ms(each); }, each.studio});
-    for (const PeerRun& run : peer_runs) timed.push_back({run.name, [&] { return peer->draw(run); }, peer.get()});
+    for (Prepared& each : prepared) timed.push_back({each.run->name, [&each] { return steady_ms(each); }});
+    for (const PeerRun& run : peer_runs) timed.push_back({run.name, [&] { return peer->draw(run); }});
     const bool by_processor = prepared.front().studio->renderer().device().traits().is_cpu;
     if (by_processor)
         timed.push_back({YARDSTICK, [] { return yardstick_ms(int(std::thread::hardware_concurrency())); }});
