@@ -188,17 +188,17 @@ vec4 slice_look(const RaycastParams params, float density)
 #ifdef MASKED
 #include "library/groups.glsl"
 
-// A painted voxel has the look of its group, whatever its density.
-vec4 painted(const RaycastParams params, vec3 position, float part, vec4 look)
+uint group_at(const RaycastParams params, vec3 position)
 {
-    const uint group = SMOOTH_BORDERS != 0u ? group_around(position, ivec3(params.position_limit))
-                                            : group_of(uvec3(position));
+    return SMOOTH_BORDERS != 0u ? group_around(position, ivec3(params.position_limit)) : group_of(uvec3(position));
+}
+
+// A painted voxel has the look of its group, whatever its density.
+vec4 painted(const RaycastParams params, uint group, vec4 look)
+{
     if (group == 0u) return look;
-    vec4 of_group = imageLoad(groups, ivec2(group, 0));
-    if (SLICE == 0u) {
-        if (part < 1.0) of_group.a = opacity_of_depth(part * imageLoad(groups, ivec2(group, 1)).x);
-        return of_group;
-    }
+    const vec4 of_group = imageLoad(groups, ivec2(group, 0));
+    if (SLICE == 0u) return of_group;
     return vec4(mix(look.rgb, of_group.rgb, of_group.a > 0.0 ? params.slice_paint : 0.0), 1.0);
 }
 #endif
@@ -280,21 +280,30 @@ float value_at_end(const RaycastParams params, const Ray ray, float s, const Tex
     return value_near(lattice - 0.5 - vec3(brick), texels.to_atlas + ivec3(brick));
 }
 
-// Colour (shaded) and opacity of that part of a step, with its middle at `position`, in the brick at `place`. `ends`:
-// the densities at its beginning and end, where those are classified.
-vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float part, const Place place, vec2 ends)
+struct Sample {
+    vec4 look;       // colour, shaded, and opacity
+    float density;   // PREINTEGRATED: not used
+    uint group;      // 0: none
+};
+
+// A step with its middle at `position`, in the brick at `place`. PREINTEGRATED: `ends` are the densities at its
+// beginning and end, and its opacity is that of `part` of a step; otherwise that of a whole one (opacity_of_rest).
+Sample sample_at(const RaycastParams params, const Ray ray, vec3 position, float part, const Place place, vec2 ends)
 {
     const Texels texels = texels_at(position, place);
     Density density;
     if (PREINTEGRATED == 0u || SHADED != 0u) density = density_at(texels.corner + texels.to_atlas, texels.fraction);
-    vec4 look;
+    Sample found = Sample(vec4(0.0), PREINTEGRATED != 0u ? 0.0 : value_of(density), 0u);
     if (PREINTEGRATED != 0u) {
-        look = classify_step(params, ends.x, ends.y, part);
+        found.look = classify_step(params, ends.x, ends.y, part);
     } else {
-        look = SLICE != 0u ? slice_look(params, value_of(density)) : classify(params, value_of(density), part);
+        found.look = SLICE != 0u ? slice_look(params, found.density) : classify(params, found.density);
     }
 #ifdef MASKED
-    if (place.is_painted) look = painted(params, position, part, look);
+    if (place.is_painted) {
+        found.group = group_at(params, position);
+        found.look = painted(params, found.group, found.look);
+    }
 #endif
     if (SHADED != 0u) {
         float ambient = params.ambient;
@@ -308,13 +317,47 @@ vec4 sample_look(const RaycastParams params, const Ray ray, vec3 position, float
             ivec3(slot_origin(texels.slot)) - ivec3(texels.brick * BRICK_SIZE) + int(BRICK_APRON);
         ambient *= ambient_share(texels.lattice, to_values, vec3(last));
 #endif
-        look.rgb = shade(params, ambient, look.rgb, gradient_of(density) * params.inverse_spacing, ray.half_way);
+        found.look.rgb =
+            shade(params, ambient, found.look.rgb, gradient_of(density) * params.inverse_spacing, ray.half_way);
     }
-    if (DISTANCE_BLEND != 0u) look.rgb = blended(params, look.rgb, position);
-    return look;
+    if (DISTANCE_BLEND != 0u) found.look.rgb = blended(params, found.look.rgb, position);
+    return found;
 }
 
-// The beginning of a step of the lattice, and its middle: lengths along the ray.
+// The opacity of that part of a step, whose middle the sample is of.
+float opacity_of_rest(const RaycastParams params, const Sample taken, float part)
+{
+    if (part >= 1.0) return taken.look.a;
+#ifdef MASKED
+    if (taken.group != 0u) return opacity_of_depth(part * imageLoad(groups, ivec2(taken.group, 1)).x);
+#endif
+    return PREINTEGRATED != 0u ? taken.look.a : opacity_of_part(params, taken.density, part);
+}
+
+// A ray's steps: whole ones, of equal length, and its rest, a shorter and therefore more transparent one.
+struct Lattice {
+    float begin, end;    // lengths along the ray
+    uint whole;          // so many, and the number of the rest
+    float part;          // the rest, in whole steps; 0: there is none
+    float rest_middle;   // length along the ray
+};
+
+Lattice lattice_of(const RaycastParams params, float begin, float end)
+{
+    const float extent = end > begin ? end - begin : 0.0;   // of what is no number, too
+    const float steps = extent / params.step;
+    const uint whole = steps > 0.0 ? uint(min(steps, MAX_STEPS)) : 0u;   // likewise
+    const float whole_end = begin + float(whole) * params.step;
+    const float rest = extent - float(whole) * params.step;
+    return Lattice(begin, end, whole, max(rest / params.step, 0.0), whole_end + 0.5 * rest);
+}
+
+// All of them.
+uint step_count(const Lattice lattice)
+{
+    return lattice.whole + uint(lattice.part > 0.0);
+}
+
 float step_begin(const RaycastParams params, float begin, uint step)
 {
     return begin + float(step) * params.step;
@@ -328,6 +371,17 @@ float step_middle(const RaycastParams params, float begin, uint step)
 vec3 sample_position(const RaycastParams params, const Ray ray, float begin, uint step)
 {
     return position_at(params, ray, step_middle(params, begin, step));
+}
+
+// The middle of a step or of the rest.
+float middle_of(const RaycastParams params, const Lattice lattice, uint step)
+{
+    return step < lattice.whole ? step_middle(params, lattice.begin, step) : lattice.rest_middle;
+}
+
+float end_of(const RaycastParams params, const Lattice lattice, uint step)
+{
+    return step < lattice.whole ? step_begin(params, lattice.begin, step + 1u) : lattice.end;
 }
 
 // The number of whole steps from `position` that stay inside the empty cube around its cell.
@@ -373,7 +427,7 @@ vec4 sliced(const RaycastParams params, const Ray ray, vec3 position, inout Work
     if (place.distance > 0u || waits) return vec4(0.0);
 #endif
     if (COUNT_WORK != 0u) note_taken(place, work);
-    return sample_look(params, ray, position, 1.0, place, vec2(0.0));
+    return sample_at(params, ray, position, 1.0, place, vec2(0.0)).look;
 }
 
 void accumulate(inout vec4 sum, vec4 look)
@@ -386,72 +440,93 @@ void accumulate(inout vec4 sum, vec4 look)
 #include "library/pick.glsl"
 #include "library/search.glsl"
 
-// Adds the sample of step `i`, and goes on to the next.
-void take(const RaycastParams params, vec4 look, const Place place, float begin, inout uint i, inout vec4 sum,
-          inout Rises rises, inout uint unseen, inout Work work)
+void add(const RaycastParams params, vec4 look, float middle, inout vec4 sum, inout Rises rises)
 {
-    if (PICK != 0u) note_rise(rises, (1.0 - sum.a) * look.a, look.a, step_middle(params, begin, i));
-    if (COUNT_WORK != 0u) note_taken(place, work);
+    if (PICK != 0u) note_rise(rises, (1.0 - sum.a) * look.a, look.a, middle);
     accumulate(sum, look);
-    unseen = look.a > 0.0 ? 0u : unseen + 1u;
-    ++i;
 }
 
-// Adds samples from step `i` on, up to `until`, a length along the ray, or to `end_step`.
+// What a ray gathers, and where it is.
+struct March {
+    uint i;        // the step that is next; the rest is taken if that is beyond it
+    vec4 sum;
+    Rises rises;
+    uint unseen;   // samples that showed nothing, since the last that did
+    bool waits;    // for a brick
+    bool has_rest;
+    Sample rest;   // what is found there, not added yet
+};
+
+// Adds samples from step `march.i` on, up to `until`, a length along the ray, or to `end_step`; what is left of the ray
+// after its whole steps counts as a step, and is found here and added by others: its opacity takes loads that no whole
+// step needs.
 //
 // SIMD devices run both sides of a branch for all their lanes, so what is cheap, the search for a sample that can be
 // seen, and what is costly are loops of their own, in which lanes stay together as long as it pays.
-void take_samples(const RaycastParams params, const Ray ray, float begin, uint end_step, float until, inout uint i,
-                  inout vec4 sum, inout Rises rises, inout uint unseen, inout bool waits, inout Work work)
+void take_samples(const RaycastParams params, const Ray ray, const Lattice lattice, uint end_step, float until,
+                  inout March march, inout Work work)
 {
-    const uint first = i;   // is taken, whatever rounding makes of `until`
+    const uint first = march.i;   // is taken, whatever rounding makes of `until`
     bool is_behind = false;
-    bool searches_on = i < end_step && sum.a < params.opacity_limit && !waits;
+    bool searches_on = march.i < end_step && march.sum.a < params.opacity_limit && !march.waits;
     if (searches_on) do {
-        const uint step_before = i;
-        search_sample(params, ray, begin, end_step, i, unseen, work);
-        const uint patience = unseen >= AWAY_FROM_SEEN ? LITTLE_PATIENCE : MUCH_PATIENCE;
-        if (i > step_before) rises.trough = 0.0;
-        unseen = 0u;
+        const uint step_before = march.i;
+        search_sample(params, ray, lattice.begin, min(end_step, lattice.whole), march.i, march.unseen, work);
+        const uint patience = march.unseen >= AWAY_FROM_SEEN ? LITTLE_PATIENCE : MUCH_PATIENCE;
+        if (march.i > step_before) march.rises.trough = 0.0;
+        march.unseen = 0u;
         // A step's density at its beginning is that at the end of the one before, if that is in a brick of its level.
-        const uint run = i;
+        const uint run = march.i;
         float front = 0.0;
         uint level = 0u;
         if (PREINTEGRATED != 0u) {
-            const vec3 position = sample_position(params, ray, begin, i);
+            const vec3 position = position_at(params, ray, middle_of(params, lattice, run));
             const Place place = place_at(params, position);
-            front = value_at_end(params, ray, step_begin(params, begin, i), texels_at(position, place), place);
+            front = value_at_end(params, ray, step_begin(params, lattice.begin, run), texels_at(position, place),
+                                 place);
         }
         bool goes_on;
         do {
-            const vec3 position = sample_position(params, ray, begin, i);
+            const float middle = middle_of(params, lattice, march.i);
+            const vec3 position = position_at(params, ray, middle);
             const Place place = place_at(params, position);
             note(place, work);
             if (COUNT_WORK != 0u) ++work.turns;
 #ifdef SHELLED
-            is_behind = is_behind || (i != first && step_middle(params, begin, i) > until);
+            is_behind = is_behind || (march.i != first && middle > until);
 #endif
-            goes_on = place.distance == 0u && i < end_step && sum.a < params.opacity_limit && !is_behind;
+            goes_on = place.distance == 0u && march.i < end_step && march.sum.a < params.opacity_limit && !is_behind;
 #ifdef PAGED
-            level = i == run ? place.level : level;
+            level = march.i == run ? place.level : level;
             goes_on = goes_on && (PREINTEGRATED == 0u || place.level == level);
 #endif
-            waits = waits || (goes_on && place.is_missing && sum.a < params.opacity_limit);
-            if (goes_on && !waits) {
+            march.waits = march.waits || (goes_on && place.is_missing && march.sum.a < params.opacity_limit);
+            if (goes_on && !march.waits) {
+                const bool is_rest = march.i == lattice.whole;
                 vec2 ends = vec2(front, 0.0);
                 if (PREINTEGRATED != 0u)
-                    ends.y = value_at_end(params, ray, step_begin(params, begin, i + 1u), texels_at(position, place),
+                    ends.y = value_at_end(params, ray, end_of(params, lattice, march.i), texels_at(position, place),
                                           place);
                 front = ends.y;
-                const vec4 look = sample_look(params, ray, position, 1.0, place, ends);
-                take(params, look, place, begin, i, sum, rises, unseen, work);
+                const float part = is_rest ? lattice.part : 1.0;
+                const Sample found = sample_at(params, ray, position, part, place, ends);
+                if (COUNT_WORK != 0u) note_taken(place, work);
+                if (is_rest) {
+                    march.rest = found;
+                    march.has_rest = true;
+                } else {
+                    add(params, found.look, middle, march.sum, march.rises);
+                    march.unseen = found.look.a > 0.0 ? 0u : march.unseen + 1u;
+                }
+                ++march.i;
             }
-            goes_on = goes_on && !waits && i < end_step && unseen < patience && sum.a < params.opacity_limit;
+            goes_on = goes_on && !march.waits && march.i < end_step && march.unseen < patience &&
+                      march.sum.a < params.opacity_limit;
         } while (goes_on);
         // Drivers may round positions in one loop as they do not in the other, which then disagree about a border.
-        i += uint(i == step_before && !waits && !is_behind);
+        march.i += uint(march.i == step_before && !march.waits && !is_behind);
         if (COUNT_WORK != 0u) ++work.turns;
-        searches_on = i < end_step && sum.a < params.opacity_limit && !waits && !is_behind;
+        searches_on = march.i < end_step && march.sum.a < params.opacity_limit && !march.waits && !is_behind;
     } while (searches_on);
 }
 
@@ -501,17 +576,17 @@ void main()
 #endif
 
     const ivec2 texel = ivec2(params.target + in_part);
-    vec4 sum = vec4(0.0);
+    March march = March(0u, vec4(0.0), Rises(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), AWAY_FROM_SEEN, false, false,
+                        Sample(vec4(0.0), 0.0, 0u));
     bool begins_inside = false;   // of the iso-surface
-    Rises rises = Rises(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     if (params.first_step > 0u && KEPT != KEPT_ALL) {
-        sum = imageLoad(color, texel);
-        begins_inside = sum.a < 0.0;
-        sum.a = abs(sum.a) > LEAST_ALPHA ? abs(sum.a) : 0.0;
-        if (PICK != 0u && sum.a >= params.opacity_limit) return;   // what was found stays
+        march.sum = imageLoad(color, texel);
+        begins_inside = march.sum.a < 0.0;
+        march.sum.a = abs(march.sum.a) > LEAST_ALPHA ? abs(march.sum.a) : 0.0;
+        if (PICK != 0u && march.sum.a >= params.opacity_limit) return;   // what was found stays
         if (PICK != 0u) {
             const vec4 runs = imageLoad(color, texel + ivec2(0, 1)), run = imageLoad(color, texel + ivec2(0, 2));
-            rises = Rises(runs.x, runs.y, runs.z, runs.w, run.x, run.y, run.z);
+            march.rises = Rises(runs.x, runs.y, runs.z, runs.w, run.x, run.y, run.z);
         }
     }
     vec4 kept = vec4(NO_SHELL, -1.0, 0.0, 0.0);
@@ -519,97 +594,73 @@ void main()
 #ifdef KEEPS
     if (params.first_step > 0u && KEPT != KEPT_NOTHING) kept = imageLoad(rays, ivec2(in_part));
     if (params.first_step > 0u && KEPT == KEPT_ALL) {
-        sum = imageLoad(rays, beside(params, in_part));
+        march.sum = imageLoad(rays, beside(params, in_part));
         state = uint(kept.w) >> 16u;
         begins_inside = (state & RAY_IS_INSIDE) != 0u;
     }
 #endif
     const bool was_done = (state & RAY_IS_DONE) != 0u;
     Work work = Work(0u, 0u, 0u, 0u, 0u, 0u, 0xffffffffu);
-    bool waits = false;
     if (SLICE != 0u && !was_done) {
         const float plane = 0.5 * length_to_far;
-        if (begin <= plane && plane <= end) sum = sliced(params, ray, position_at(params, ray, plane), work, waits);
+        if (begin <= plane && plane <= end)
+            march.sum = sliced(params, ray, position_at(params, ray, plane), work, march.waits);
     }
     if (SLICE != 0u) end = begin;
 
-    const float extent = end > begin ? end - begin : 0.0;   // of what is no number, too
-    const float whole_steps = extent / params.step;
-    const uint steps = whole_steps > 0.0 ? uint(min(whole_steps, MAX_STEPS)) : 0u;   // likewise
-    uint first_step = min(params.first_step, steps), end_step = min(params.end_step, steps);
+    const Lattice lattice = lattice_of(params, begin, end);
+    const uint steps = step_count(lattice);
+    uint first_step = min(params.first_step, lattice.whole), end_step = min(params.end_step, lattice.whole);
     bool is_last = params.is_last_block != 0u;
     if (KEPT == KEPT_ALL) {
         first_step = uint(kept.z) + ((uint(kept.w) & 0xffffu) << 16u);
         end_step = first_step + (was_done ? 0u : min(params.end_step - params.first_step, steps - first_step));
-        is_last = end_step == steps;
+        is_last = end_step >= lattice.whole;
     }
-    const float block_begin = begin + float(first_step) * params.step;
-    const float block_end = is_last ? end : begin + float(end_step) * params.step;
+    if (is_last && end_step == lattice.whole && !was_done) end_step = steps;
+    const float block_begin = step_begin(params, begin, min(first_step, lattice.whole));
+    const float block_end = is_last ? end : step_begin(params, begin, end_step);
 
 #ifdef SHELLED
     Shell shell = begin_shell(params, ray, begin, end, was_done ? begin : block_end, kept, begins_inside);
 #endif
 
-    uint i = first_step;
-    uint unseen = AWAY_FROM_SEEN;
+    march.i = first_step;
 #ifdef SHELLED
     // Crossings are few, and drawn outside the loops that look for samples and take them.
-    bool goes_on = i < end_step && sum.a < params.opacity_limit && !waits;
+    bool goes_on = march.i < end_step && march.sum.a < params.opacity_limit && !march.waits;
     if (goes_on) do {
-        const float next_sample = step_middle(params, begin, i);
-        add_shells(params, ray, next_sample, shell, sum);
-        waits = shell_waits(params, shell, next_sample, sum);
-        take_samples(params, ray, begin, end_step, known_until(shell), i, sum, rises, unseen, waits, work);
-        goes_on = i < end_step && sum.a < params.opacity_limit && !waits;
+        const float next_sample = middle_of(params, lattice, march.i);
+        add_shells(params, ray, next_sample, shell, march.sum);
+        march.waits = shell_waits(params, shell, next_sample, march.sum);
+        take_samples(params, ray, lattice, end_step, known_until(shell), march, work);
+        goes_on = march.i < end_step && march.sum.a < params.opacity_limit && !march.waits;
     } while (goes_on);
 #else
-    take_samples(params, ray, begin, end_step, NO_SHELL, i, sum, rises, unseen, waits, work);
+    take_samples(params, ray, lattice, end_step, NO_SHELL, march, work);
 #endif
-    if (KEPT == KEPT_ALL) i = min(i, steps);   // leaps go beyond the end
-    // Nobody but the device ends the loop before its end; and the last block may end before the ray.
-    bool is_cut_short = i < (is_last ? steps : end_step) && sum.a < params.opacity_limit && !waits && !was_done;
-    bool has_ended = (state & RAY_HAS_ENDED) != 0u;
-    if (is_last && !waits && !has_ended && !was_done) {
-        // The rest of the ray is a shorter and therefore more transparent step.
-        const float rest = extent - float(steps) * params.step;
-#ifdef SHELLED
-        add_shells(params, ray, end - 0.5 * rest, shell, sum);
-        waits = shell_waits(params, shell, end - 0.5 * rest, sum);
-#endif
-        if (rest > 0.0 && sum.a < params.opacity_limit && !waits) {
-            const vec3 position = position_at(params, ray, begin + float(steps) * params.step + 0.5 * rest);
-            const Place place = place_at(params, position);
-            note(place, work);
-            waits = place.is_missing;
-            if (place.distance == 0u && !waits) {
-                vec2 ends = vec2(0.0);
-                if (PREINTEGRATED != 0u) {
-                    const Texels texels = texels_at(position, place);
-                    ends.x = value_at_end(params, ray, step_begin(params, begin, steps), texels, place);
-                    ends.y = value_at_end(params, ray, end, texels, place);
-                }
-                const vec4 look = sample_look(params, ray, position, rest / params.step, place, ends);
-                if (COUNT_WORK != 0u) note_taken(place, work);
-                if (PICK != 0u) note_rise(rises, (1.0 - sum.a) * look.a, look.a, end - 0.5 * rest);
-                accumulate(sum, look);
-            }
-        }
-        has_ended = !waits;
+    if (march.has_rest) {
+        const float opacity = opacity_of_rest(params, march.rest, lattice.part);
+        add(params, vec4(march.rest.look.rgb, opacity), lattice.rest_middle, march.sum, march.rises);
     }
+    march.i = min(march.i, steps);   // leaps go beyond the end
+    // Nobody but the device ends the loop before its end; and the last block may end before the ray.
+    bool is_cut_short = march.i < (is_last ? steps : end_step) && march.sum.a < params.opacity_limit &&
+                        !march.waits && !was_done;
 
 #ifdef SHELLED
-    if (is_last && !waits && !was_done) {
-        add_shells(params, ray, NO_SHELL, shell, sum);
-        waits = shell_waits(params, shell, NO_SHELL, sum);
+    if (is_last && !march.waits && !was_done) {
+        add_shells(params, ray, NO_SHELL, shell, march.sum);
+        march.waits = shell_waits(params, shell, NO_SHELL, march.sum);
     }
     is_cut_short = is_cut_short || shell.turns >= MAX_TURNS;
     work.turns += shell.turns;
 #endif
     count(COUNTER_CUT_SHORT, uint(is_cut_short));
-    const bool is_stopped = sum.a >= params.opacity_limit;
-    const bool is_done = was_done || is_stopped || (is_last && !waits);
+    const bool is_stopped = march.sum.a >= params.opacity_limit;
+    const bool is_done = was_done || is_stopped || (is_last && !march.waits);
 
-    if (COUNT_WORK != 0u && extent > 0.0) {
+    if (COUNT_WORK != 0u && end > begin) {
         const uint crossed = bricks_between(position_at(params, ray, block_begin), position_at(params, ray, block_end));
         count(COUNTER_RAYS, uint(params.first_step == 0u));
         count(COUNTER_SAMPLES, work.samples);
@@ -631,37 +682,38 @@ void main()
 #else
         state = 0u;
 #endif
-        state |= (has_ended ? RAY_HAS_ENDED : 0u) | (is_done ? RAY_IS_DONE : 0u);
-        imageStore(rays, ivec2(in_part), vec4(kept.xy, float(i & 0xffffu), float(i >> 16u | state << 16u)));
-        if (KEPT == KEPT_ALL) imageStore(rays, beside(params, in_part), sum);
+        state |= is_done ? RAY_IS_DONE : 0u;
+        imageStore(rays, ivec2(in_part), vec4(kept.xy, float(march.i & 0xffffu), float(march.i >> 16u | state << 16u)));
+        if (KEPT == KEPT_ALL) imageStore(rays, beside(params, in_part), march.sum);
     }
 #endif
     if (!is_last && KEPT != KEPT_ALL && (PICK == 0u || !is_stopped)) {
 #ifdef SHELLED
-        if (shell.is_inside) sum.a = -max(sum.a, LEAST_ALPHA);
+        if (shell.is_inside) march.sum.a = -max(march.sum.a, LEAST_ALPHA);
 #endif
-        imageStore(color, texel, sum);
+        imageStore(color, texel, march.sum);
         if (PICK != 0u) {
+            const Rises rises = march.rises;
             imageStore(color, texel + ivec2(0, 1), vec4(rises.most, rises.most_at, rises.run, rises.steepest));
             imageStore(color, texel + ivec2(0, 2), vec4(rises.steepest_at, rises.peak, rises.trough, 0.0));
         }
         return;
     }
-    vec3 seen = position_at(params, ray, rises.most_at);
+    vec3 seen = position_at(params, ray, march.rises.most_at);
 #ifdef SURFACED
     if (!is_stopped && surface.a < NO_SURFACE) {
-        if (PICK != 0u && 1.0 - sum.a > rises.most) {
-            rises.most = 1.0 - sum.a;
+        if (PICK != 0u && 1.0 - march.sum.a > march.rises.most) {
+            march.rises.most = 1.0 - march.sum.a;
             seen = ray.origin + surface.a * ray.direction;  // which may be outside the volume
         }
-        accumulate(sum, vec4(surface.rgb, 1.0));
+        accumulate(march.sum, vec4(surface.rgb, 1.0));
     }
 #endif
 
     if (PICK != 0u) {
-        imageStore(color, texel, rises.most >= LEAST_SEEN ? vec4(seen, sum.a) : vec4(0.0));
+        imageStore(color, texel, march.rises.most >= LEAST_SEEN ? vec4(seen, march.sum.a) : vec4(0.0));
         return;
     }
-    const float through = (1.0 - sum.a) * params.background.a;
-    imageStore(color, texel, vec4(sum.rgb + through * params.background.rgb, sum.a + through));
+    const float through = (1.0 - march.sum.a) * params.background.a;
+    imageStore(color, texel, vec4(march.sum.rgb + through * params.background.rgb, march.sum.a + through));
 }

@@ -41,8 +41,7 @@ SHARED_CONST uint KEPT_NOTHING = 0u;
 SHARED_CONST uint KEPT_SHELL = 1u;
 SHARED_CONST uint KEPT_ALL = 2u;
 SHARED_CONST uint RAY_IS_INSIDE = 1u;  // the iso-surface
-SHARED_CONST uint RAY_HAS_ENDED = 2u;  // its last, shorter step is taken
-SHARED_CONST uint RAY_IS_DONE = 4u;
+SHARED_CONST uint RAY_IS_DONE = 2u;
 
 /// Samples that one turn of the search for a visible one asks for their density (library/search.glsl).
 SHARED_CONST uint SEARCH_AHEAD = 4u;

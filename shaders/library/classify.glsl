@@ -20,23 +20,42 @@ float table_depth(const RaycastParams params, uint entry)
     return imageLoad(table, table_texel(params.table_depths + entry / 4u))[entry % 4u];
 }
 
-// Colour and opacity of that part of a step for a density; both are linear between entries, and opacity is 0 outside.
-vec4 classify(const RaycastParams params, float density, float part)
+// Where the table is read for a density: between an entry and the next one.
+struct TablePlace {
+    uint entry;
+    float share;   // of the next one
+    bool is_inside;
+};
+
+TablePlace table_place(const RaycastParams params, float density)
 {
     const float last = float(params.table_entries - 1u);
     const float at = clamp((density - params.table_lower) * params.table_scale, 0.0, last);
     const uint entry = uint(min(at, last - 1.0));
-    const float share = at - float(entry);
-    vec4 look = mix(imageLoad(table, table_texel(entry)), imageLoad(table, table_texel(entry + 1u)), share);
-    if (part < 1.0)
-        look.a = mix(opacity_of_depth(part * table_depth(params, entry)),
-                     opacity_of_depth(part * table_depth(params, entry + 1u)), share);
-    look.a = density >= params.table_lower && density <= params.table_upper ? look.a : 0.0;
+    return TablePlace(entry, at - float(entry), density >= params.table_lower && density <= params.table_upper);
+}
+
+// Colour and opacity of a step for a density; both are linear between entries, and opacity is 0 outside.
+vec4 classify(const RaycastParams params, float density)
+{
+    const TablePlace place = table_place(params, density);
+    vec4 look = mix(imageLoad(table, table_texel(place.entry)), imageLoad(table, table_texel(place.entry + 1u)),
+                    place.share);
+    look.a = place.is_inside ? look.a : 0.0;
     return look;
 }
 
-// The same for a density that goes from `front` to `back`. Both are axes of the table; the part of the step that is
-// outside the function's range is empty.
+// The opacity of that part of a step, less than 1.
+float opacity_of_part(const RaycastParams params, float density, float part)
+{
+    const TablePlace place = table_place(params, density);
+    const float opacity = mix(opacity_of_depth(part * table_depth(params, place.entry)),
+                              opacity_of_depth(part * table_depth(params, place.entry + 1u)), place.share);
+    return place.is_inside ? opacity : 0.0;
+}
+
+// Colour and opacity of that part of a step, for a density that goes from `front` to `back`. Both are axes of the table;
+// the part of the step that is outside the function's range is empty.
 vec4 classify_change(const RaycastParams params, float front, float back, float part)
 {
     const vec2 ends = clamp(vec2(front, back), params.table_lower, params.table_upper);

@@ -112,14 +112,14 @@ void search_sample(const RaycastParams params, const Ray ray, float begin, uint 
             const vec3 position = sample_position(params, ray, begin, i);
             const Place place = place_at(params, position);
             note(place, work);
-            leaps = place.distance > 0u;
+            leaps = place.distance > 0u && i < end_step;
             if (COUNT_WORK != 0u) ++work.turns;
             if (leaps) {
                 i += steps_to_leave(params, ray, position, place);
                 unseen += SAMPLES_OF_LEAP;
                 if (COUNT_WORK != 0u) ++work.leaps;
             }
-        } while (leaps && i < end_step);
+        } while (leaps);
         searches = i < end_step;
         if (searches) {
             bool is_found = false;

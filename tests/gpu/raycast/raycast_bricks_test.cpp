@@ -113,6 +113,23 @@ TEST_CASE_FIXTURE(OnDevice, "a sample that rounding takes for one of the next vo
     CHECK(different_bits(whole, draw(session, camera)) > 0);
 }
 
+TEST_CASE_FIXTURE(OnDevice, "no leap passes the rest of a ray that shows something")
+{
+    // Steps of 6: three whole ones, whose middles show nothing, and a rest of 1.5 whose middle, at 18.75, is between two
+    // voxels that do. A fourth whole step would have its middle in the next cell, which is empty.
+    load(volume_of({32, 8, 8}, [](const glm::dvec3& voxel) { return std::abs(voxel.x - 18.0) < 1.0 ? 65535.0 : 0.0; }));
+    Session session = plain_session({{32768.0, GREEN, 0.0}, {65535.0, GREEN, 0.5}}, {4, 4});
+    session.cut = {{0.0, 0.0, 0.0}, {19.5, 8.0, 8.0}};
+    session.render.step_voxels = 6.0;
+    const Camera camera = camera_along(volume(), {1.0, 0.0, 0.0}, 3.0);
+    const ImageF leaping = draw(session, camera);
+    session.render.skip_empty_space = false;
+    const ImageF whole = draw(session, camera);
+    check_below("differing bits", double(different_bits(leaping, whole)), 0.0);
+    session.cut.upper.x = 18.0;
+    CHECK(different_bits(whole, draw(session, camera)) > 0);
+}
+
 TEST_CASE_FIXTURE(OnDevice, "leaping changes no bit under the widest angles of view")
 {
     load(noise_volume({41, 37, 33}, 5));
