@@ -256,7 +256,6 @@ Shell begin_shell(const RaycastParams params, const Ray ray, float begin, float 
         shell.waits = cell.is_missing;
         shell.from = cell.is_missing ? -1.0 : start;
     }
-    if (shell.from >= 0.0 && shell.next == NO_SHELL) search_shell(params, ray, shell);
     return shell;
 }
 
@@ -285,19 +284,26 @@ vec4 shell_look(const RaycastParams params, const Ray ray, const Cell cell, vec3
     return vec4(color, params.shell_opacity);
 }
 
-// Adds the crossings before `s`.
+// Whether there is a crossing before `s` to be added, or the next one is to be searched.
+bool has_more_shells(const RaycastParams params, const Shell shell, float s, vec4 sum)
+{
+    const bool is_unknown = shell.next == NO_SHELL && shell.from >= 0.0 && shell.from < shell.limit;
+    return (is_unknown || shell.next < s) && sum.a < params.opacity_limit && !shell.waits && shell.turns < MAX_TURNS;
+}
+
+// Adds the crossings before `s`, and finds the one after them.
 void add_shells(const RaycastParams params, const Ray ray, float s, inout Shell shell, inout vec4 sum)
 {
-    bool is_ahead = shell.next < s && sum.a < params.opacity_limit && !shell.waits && shell.turns < MAX_TURNS;
-    if (is_ahead) do {
+    bool goes_on = has_more_shells(params, shell, s, sum);
+    if (goes_on) do {
         ++shell.turns;
-        const vec3 position = position_at(params, ray, shell.next);
-        const Cell cell = cell_at(params, ray, position);
-        shell.waits = cell.is_missing;
-        if (!cell.is_missing) {
-            accumulate(sum, shell_look(params, ray, cell, position));
-            search_shell(params, ray, shell);
+        if (shell.next != NO_SHELL) {
+            const vec3 position = position_at(params, ray, shell.next);
+            const Cell cell = cell_at(params, ray, position);
+            shell.waits = cell.is_missing;
+            if (!cell.is_missing) accumulate(sum, shell_look(params, ray, cell, position));
         }
-        is_ahead = shell.next < s && sum.a < params.opacity_limit && !shell.waits && shell.turns < MAX_TURNS;
-    } while (is_ahead);
+        if (!shell.waits) search_shell(params, ray, shell);
+        goes_on = has_more_shells(params, shell, s, sum);
+    } while (goes_on);
 }
