@@ -49,6 +49,7 @@ Json json_of(const Measured& run)
             {"first_ms", run.first_ms},
             {"work", work},
             {"device_bytes", run.device_bytes},
+            {"redraws", run.redraws},
             {"on_front", run.on_front}};
 }
 
@@ -73,6 +74,7 @@ Measured measured_of(const Json& json)
     run.first_ms = json.at("first_ms");
     for (const auto& [name, value] : json.at("work").items()) run.work.emplace_back(name, value.get<uint64_t>());
     run.device_bytes = json.at("device_bytes");
+    run.redraws = json.value("redraws", 0);
     run.on_front = json.at("on_front");
     return run;
 }

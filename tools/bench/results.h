@@ -37,6 +37,7 @@ struct Measured {
     double first_ms = 0.0;                               ///< of the first picture, which also prepares
     std::vector<std::pair<std::string, uint64_t>> work;  ///< exact counters
     uint64_t device_bytes = 0;
+    int redraws = 0;  ///< timed pictures that were drawn again, since the first one made something that others use
     bool on_front = false;  ///< no other run of the scene is better in both error and median time
 };
 

@@ -32,7 +32,7 @@ for line in sys.stdin:
     print(json.dumps({{"ms": 1000 * asked["step"]}}), flush=True)
 """
 RUN_KEYS = ["name", "family", "settings", "error", "min_ms", "median_ms", "median_low_ms", "median_high_ms", "p95_ms", "work",
-            "device_bytes", "on_front"]
+            "device_bytes", "redraws", "on_front"]
 
 
 class Bench(CliTest):
@@ -72,6 +72,9 @@ class Bench(CliTest):
                 self.assertGreater(runs["draft"]["error"]["fraction_over_1"],
                                    runs["reference"]["error"]["fraction_over_1"])
             self.assertEqual(runs["skipping off"]["error"], runs["step 0.5"]["error"])
+            # The run before has another table: the picture that makes this one's is not the one that is timed.
+            self.assertEqual(runs["pre-integrated 1"]["redraws"], 2)
+            self.assertLessEqual({run["redraws"] for run in runs.values()}, {0, 1, 2})
         # On the front: no run of the scene is better in both.
         for row in told["pareto"]:
             runs = self.runs(["fog", "tissue"].index(row["scene"]))
