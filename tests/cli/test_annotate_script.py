@@ -97,6 +97,13 @@ class Script(CliTest):
         self.assertEqual(exported["voxels_by_group"], {"1": 280})  # voxels whose centres, at halves, lie within 4 of a corner
         self.check("annotate", session, "--actions", script, "--quiet")  # as the budget is usually
 
+    def test_a_save_that_fails_ends_the_replay_at_its_line(self):
+        session = self.write_session("small.json", volume={"procedural": "tubes", "size": [16] * 3})
+        self.write_json("taken", {})
+        script = self.write_script("saves.jsonl", [{"op": "save"}, {"op": "save_as", "path": "taken/copy.json"},
+                                                   {"op": "save"}])
+        self.check_refused("annotate", session, "--actions", script, "--quiet", says=["saves.jsonl:2: ", "taken"])
+
     def test_the_example_of_the_help_runs_with_and_without_its_undo(self):
         example = self.check("annotate", "--help").stdout.split("Example:\n")[1].splitlines()
         self.assertIn("shvr annotate scan/ --script strokes.jsonl", example[0])

@@ -245,14 +245,14 @@ std::vector<Run> runs_of(const Scene& scene, bool quick)
             runs.back().settings.push_back(sentence(key, "=", digits_of(value)));
         }
     };
-    sweep("step", "render.step_voxels", {4, 2.8, 2, 1.4, 1, 0.85, 0.7, 0.6, 0.5, 0.35, 0.25, 0.125, 0.0625},
+    sweep("step", "render.step_voxels", {8, 5.6, 4, 2.8, 2, 1.4, 1, 0.85, 0.7, 0.6, 0.5, 0.35, 0.25, 0.125, 0.0625},
           {2, 1, 0.5, 0.25, 0.125, 0.0625});
     sweep("pre-integrated", "render.step_voxels", {1, 0.5, 0.25, 0.125, 0.0625}, {1, 0.25, 0.0625},
           {"render.preintegration=true"});
     sweep("opacity limit", "render.opacity_limit", {0.9, 0.95, 0.99, 0.999755859375, 1}, {0.9});
     for (const char* sampling : {"exact", "hardware"})
         runs.push_back({sentence("sampling ", sampling), "sampling", {sentence("render.sampling=", sampling)}});
-    for (const double scale : quick ? std::vector{0.5} : std::vector{0.85, 0.7, 0.5, 0.35})
+    for (const double scale : quick ? std::vector{0.5} : std::vector{0.7, 0.5, 0.35})
         runs.push_back({sentence("resolution ", digits_of(scale)), "resolution", {}, scale});
     // Coarser than anyone works with, to see what an error of another program's costs.
     const auto coarse = [&](double scale, double step, bool preintegration) {
@@ -266,7 +266,7 @@ std::vector<Run> runs_of(const Scene& scene, bool quick)
     coarse(0.7, 1.0, false);
     coarse(0.5, 2.0, false);
     if (!quick)
-        for (const double scale : {0.85, 0.7, 0.5, 0.35}) {
+        for (const double scale : {0.7, 0.5, 0.35}) {
             coarse(scale, 4.0, false);
             coarse(scale, 3.0, false);
             coarse(scale, 1.0, true);

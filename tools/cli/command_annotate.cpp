@@ -198,11 +198,17 @@ void run_annotate(const AnnotateCommandOptions& options)
                {"journal_bytes", annotator.work().journal().bytes}});
 }
 
-/// All that was begun, which a script does not go on without.
-void finish(ui::Workbench& bench)
+/// Does an action and all that it begins, which a script does not go on without. What the window would only say, and
+/// go on, fails.
+void perform_to_end(ui::Workbench& bench, const ui::Action& action)
 {
-    if (const std::string unpainted = bench.finish_stroke(); !unpainted.empty()) fail(unpainted);
-    while (bench.has_work()) bench.advance();
+    const uint64_t told_before = bench.messages().count();
+    bench.perform(action);
+    if (!bench.document().annotator.stroke_is_open()) {
+        if (const std::string unpainted = bench.finish_stroke(); !unpainted.empty()) fail(unpainted);
+        while (bench.has_work()) bench.advance();
+    }
+    if (const ui::Message* error = bench.messages().first_after(told_before, ui::Weight::error)) fail(error->text);
 }
 
 /// Replays what a person did in the window, as `shvr view --log` wrote it, without a display.
@@ -229,8 +235,7 @@ void run_actions(const AnnotateCommandOptions& options)
     for (const auto& [number, action] : actions) {
         work.show(double(done++) / double(actions.size()), {}, -1.0);
         try {
-            bench.perform(action);
-            if (!bench.document().annotator.stroke_is_open()) finish(bench);
+            perform_to_end(bench, action);
         } catch (const Error& error) {
             fail(name, ":", number, ": ", error.what());
         }

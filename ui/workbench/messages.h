@@ -57,6 +57,13 @@ public:
         return messages_.empty() ? NOTHING : messages_.back().text;
     }
     uint64_t count() const { return count_; }
+    /// The first of that weight beyond the first `count` messages, if it is not forgotten yet; null where there is none.
+    const Message* first_after(uint64_t count, Weight weight) const
+    {
+        for (const Message& message : messages_)
+            if (message.number > count && message.weight == weight) return &message;
+        return nullptr;
+    }
     /// Messages of that weight since `note_read`, forgotten ones too.
     uint64_t unread(Weight weight) const { return unread_[size_t(weight)]; }
     void note_read() { unread_ = {}; }

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <numeric>
-#include <ranges>
 
 #include "engine/annotation/script/script.h"
 #include "tools/cli/profile/temporary_folder.h"
@@ -40,8 +39,7 @@ void settle(ui::Workbench& bench, ProfiledAction& action, const std::function<do
             const std::function<void()>& poll)
 {
     const auto& annotator = bench.document().annotator;
-    const auto errors = [&] { return bench.messages().unread(ui::Weight::error); };
-    const uint64_t errors_before = errors();
+    const uint64_t told_before = bench.messages().count();
     for (;;) {
         const double since = now_ms() - action.begin_ms;
         if (!action.paint_ms && !annotator.stroke_is_running()) action.paint_ms = since;
@@ -51,9 +49,7 @@ void settle(ui::Workbench& bench, ProfiledAction& action, const std::function<do
         if (!bench.has_work() || annotator.stroke_is_open()) return;
         poll();
         bench.advance();
-        if (errors() > errors_before)
-            for (const ui::Message& message : std::views::reverse(bench.messages().all()))
-                if (message.weight == ui::Weight::error) fail(message.text);
+        if (const ui::Message* error = bench.messages().first_after(told_before, ui::Weight::error)) fail(error->text);
     }
 }
 
