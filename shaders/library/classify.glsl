@@ -54,8 +54,8 @@ float opacity_of_part(const RaycastParams params, float density, float part)
     return place.is_inside ? opacity : 0.0;
 }
 
-// Colour and opacity of that part of a step, for a density that goes from `front` to `back`. Both are axes of the table;
-// the part of the step that is outside the function's range is empty.
+// Colour and opacity of that part of a step, for a density that goes from `front` to `back`. Both are axes of the
+// table; the part of the step that is outside the function's range is empty.
 vec4 classify_change(const RaycastParams params, float front, float back, float part)
 {
     const vec2 ends = clamp(vec2(front, back), params.table_lower, params.table_upper);

@@ -57,7 +57,8 @@ public:
         return messages_.empty() ? NOTHING : messages_.back().text;
     }
     uint64_t count() const { return count_; }
-    /// The first of that weight beyond the first `count` messages, if it is not forgotten yet; null where there is none.
+    /// The first of that weight beyond the first `count` messages, if it is not forgotten yet; null where there is
+    /// none.
     const Message* first_after(uint64_t count, Weight weight) const
     {
         for (const Message& message : messages_)

@@ -115,8 +115,8 @@ TEST_CASE_FIXTURE(OnDevice, "a sample that rounding takes for one of the next vo
 
 TEST_CASE_FIXTURE(OnDevice, "no leap passes the rest of a ray that shows something")
 {
-    // Steps of 6: three whole ones, whose middles show nothing, and a rest of 1.5 whose middle, at 18.75, is between two
-    // voxels that do. A fourth whole step would have its middle in the next cell, which is empty.
+    // Steps of 6: three whole ones, whose middles show nothing, and a rest of 1.5 whose middle, at 18.75, is between
+    // two voxels that do. A fourth whole step would have its middle in the next cell, which is empty.
     load(volume_of({32, 8, 8}, [](const glm::dvec3& voxel) { return std::abs(voxel.x - 18.0) < 1.0 ? 65535.0 : 0.0; }));
     Session session = plain_session({{32768.0, GREEN, 0.0}, {65535.0, GREEN, 0.5}}, {4, 4});
     session.cut = {{0.0, 0.0, 0.0}, {19.5, 8.0, 8.0}};
