@@ -111,7 +111,7 @@ void search_sample(const RaycastParams params, const Ray ray, float begin, uint 
         do {
             const vec3 position = sample_position(params, ray, begin, i);
             const Place place = place_at(params, position);
-            note(place, work);
+            if (i < end_step) note(place, work);
             leaps = place.distance > 0u && i < end_step;
             if (COUNT_WORK != 0u) ++work.turns;
             if (leaps) {

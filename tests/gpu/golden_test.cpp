@@ -103,7 +103,7 @@ const Mutation MUTATIONS[] = {
 
 /// Made of the kernels' own source, one line of which is wrong.
 const Mistake MISTAKES[] = {
-    {"samples at the front of a step", "step_coarse", "raycast.comp",
+    {"samples at the front of a step", "step_coarse", "library/lattice.glsl",
      "return begin + (float(step) + 0.5) * params.step;", "return begin + float(step) * params.step;"},
     {"the half vector not normalised", "tubes_opaque", "library/shade.glsl", "sum / sum_length", "0.5 * sum"},
     {"normals that point inwards", "tubes_opaque", "library/shade.glsl", "-slope * inversesqrt", "slope * inversesqrt"},
@@ -129,7 +129,7 @@ const Mistake MISTAKES[] = {
      "return low + (high - low) * d.fraction.z;", "return low;"},
     {"a gradient of the wrong neighbour", "tubes_opaque", "library/density_exact.glsl",
      "f < 0.5 ? low - beyond : beyond - high", "f < 0.5 ? beyond - high : low - beyond"},
-    {"gradients in voxels, not in space", "tubes_anisotropic", "raycast.comp",
+    {"gradients in voxels, not in space", "tubes_anisotropic", "library/sample.glsl",
      "gradient_of(density) * params.inverse_spacing", "gradient_of(density)"},
     {"a volume's border forgotten", "tubes_opaque", "library/atlas.glsl", "return ivec3(code_border());",
      "return ivec3(0);"},
@@ -145,7 +145,7 @@ const Mistake MISTAKES[] = {
      "1.0 - occlusion_look.data.strength * (1.0 - curved)", "1.0 - (1.0 - curved)"},
     {"ambient occlusion of the next voxel", "tubes_occluded", "occlusion/occlusion.glsl", "ivec3(corner) + to_values;",
      "ivec3(corner) + to_values + 1;"},
-    {"the back of a step taken for its front", "preintegrated", "raycast.comp",
+    {"the back of a step taken for its front", "preintegrated", "library/lattice.glsl",
      "step_begin(params, lattice.begin, step + 1u)", "step_begin(params, lattice.begin, step)"},
     {"a highlight on the dark side", "surfaces", "library/shade.glsl", "facing > 0.0 ? surface",
      "facing < 0.5 ? surface"},

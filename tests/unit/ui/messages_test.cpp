@@ -191,3 +191,22 @@ TEST_CASE("a step is shown in the middle of what it changed")
     CHECK((place_of_row(list, place.model, 4)->middle() == glm::dvec3(16.0, 16.0, 36.0)));
     CHECK_FALSE(place_of_row(list, place.model, 0));
 }
+
+TEST_CASE("the first message of a weight beyond some is found, read or not, until it is forgotten")
+{
+    MessageLog log;
+    log.add(0.0, Weight::error, "one");
+    const uint64_t before = log.count();
+    CHECK(log.first_after(before, Weight::error) == nullptr);
+    for (const char* const text : {"two", "three"}) {
+        log.add(1.0, Weight::done, "done");
+        log.add(1.0, Weight::error, text);
+    }
+    log.note_read();
+    REQUIRE(log.first_after(before, Weight::error));
+    CHECK(log.first_after(before, Weight::error)->text == "two");
+    CHECK(log.first_after(0, Weight::error)->text == "one");
+    CHECK(log.first_after(before, Weight::warning) == nullptr);
+    for (size_t i = 0; i < MessageLog::MAX_MESSAGES; ++i) log.add(2.0, Weight::done, "more");
+    CHECK(log.first_after(0, Weight::error) == nullptr);
+}
