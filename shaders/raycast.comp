@@ -255,7 +255,7 @@ void add(const RaycastParams params, vec4 look, float middle, inout vec4 sum, in
 
 // What a ray gathers, and where it is.
 struct March {
-    uint i;        // the step that is next; the rest is taken if that is beyond it
+    uint i;        // the step that is next: as many as are whole, the rest; more, none
     vec4 sum;
     Rises rises;
     uint unseen;   // samples that showed nothing, since the last that did

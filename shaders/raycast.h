@@ -35,8 +35,9 @@ SHARED_CONST float LEAST_SEEN = 0.015625f;
 
 /// The specialization constant KEPT: what a ray leaves in `rays` between two dispatches, beside what it has gathered in
 /// its pixel. Of the upper half, x: where the next iso-surface is; y: from where on the search goes on, below 0 before
-/// the region. KEPT_ALL is for rays that wait for bricks, each at a place of its own: z, w: the step in two halves, and
-/// RAY_* times 65536 in w; lower half: what it has gathered. Pixels then have their final look in every dispatch.
+/// the region. KEPT_ALL is for rays that wait for bricks, each at a place of its own: z, w: the step that is next, in
+/// two halves, and RAY_* times 65536 in w; lower half: what it has gathered. Pixels then have their final look in every
+/// dispatch.
 SHARED_CONST uint KEPT_NOTHING = 0u;
 SHARED_CONST uint KEPT_SHELL = 1u;
 SHARED_CONST uint KEPT_ALL = 2u;

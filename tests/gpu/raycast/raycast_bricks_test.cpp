@@ -61,6 +61,18 @@ TestVolume placed(const TestVolume& inner, const glm::ivec3& size, const glm::iv
     return volume;
 }
 
+struct Leaping : OnDevice {
+    /// The picture without leaps; with them it has the same bits.
+    ImageF drawn_without_leaps(Session session, const Camera& camera)
+    {
+        const ImageF leaping = draw(session, camera);
+        session.render.skip_empty_space = false;
+        ImageF whole = draw(session, camera);
+        check_below("differing bits", double(different_bits(leaping, whole)), 0.0);
+        return whole;
+    }
+};
+
 }  // namespace
 
 TEST_CASE_FIXTURE(OnDevice, "leaping over empty space changes no bit, under 1000 random transfer functions")
@@ -91,7 +103,7 @@ TEST_CASE_FIXTURE(OnDevice, "leaping over empty space changes no bit, under 1000
     CHECK(with_leaps < without);  // otherwise nothing was leapt over
 }
 
-TEST_CASE_FIXTURE(OnDevice, "a sample that rounding takes for one of the next voxels is seen")
+TEST_CASE_FIXTURE(Leaping, "a sample that rounding takes for one of the next voxels is seen")
 {
     // Nothing shows along the rays until sample 23, 1.8e-4 voxels past the centre of voxel 26, of which voxel 27 makes
     // it shine. Samples begin 1e-4 before such a centre and gain 1.2e-5 a step, which parts of a voxel round away, so
@@ -105,15 +117,12 @@ TEST_CASE_FIXTURE(OnDevice, "a sample that rounding takes for one of the next vo
     session.cut = {{3.0 - 1e-4, 0.0, 0.0}, {27.2, 8.0, 8.0}};
     session.render.step_voxels = 1.000012;
     const Camera camera = camera_along(volume(), {1.0, 0.0, 0.0}, 0.5);
-    const ImageF leaping = draw(session, camera);
-    session.render.skip_empty_space = false;
-    const ImageF whole = draw(session, camera);
-    check_below("differing bits", double(different_bits(leaping, whole)), 0.0);
+    const ImageF whole = drawn_without_leaps(session, camera);
     session.cut.upper.x = 25.0;
     CHECK(different_bits(whole, draw(session, camera)) > 0);
 }
 
-TEST_CASE_FIXTURE(OnDevice, "no leap passes the rest of a ray that shows something")
+TEST_CASE_FIXTURE(Leaping, "no leap passes the rest of a ray that shows something")
 {
     // Steps of 6: three whole ones, whose middles show nothing, and a rest of 1.5 whose middle, at 18.75, is between
     // two voxels that do. A fourth whole step would have its middle in the next cell, which is empty.
@@ -122,25 +131,18 @@ TEST_CASE_FIXTURE(OnDevice, "no leap passes the rest of a ray that shows somethi
     session.cut = {{0.0, 0.0, 0.0}, {19.5, 8.0, 8.0}};
     session.render.step_voxels = 6.0;
     const Camera camera = camera_along(volume(), {1.0, 0.0, 0.0}, 3.0);
-    const ImageF leaping = draw(session, camera);
-    session.render.skip_empty_space = false;
-    const ImageF whole = draw(session, camera);
-    check_below("differing bits", double(different_bits(leaping, whole)), 0.0);
+    const ImageF whole = drawn_without_leaps(session, camera);
     session.cut.upper.x = 18.0;
     CHECK(different_bits(whole, draw(session, camera)) > 0);
 }
 
-TEST_CASE_FIXTURE(OnDevice, "leaping changes no bit under the widest angles of view")
+TEST_CASE_FIXTURE(Leaping, "leaping changes no bit under the widest angles of view")
 {
     load(noise_volume({41, 37, 33}, 5));
     Session session = plain_session({{64000.0, GREEN, 0.0}, {65535.0, RED, 0.5}}, {24, 16});
     for (const double fov : {60.0, 110.0, 150.0, 170.0}) {
         CAPTURE(fov);
-        session.render.skip_empty_space = true;
-        const Camera camera = perspective({-12.0, 14.0, 20.0}, {20.0, 18.0, 16.0}, fov);
-        const ImageF leaping = draw(session, camera);
-        session.render.skip_empty_space = false;
-        check_below("differing bits", double(different_bits(leaping, draw(session, camera))), 0.0);
+        drawn_without_leaps(session, perspective({-12.0, 14.0, 20.0}, {20.0, 18.0, 16.0}, fov));
     }
 }
 
