@@ -16,6 +16,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "raycast.h"
+#include "adaptive.h"
 #include "surfaces.h"
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
@@ -23,6 +24,7 @@ layout(constant_id = 0) const uint GROUP_WIDTH = 8u;
 layout(constant_id = 1) const uint SHININESS_SQUARINGS = NOT_A_POWER_OF_TWO;
 layout(constant_id = 2) const uint DISTANCE_BLEND = 0u;
 layout(constant_id = 3) const uint PROBE = 0u;
+layout(constant_id = 4) const uint IS_LISTED = 0u;   // draws listed blocks of pixels (adaptive.h), no others
 
 layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
 layout(binding = 1, scalar) readonly buffer Scene { SurfaceParams data; } surface_params;
@@ -34,6 +36,8 @@ layout(binding = 5, r32ui) uniform readonly uimage2D surface_tiles;
 
 #include "library/counters.glsl"
 #include "library/rays.glsl"
+#define LISTED_BLOCKS_BINDING 20
+#include "library/listed_blocks.glsl"
 #include "library/round_cone.glsl"
 #include "library/shade.glsl"
 
@@ -131,9 +135,10 @@ void main()
 {
     const RaycastParams params = params_block.data;
     const SurfaceParams scene = surface_params.data;
-    const uvec2 in_part = thread_in_part();
+    const uvec2 in_part =
+        IS_LISTED != 0u ? listed_in_part(params.pixel_begin, params.pixel_end) : thread_in_part();
     const uvec2 pixel = params.pixel_begin + in_part;
-    if (any(greaterThanEqual(pixel, params.pixel_end))) return;
+    if (any(greaterThanEqual(in_part, params.pixel_end - params.pixel_begin))) return;
 
     const vec2 centre = vec2(pixel) + 0.5;
     const vec3 along = on_plane(scene.along_corner, scene.along_dx, scene.along_dy, centre);

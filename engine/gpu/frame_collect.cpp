@@ -134,7 +134,8 @@ FrameResult Submission::Frame::collect()
             if (counted_steps[query] == i) report.invocations = report.invocations.value_or(0) + invocations[query];
         // On a device without timestamps a pass takes no longer than all of them, and those before, did on the host's
         // clock. A frame that merely was not timed teaches nothing: it may have waited long, in the queue and after.
-        if (prepared[i].kernel && (is_timed || traits.timestamp_bits == 0))
+        // Nor does a pass of which only the device knows how many threads it had.
+        if (prepared[i].kernel && !data.is_counted && (is_timed || traits.timestamp_bits == 0))
             executor.costs_.learn(data.kernel, threads_of(data, *prepared[i].kernel),
                                   is_timed ? report.gpu_ms : result.wall_ms);
         for (const Binding& binding : data.bindings) report.bytes += graph.resources()[binding.resource].desc.bytes;

@@ -61,6 +61,7 @@ using Stages = uint8_t;
 inline constexpr Stages STAGE_COMPUTE = 1;
 inline constexpr Stages STAGE_TRANSFER = 2;
 inline constexpr Stages STAGE_HOST = 4;
+inline constexpr Stages STAGE_COUNTS = 8;  ///< a dispatch asks how many groups there are
 std::string names_of(Stages stages);
 
 /// What is in flight on a resource. Carried from frame to frame for imported resources.
@@ -93,6 +94,7 @@ struct Binding {
     uint32_t resource = 0;
     bool reads = false;
     bool writes = false;
+    bool is_count = false;  ///< of groups (Pass::dispatch_counted); the kernel does not see it
 };
 
 struct ImageRegion {
@@ -116,7 +118,8 @@ struct PassData {
     std::vector<std::byte> push;                                         ///< push constants
     std::vector<std::pair<std::string, std::vector<std::byte>>> blocks;  ///< small read-only buffers by block name
     glm::uvec3 threads{0};
-    glm::uvec3 tile{0};  ///< threads per dispatch, 0 = all at once; limits the time of one dispatch
+    glm::uvec3 tile{0};       ///< threads per dispatch, 0 = all at once; limits the time of one dispatch
+    bool is_counted = false;  ///< threads and tile are the most that there may be, along x
     uint32_t fill_value = 0;
     uint32_t read_back = 0;  ///< index into FrameResult::read_backs
     std::vector<ImageRegion> image_regions;
@@ -151,6 +154,11 @@ public:
     /// In threads, not groups: the group size comes from the kernel. A tile splits the work into several dispatches,
     /// and into several short submissions. Tiles must be multiples of the group size.
     void dispatch(const glm::uvec3& threads, const glm::uvec3& tile = glm::uvec3(0));
+    /// As many groups as a buffer says once the passes before have run, along x: three words for each dispatch, how
+    /// many there are along each axis. `threads` and `tile` are the most that there can be, in all and in a dispatch.
+    /// The kernel's push constant is a word, the groups that the dispatches before this one have at most. The buffer is
+    /// one of this frame alone.
+    void dispatch_counted(Resource counts, const glm::uvec3& threads, const glm::uvec3& tile);
 
 private:
     friend class FrameGraph;

@@ -98,6 +98,10 @@ struct RenderSettings {
     /// Of painted groups: between voxels, the label that weighs most among the eight around a sample, instead of the
     /// nearest voxel's. Slices and occlusion keep to voxels.
     bool smooth_borders = false;
+    /// Above 0: rays through every second pixel of every second row, and through all pixels only where those around
+    /// differ by more than this, of square roots of linear light; all others are interpolated
+    /// (engine/passes/adaptive.h).
+    double adaptive_tolerance = 0.0;
     double saturation = 1.0;  ///< of all that is drawn, before lines over it; 0: greys of the same luminance
     bool operator==(const RenderSettings&) const = default;
 };

@@ -63,7 +63,7 @@ struct Choice {
     bool is_paged, is_filtered, is_masked, is_occluded, is_surfaced;
     std::vector<std::pair<std::string, uint32_t>> of_codes;  ///< constants
     uint32_t shell = gpu::SHELL_NONE;
-    bool feedback, has_sample_bits, is_shaded, picks;
+    bool feedback, has_sample_bits, is_shaded, picks, is_listed;
     uint32_t kept = gpu::KEPT_NOTHING;
 };
 
@@ -95,6 +95,7 @@ Choice choice_of(const VolumeBinding& volume, const RaycastInput& input, bool is
             .has_sample_bits = volume.sample_bits && finds_sample_bits(input.params),
             .is_shaded = input.shaded,
             .picks = input.pick,
+            .is_listed = input.blocks.has_value(),
             .kept = input.waiting ? gpu::KEPT_ALL
                     : keeps_rays  ? gpu::KEPT_SHELL
                                   : gpu::KEPT_NOTHING};
@@ -119,6 +120,7 @@ KernelVariant kernel_of(const Choice& choice, const RaycastInput& input)
     if (choice.is_shaded) constant("SHININESS_SQUARINGS", shininess_squarings(input.params.shininess));
     constant("COUNT_WORK", input.count_work);
     constant("GROUP_WIDTH", input.pixel_groups.width);
+    constant("IS_LISTED", choice.is_listed);
     constant("SLICE", input.slice);
     constant("PREINTEGRATED", input.preintegrated ? input.params.opaque_map > 0 ? 2 : 1 : 0);
     if (is_shelled) constant("SHELL", choice.shell);
@@ -150,7 +152,7 @@ void expect_next(FrameGraph& graph, const Choice& now, const RaycastInput& input
             });
     expect([](Choice& next) {
         next.picks = true;
-        next.is_shaded = next.feedback = false;
+        next.is_shaded = next.feedback = next.is_listed = false;
         next.shell = gpu::SHELL_NONE;
         next.kept = gpu::KEPT_NOTHING;
     });
@@ -168,7 +170,7 @@ struct Area {
 std::vector<Area> areas_of(const RaycastInput& input, bool is_shelled)
 {
     const glm::uvec2 size = input.params.pixel_end - input.params.pixel_begin;
-    if (!is_shelled) return {{{0, 0}, size}};
+    if (!is_shelled || input.blocks) return {{{0, 0}, size, is_shelled}};
     const ShellPixels pixels = shell_pixels(input.params);
     const Area shell{pixels.begin, pixels.end, true};
     if (shell.is_empty()) return {{{0, 0}, size}};
@@ -189,7 +191,7 @@ Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastIn
 {
     const glm::uvec2 pixels = input.params.drawn_end - input.params.drawn_begin;
     const KernelVariant kernel = kernel_of(choice_of(volume, input, is_shelled, rays.has_value()), input);
-    Pass pass = graph.compute(kernel.first, "raycast");
+    Pass pass = graph.compute(kernel.first, input.name);
     for (const auto& [name, value] : kernel.second) pass.constant(name, value);
     pass.block("params_block", std::span(&input.params, 1));
     pass.read("table", input.table);
@@ -220,10 +222,11 @@ Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastIn
         if (!rays) {
             static_cast<void>(pass.write("rays", graph.create("rays", picture_desc(Format::rgba32_float, {1, 1}))));
         } else {
-            rays = is_first && !is_begun ? pass.write("rays", *rays) : pass.modify("rays", *rays);
+            rays = is_first && (!is_begun || !input.waiting) ? pass.write("rays", *rays) : pass.modify("rays", *rays);
         }
     }
-    pixel_groups(pass, pixels, input.pixel_groups);
+    if (!input.blocks) pixel_groups(pass, pixels, input.pixel_groups);
+    listed_groups(pass, input.blocks);
     // Rays in waiting keep what they have gathered elsewhere.
     const bool continues = input.params.first_step > 0 && !input.waiting;
     return continues || is_begun ? pass.modify("color", target) : pass.write("color", target);
@@ -271,7 +274,7 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
     const uint64_t before = input.waiting && input.waiting->have_begun ? 1 : 0;
     std::optional<Resource> waiting_rays;
     if (input.waiting) waiting_rays = input.waiting->state;
-    bool is_begun = false;
+    bool is_begun = input.blocks.has_value();
     for (const Area& area : areas_of(input, is_shelled)) {
         const uint64_t steps_each = steps_of_block(volume, input, area.is_shelled);
         const uint64_t blocks = std::min((steps + steps_each - 1) / steps_each, MAX_BLOCKS);

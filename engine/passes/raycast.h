@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/passes/adaptive.h"
 #include "engine/passes/pixel_groups.h"
 #include "engine/passes/volume_binding.h"
 #include "shaders/counters.h"
@@ -30,6 +31,7 @@ struct RaysInWaiting {
 };
 
 struct RaycastInput {
+    const char* name = "raycast";  ///< of its passes
     gpu::RaycastParams params;
     Resource table;  ///< rgba32f image, as shaders/raycast.h has it
     std::optional<MaskBinding> mask;
@@ -44,6 +46,8 @@ struct RaycastInput {
     bool slice = false;                ///< params.slice_* are set: draws what lies half-way along the rays
     bool smooth_borders = false;       ///< of groups; with Visibility::params.paint_reach 1
     bool pick = false;                 ///< positions instead of colours, see the kernel
+    std::optional<ListedBlocks>
+        blocks;                        ///< whose pixels alone are drawn, into a target that has the others; none waits
     RaysInWaiting* waiting = nullptr;  ///< of paged bricks; null: rays wait for nothing
 };
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "engine/graph/frame_graph.h"
+#include "engine/passes/adaptive.h"
 #include "engine/passes/pixel_groups.h"
 #include "shaders/raycast.h"
 #include "shaders/surfaces.h"
@@ -27,6 +28,7 @@ struct SurfacesInput {
     std::optional<SurfaceList> listed;
     bool probe = false;  ///< scene.probe_* are set
     PixelGroups pixel_groups;
+    std::optional<ListedBlocks> blocks{};            ///< whose pixels alone are drawn
     uint32_t nodes_in_dispatch = NODES_IN_DISPATCH;  ///< others are for tests
 };
 

@@ -60,6 +60,7 @@ struct Prepared {
     VolumeBinding volume;
     RaycastInput input;  ///< all but the surfaces
     std::optional<SurfaceList> listed;
+    double adaptive_tolerance = 0.0;  ///< 0: every pixel has a ray
 };
 
 /// The first half of the list at the top of frame.h.
@@ -84,6 +85,7 @@ Prepared prepare(FrameGraph& graph, Scene& scene, const Look& look, const Shot& 
     input.smooth_borders = look.render.smooth_borders && !shot.is_slice;
     input.preintegrated = look.render.preintegration && !shot.is_slice;
     input.pixel_groups = pixel_groups_of(scene.traits());
+    if (!shot.is_slice) prepared.adaptive_tolerance = look.render.adaptive_tolerance;
     if (shot.is_slice) set_slice(input.params, look, scene);
     if (part.probe && !shot.is_slice) set_shell(input, *part.probe, scene);
     return prepared;
@@ -91,16 +93,16 @@ Prepared prepare(FrameGraph& graph, Scene& scene, const Look& look, const Shot& 
 
 /// Surfaces where the rays of a part end, including the probe's ball; null if there are none.
 std::optional<Resource> draw_surfaces(FrameGraph& graph, Scene& scene, const Prepared& prepared,
-                                      const RaycastInput& input, const Camera& camera, const PicturePart& part)
+                                      const RaycastInput& input, const RayPlanes& planes, const PicturePart& part)
 {
     const bool has_ball = part.probe && part.probe->ball_share > 0.0;
     if (input.slice || (!prepared.listed && !has_ball)) return std::nullopt;
-    SurfacesInput wanted{
-        .params = input.params,
-        .scene = scene.surfaces().params(ray_planes(camera, part.pixels, scene.info()), part.pixels, scene.info()),
-        .listed = prepared.listed,
-        .probe = has_ball,
-        .pixel_groups = input.pixel_groups};
+    SurfacesInput wanted{.params = input.params,
+                         .scene = scene.surfaces().params(planes, part.pixels, scene.info()),
+                         .listed = prepared.listed,
+                         .probe = has_ball,
+                         .pixel_groups = input.pixel_groups,
+                         .blocks = input.blocks};
     if (has_ball) set_ball(wanted.scene, *part.probe, scene.info());
     return surfaces(graph, wanted);
 }
@@ -118,32 +120,81 @@ PicturePart without_ball(PicturePart part)
     return part;
 }
 
+bool has_preview(const PicturePart& part)
+{
+    return part.probe && part.probe->preview && part.probe->preview->voxels > 0;
+}
+
+PreviewInput preview_input(const RaycastInput& input)
+{
+    return {.params = input.params,
+            .preview = {},
+            .words = {},
+            .surfaces = input.surfaces,
+            .slice = input.slice,
+            .pixel_groups = input.pixel_groups};
+}
+
+PreviewSeen draw_preview(FrameGraph& graph, const RaycastInput& input, const RayPlanes& planes, const PicturePart& part)
+{
+    PreviewInput wanted = preview_input(input);
+    wanted.preview = preview_params(*part.probe, planes);
+    wanted.words = part.probe->preview->words;
+    return preview(graph, wanted);
+}
+
+/// A coarse picture, and what lies between alike pixels of it: the blocks of others are listed.
+Adapted draw_adaptively(FrameGraph& graph, Scene& scene, Prepared& prepared, const RaycastInput& input,
+                        const RayPlanes& planes, const PicturePart& part, Resource target)
+{
+    const AdaptiveInput wanted{.pixel_begin = part.begin,
+                               .pixel_end = part.end,
+                               .target = input.params.target,
+                               .tolerance = prepared.adaptive_tolerance,
+                               .pixel_groups = input.pixel_groups};
+    const RayPlanes apart = coarse_planes(planes);
+    RaycastInput coarse = input;
+    coarse.name = "raycast coarse";
+    set_planes(coarse.params, apart);
+    coarse.params.pixel_begin = coarse_begin(wanted);
+    coarse.params.pixel_end = coarse_begin(wanted) + coarse_size(wanted);
+    coarse.params.target = glm::uvec2(0);
+    PicturePart coarse_part = part;
+    coarse_part.pixels = part.pixels / 2u + 1u;
+    coarse.surfaces = draw_surfaces(graph, scene, prepared, coarse, apart, coarse_part);
+    if (has_preview(part)) coarse.surfaces = draw_preview(graph, coarse, apart, part).surfaces;
+    const Resource picture =
+        raycast(graph, prepared.volume, coarse,
+                graph.create("coarse picture", picture_desc(Format::rgba32_float, coarse_size(wanted))));
+    return adaptive(graph, picture, target, wanted);
+}
+
 /// The volume and what is in it. A preview is drawn before the rays, so that they end at it, and then over the picture.
 Resource draw_contents(FrameGraph& graph, Scene& scene, Prepared& prepared, RaycastInput input, const Camera& camera,
                        const PicturePart& part, Resource target, const WaitingRays* rays, size_t which)
 {
+    const RayPlanes planes = ray_planes(camera, part.pixels, scene.info());
     RaysInWaiting waiting;
+    std::optional<ListedBlocks> blocks;
     if (rays) {
         waiting = rays->import(graph, which);
         input.waiting = &waiting;
+    } else if (prepared.adaptive_tolerance > 0.0) {
+        const Adapted adapted = draw_adaptively(graph, scene, prepared, input, planes, part, target);
+        target = adapted.target;
+        blocks = adapted.blocks;
     }
-    input.surfaces = draw_surfaces(graph, scene, prepared, input, camera, part);
-    if (!part.probe || !part.probe->preview || part.probe->preview->voxels == 0) {
-        expect_preview(graph, {.params = input.params,
-                               .preview = {},
-                               .words = {},
-                               .surfaces = input.surfaces,
-                               .slice = input.slice,
-                               .pixel_groups = input.pixel_groups});
+    if (!has_preview(part)) {
+        input.blocks = blocks;
+        input.surfaces = draw_surfaces(graph, scene, prepared, input, planes, part);
+        expect_preview(graph, preview_input(input));
         return raycast(graph, prepared.volume, input, target);
     }
-    const PreviewSeen made = preview(graph, {.params = input.params,
-                                             .preview = preview_params(*part.probe, camera, part.pixels, scene.info()),
-                                             .words = part.probe->preview->words,
-                                             .surfaces = input.surfaces,
-                                             .slice = input.slice,
-                                             .pixel_groups = input.pixel_groups});
+    // A preview is drawn whole, and so are the surfaces before it.
+    input.surfaces = draw_surfaces(graph, scene, prepared, input, planes, part);
+    const PreviewSeen made = draw_preview(graph, input, planes, part);
     input.surfaces = made.surfaces;
+    input.blocks = blocks;
     const Resource picture = raycast(graph, prepared.volume, input, target);
     return preview_over(graph, made.seen, picture,
                         {.target = input.params.target,
@@ -239,7 +290,8 @@ Resource pick(FrameGraph& graph, Scene& scene, const Look& look, const Shot& sho
     Prepared prepared = prepare(graph, scene, look, shot, part, false);
     RaycastInput input = prepared.input;
     const bool has_ball = look.shows_meshes && part.probe && part.probe->ball_opacity >= 0.5;
-    input.surfaces = draw_surfaces(graph, scene, prepared, input, shot.camera, has_ball ? part : without_ball(part));
+    input.surfaces = draw_surfaces(graph, scene, prepared, input, ray_planes(shot.camera, part.pixels, scene.info()),
+                                   has_ball ? part : without_ball(part));
     input.pick = true;
     input.shaded = false;
     return raycast(graph, prepared.volume, input,

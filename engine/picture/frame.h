@@ -8,7 +8,8 @@
 //   tables     [upload transfer function] [upload groups]
 //   surfaces   [upload surface nodes, upload surface list] [surface_tiles] [surfaces]  (a trace, the probe's ball)
 //   preview    [preview]                                                               (what a brush would change)
-//   rays       raycast, one thread a pixel
+//   adaptive   [surfaces, preview and raycast of a coarse picture, clear blocks, clear groups, adaptive]
+//   rays       raycast, one thread a pixel, or of the blocks that adaptive has listed
 //   preview    [preview_over]
 //   ball       [the last four without the probe's ball, then mix]                      (a translucent one)
 //   colours    [saturation]

@@ -39,16 +39,30 @@ glm::dvec3 preview_color(const ProbeLook& probe)
 
 }  // namespace
 
-void set_rays(gpu::RaycastParams& params, const Look& look, const Camera& camera, const VolumeInfo& info,
-              const glm::uvec2& pixels)
+RayPlanes coarse_planes(const RayPlanes& planes)
 {
-    const RayPlanes planes = ray_planes(camera, pixels, info);
+    RayPlanes coarse = planes;
+    coarse.near_corner -= 0.5 * (planes.near_dx + planes.near_dy);
+    coarse.far_corner -= 0.5 * (planes.far_dx + planes.far_dy);
+    for (glm::dvec3* apart : {&coarse.near_dx, &coarse.near_dy, &coarse.far_dx, &coarse.far_dy}) *apart *= 2.0;
+    return coarse;
+}
+
+void set_planes(gpu::RaycastParams& params, const RayPlanes& planes)
+{
     params.near_corner = planes.near_corner;
     params.near_dx = planes.near_dx;
     params.near_dy = planes.near_dy;
     params.far_corner = planes.far_corner;
     params.far_dx = planes.far_dx;
     params.far_dy = planes.far_dy;
+}
+
+void set_rays(gpu::RaycastParams& params, const Look& look, const Camera& camera, const VolumeInfo& info,
+              const glm::uvec2& pixels)
+{
+    const RayPlanes planes = ray_planes(camera, pixels, info);
+    set_planes(params, planes);
     params.box_lower = glm::max(glm::vec3(look.cut.lower), glm::vec3(0.0f));
     params.box_upper = glm::min(glm::vec3(look.cut.upper), glm::vec3(info.size));
     const bool cut_away = glm::any(glm::greaterThan(params.box_lower, params.box_upper));
@@ -130,11 +144,9 @@ void set_ball(gpu::SurfaceParams& params, const ProbeLook& probe, const VolumeIn
     params.probe_color = probe.color;
 }
 
-gpu::PreviewParams preview_params(const ProbeLook& probe, const Camera& camera, const glm::uvec2& pixels,
-                                  const VolumeInfo& info)
+gpu::PreviewParams preview_params(const ProbeLook& probe, const RayPlanes& planes)
 {
     const PaintPreview& preview = *probe.preview;
-    const RayPlanes planes = ray_planes(camera, pixels, info);
     const glm::dvec3 lower(preview.box.lower);
     gpu::PreviewParams params{};
     params.near_corner = planes.near_corner - lower;

@@ -19,7 +19,10 @@ void set_rays(gpu::RaycastParams& params, const Look& look, const Camera& camera
 void set_slice(gpu::RaycastParams& params, const Look& look, Scene& scene);
 void set_shell(RaycastInput& input, const ProbeLook& probe, Scene& scene);
 void set_ball(gpu::SurfaceParams& params, const ProbeLook& probe, const VolumeInfo& info);
-gpu::PreviewParams preview_params(const ProbeLook& probe, const Camera& camera, const glm::uvec2& pixels,
-                                  const VolumeInfo& info);
+gpu::PreviewParams preview_params(const ProbeLook& probe, const RayPlanes& planes);
+
+/// The rays of a coarse picture (shaders/adaptive.h).
+RayPlanes coarse_planes(const RayPlanes& planes);
+void set_planes(gpu::RaycastParams& params, const RayPlanes& planes);
 
 }  // namespace shvr

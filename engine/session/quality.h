@@ -19,6 +19,7 @@ struct Quality {
     double detail = 1.0;
     bool skip_empty_space = true;
     bool preintegration = false;
+    double adaptive_tolerance = 0.0;
 };
 
 /// From the fastest to the most exact.

@@ -95,8 +95,8 @@ namespace {
 void quality_fields(Fields& f, RenderSettings& render)
 {
     const About about{.meaning =
-                          "sets `step_voxels`, `opacity_limit`, `sampling`, `detail`, `skip_empty_space` and "
-                          "`preintegration` at once, where they are not given (quality.h)",
+                          "sets `step_voxels`, `opacity_limit`, `sampling`, `detail`, `skip_empty_space`, "
+                          "`preintegration` and `adaptive_tolerance` at once, where they are not given (quality.h)",
                       .allowed = "`\"draft\"`, `\"interactive\"`, `\"good\"`, `\"reference\"`",
                       .standard = "none"};
     if (!f.has("quality", false)) return f.mention("quality", about);
@@ -140,6 +140,12 @@ void way_fields(Fields& f, RenderSettings& render)
         "preintegration", render.preintegration,
         {"look at both ends of a step and at all densities between them, for transfer functions with narrow peaks or "
          "steep edges; steps of at most 1"});
+    f.number(
+        "adaptive_tolerance", render.adaptive_tolerance, SHARE,
+        {"above 0: rays go through every second pixel of every second row, and through all pixels only where colours "
+         "around differ by more; pixels in between are interpolated. Not in slices, and not where bricks have to "
+         "take turns on the device",
+         "square roots of linear light"});
     f.check("preintegration", !render.preintegration || render.step_voxels <= 1.0,
             sentence("false, because render.step_voxels is ", render.step_voxels, ", above 1"));
 }

@@ -75,6 +75,14 @@ bool numbers(RenderSettings& render, bool& is_reset, Actions& actions)
         "the "
         "finest level. Other volumes do not change.");
     is_reset |= resets("render.detail", actions);
+    is_other |= slider("Adaptive", render.adaptive_tolerance, 0.0, 0.2, "%.3f");
+    hint(
+        "Above 0: every second pixel of every second row is drawn, and all pixels only where colours around differ by "
+        "more "
+        "than this; the rest lies in between. Faster, most of all in large pictures; 0.03 is hardly seen. What is "
+        "thinner "
+        "than two pixels may be missed. 0: every pixel is drawn.");
+    is_reset |= resets("render.adaptive_tolerance", actions);
     return is_other;
 }
 
