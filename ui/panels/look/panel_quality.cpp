@@ -75,7 +75,8 @@ bool numbers(RenderSettings& render, bool& is_reset, Actions& actions)
         "the "
         "finest level. Other volumes do not change.");
     is_reset |= resets("render.detail", actions);
-    is_other |= slider("Adaptive", render.adaptive_tolerance, 0.0, 0.2, "%.3f");
+    is_other |= slider("Adaptive", render.adaptive_tolerance, 0.0, 0.2,
+                       render.adaptive_tolerance > 0.0 ? "%.3f" : "every pixel");
     hint(
         "Above 0: every second pixel of every second row is drawn, and all pixels only where colours around differ by "
         "more "
