@@ -57,7 +57,7 @@ layout(constant_id = 11) const uint SMOOTH_BORDERS = 0u;
 #define BITTED
 layout(constant_id = 12) const uint HAS_SAMPLE_BITS = 0u;
 #endif
-layout(constant_id = 16) const uint IS_LISTED = 0u;   // draws listed blocks of pixels (adaptive.h), no others
+layout(constant_id = 16) const uint BLOCKS_ALONE = 0u;   // draws listed blocks of pixels (adaptive.h), no others
 #ifdef SHELLED
 layout(constant_id = 8) const uint SHELL = SHELL_BALL;   // the region's shape
 layout(binding = 19, r32ui) uniform readonly uimage3D cell_ranges;   // minimum | maximum << 16
@@ -354,7 +354,7 @@ uint bricks_between(vec3 a, vec3 b)
 void main()
 {
     const RaycastParams params = params_block.data;
-    const uvec2 in_part = IS_LISTED != 0u ? listed_in_part(params.pixel_begin, params.pixel_end)
+    const uvec2 in_part = BLOCKS_ALONE != 0u ? listed_in_part(params.pixel_begin, params.pixel_end)
                                           : params.drawn_begin + thread_in_part();
     if (any(greaterThanEqual(in_part, params.drawn_end))) return;
     const uvec2 pixel = params.pixel_begin + in_part;

@@ -24,7 +24,7 @@ layout(constant_id = 0) const uint GROUP_WIDTH = 8u;
 layout(constant_id = 1) const uint SHININESS_SQUARINGS = NOT_A_POWER_OF_TWO;
 layout(constant_id = 2) const uint DISTANCE_BLEND = 0u;
 layout(constant_id = 3) const uint PROBE = 0u;
-layout(constant_id = 4) const uint IS_LISTED = 0u;   // draws listed blocks of pixels (adaptive.h), no others
+layout(constant_id = 4) const uint BLOCKS_ALONE = 0u;   // draws listed blocks of pixels (adaptive.h), no others
 
 layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
 layout(binding = 1, scalar) readonly buffer Scene { SurfaceParams data; } surface_params;
@@ -136,7 +136,7 @@ void main()
     const RaycastParams params = params_block.data;
     const SurfaceParams scene = surface_params.data;
     const uvec2 in_part =
-        IS_LISTED != 0u ? listed_in_part(params.pixel_begin, params.pixel_end) : thread_in_part();
+        BLOCKS_ALONE != 0u ? listed_in_part(params.pixel_begin, params.pixel_end) : thread_in_part();
     const uvec2 pixel = params.pixel_begin + in_part;
     if (any(greaterThanEqual(in_part, params.pixel_end - params.pixel_begin))) return;
 

@@ -125,6 +125,7 @@ public:
 
     /// Messages of the validation layer so far (warnings and errors), oldest first; empties the list.
     std::vector<std::string> take_validation_messages();
+    /// Whether the layer looks on.
     bool is_validated() const { return messenger_ != VK_NULL_HANDLE; }
 
 private:

@@ -236,9 +236,9 @@ void Submission::Frame::record_dispatches(const PassData& data, Prepared& state)
                 if (data.is_counted) {
                     if (executor.device_.is_validated() && at.x > 0)
                         record_barrier(commands, {STAGE_COMPUTE, STAGE_COMPUTE, true});
-                    constexpr uint32_t WORDS = sizeof(VkDispatchIndirectCommand);
+                    constexpr VkDeviceSize COUNTS = sizeof(VkDispatchIndirectCommand);
                     vkCmdPushConstants(commands, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof at.x, &at.x);
-                    vkCmdDispatchIndirect(commands, counts, VkDeviceSize{WORDS} * (at.x / tile.x));
+                    vkCmdDispatchIndirect(commands, counts, COUNTS * (at.x / tile.x));
                 } else if (at == glm::uvec3(0))
                     vkCmdDispatch(commands, count.x, count.y, count.z);
                 else

@@ -39,7 +39,7 @@ Adapted adaptive(FrameGraph& graph, Resource coarse, Resource target, const Adap
 /// Blocks of 4 x 2 pixels take so many bytes on the device, for each pixel.
 inline constexpr uint64_t LISTED_BLOCKS_BYTES = 1;
 
-/// For kernels that include library/listed_blocks.glsl: what their constant IS_LISTED says, and how many groups they
+/// For kernels that include library/listed_blocks.glsl: what their constant BLOCKS_ALONE says, and how many groups they
 /// have if it is 1.
 void listed_groups(Pass& pass, const std::optional<ListedBlocks>& blocks);
 

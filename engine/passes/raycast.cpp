@@ -63,7 +63,7 @@ struct Choice {
     bool is_paged, is_filtered, is_masked, is_occluded, is_surfaced;
     std::vector<std::pair<std::string, uint32_t>> of_codes;  ///< constants
     uint32_t shell = gpu::SHELL_NONE;
-    bool feedback, has_sample_bits, is_shaded, picks, is_listed;
+    bool feedback, has_sample_bits, is_shaded, picks, blocks_alone;
     uint32_t kept = gpu::KEPT_NOTHING;
 };
 
@@ -95,7 +95,7 @@ Choice choice_of(const VolumeBinding& volume, const RaycastInput& input, bool is
             .has_sample_bits = volume.sample_bits && finds_sample_bits(input.params),
             .is_shaded = input.shaded,
             .picks = input.pick,
-            .is_listed = input.blocks.has_value(),
+            .blocks_alone = input.blocks.has_value(),
             .kept = input.waiting ? gpu::KEPT_ALL
                     : keeps_rays  ? gpu::KEPT_SHELL
                                   : gpu::KEPT_NOTHING};
@@ -120,7 +120,7 @@ KernelVariant kernel_of(const Choice& choice, const RaycastInput& input)
     if (choice.is_shaded) constant("SHININESS_SQUARINGS", shininess_squarings(input.params.shininess));
     constant("COUNT_WORK", input.count_work);
     constant("GROUP_WIDTH", input.pixel_groups.width);
-    constant("IS_LISTED", choice.is_listed);
+    constant("BLOCKS_ALONE", choice.blocks_alone);
     constant("SLICE", input.slice);
     constant("PREINTEGRATED", input.preintegrated ? input.params.opaque_map > 0 ? 2 : 1 : 0);
     if (is_shelled) constant("SHELL", choice.shell);
@@ -152,7 +152,7 @@ void expect_next(FrameGraph& graph, const Choice& now, const RaycastInput& input
             });
     expect([](Choice& next) {
         next.picks = true;
-        next.is_shaded = next.feedback = next.is_listed = false;
+        next.is_shaded = next.feedback = next.blocks_alone = false;
         next.shell = gpu::SHELL_NONE;
         next.kept = gpu::KEPT_NOTHING;
     });
