@@ -143,8 +143,9 @@ void way_fields(Fields& f, RenderSettings& render)
     f.number(
         "adaptive_tolerance", render.adaptive_tolerance, SHARE,
         {"above 0: rays go through every second pixel of every second row, and through all pixels only where colours "
-         "around differ by more; pixels in between are interpolated. Not in slices, and not where bricks have to "
-         "take turns on the device",
+         "around differ by more; pixels in between are interpolated, and what is thinner than two pixels may be "
+         "missed. "
+         "Not in slices, and not where bricks have to take turns on the device",
          "square roots of linear light"});
     f.check("preintegration", !render.preintegration || render.step_voxels <= 1.0,
             sentence("false, because render.step_voxels is ", render.step_voxels, ", above 1"));

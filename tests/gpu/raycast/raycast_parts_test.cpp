@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include "tests/gpu/parts.h"
 #include "tests/support/gpu.h"
 
 using namespace shvr;
@@ -23,21 +24,9 @@ TEST_CASE_FIXTURE(OnDevice, "a picture drawn in parts has the bits of one drawn 
 
     const std::pair<glm::uvec2, glm::uvec2> parts[] = {
         {{0, 0}, cut}, {{cut.x, 0}, {size.x, cut.y}}, {{0, cut.y}, {cut.x, size.y}}, {cut, size}};
-    for (const auto& [begin, end] : parts) {
-        FrameGraph graph;
-        const glm::uvec2 extent = end - begin;
-        const Resource target = graph.create("part", picture_desc(Format::rgba32_float, extent));
-        graph.read_back(shvr::draw(graph, renderer().scene(), session.look(), camera,
-                                   {.pixels = size, .begin = begin, .end = end, .probe = probe}, target)
-                            .target);
-        const gpu::FrameResult result = renderer().executor().run(std::move(graph));
-        size_t different = 0;
-        for (uint32_t y = 0; y < extent.y; ++y)
-            different +=
-                std::memcmp(result.read_backs[0].data() + size_t(y) * extent.x * 16,
-                            whole.rgba.data() + 4 * (size_t(begin.y + y) * size.x + begin.x), extent.x * 16) != 0;
-        check_below("differing rows", double(different), 0.0);
-    }
+    for (const auto& [begin, end] : parts)
+        check_below("differing rows", double(differing_rows(renderer(), session, camera, whole, begin, end, probe)),
+                    0.0);
 }
 
 TEST_CASE_FIXTURE(OnDevice, "the probe hides what is behind it, and nothing else")
