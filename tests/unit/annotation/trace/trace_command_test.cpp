@@ -1,5 +1,5 @@
 // Operations on a trace, as scripts and the window use them: voxels are converted to the volume's unit, distant targets
-// are refused, and exactly the affected parts are marked and redrawn.
+// are refused, and exactly the affected parts change.
 
 #include "engine/annotation/trace/trace_command.h"
 
@@ -10,33 +10,14 @@
 
 #include "engine/annotation/trace/trace_segments.h"
 #include "engine/base/error.h"
-#include "engine/device/trace_surfaces.h"
-#include "engine/live/trace_marks.h"
 #include "tests/support/random_annotation.h"
+#include "tests/support/tracing.h"
 #include "tests/support/volume_files.h"
 
 using namespace shvr;
 using namespace shvr::test;
 
 namespace {
-
-const TraceDefaults DEFAULTS{.spacing = {2.0, 3.0, 4.0}, .radius_voxels = 5.0, .group = 7};
-
-/// A document that takes operations.
-struct Tracing {
-    Document document{.mask = Mask(Size3(64)), .trace = {}};
-    History history;
-
-    const TraceGraph& trace() const { return document.trace; }
-    TraceEffect effect(const TraceOp& op) const { return effect_of(op, document.trace, DEFAULTS); }
-    void perform(const TraceOp& op)
-    {
-        const TraceEffect made = effect(op);
-        if (made.selection) document.trace.select(*made.selection);
-        history.perform(document, {made.label, {made.changes.begin(), made.changes.end()}});
-    }
-    NodeOp node_at(const glm::dvec3& voxel) const { return {.at = voxel, .radius_voxels = {}, .group = {}}; }
-};
 
 SelectOp nearest(const glm::dvec3& voxel, std::optional<double> within = {})
 {
@@ -102,7 +83,7 @@ TEST_CASE(
     CHECK(refusal(work, dividing) == "internode 0 does not exist; expected one of the trace");
     own.at = {90, 10, 10};
     own.divides = work.trace().internodes_of(added)[0];
-    TraceDefaults in_volume = DEFAULTS;
+    TraceDefaults in_volume = TRACE_DEFAULTS;
     in_volume.size = Size3(64);
     const std::string why = test::error_of([&] { static_cast<void>(effect_of(own, work.trace(), in_volume)); });
     CHECK(why.find("outside the volume") != std::string::npos);
@@ -134,7 +115,7 @@ TEST_CASE(
             longest = std::max(longest, trace.length_of(internode));
         CHECK(longest <= trace.longest_at_most());
         CHECK(longest * 2.0 >= trace.longest_at_most());
-        const glm::dvec3 point = voxel() * DEFAULTS.spacing;
+        const glm::dvec3 point = voxel() * TRACE_DEFAULTS.spacing;
         const double reach = 40.0 * lot(random);
         const auto except = trace.selection().node();
         std::optional<uint32_t> best;
@@ -314,70 +295,11 @@ TEST_CASE("what is added far away and taken back leaves no trace in a length")
     CHECK(work.trace().summary().group_length == before.group_length);
 }
 
-TEST_CASE("what is drawn again holds what was there and what is there")
-{
-    Tracing work;
-    for (const double x : {10.0, 20.0, 30.0}) work.perform(work.node_at({x, 10, 10}));
-    const auto reach_of_last = [&](const TraceOp& op) {
-        const TraceEffect made = work.effect(op);
-        const std::vector<Change> changes(made.changes.begin(), made.changes.end());
-        work.perform(op);
-        return trace_reach(work.trace(), changes, DEFAULTS.spacing);
-    };
-    const auto holds = [](const VoxelBox& box, const glm::dvec3& voxel) {
-        return glm::all(glm::lessThanEqual(glm::dvec3(box.lower), voxel)) &&
-               glm::all(glm::greaterThanEqual(glm::dvec3(box.upper), voxel));
-    };
-    // Node 2 goes away from node 1, and the rod between them with it. Its radius is 5 voxels along x.
-    const VoxelBox moved = reach_of_last(MoveOp{{30, 40, 10}});
-    for (const glm::dvec3& voxel : {glm::dvec3(35, 10, 10), glm::dvec3(30, 43, 10), glm::dvec3(15, 10, 10)})
-        CHECK(holds(moved, voxel));
-    CHECK_FALSE(holds(moved, {8, 10, 10}));
-    const VoxelBox deleted = reach_of_last(DeleteOp{});
-    for (const glm::dvec3& voxel : {glm::dvec3(30, 43, 10), glm::dvec3(20, 10, 10)}) CHECK(holds(deleted, voxel));
-    CHECK(trace_reach(work.trace(), {}, DEFAULTS.spacing) == VoxelBox{});
-}
-
-TEST_CASE("the selected node is marked yellow where it is or where it is dragged, and the nearby one purple")
-{
-    Tracing work;
-    for (const double x : {10.0, 20.0, 30.0}) work.perform(work.node_at({x, 10, 10}));
-    const TraceMarks marks = trace_marks(work.trace(), 0, 1.0);
-    REQUIRE(marks.balls.size() == 2);
-    CHECK(marks.balls[0].color == NEARBY_COLOR);
-    CHECK(marks.balls[0].center == work.trace().node(0).position);
-    CHECK(marks.balls[1].color == SELECTED_COLOR);
-    CHECK(marks.balls[1].center == work.trace().node(2).position);
-    CHECK(marks.lines.empty());
-    const TraceMarks dragged = trace_marks(work.trace(), std::nullopt, 1.0, glm::dvec3(1, 2, 3));
-    REQUIRE(dragged.balls.size() == 1);
-    CHECK(dragged.balls[0].center == glm::dvec3(1, 2, 3));
-    REQUIRE(dragged.lines.size() == 1);
-    CHECK(dragged.lines[0].to == work.trace().node(1).position);
-    work.perform(SelectSegmentOp{});
-    CHECK(trace_marks(work.trace(), std::nullopt, 1.0).lines.size() == 2);
-}
-
-TEST_CASE("internodes about the selected node are lines over the picture, nearest first, where that is wanted")
-{
-    Tracing work;
-    for (const double x : {10.0, 20.0, 30.0, 40.0}) work.perform(work.node_at({x, 10, 10}));
-    const auto lines = [&](size_t most) { return trace_marks(work.trace(), std::nullopt, 1.0, {}, most).lines; };
-    CHECK(lines(0).empty());
-    REQUIRE(lines(64).size() == 3);
-    for (const OverlayScene::Line& line : lines(64)) CHECK(line.color == LINKED_COLOR);
-    REQUIRE(lines(1).size() == 1);
-    CHECK(lines(1)[0].from == work.trace().node(2).position);
-    CHECK(lines(1)[0].to == work.trace().node(3).position);
-    work.perform(DeselectOp{});
-    CHECK(lines(64).empty());
-}
-
 TEST_CASE("a node may lie outside the volume by its radius and a voxel, and is refused beyond")
 {
     Tracing work;
     const auto said = [&](const TraceOp& op) {
-        TraceDefaults defaults = DEFAULTS;
+        TraceDefaults defaults = TRACE_DEFAULTS;
         defaults.size = {10, 20, 30};
         return error_of([&] { static_cast<void>(effect_of(op, work.trace(), defaults)); });
     };
