@@ -1,7 +1,7 @@
 // Exact sampling of the density: trilinear values, and central differences of +-0.5 voxel, by arithmetic on 16-bit
 // codes. Needs `atlas`, r32ui, with two or four neighbouring codes along x in a texel (atlas.glsl); and
 // `density_reads`, which counts. Several codes in one load make this the fastest way on devices whose images are
-// ordinary memory (DECISIONS.md).
+// ordinary memory (engine/bricks/README.md).
 //
 // A sample touches the eight codes around it and, for the gradient, one more row on the nearer side of each axis. All
 // lie side by side, or within the brick's apron, so no second lookup is ever needed.
