@@ -1,5 +1,5 @@
-// Kills the program at random moments while a save runs beside the work: files are of the save that ended last or of
-// the one that had begun, the journal knows them, and no step is lost but those of the last moments.
+// Kills the program at random moments while a save runs in the background: files are those of the last completed save
+// or of the interrupted one, the journal knows them, and no step is lost except those of the last moments.
 
 #include <sys/mman.h>
 #include <sys/wait.h>

@@ -32,8 +32,8 @@ std::string framed_records(std::span<const std::byte> bytes)
     return file;
 }
 
-/// All that a change is held against before it is undone or done again. A state that does not tell of a step's
-/// selection or setting is believed, and so is the step.
+/// The state that a change is compared with before undo or redo. Selections and settings are left out: a state may lack
+/// those of a step, and both are accepted.
 std::vector<std::byte> held(Document document)
 {
     document.settings = {};

@@ -1,5 +1,5 @@
-// JOURNAL.lock, which says who writes a journal: its text and, where that names a process of another machine, the file
-// while somebody holds it. (Of a process of this one the reader waits for a text that is not out of date.)
+// JOURNAL.lock, which names the writer of a journal: its text and, if that names a process of another machine, the file
+// while it is locked. (For a process of this machine the reader waits for a text that is up to date.)
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -13,7 +13,7 @@
 namespace shvr::reference {
 
 struct ExactOptions {
-    double tolerance = 1e-12;  ///< of each smooth stretch, as a share of the pixel; absolute
+    double tolerance = 1e-12;  ///< absolute error of each smooth interval, as a fraction of the pixel
 };
 
 /// Prepared once for many rays; borrows the scene. Any thread may call `integrate`.

@@ -98,7 +98,7 @@ double beyond_surface(double opacity, double of_surface)
 /// The half-space behind a surface, and what cells hold of it.
 struct Surface {
     glm::dvec3 place, heights;
-    double strength, height;  ///< of the surface along the normal
+    double strength, height;  ///< along the normal
     double wall;
 
     /// Of a cell's columns along each axis, those that end in it.

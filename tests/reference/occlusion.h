@@ -44,15 +44,15 @@ double occlusion_by_steps(const FieldOpacity& opacity, const std::vector<glm::dv
 
 struct OcclusionTap {
     double distance, stretch;
-    int side;  ///< of the cell that is sampled, in voxels
+    int side;  ///< side of the sampled cell, in voxels
 };
 struct OcclusionRays {
     OcclusionAsked asked;
     uint32_t count = 32;
     double first = 0.0;  ///< units that light always passes
     std::vector<OcclusionTap> taps;
-    double near_stretch = 1.0;                      ///< of the first tap in voxels
-    double stretch_of_2 = 1.0, stretch_of_4 = 1.0;  ///< of taps in cells
+    double near_stretch = 1.0;                      ///< stretch of the first tap in voxels
+    double stretch_of_2 = 1.0, stretch_of_4 = 1.0;  ///< stretches of taps in cells
 };
 
 /// How opaque a cube is from place to place, as the device keeps it (shaders/occlusion/occlusion.h).

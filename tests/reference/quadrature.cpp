@@ -58,7 +58,7 @@ GaussRule make_rule()
 
 struct Estimate {
     Stretch stretch;
-    unsigned formula = 0;  ///< of the first node
+    unsigned formula = 0;  ///< formula of the first node
     bool is_one_formula = true;
 };
 

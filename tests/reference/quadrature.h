@@ -10,7 +10,7 @@ namespace shvr::reference {
 struct Medium {
     double extinction = 0.0;  ///< per reference voxel, finite
     glm::dvec3 color{0.0};
-    /// The formula used for the colour. Where it changes there is a kink, which is located even if no node shows it.
+    /// The formula used for the colour. A change of formula is a kink, which is located even if no node shows it.
     unsigned formula = 0;
 };
 

@@ -1,6 +1,6 @@
-// A machine that is short of memory: loaded before the C++ library (LD_PRELOAD), no object of SHVR_SHORT_BYTES or more
-// can be made by the program itself while the file SHVR_SHORT_WHILE is there. A driver's libraries, which end the
-// process where they get none, still can. What was refused is in the file SHVR_SHORT_LOG, a line each.
+// Simulates a machine that is short of memory: loaded before the C++ library (LD_PRELOAD), it refuses objects of
+// SHVR_SHORT_BYTES or more to the program itself while the file SHVR_SHORT_WHILE exists. A driver's libraries, which
+// abort without memory, still get it. Each refusal is a line in the file SHVR_SHORT_LOG.
 
 #include <cstdint>
 #include <cstdio>

@@ -15,7 +15,7 @@ namespace shvr::test {
 
 namespace {
 
-constexpr double LARGEST_CODE = 65535.0;
+constexpr double MAX_CODE = 65535.0;
 
 Renderer& renderer_of_the_process()
 {
@@ -44,8 +44,8 @@ std::vector<double> densities_of(const TestVolume& volume)
     const IntensityWindow window = volume.window();
     std::vector<double> densities;
     for (const double voxel : volume.voxels) {
-        const double code = std::clamp(std::floor(window.code_of(voxel) + 0.5), 0.0, LARGEST_CODE);
-        densities.push_back(code / LARGEST_CODE);
+        const double code = std::clamp(std::floor(window.code_of(voxel) + 0.5), 0.0, MAX_CODE);
+        densities.push_back(code / MAX_CODE);
     }
     return densities;
 }
@@ -146,7 +146,7 @@ std::vector<ControlPoint> unseen_points()
 
 std::vector<ControlPoint> uniform_points(const glm::dvec3& color, double opacity)
 {
-    return {{0.0, color, opacity}, {LARGEST_CODE, color, opacity}};
+    return {{0.0, color, opacity}, {MAX_CODE, color, opacity}};
 }
 
 Camera camera_along(const TestVolume& volume, const glm::dvec3& direction, double height)
@@ -295,11 +295,11 @@ reference::Scene scene_of(const TestVolume& volume, const Session& session, cons
     scene.density = densities_of(volume);
     scene.spacing = volume.spacing;
     for (const ControlPoint& point : session.transfer_function.points())
-        scene.points.push_back({window.code_of(point.intensity) / LARGEST_CODE, point.color, point.opacity});
+        scene.points.push_back({window.code_of(point.intensity) / MAX_CODE, point.color, point.opacity});
     scene.cut_min = session.cut.lower;
     scene.cut_max = session.cut.upper;
     if (session.light.shaded) {
-        const double range = (volume.maximum - volume.minimum) * window.codes_per_unit / LARGEST_CODE;
+        const double range = (volume.maximum - volume.minimum) * window.codes_per_unit / MAX_CODE;
         scene.shading = reference::Shading{.ambient = session.light.ambient,
                                            .diffuse = session.light.diffuse,
                                            .specular = session.light.specular,

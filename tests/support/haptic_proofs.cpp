@@ -157,7 +157,7 @@ void check_contacts(int count, uint32_t seed)
     double most_gained = -1.0, most_gained_inside = -1.0, most_swing = 0.0, most_force = 0.0;
     int inside = 0;
     for (int i = 0; i < count; ++i) {
-        // Thrown by nobody: nothing but the wall can take energy out of it.
+        // Flies freely: only the wall can remove energy.
         const ContactCase thrown{.has_friction = false,
                                  .is_held = false,
                                  .jitter_s = 0.0003,
@@ -263,7 +263,7 @@ void check_nonsense(int ticks, uint32_t seed)
         patch->time_ns = now_ns;
         const ForceStep now = step(settings, caps, result, state, *patch, now_ns, memory, *growth);
         const double length = glm::length(now.force_n);
-        if (!(length <= caps.peak_force_n * (1.0 + 1e-12))) ++bad;  // also no number
+        if (!(length <= caps.peak_force_n * (1.0 + 1e-12))) ++bad;  // also NaN
         const bool has_stopped = length == 0.0 && (now.flags & (FORCE_FAULT | FORCE_NO_DEVICE | FORCE_LET_GO)) != 0;
         if (!has_stopped && !(glm::distance(now.force_n, last) <= SLEW_N + 1e-12)) ++jumps;
         last = now.force_n;

@@ -14,7 +14,7 @@ struct Contact {
 };
 struct ContactCase {
     double stiffness = 300.0, damping = 1.0;
-    bool has_friction = true;  ///< of the Touch
+    bool has_friction = true;  ///< the friction of a Touch
     bool is_held = true;       ///< by a hand that pushes on; otherwise thrown, 0.1 to 0.3 m/s
     int delay_ticks = 2;
     double jitter_s = 0.0005, speed = 0.3, count_m = 55e-6;

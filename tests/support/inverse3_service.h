@@ -44,7 +44,7 @@ public:
     void end_event_connections();
     bool has_clients() const;  ///< on both channels
     std::vector<Inverse3Heard> heard() const;
-    std::string first_message() const;  ///< of the last connection
+    std::string first_message() const;  ///< first message of the last connection
 
 private:
     struct World;

@@ -49,7 +49,7 @@ private:
 
     const TestVolume& volume_;
     const Session& session_;
-    Samples samples_;   ///< of the function, as the device's table has them
+    Samples samples_;   ///< the function, as sampled in the device's table
     Table near_, far_;  ///< over a tap in voxels, in cells of 2
     std::vector<double> opacities_;
 };

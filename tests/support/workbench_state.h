@@ -1,6 +1,6 @@
 #pragma once
-// What a person can tell of a workbench, key by key, so that a test can say what an action must change and nothing
-// else; and a small scan to work on. One thread, the renderer's.
+// The observable state of a workbench, key by key, so that a test can state what an action must change, and that
+// nothing else does; and a small scan to work on. One thread, the renderer's.
 
 #include <filesystem>
 #include <map>

@@ -1,5 +1,4 @@
-// What a turn of the workbench costs when nothing happens, what one action of settings costs, and what a save takes
-// of the work, on a scan of 512^3:
+// Times an idle iteration of the workbench, one action of settings, and the snapshot of a save, on a scan of 512^3:
 //
 //   cmake --build build/release --target bench_workbench
 

@@ -17,7 +17,7 @@ public:
     struct Identity {
         const char *name, *serial;
         uint16_t vendor, product;
-        std::span<const uint8_t> descriptor;  ///< of its reports
+        std::span<const uint8_t> descriptor;  ///< report descriptor
     };
     /// `feature`: what it answers when a feature report is asked for, its number first.
     UhidDevice(const Identity& identity, std::vector<uint8_t> feature);

@@ -7,7 +7,7 @@
 namespace shvr::fuzz {
 namespace {
 
-constexpr size_t LONGEST_INPUT = size_t{1} << 18;
+constexpr size_t MAX_INPUT_BYTES = size_t{1} << 18;
 /// Most formats have their important fields at the beginning.
 constexpr size_t HEAD_BYTES = 400;
 
@@ -79,7 +79,7 @@ public:
     {
         const size_t count = 1 + below(3);
         for (size_t i = 0; i < count; ++i) change();
-        if (bytes_.size() > LONGEST_INPUT) bytes_.resize(LONGEST_INPUT);
+        if (bytes_.size() > MAX_INPUT_BYTES) bytes_.resize(MAX_INPUT_BYTES);
         return bytes_;
     }
 

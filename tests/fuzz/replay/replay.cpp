@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t MAX_CUTS = 4000;  ///< of all seeds together
+constexpr size_t MAX_CUTS = 4000;  ///< total over all seeds
 constexpr size_t MAX_NESTED = 48;
 constexpr size_t CHANGED_INPUTS = 3000;
 constexpr int64_t MAX_BYTES_OF_A_CLAIM = int64_t{8} << 20;

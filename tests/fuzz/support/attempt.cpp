@@ -10,7 +10,7 @@ namespace shvr::fuzz {
 namespace {
 
 /// It may name a path, of PATH_MAX bytes at most.
-constexpr size_t LONGEST_SENTENCE = 1500 + 4096;
+constexpr size_t MAX_SENTENCE_BYTES = 1500 + 4096;
 
 }  // namespace
 
@@ -34,8 +34,8 @@ bool passes(const std::function<void()>& action)
         return true;
     } catch (const Error& error) {
         const std::string text = error.what();
-        expect(!text.empty() && text.size() <= LONGEST_SENTENCE,
-               "an error of " + std::to_string(text.size()) + " bytes: " + text.substr(0, LONGEST_SENTENCE));
+        expect(!text.empty() && text.size() <= MAX_SENTENCE_BYTES,
+               "an error of " + std::to_string(text.size()) + " bytes: " + text.substr(0, MAX_SENTENCE_BYTES));
         const bool has_controls = std::any_of(text.begin(), text.end(), [](char letter) {
             const auto byte = static_cast<unsigned char>(letter);
             return byte < 0x20 || byte == 0x7f;

@@ -13,11 +13,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t MAX_FILES = 64;
-constexpr size_t LONGEST_NAME = 64;
+constexpr size_t MAX_NAME_BYTES = 64;
 
 bool is_inside(const std::string& name)
 {
-    if (name.empty() || name.size() > LONGEST_NAME || name.front() == '/' || name.back() == '/') return false;
+    if (name.empty() || name.size() > MAX_NAME_BYTES || name.front() == '/' || name.back() == '/') return false;
     if (name.find("..") != std::string::npos || name.find("//") != std::string::npos) return false;
     return std::all_of(name.begin(), name.end(), [](char letter) { return letter > ' ' && letter < 127; });
 }

@@ -1,4 +1,4 @@
-// A Tracy that tells what it is told: a line of JSON for each call.
+// A Tracy that records its calls: a line of JSON each.
 
 #include <tracy/TracyC.h>
 

@@ -1,6 +1,6 @@
 #pragma once
-// Tracy's C interface as SHVR calls it, written from its public header. What is called is written to standard output, a
-// line each.
+// The part of Tracy's C interface that SHVR calls, written from its public header. Each call is written to standard
+// output as a line.
 
 #include <stddef.h>
 #include <stdint.h>
