@@ -5,8 +5,8 @@
 
 #define GLFW_INCLUDE_VULKAN
 #include <GLFW/glfw3.h>
-#include <backends/imgui_impl_vulkan.h>
-#include <imgui/imgui.h>
+
+#include "ui/imgui_versions.h"
 
 namespace shvr::ui {
 
@@ -173,14 +173,14 @@ void Swapchain::create_imgui()
     init.ImageCount = uint32_t(std::max<size_t>(targets_.size(), FRAMES_IN_FLIGHT));
     init.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
     init.CheckVkResultFn = [](VkResult result) { gpu::check(result, "Dear ImGui"); };
-    ImGui_ImplVulkan_Init(&init, render_pass_);
+    init_imgui_vulkan(init, render_pass_);
     imgui_is_ready_ = true;
 
     const VkCommandBuffer commands = frames_[0].commands;
     const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                          .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
     SHVR_VK(vkBeginCommandBuffer(commands, &begin));
-    ImGui_ImplVulkan_CreateFontsTexture(commands);
+    upload_imgui_fonts(commands);
     SHVR_VK(vkEndCommandBuffer(commands));
     const VkCommandBufferSubmitInfo submitted{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
                                               .commandBuffer = commands};
@@ -188,7 +188,7 @@ void Swapchain::create_imgui()
         .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &submitted};
     SHVR_VK(vkQueueSubmit2(device_.queue(), 1, &submit, VK_NULL_HANDLE));
     device_.wait_idle();
-    ImGui_ImplVulkan_DestroyFontUploadObjects();
+    end_imgui_font_upload();
 }
 
 void Swapchain::renew_fonts()

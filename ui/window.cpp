@@ -1,7 +1,5 @@
 #include "ui/window.h"
 
-#include <algorithm>
-#include <limits>
 #include <utility>
 
 #include <GLFW/glfw3.h>
@@ -9,6 +7,7 @@
 #include <imgui/imgui.h>
 
 #include "engine/gpu/live_trace.h"
+#include "ui/imgui_versions.h"
 #include "ui/mouse_feed.h"
 #include "ui/swapchain.h"
 
@@ -21,6 +20,18 @@ std::string glfw_error()
     const char* description = nullptr;
     glfwGetError(&description);
     return description ? description : "no reason given";
+}
+
+/// GLFW 3.4 prefers Wayland, which tells a window neither where it is nor which screen that is on, and where nobody but
+/// the compositor can move the pointer, as tests do. With X11 (there, Xwayland) all versions do the same.
+bool start_glfw()
+{
+#ifdef GLFW_PLATFORM  // since 3.4
+    glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+    if (glfwInit()) return true;
+    glfwInitHint(GLFW_PLATFORM, GLFW_ANY_PLATFORM);
+#endif
+    return glfwInit() == GLFW_TRUE;
 }
 
 /// The screen that shows this point, or else the main one.
@@ -36,18 +47,6 @@ GLFWmonitor* monitor_of(const glm::ivec2& point)
             return monitors[i];
     }
     return glfwGetPrimaryMonitor();
-}
-
-/// One change of the buttons, at its place; whether it is a double click is decided by the times of the events.
-void tell_clicks(MouseFeed& mouse)
-{
-    ImGuiIO& io = ImGui::GetIO();
-    const MouseFeed::Frame frame = mouse.next();
-    std::copy(frame.down.begin(), frame.down.end(), io.MouseDown);
-    if (!frame.at) return;
-    io.MousePos = {float(frame.at->x) / io.DisplayFramebufferScale.x,
-                   float(frame.at->y) / io.DisplayFramebufferScale.y};
-    io.MouseDoubleClickTime = frame.is_double ? std::numeric_limits<float>::max() : 0.0f;
 }
 
 }  // namespace
@@ -140,7 +139,7 @@ struct Window::Input {
 
 Window::Window(const std::string& title, const glm::uvec2& size) : input_(std::make_unique<Input>())
 {
-    if (!glfwInit()) fail("no window can be opened (", glfw_error(), "); expected a display, as in DISPLAY=:0");
+    if (!start_glfw()) fail("no window can be opened (", glfw_error(), "); expected a display, as in DISPLAY=:0");
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     input_->window = glfwCreateWindow(int(size.x), int(size.y), title.c_str(), nullptr, nullptr);
     if (!input_->window) {
@@ -151,6 +150,7 @@ Window::Window(const std::string& title, const glm::uvec2& size) : input_(std::m
     glfwSetWindowUserPointer(input_->window, input_.get());
     input_->listen();
     ImGui::CreateContext();
+    set_up_imgui_input();
     ImGui::GetIO().IniFilename = nullptr;  // no settings file in the working directory
     ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
     ImGui_ImplGlfw_InitForVulkan(input_->window, true);
@@ -257,11 +257,11 @@ std::vector<InputEvent> Window::wait_events(double timeout_s)
 void Window::tell_ui(const InputEvent& event)
 {
     if (const auto* text = std::get_if<TextEvent>(&event.what))
-        ImGui_ImplGlfw_CharCallback(input_->window, text->character);
+        tell_imgui_character(input_->window, text->character);
     const auto* const key = std::get_if<KeyEvent>(&event.what);
     if (!key || key->repeated || key->key < 0) return;
     if (key->pressed) input_->pressed.push_back(key->key);
-    ImGui_ImplGlfw_KeyCallback(input_->window, key->key, 0, key->pressed ? GLFW_PRESS : GLFW_RELEASE, key->mods);
+    tell_imgui_key(input_->window, key->key, key->pressed, key->mods);
 }
 
 bool Window::is_down(int key) const
@@ -290,14 +290,9 @@ void Window::begin_ui()
     if (std::exchange(input_->frame_is_open, true)) ImGui::EndFrame();  // the last frame failed before it was presented
     Swapchain::begin_ui();
     ImGui_ImplGlfw_NewFrame();
-    tell_clicks(input_->mouse);
+    tell_imgui_buttons(input_->window, input_->mouse.next());  // one change of the buttons, at its place
     // A key that went down and up since the last frame, which may have taken long, was pressed all the same.
-    bool(&down)[512] = ImGui::GetIO().KeysDown;
-    const std::vector<int> pressed = std::exchange(input_->pressed, {});
-    for (const int key : pressed) down[key] = true;
-    ImGui::GetIO().KeyAlt = false;  // otherwise letting go of Alt, as after Alt + drag, would move on to the menu
-    ImGui::NewFrame();
-    for (const int key : pressed) down[key] = is_down(key);
+    begin_imgui_frame(input_->window, std::exchange(input_->pressed, {}), Input::mods(input_->window));
 }
 
 bool Window::present(const std::vector<View::Layer>& layers, const glm::uvec2& origin,

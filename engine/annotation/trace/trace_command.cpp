@@ -30,7 +30,7 @@ public:
             const bool is_there =
                 op.is_internode ? trace_.internodes().contains(*op.number) : trace_.nodes().contains(*op.number);
             if (!is_there) fail(what, " ", *op.number, " does not exist; expected one of the trace");
-            (op.is_internode ? selection.internodes : selection.nodes) = {*op.number};
+            (op.is_internode ? selection.internodes : selection.nodes).assign(1, *op.number);
         }
         if (op.near) {
             const glm::dvec3 near = at(*op.near);

@@ -1,6 +1,7 @@
 #pragma once
 // Bars along an axis of milliseconds, as SVG inside a page, whose colours of text and lines it takes (html.cpp).
 
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>

@@ -8,6 +8,7 @@
 #include <imgui/imgui_stdlib.h>
 
 #include "engine/base/error.h"
+#include "ui/imgui_versions.h"
 #include "ui/panels/widgets.h"
 
 namespace shvr::ui {
@@ -31,7 +32,7 @@ bool is_pressed(ImGuiKey key, bool repeats = true)
 
 bool enter_is_pressed()
 {
-    return is_pressed(ImGuiKey_Enter, false) || is_pressed(ImGuiKey_KeyPadEnter, false);
+    return is_pressed(ImGuiKey_Enter, false) || is_pressed(KEYPAD_ENTER, false);
 }
 
 std::string with_slash(const fs::path& folder)

@@ -1,0 +1,165 @@
+#include "ui/imgui_versions.h"
+
+#include <algorithm>
+#include <cfloat>
+#include <limits>
+
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+
+namespace shvr::ui {
+
+namespace {
+
+/// Versions from the one that moved the render pass into `Info` on; their header decides.
+template <class Info>
+void init_vulkan(Info& info, VkRenderPass pass)
+{
+    if constexpr (requires { info.RenderPass; }) {
+        info.RenderPass = pass;
+        ImGui_ImplVulkan_Init(&info);
+    } else {
+        ImGui_ImplVulkan_Init(&info, pass);
+    }
+}
+
+/// In Dear ImGui's coordinates.
+ImVec2 place_of(const glm::dvec2& pixels)
+{
+    const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
+    return {float(pixels.x) / scale.x, float(pixels.y) / scale.y};
+}
+
+/// Whether a press counts as the second of two is decided by the times of the events, not of the frames.
+void allow_double_click(bool is_double)
+{
+    ImGui::GetIO().MouseDoubleClickTime = is_double ? std::numeric_limits<float>::max() : 0.0f;
+}
+
+}  // namespace
+
+void init_imgui_vulkan(ImGui_ImplVulkan_InitInfo info, VkRenderPass pass)
+{
+    init_vulkan(info, pass);
+}
+
+#if IMGUI_VERSION_NUM >= 19000
+void upload_imgui_fonts(VkCommandBuffer)
+{
+    ImGui_ImplVulkan_CreateFontsTexture();
+}
+
+void end_imgui_font_upload() {}
+#else
+void upload_imgui_fonts(VkCommandBuffer commands)
+{
+    ImGui_ImplVulkan_CreateFontsTexture(commands);
+}
+
+void end_imgui_font_upload()
+{
+    ImGui_ImplVulkan_DestroyFontUploadObjects();
+}
+#endif
+
+#if IMGUI_VERSION_NUM >= 18700
+
+namespace {
+
+#if IMGUI_VERSION_NUM >= 18900
+constexpr ImGuiKey ALT = ImGuiKey(ImGuiMod_Alt);
+#else
+constexpr ImGuiKey ALT = ImGuiKey_ModAlt;
+#endif
+
+bool is_alt(int key)
+{
+    return key == GLFW_KEY_LEFT_ALT || key == GLFW_KEY_RIGHT_ALT;
+}
+
+/// Where the pointer is now: after a click that was told at its own place no event may follow.
+ImVec2 pointer_of(GLFWwindow* window)
+{
+    const bool is_here = glfwGetWindowAttrib(window, GLFW_FOCUSED) || glfwGetWindowAttrib(window, GLFW_HOVERED);
+    if (!is_here) return {-FLT_MAX, -FLT_MAX};
+    glm::dvec2 at(0.0);
+    glfwGetCursorPos(window, &at.x, &at.y);
+    return {float(at.x), float(at.y)};
+}
+
+}  // namespace
+
+/// All events before a frame are for that frame, and of two that contradict each other the later counts: the back end
+/// hears of the mouse as well, and what is said here comes after that.
+void set_up_imgui_input()
+{
+    ImGui::GetIO().ConfigInputTrickleEventQueue = false;
+}
+
+void tell_imgui_key(GLFWwindow* window, int key, bool pressed, int mods)
+{
+    if (!is_alt(key)) ImGui_ImplGlfw_KeyCallback(window, key, 0, pressed ? GLFW_PRESS : GLFW_RELEASE, mods);
+}
+
+/// Not as an event: what reads or clears typed text between frames would not find it.
+void tell_imgui_character(GLFWwindow*, unsigned character)
+{
+    if (character == 0) return;
+    const bool is_known = character <= IM_UNICODE_CODEPOINT_MAX;
+    ImGui::GetIO().InputQueueCharacters.push_back(ImWchar(is_known ? character : IM_UNICODE_CODEPOINT_INVALID));
+}
+
+void tell_imgui_buttons(GLFWwindow* window, const MouseFeed::Frame& frame)
+{
+    ImGuiIO& io = ImGui::GetIO();
+    const ImVec2 at = frame.at ? place_of(*frame.at) : pointer_of(window);
+    io.AddMousePosEvent(at.x, at.y);
+    if (frame.at) allow_double_click(frame.is_double);
+    for (int button = 0; button < MouseFeed::BUTTONS; ++button)
+        io.AddMouseButtonEvent(button, frame.down[size_t(button)]);
+}
+
+void begin_imgui_frame(GLFWwindow* window, const std::vector<int>& pressed, int mods)
+{
+    for (const int key : pressed) tell_imgui_key(window, key, true, mods);
+    ImGui::GetIO().AddKeyEvent(ALT, false);  // otherwise letting go of it, as after a drag, would move on to the menu
+    ImGui::NewFrame();
+    for (const int key : pressed)
+        if (glfwGetKey(window, key) != GLFW_PRESS) tell_imgui_key(window, key, false, mods);
+}
+
+#else
+
+void set_up_imgui_input() {}
+
+void tell_imgui_key(GLFWwindow* window, int key, bool pressed, int mods)
+{
+    ImGui_ImplGlfw_KeyCallback(window, key, 0, pressed ? GLFW_PRESS : GLFW_RELEASE, mods);
+}
+
+void tell_imgui_character(GLFWwindow* window, unsigned character)
+{
+    ImGui_ImplGlfw_CharCallback(window, character);
+}
+
+void tell_imgui_buttons(GLFWwindow*, const MouseFeed::Frame& frame)
+{
+    ImGuiIO& io = ImGui::GetIO();
+    std::copy(frame.down.begin(), frame.down.end(), io.MouseDown);
+    if (!frame.at) return;
+    io.MousePos = place_of(*frame.at);
+    allow_double_click(frame.is_double);
+}
+
+void begin_imgui_frame(GLFWwindow* window, const std::vector<int>& pressed, int)
+{
+    bool(&down)[512] = ImGui::GetIO().KeysDown;
+    for (const int key : pressed) down[key] = true;
+    ImGui::GetIO().KeyAlt = false;  // otherwise letting go of Alt, as after Alt + drag, would move on to the menu
+    ImGui::NewFrame();
+    for (const int key : pressed) down[key] = glfwGetKey(window, key) == GLFW_PRESS;
+}
+
+#endif
+
+}  // namespace shvr::ui

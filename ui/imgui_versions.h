@@ -1,0 +1,45 @@
+#pragma once
+// What differs between the versions of Dear ImGui that the window is built with: 1.86 (Debian 12) and 1.90 (Debian 13,
+// Ubuntu 24.04). Until 1.86 a program writes the state of keys and buttons before each frame; since 1.87 it hands over
+// events, which Dear ImGui applies in NewFrame. Either way a frame here sees the state that it would see in 1.86.
+//
+// The main thread.
+
+#include <vector>
+
+#include <backends/imgui_impl_vulkan.h>
+#include <imgui/imgui.h>
+
+#include "ui/mouse_feed.h"
+
+struct GLFWwindow;
+
+namespace shvr::ui {
+
+#if IMGUI_VERSION_NUM >= 19200
+#error "Dear ImGui 1.92 draws glyphs and uploads fonts in another way than 1.86 to 1.91, which the window is written for"
+#elif IMGUI_VERSION_NUM >= 18700
+inline constexpr ImGuiKey KEYPAD_ENTER = ImGuiKey_KeypadEnter;
+#else
+inline constexpr ImGuiKey KEYPAD_ENTER = ImGuiKey_KeyPadEnter;
+#endif
+
+/// After ImGui::CreateContext.
+void set_up_imgui_input();
+/// A key that went down or up. `mods`: as GLFW has them.
+void tell_imgui_key(GLFWwindow* window, int key, bool pressed, int mods);
+void tell_imgui_character(GLFWwindow* window, unsigned character);
+/// The state of the buttons, and where one of them changed. After ImGui_ImplGlfw_NewFrame.
+void tell_imgui_buttons(GLFWwindow* window, const MouseFeed::Frame& frame);
+/// ImGui::NewFrame, with these keys down: they were pressed since the frame before, and may be up again. `mods`: those
+/// that are held now.
+void begin_imgui_frame(GLFWwindow* window, const std::vector<int>& pressed, int mods);
+
+/// ImGui_ImplVulkan_Init, for pictures drawn in this pass.
+void init_imgui_vulkan(ImGui_ImplVulkan_InitInfo info, VkRenderPass pass);
+/// Makes the texture of the fonts: records it, or (since 1.90) does it at once and records nothing.
+void upload_imgui_fonts(VkCommandBuffer commands);
+/// Once what was recorded is done.
+void end_imgui_font_upload();
+
+}  // namespace shvr::ui
