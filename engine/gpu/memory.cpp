@@ -313,7 +313,8 @@ VkResult Memory::allocate_from_driver(uint64_t bytes, uint32_t allowed, const Ob
     const bool has_priority = device_.traits().has_memory_priority;
     std::vector<uint32_t> types = memory_types(device_.memory_properties(), allowed, object.placement);
     if (types.empty()) fail("device ", device_.traits().name, " has no memory for what the host reads or writes");
-    if (object.placement == Placement::device && !device_.traits().is_integrated) types.resize(1);
+    if (object.placement == Placement::device && !device_.traits().is_integrated)
+        types.erase(types.begin() + 1, types.end());
     VkResult result = VK_SUCCESS;
     for (const uint32_t candidate : types) {
         const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,

@@ -29,9 +29,10 @@ std::optional<ProbeLook> shown_probe(const Session& session, Renderer& renderer,
 
 void Previewer::want(const std::optional<PaintOp>& brush)
 {
-    SHVR_CHECK(!brush || brush->path.size() == 1);
     if (wanted_ == brush) return;
     wanted_ = brush;
+    // Before the copy, g++ 14 would derive from it that some of the copy lies outside of the path.
+    SHVR_CHECK(!wanted_ || wanted_->path.size() == 1);
     if (!wanted_) shown_.reset();
 }
 

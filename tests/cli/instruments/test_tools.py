@@ -1,0 +1,101 @@
+"""The scripts of tools/ that a person runs: what tools/build says while it builds, and which packages tools/setup asks for."""
+import os
+import pty
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[3]
+STEPS = 40
+# In place of cmake: configures nothing, and says of each step what ninja says of it.
+CMAKE = f"""#!/bin/bash
+[[ $1 == --build ]] || exit 0
+for i in $(seq {STEPS}); do echo "[$i/{STEPS}] Building CXX object some/folder/part_$i.o"; done
+echo "part.cpp:1: error: made up" >&2
+exit "${{BUILD_STATUS:-0}}"
+"""
+# In place of dpkg-query, where nothing is installed, and of apt-get, which says what it was asked for.
+APT = """#!/bin/bash
+[[ " $* " != *" install "* ]] || printf '%s\\n' "$@" >> "$ASKED"
+"""
+
+
+class Tools(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp(prefix="shvr-tools-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        (self.folder / "tools").mkdir()
+        (self.folder / "bin").mkdir()
+        for name in ("build", "setup", "packages.txt"):
+            shutil.copy(ROOT / "tools" / name, self.folder / "tools" / name)
+        self.environment = os.environ | {"PATH": f"{self.folder / 'bin'}:{os.environ['PATH']}",
+                                         "ASKED": str(self.folder / "asked")}
+
+    def replace(self, program, text):
+        path = self.folder / "bin" / program
+        path.write_text(text, encoding="utf-8")
+        path.chmod(0o755)
+
+    def build(self, **options):
+        self.replace("cmake", CMAKE)
+        return subprocess.run([self.folder / "tools/build", "dev", "all"], check=False, text=True, **options)
+
+    def test_a_build_says_sparsely_how_far_it_is(self):
+        result = self.build(env=self.environment, capture_output=True)
+        self.assertEqual((result.returncode, result.stdout), (0, ""))
+        said = re.findall(rf"step (\d+) of {STEPS}$", result.stderr, re.MULTILINE)
+        self.assertEqual([int(step) for step in said], [STEPS * tenth // 10 for tenth in range(1, 11)])
+        log = (self.folder / "build/dev/log.txt").read_text(encoding="utf-8")
+        self.assertEqual(log.count("Building CXX object"), STEPS)
+        self.assertIn("made up", log)
+
+    def test_on_a_terminal_one_line_is_written_over(self):
+        ours, theirs = pty.openpty()
+        result = self.build(env=self.environment, stderr=theirs, stdout=subprocess.PIPE)
+        os.close(theirs)
+        said = os.read(ours, 65536).decode()
+        os.close(ours)
+        self.assertEqual(result.returncode, 0)
+        self.assertIn(f"\rbuilding dev: step {STEPS} of {STEPS}, part_{STEPS}.o\x1b[K", said)
+        self.assertTrue(said.endswith("\r\x1b[K"), said[-40:])  # the line is gone in the end
+        self.assertEqual(said.count("\n"), 1)  # that of the announcement
+
+    def test_a_build_that_fails_says_why(self):
+        result = self.build(env=self.environment | {"BUILD_STATUS": "1"}, capture_output=True)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("part.cpp:1: error: made up", result.stderr)
+        self.assertIn("the build of preset dev failed", result.stderr.splitlines()[-1])
+
+    def asked_packages(self, *options):
+        self.replace("dpkg-query", "#!/bin/bash\n")
+        self.replace("apt-get", APT)
+        self.replace("df", "#!/bin/bash\necho Avail\necho 99999999\n")
+        self.replace("sudo", '#!/bin/bash\nexec "$@"\n')
+        result = subprocess.run([self.folder / "tools/setup", *options], env=self.environment, check=False, text=True,
+                                capture_output=True)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        asked = (self.folder / "asked").read_text(encoding="utf-8").split()
+        (self.folder / "asked").unlink()
+        return set(asked[asked.index("--no-install-recommends") + 1:])
+
+    def test_what_only_tests_need_is_asked_for_by_them_alone(self):
+        to_run, to_test = self.asked_packages(), self.asked_packages("--checks")
+        self.assertLess(to_run, to_test)
+        self.assertLessEqual({"cmake", "g++", "libimgui-dev", "mesa-vulkan-drivers"}, to_run)
+        self.assertLessEqual({"shellcheck", "xvfb", "python3-zarr"}, to_test - to_run)
+
+    def test_each_package_has_a_name_for_each_release(self):
+        table = (ROOT / "tools/packages.txt").read_text(encoding="utf-8")
+        rows = [line.split(maxsplit=3) for line in table.splitlines() if line and line[0] not in "#["]
+        self.assertGreater(len(rows), 30)
+        for row in rows:
+            self.assertEqual(len(row), 4, row)
+            for name in row[:3]:
+                self.assertRegex(name, r"^([a-z0-9][a-z0-9+.-]+|=|-)$", row)
+
+
+if __name__ == "__main__":
+    unittest.main()
