@@ -17,7 +17,7 @@ struct GLFWwindow;
 namespace shvr::ui {
 
 #if IMGUI_VERSION_NUM >= 19200
-#error "Dear ImGui 1.92 draws glyphs and uploads fonts in another way than 1.86 to 1.91, which the window is written for"
+#error "expected Dear ImGui 1.86 to 1.91: later ones handle fonts in another way"
 #elif IMGUI_VERSION_NUM >= 18700
 inline constexpr ImGuiKey KEYPAD_ENTER = ImGuiKey_KeypadEnter;
 #else

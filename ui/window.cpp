@@ -256,8 +256,7 @@ std::vector<InputEvent> Window::wait_events(double timeout_s)
 
 void Window::tell_ui(const InputEvent& event)
 {
-    if (const auto* text = std::get_if<TextEvent>(&event.what))
-        tell_imgui_character(input_->window, text->character);
+    if (const auto* text = std::get_if<TextEvent>(&event.what)) tell_imgui_character(input_->window, text->character);
     const auto* const key = std::get_if<KeyEvent>(&event.what);
     if (!key || key->repeated || key->key < 0) return;
     if (key->pressed) input_->pressed.push_back(key->key);
