@@ -22,8 +22,8 @@ std::string glfw_error()
     return description ? description : "no reason given";
 }
 
-/// GLFW 3.4 prefers Wayland, which tells a window neither where it is nor which screen that is on, and where nobody but
-/// the compositor can move the pointer, as tests do. With X11 (there, Xwayland) all versions do the same.
+/// GLFW 3.4 prefers Wayland, which tells a window neither where it is nor which screen that is on, and lets no program
+/// but the compositor move the pointer, as tests do. With X11 (there, Xwayland) all versions do the same.
 bool start_glfw()
 {
 #ifdef GLFW_PLATFORM  // since 3.4
