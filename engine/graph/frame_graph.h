@@ -1,14 +1,14 @@
 #pragma once
 // The frame graph: the work of one frame, as plain data. It does not depend on Vulkan and is tested without a device.
 //
-// A frame is declared anew each time, in order, by ordinary code: a pass is a function from handles to handles, a
-// condition is an `if`. Writing a resource gives a new version of its handle and invalidates the old one, so that a
+// A frame is declared from scratch each time, in order, by ordinary code: a pass is a function from handles to handles,
+// a condition is an `if`. Writing a resource gives a new version of its handle and invalidates the old one, so that a
 // wrong order cannot be expressed: a stale handle is refused with the resource, both versions and the line of the pass
 // that invalidated it. `compile()` drops unused passes and derives the barriers; the result is a list of steps, which
 // an executor records and which tests and `shvr profile --graph` print. A handle exists only after the pass that made
 // it, so the order of declaration is a valid order, and steps keep it.
 //
-// Images stay in one layout (GENERAL), so hazards are global stage-to-stage memory barriers, at most one a step.
+// Images stay in one layout (GENERAL), so hazards are global stage-to-stage memory barriers, at most one per step.
 //
 // One thread builds and compiles a graph. Errors in a graph are programming errors, but they are thrown as `Error` so
 // that tests can check each of them.
@@ -39,7 +39,7 @@ struct ResourceDesc {
     enum class Kind : uint8_t { buffer, image };
     Kind kind = Kind::buffer;
     Format format = Format::r32_uint;  ///< images
-    bool is_flat = false;              ///< images: 2-D, whose sides may be longer than those of a 3-D one; z is 1
+    bool is_flat = false;              ///< images: 2-D, with a larger size limit than 3-D images; z is 1
     glm::uvec3 texels{1};              ///< images; z == 1 may still be a 3-D image
     uint64_t bytes = 0;                ///< buffers: size; images: texels * bytes per texel
     bool operator==(const ResourceDesc&) const = default;
@@ -61,10 +61,10 @@ using Stages = uint8_t;
 inline constexpr Stages STAGE_COMPUTE = 1;
 inline constexpr Stages STAGE_TRANSFER = 2;
 inline constexpr Stages STAGE_HOST = 4;
-inline constexpr Stages STAGE_COUNTS = 8;  ///< a dispatch asks how many groups there are
+inline constexpr Stages STAGE_COUNTS = 8;  ///< a dispatch reads its group counts (indirect dispatch)
 std::string names_of(Stages stages);
 
-/// What is in flight on a resource. Carried from frame to frame for imported resources.
+/// Accesses in flight on a resource. Carried from frame to frame for imported resources.
 struct ResourceState {
     Stages written_by = 0;   ///< stages of the last write
     Stages visible_to = 0;   ///< stages that can see the last write
@@ -94,7 +94,7 @@ struct Binding {
     uint32_t resource = 0;
     bool reads = false;
     bool writes = false;
-    bool is_count = false;  ///< of groups (Pass::dispatch_counted); the kernel does not see it
+    bool is_count = false;  ///< the buffer of group counts (Pass::dispatch_counted); the kernel does not see it
 };
 
 struct ImageRegion {
@@ -119,7 +119,7 @@ struct PassData {
     std::vector<std::pair<std::string, std::vector<std::byte>>> blocks;  ///< small read-only buffers by block name
     glm::uvec3 threads{0};
     glm::uvec3 tile{0};       ///< threads per dispatch, 0 = all at once; limits the time of one dispatch
-    bool is_counted = false;  ///< threads and tile are the most that there may be, along x
+    bool is_counted = false;  ///< `threads` and `tile` are upper bounds along x
     uint32_t fill_value = 0;
     uint32_t read_back = 0;  ///< index into FrameResult::read_backs
     std::vector<ImageRegion> image_regions;
@@ -151,13 +151,13 @@ public:
         static_assert(std::is_trivially_copyable_v<T>);
         add_block(name, std::as_bytes(values));
     }
-    /// In threads, not groups: the group size comes from the kernel. A tile splits the work into several dispatches,
-    /// and into several short submissions. Tiles must be multiples of the group size.
+    /// `threads` counts threads, not groups: the group size comes from the kernel. A tile splits the work into several
+    /// dispatches, and into several short submissions. Tiles must be multiples of the group size.
     void dispatch(const glm::uvec3& threads, const glm::uvec3& tile = glm::uvec3(0));
-    /// As many groups as a buffer says once the passes before have run, along x: three words for each dispatch, how
-    /// many there are along each axis. `threads` and `tile` are the most that there can be, in all and in a dispatch.
-    /// The kernel's push constant is a word, the groups that the dispatches before this one have at most. The buffer is
-    /// one of this frame alone.
+    /// Runs, along x, as many groups as a buffer states after the earlier passes have run: three words per dispatch,
+    /// the group counts along each axis. `threads` and `tile` are upper bounds, for the whole pass and for one
+    /// dispatch. The kernel's push constant is one word: the upper bound of the groups in the preceding dispatches. The
+    /// buffer must be a transient resource of this frame.
     void dispatch_counted(Resource counts, const glm::uvec3& threads, const glm::uvec3& tile);
 
 private:
@@ -179,8 +179,8 @@ struct CompiledGraph {
     std::vector<Step> steps;
     std::vector<ResourceState> final_states;  ///< per resource
     std::vector<bool> used;                   ///< per resource: does a pass that is kept use it?
-    /// Per resource: whose memory it takes. Its own, or that of an equal resource of this frame which no later step
-    /// needs (that may have taken it from another: this names the first).
+    /// Per resource: the resource whose memory it uses. Either itself, or an equal resource of this frame that no later
+    /// step needs (of a chain of such resources, the first).
     std::vector<uint32_t> memory_of;
 };
 
@@ -207,7 +207,7 @@ public:
     /// variants: ...", in any order. Fails if one is unknown, missing or named twice.
     Pass compute(const std::string& kernel, std::initializer_list<VariantChoice> choices, const std::string& name = {},
                  Location at = Location::current());
-    /// Every 4 bytes of a buffer, or every texel of an image of whole numbers.
+    /// Fills every 4 bytes of a buffer, or every texel of an integer image.
     [[nodiscard]] Resource fill(Resource target, uint32_t value, const std::string& name = "fill",
                                 Location at = Location::current());
     [[nodiscard]] Resource copy_to_image(Resource buffer, Resource image, std::vector<ImageRegion> regions,
@@ -217,7 +217,7 @@ public:
     /// Returns the whole resource to the host as bytes once the frame is done; keeps the passes that made it. The
     /// result is an index into `FrameResult::read_backs`.
     uint32_t read_back(Resource resource, const std::string& name = {}, Location at = Location::current());
-    /// A later graph is likely to run that kernel: an executor may compile it meanwhile.
+    /// Hints that a later graph is likely to run that kernel, so that an executor may compile it in the background.
     void expect(KernelVariant kernel) { expected_.push_back(std::move(kernel)); }
 
     /// Keeps the passes that made `resource`, even if nothing in this graph reads it.
@@ -225,11 +225,11 @@ public:
 
     CompiledGraph compile() const;
 
-    /// Whoever counts on what this graph will do, as soon as it is declared, says here how to forget that: called, the
-    /// last one first, if the graph and its copies go without having been submitted. `undo` must not fail, and what it
+    /// Registers a rollback of state that already assumes this graph will run. If the graph and all copies are
+    /// destroyed without being submitted, rollbacks run in reverse order. `undo` must not fail, and everything it
     /// refers to must outlive the graph.
     void unless_submitted(std::function<void()> undo);
-    /// It will run: for executors.
+    /// Marks the graph as submitted, so that no rollback runs. For executors.
     void note_submitted() const;
 
     struct ResourceData {
@@ -237,10 +237,10 @@ public:
         ResourceDesc desc;
         bool imported = false;
         uint32_t import_id = 0;
-        ResourceState state;  ///< before the frame; of a resource of the frame alone: nothing is in flight
+        ResourceState state;  ///< before the frame; for resources of this frame alone, nothing is in flight
         uint32_t version = 0;
         std::vector<uint32_t> writers;    ///< pass that made version i + 1
-        std::vector<std::byte> contents;  ///< of an upload
+        std::vector<std::byte> contents;  ///< the bytes of an upload
         bool kept = false;
     };
     const std::vector<PassData>& passes() const { return passes_; }

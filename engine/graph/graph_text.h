@@ -11,7 +11,7 @@ namespace shvr {
 /// A step's barrier as text: "compute -> transfer", with "(order only)" for an execution barrier without memory.
 std::string to_text(const Barrier& barrier);
 
-/// For `dot`: boxes are passes, in order of execution; ellipses are resources, double-lined if they outlive the frame;
+/// For `dot`: boxes are passes in order of execution; ellipses are resources, double-lined if they outlive the frame;
 /// culled items are dashed and grey. A box shows the barrier before its pass.
 std::string to_graphviz(const FrameGraph& graph, const CompiledGraph& compiled);
 

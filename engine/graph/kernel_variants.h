@@ -1,6 +1,6 @@
 #pragma once
 // The macros that a kernel may be compiled with: those in the line "// variants: A B" of shaders/NAME.comp. The build
-// generates the table (tools/embed_kernels.cmake) and compiles every subset, so that the order is stated in one place
+// generates the table (tools/embed_kernels.cmake) and compiles every subset, so that their order is stated in one place
 // only. Any thread.
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace shvr {
 
-/// A compiled kernel's name, and its specialization constants in the order in which the pass gives them.
+/// A compiled kernel's name and its specialization constants, in the order in which the pass sets them.
 using KernelVariant = std::pair<std::string, std::vector<std::pair<std::string, uint32_t>>>;
 
 /// A macro of a kernel, and its value.
@@ -26,7 +26,7 @@ struct KernelVariants {
     std::string_view kernel;                   ///< "raycast" for shaders/raycast.comp
     std::span<const std::string_view> macros;  ///< in the kernel's order; empty where it has no variants
 };
-/// Of all kernels with variants.
+/// The tables of all kernels that have variants.
 std::span<const KernelVariants> kernel_variants();
 
 /// The name of the compiled kernel: "raycast" with PAGED and MASKED is "raycast_paged_masked". `choices` names each
