@@ -18,33 +18,33 @@
 
 namespace shvr::gpu {
 
-/// The device stopped answering: its driver was reset, or it was taken away. All that was on it is gone, and every
-/// later call fails likewise, until the device is made anew.
+/// The device stopped responding: its driver was reset, or it was removed. Everything on it is lost, and every later
+/// call fails in the same way until the device is re-created.
 class DeviceLost : public Error {
 public:
     using Error::Error;
 };
 
-/// There is not the memory that is needed: the driver has none left, or a budget (memory.h) does not hold it.
+/// Out of memory: the driver has none left, or a budget (memory.h) would be exceeded.
 class MemoryError : public Error {
 public:
     using Error::Error;
 };
 
-/// Throws `Error`, naming the call and the result, if `result` is a failure; `DeviceLost` or `MemoryError`, if it is
-/// that.
+/// Throws if `result` is a failure: `DeviceLost` or `MemoryError` where it means that, otherwise `Error`. The message
+/// names the call and the result.
 void check(VkResult result, const char* call);
 #define SHVR_VK(call) ::shvr::gpu::check(call, #call)
 
 struct DeviceOptions {
     std::string device;        ///< part of the device's name, or its index; empty: $SHVR_DEVICE, else the best
     bool validation = false;   ///< Khronos layer with synchronisation validation; fails where it is not installed
-    bool looks_ahead = false;  ///< on a GPU, compiles what graphs expect later ones to run (FrameGraph::expect)
-    /// What is read beside a buffer is 0 or of that buffer, and nothing is written there. Validation that looks for
-    /// such accesses finds none with it.
+    bool looks_ahead = false;  ///< on a GPU, compiles kernels that graphs expect to need later (FrameGraph::expect)
+    /// Out-of-bounds reads return 0 or data of the same buffer, and out-of-bounds writes are discarded. It hides such
+    /// accesses from the validation layer.
     bool robust_buffers = true;
     std::vector<std::string> instance_extensions;  ///< those for a window's surface; if any, the device can present
-    /// Whether a queue of a family can show pictures in the window; null: nobody asks.
+    /// Whether a queue family can present to the window; null: presentation is not required.
     std::function<bool(VkInstance, VkPhysicalDevice, uint32_t family)> can_present{};
 };
 
@@ -53,8 +53,8 @@ struct DeviceTraits {
     std::string name;
     std::string driver;   ///< name and version
     bool is_cpu = false;  ///< lavapipe and other software devices
-    /// Of a software device: each takes an equal run of a dispatch's workgroups (lavapipe's do, in the order of their
-    /// numbers), and the dispatch ends with the slowest.
+    /// Threads of a software device: each runs an equal, contiguous share of a dispatch's workgroups (lavapipe's do, in
+    /// index order), and the dispatch ends with the slowest.
     uint32_t cpu_threads = 1;
     bool is_integrated = false;      ///< it shares the host's memory
     float nanoseconds_per_tick = 0;  ///< 0: no timestamps
@@ -65,9 +65,9 @@ struct DeviceTraits {
     /// The largest device-local heap, as reported; where the device is integrated, the largest heap.
     uint64_t device_bytes = 0;
     VkPhysicalDeviceLimits limits{};
-    uint64_t max_allocation_bytes = 0;  ///< of one buffer or image, as its memory is one allocation
+    uint64_t max_allocation_bytes = 0;  ///< upper limit of one buffer or image, as each needs a single allocation
     uint64_t max_buffer_bytes = 0;
-    uint64_t max_volume_bytes = 0;     ///< of a 3-D image of codes; no more than one allocation holds
+    uint64_t max_volume_bytes = 0;     ///< upper limit of a 3-D image of codes; at most one allocation
     bool tells_memory_left = false;    ///< VK_EXT_memory_budget
     bool tells_faults = false;         ///< VK_EXT_device_fault
     bool has_memory_priority = false;  ///< VK_EXT_memory_priority
@@ -100,8 +100,8 @@ public:
     const DeviceTraits& traits() const { return traits_; }
     bool looks_ahead() const { return looks_ahead_; }
     const VkPhysicalDeviceMemoryProperties& memory_properties() const { return memory_properties_; }
-    /// How much of the heap of `device_bytes` the driver would still give this program, beside all others; null where
-    /// it does not tell.
+    /// Bytes of the heap counted in `device_bytes` that the driver still grants to this program, given all other
+    /// programs' use; null if it does not report that.
     std::optional<uint64_t> heap_bytes_left() const;
 
     /// Names an object for validation messages, captures and traces.
@@ -109,15 +109,16 @@ public:
     void begin_label(VkCommandBuffer commands, const std::string& name) const;
     void end_label(VkCommandBuffer commands) const;
 
-    /// As gpu::check, for calls that tell of a lost device: with what its driver says of it.
+    /// As gpu::check, for calls that can report a lost device: adds the driver's fault report to the message.
     void check(VkResult result, const char* call) const;
 
-    /// Waits for all that was submitted. The second one does so where nobody can be told that it failed.
+    /// Waits for everything submitted. The second form is for places that cannot report a failure.
     void wait_idle();
     void wait_idle_or_lost() noexcept;
 
-    // The queue ends submissions in the order in which they came, whoever made them. Who submits takes a number for it
-    // afterwards, and says once its fence is seen signalled: so everybody knows what the device is done with.
+    // The queue completes submissions in the order in which they were made, whoever made them. A submitter takes a
+    // number for its submission afterwards and reports when its fence is signalled, so that the device's progress is
+    // known to all.
     uint64_t note_submission() { return ++submitted_; }
     void note_done(uint64_t number) { done_ = std::max(done_, number); }
     uint64_t submitted() const { return submitted_; }
@@ -125,7 +126,7 @@ public:
 
     /// Messages of the validation layer so far (warnings and errors), oldest first; empties the list.
     std::vector<std::string> take_validation_messages();
-    /// Whether the layer looks on.
+    /// Whether the validation layer is active.
     bool is_validated() const { return messenger_ != VK_NULL_HANDLE; }
 
 private:
@@ -148,7 +149,7 @@ private:
     uint64_t submitted_ = 0, done_ = 0;  ///< numbers of submissions
     DeviceTraits traits_;
     VkPhysicalDeviceMemoryProperties memory_properties_{};
-    uint32_t heap_ = 0;  ///< that of traits_.device_bytes
+    uint32_t heap_ = 0;  ///< the heap counted in traits_.device_bytes
     PFN_vkSetDebugUtilsObjectNameEXT set_name_ = nullptr;
     PFN_vkCmdBeginDebugUtilsLabelEXT begin_label_ = nullptr;
     PFN_vkCmdEndDebugUtilsLabelEXT end_label_ = nullptr;

@@ -1,6 +1,6 @@
 #pragma once
-// What the kernels need of a device beyond what Vulkan 1.3 promises, which some devices might not have. A test compares
-// it with the kernels (tests/unit/device/device_needs_test.cpp). Any thread.
+// Device capabilities that the kernels require beyond Vulkan 1.3's guarantees, which some devices may lack. A test
+// compares them with the kernels (tests/unit/device/device_needs_test.cpp). Any thread.
 
 #include <cstdint>
 #include <optional>
@@ -11,20 +11,20 @@
 
 namespace shvr::gpu {
 
-/// The most that one kernel binds, or holds.
+/// The maximum that any one kernel binds or uses.
 inline constexpr uint32_t MAX_STORAGE_IMAGES = 13, MAX_STORAGE_BUFFERS = 7, MAX_SAMPLED_IMAGES = 4;
 inline constexpr uint32_t MAX_PUSH_BYTES = 128, MAX_GROUP_THREADS = 128, MAX_SHARED_BYTES = 10592;
-/// The largest buffer that is bound whatever the volume: the parents of a region of 256^3 voxels (regions/).
+/// The largest buffer bound regardless of volume size: the parents of a region of 256^3 voxels (regions/).
 inline constexpr uint32_t MIN_BUFFER_BYTES = 64u << 20;
 
-/// What a device says of itself.
+/// Capabilities that a device reports.
 struct DeviceHas {
     VkPhysicalDeviceLimits limits{};
     uint64_t max_buffer_bytes = 0;
-    VkFormatFeatureFlags r8_uint = 0, r32_uint = 0;  ///< of images with optimal tiling
+    VkFormatFeatureFlags r8_uint = 0, r32_uint = 0;  ///< features of images with optimal tiling
 };
 
-/// Why such a device cannot run the kernels, in words: what it has and what is expected; null: it can.
+/// Why such a device cannot run the kernels, as a message that states what it has and what is expected; null: it can.
 std::optional<std::string> why_too_limited(const DeviceHas& has);
 
 /// One of the machine's devices.
@@ -33,10 +33,10 @@ struct DeviceRow {
     VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
     bool has_1_3 = true;
     bool computes = true;
-    bool presents = true;  ///< shows pictures in the window, where there is one
+    bool presents = true;  ///< can present to the window, if there is one
 };
-/// The index of the one to use: of those that can all this, hardware before software, discrete before integrated.
-/// `wanted`: part of a name, or an index; empty: any. Fails with what was found.
+/// Returns the index of the device to use: among those that meet all requirements, hardware before software, discrete
+/// before integrated. `wanted`: part of a name, or an index; empty: any. On failure, lists the devices found.
 size_t best_device(const std::vector<DeviceRow>& rows, const std::string& wanted);
 
 }  // namespace shvr::gpu

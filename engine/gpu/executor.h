@@ -6,7 +6,7 @@
 //     if (frame.done()) use(frame.finish());                          // or finish(), which waits
 //
 // Frames run on the device in submission order, and each knows what earlier frames left in flight. A frame is one queue
-// submission, unless it would take long by what its passes have cost so far (pass_costs.h): then it is several, cut
+// submission unless its passes' past costs predict that it would take long (pass_costs.h); then it is several, split
 // between the tiles of passes and the parts of copies. Callers that must let other work run in between make several
 // small frames and keep few of them in flight. One thread at a time.
 
@@ -22,10 +22,10 @@
 
 namespace shvr::gpu {
 
-/// Work counters of one pass, as the kernel counted them (shaders/counters.h names them).
+/// Work counters per pass, as counted by the kernel (shaders/counters.h names them).
 inline constexpr size_t COUNTERS = 16;
-/// Rows of counters of a pass that counts what each of its threads does (a power of two): kernels spread their groups
-/// over them, the report has the sums.
+/// Counter rows of a pass that counts the work of every thread (a power of two): kernels spread their groups over the
+/// rows to reduce contention, and the report holds the sums.
 inline constexpr size_t COUNTER_ROWS = 64;
 
 struct PassReport {
@@ -35,15 +35,16 @@ struct PassReport {
     double gpu_ms = 0.0;    ///< 0 where the device has no timestamps, see `timed`
     bool timed = false;
     std::chrono::steady_clock::time_point recorded{};  ///< when the host began to record it
-    double record_ms = 0.0;                            ///< that the host took to bind and record it
+    double record_ms = 0.0;                            ///< host time to bind and record it
     uint32_t dispatches = 0;
-    uint32_t tiles = 0;              ///< dispatches that its declaration asks for; more are for a device that was slow
-    uint32_t submissions = 0;        ///< that hold parts of it
-    uint64_t bytes = 0;              ///< total size of the resources it binds: what it may touch
+    uint32_t tiles = 0;              ///< dispatches that its declaration asks for; on a slow device it is split into
+                                     ///< more
+    uint32_t submissions = 0;        ///< submissions that hold parts of it
+    uint64_t bytes = 0;              ///< total size of the resources it binds: an upper bound of what it accesses
     std::string barrier;             ///< "compute -> transfer", empty if none
     std::vector<uint64_t> counters;  ///< empty where the kernel has none
-    uint32_t counted_rows = 0;       ///< rows of counters in which something was counted
-    /// Threads that ran, as the device counts them; null: it was not asked, cannot tell, or the pass is in too many
+    uint32_t counted_rows = 0;       ///< rows of counters in which anything was counted
+    /// Threads that ran, as counted by the device; null: not requested, not supported, or the pass spans too many
     /// submissions.
     std::optional<uint64_t> invocations;
 };
@@ -57,7 +58,7 @@ struct FrameResult {
 
 class Executor;
 
-/// A frame in flight. Move-only; destroying it waits for the device. Must not outlive the executor.
+/// A frame in flight. Move-only; the destructor waits for the device. Must not outlive the executor.
 class Submission {
 public:
     Submission();
@@ -93,15 +94,16 @@ public:
     Executor(const Executor&) = delete;
     Executor& operator=(const Executor&) = delete;
 
-    /// Compiles, records and submits. Afterwards imported objects carry the states that the frame will leave. Where it
-    /// fails nothing is kept of the frame, and the graph's undoing is left to run (FrameGraph::unless_submitted).
+    /// Compiles, records and submits. Afterwards imported objects carry the states that the frame will leave. On
+    /// failure the frame is discarded, and the graph's rollbacks still run when it is destroyed
+    /// (FrameGraph::unless_submitted).
     Submission submit(FrameGraph graph, const Options& options);
     Submission submit(FrameGraph graph) { return submit(std::move(graph), Options{}); }
     /// Submits and waits.
     FrameResult run(FrameGraph graph, const Options& options) { return submit(std::move(graph), options).finish(); }
     FrameResult run(FrameGraph graph) { return run(std::move(graph), Options{}); }
 
-    /// How many kernels that graphs expect (FrameGraph::expect) are still to be compiled.
+    /// Number of kernels expected by graphs (FrameGraph::expect) that are still to be compiled.
     size_t expected_kernels() const { return kernels_.expected(); }
 
     /// Frees the memory of transient resources that the last `runs` runs did not use.
@@ -114,10 +116,10 @@ private:
         Placement placement;
         uint64_t last_run = 0;
         bool taken = false;
-        bool is_counted_in = false;  ///< by kernels
+        bool is_counted_in = false;  ///< kernels add to counters in it
         Storage storage;
     };
-    /// Where the host reads or writes, the storage may be larger than that.
+    /// Host-visible storage may be larger than `wanted`.
     Storage& take_transient(const std::string& name, const ResourceDesc& wanted, Placement placement,
                             bool is_counted_in = false);
 
@@ -127,7 +129,7 @@ private:
     VkSampler sampler_ = VK_NULL_HANDLE;
     uint64_t runs_ = 0;
     PassCosts costs_;
-    std::vector<std::unique_ptr<FrameObjects>> idle_objects_;  ///< for the next frames
+    std::vector<std::unique_ptr<FrameObjects>> idle_objects_;  ///< for reuse by the next frames
     std::vector<std::unique_ptr<Transient>> transients_;
 };
 

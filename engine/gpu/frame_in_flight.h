@@ -1,6 +1,6 @@
 #pragma once
-// A graph in flight, from its declaration to its results, for executor.cpp alone: what it takes of memory and of the
-// driver (frame_prepare.cpp), its commands (frame_record.cpp, frame_copies.cpp), what comes back (frame_collect.cpp).
+// A graph in flight, from its declaration to its results, for executor.cpp alone: the memory and driver objects it
+// needs (frame_prepare.cpp), its commands (frame_record.cpp, frame_copies.cpp) and its results (frame_collect.cpp).
 
 #include <chrono>
 #include <memory>
@@ -18,7 +18,7 @@ inline uint64_t aligned(uint64_t bytes, uint64_t alignment)
     return (bytes + alignment - 1) / alignment * alignment;
 }
 
-/// Of a barrier, for the driver.
+/// Vulkan's stages and accesses of a barrier.
 VkPipelineStageFlags2 vulkan_stages(Stages stages);
 VkAccessFlags2 touched_by(Stages stages);
 void record_barrier(VkCommandBuffer commands, const Barrier& barrier);
@@ -29,7 +29,7 @@ inline glm::uvec3 groups_for(const glm::uvec3& threads, const glm::uvec3& local)
     return (threads + local - 1u) / local;
 }
 uint64_t threads_of(const glm::uvec3& groups, const glm::uvec3& local);
-/// All threads of a pass, those of half-empty groups included.
+/// All threads of a pass, including those of partly filled groups.
 uint64_t threads_of(const PassData& pass, const Kernel& kernel);
 
 /// One graph in flight: everything that lives until the device has finished it.
@@ -43,17 +43,18 @@ struct Submission::Frame {
     std::vector<Storage*> read_backs;
     Storage* blocks = nullptr;
     Storage* counters = nullptr;
-    Storage* work_counters = nullptr;  // where kernels count, if they count much: copied to `counters` at the end
-    uint64_t counter_bytes = 0;        // of each pass
+    Storage* work_counters = nullptr;  // counters in device memory, where kernels count much: copied to `counters` at
+                                       // the end
+    uint64_t counter_bytes = 0;        // bytes per pass
     std::unique_ptr<FrameObjects> objects;
     bool is_timed = false;
     std::vector<size_t> counted_steps;  // per query of statistics
-    uint32_t statistics_room = 0;       // queries; 0: none is made
+    uint32_t statistics_room = 0;       // capacity in queries; 0: no pool is created
     bool is_in_query = false;
-    uint64_t number = 0;                  // of its last submission; 0: none
+    uint64_t number = 0;                  // number of its last submission; 0: none
     std::vector<VkCommandBuffer> chunks;  // one submission each
-    double chunk_ms = 0.0;                // estimated, of the last one so far
-    VkPipeline in_use = VK_NULL_HANDLE;   // bound there
+    double chunk_ms = 0.0;                // estimated time of the last chunk so far
+    VkPipeline in_use = VK_NULL_HANDLE;   // the pipeline bound in it
     std::chrono::steady_clock::time_point started;
     struct Prepared {
         const Kernel* kernel = nullptr;

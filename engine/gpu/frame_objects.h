@@ -1,6 +1,7 @@
 #pragma once
-// What a frame in flight needs of the driver beside memory: a fence, command buffers, queries and descriptors. Made
-// once and used again by later frames, since making them takes drivers longer than using them. One thread at a time.
+// The driver objects of a frame in flight, apart from memory: a fence, command buffers, queries and descriptors. They
+// are created once and reused by later frames, because creating them costs drivers more than using them. One thread at
+// a time.
 
 #include <map>
 #include <vector>
@@ -12,7 +13,7 @@ namespace shvr::gpu {
 class FrameObjects {
 public:
     struct Needs {
-        uint32_t queries = 0;     ///< of timestamps
+        uint32_t queries = 0;     ///< timestamp queries
         uint32_t statistics = 0;  ///< queries of compute invocations
         uint32_t sets = 0;
         std::map<VkDescriptorType, uint32_t> descriptors;
@@ -22,10 +23,10 @@ public:
     FrameObjects(const FrameObjects&) = delete;
     FrameObjects& operator=(const FrameObjects&) = delete;
 
-    /// Ready for another frame; the device must be done with the one before. Throws where memory is short; it may be
-    /// called again afterwards.
+    /// Prepares the objects for another frame; the device must have finished the previous one. Throws when out of
+    /// memory, after which it may be called again.
     void renew(const Needs& needs);
-    /// Another command buffer of this frame, begun.
+    /// Begins another command buffer of this frame.
     VkCommandBuffer begin_commands();
     VkDescriptorSet allocate(VkDescriptorSetLayout layout);
 
@@ -45,10 +46,10 @@ private:
     VkFence fence_ = VK_NULL_HANDLE;
     VkCommandPool pool_ = VK_NULL_HANDLE;
     std::vector<VkCommandBuffer> commands_;
-    size_t begun_ = 0;  ///< of the command buffers
+    size_t begun_ = 0;  ///< command buffers in use
     Queries queries_, statistics_;
     VkDescriptorPool descriptors_ = VK_NULL_HANDLE;
-    Needs room_;  ///< in the descriptor pool
+    Needs room_;  ///< capacity of the descriptor pool
 };
 
 }  // namespace shvr::gpu

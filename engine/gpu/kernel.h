@@ -76,8 +76,8 @@ private:
     VkPipeline pipeline_ = VK_NULL_HANDLE;
 };
 
-/// All kernels of the program, created on first use. On a GPU a thread of their own makes those that were used the last
-/// time (pipeline_cache.h), from the start on, and then those that are expected. One thread asks.
+/// All kernels of the program, created on first use. On a GPU a worker thread compiles those used in the last run
+/// (pipeline_cache.h) from the start, then those that are expected. `get` is for one thread.
 class Kernels {
 public:
     explicit Kernels(Device& device);
@@ -85,12 +85,13 @@ public:
     Kernels(const Kernels&) = delete;
     Kernels& operator=(const Kernels&) = delete;
 
-    /// On failure, names the known kernels or the known constants. Waits where that thread is at this kernel.
+    /// On failure, lists the known kernels or constants. Waits if the worker is compiling this kernel.
     const Kernel& get(const std::string& name, const std::vector<std::pair<std::string, uint32_t>>& constants);
     const KernelInterface& interface(const std::string& name);
-    /// They are likely to be asked for; where the device looks ahead (gpu::DeviceOptions) that thread makes them.
+    /// Hints that these kernels are likely to be needed; the worker compiles them if the device looks ahead
+    /// (gpu::DeviceOptions).
     void expect(std::span<const KernelVariant> variants);
-    /// How many that thread has still to make.
+    /// Number of kernels that the worker has still to compile.
     size_t expected() const;
 
 private:
@@ -101,7 +102,7 @@ private:
     struct Made {
         std::unique_ptr<Kernel> kernel;
         bool is_in_work = false;
-        bool is_used = false;  ///< by the one who asks
+        bool is_used = false;  ///< `get` has returned it
     };
     const Code& code(const std::string& name);
     Made& make(const KernelVariant& variant);
@@ -109,10 +110,10 @@ private:
 
     Device& device_;
     PipelineCache cache_;
-    mutable std::mutex mutex_;  ///< of all that follows
+    mutable std::mutex mutex_;  ///< guards all members below
     std::map<std::string, Code> codes_;
     std::map<KernelVariant, Made> kernels_;
-    std::deque<KernelVariant> expected_;  ///< the first is being made
+    std::deque<KernelVariant> expected_;  ///< the first is being compiled
     std::condition_variable is_made_, has_work_;
     bool ends_ = false;
     std::thread worker_;

@@ -1,6 +1,6 @@
 #pragma once
-// What Tracy (https://github.com/wolfpld/tracy), a profiler that watches a program while it runs, is told: spans of the
-// host, passes of the device, frames of the window. Only in builds with -DSHVR_TRACY=FOLDER, of Tracy's sources; in all
+// Sends data to Tracy (https://github.com/wolfpld/tracy), a profiler that watches a program while it runs: host spans,
+// device passes, window frames. Only in builds with -DSHVR_TRACY=FOLDER, where FOLDER holds Tracy's sources; in all
 // others nothing of it is compiled: no call, no branch, no byte (tests/cli/instruments/test_live_trace.py).
 
 #include <cstdint>
@@ -15,7 +15,7 @@ inline constexpr bool IS_TRACED = true;
 inline constexpr bool IS_TRACED = false;
 #endif
 
-/// A span of the host, from here to the end of the block. Any thread.
+/// A host span, from here to the end of the block. Any thread.
 class TraceSpan {
 public:
 #ifdef SHVR_TRACY
@@ -32,24 +32,24 @@ private:
 #endif
 };
 
-/// A pass of the device; times are ticks of its clock.
+/// A device pass; times are ticks of the device's clock.
 struct TracedPass {
     std::string_view name;
     uint64_t begin = 0, end = 0;
 };
 /// How a device's ticks are read.
 struct DeviceClock {
-    uint64_t device = 0;  ///< tells devices apart
+    uint64_t device = 0;  ///< distinguishes devices
     double nanoseconds_per_tick = 1.0;
-    uint64_t mask = ~uint64_t{0};  ///< of the bits that count
+    uint64_t mask = ~uint64_t{0};  ///< the valid bits
 };
 
 #ifdef SHVR_TRACY
-/// The passes of a frame, in order of execution, once the device is done with it. The clocks of host and device are not
-/// tied to each other: the first frame of a device is drawn to end when it was seen to be done, later ones by their
-/// ticks. One thread.
+/// Sends the passes of a frame, in order of execution, once the device has finished it. The clocks of host and device
+/// are not calibrated against each other: the first frame of a device is shown to end when it was seen to be done,
+/// later ones follow their ticks. One thread.
 void trace_passes(const DeviceClock& clock, std::span<const TracedPass> passes);
-/// The window shows its next picture.
+/// Marks that the window shows its next frame.
 void trace_frame();
 #else
 inline void trace_passes(const DeviceClock&, std::span<const TracedPass>) {}

@@ -1,9 +1,9 @@
 #pragma once
 // Device memory with accounting: every buffer and image has a name, its bytes are counted by name, and two budgets
-// (device, host) are hard limits. Every allocation is checked against its budget first; where it does not fit, or where
-// the driver has none left, idle memory is freed. Small buffers share allocations (memory_block.h), of which drivers
-// allow few, and so do small images. What is given back while the device may still use it is freed once that is over;
-// nobody waits, unless its bytes are needed at once.
+// (device, host) are hard limits. Every allocation is checked against its budget first; if it does not fit, or if the
+// driver has none left, idle memory is freed. Small buffers share allocations (memory_block.h), whose number drivers
+// limit, and so do small images. Memory released while the device may still use it is freed once that use is over; no
+// caller waits for it unless its bytes are needed at once.
 //
 // One thread at a time.
 
@@ -28,22 +28,22 @@ struct Budget {
     uint64_t host_bytes = 0;    ///< 0: 1 GiB of mapped memory
 };
 
-/// Three quarters of the device's memory, or half of it where it is the host's as well; never more than the driver says
-/// is left beside other programs.
+/// Three quarters of the device's memory, or half of it if it is shared with the host; never more than the driver
+/// reports as left by other programs.
 uint64_t automatic_device_bytes(const DeviceTraits& traits, std::optional<uint64_t> left);
 
-/// A budget does not hold what is needed; the message names the budget and a remedy.
+/// The budget would be exceeded; the message names the budget and a remedy.
 class BudgetError : public MemoryError {
 public:
     using MemoryError::MemoryError;
 };
 
-/// Memory types for a placement, the best one first; of those that a resource allows.
+/// Memory types for a placement among those that a resource allows, best first.
 std::vector<uint32_t> memory_types(const VkPhysicalDeviceMemoryProperties& properties, uint32_t allowed,
                                    Placement placement);
 
-/// How much it matters that such memory stays the device's own where other programs leave too little of that (0 to 1,
-/// VK_EXT_memory_priority): what rays look up again and again before pictures, which are written once.
+/// Priority from 0 to 1 (VK_EXT_memory_priority) for keeping such memory on the device when other programs leave too
+/// little: data that rays look up repeatedly ranks above pictures, which are written once.
 float memory_priority(const ResourceDesc& desc, Placement placement);
 
 /// "1.5 MiB", rounded up to a tenth.
@@ -51,7 +51,8 @@ std::string mebibytes(uint64_t bytes);
 
 class Memory;
 
-/// A buffer or an image with its own memory. Move-only. It may go while the device uses it, and never waits.
+/// A buffer or an image with its own memory. Move-only. It may be destroyed while the device uses it; the destructor
+/// never waits.
 class Storage {
 public:
     Storage() = default;
@@ -61,12 +62,12 @@ public:
 
     explicit operator bool() const { return memory_ != nullptr; }
     const ResourceDesc& desc() const;
-    /// What a frame graph needs to import it; the state is the one that the last submitted frame left.
+    /// What a frame graph needs to import it; the state is the one left by the last submitted frame.
     Import import() const;
     /// The mapped bytes of an upload or download buffer.
     std::span<std::byte> mapped() const;
     void reset();
-    /// As reset(), for callers that know that no submission under way uses it.
+    /// As reset(), for callers that know that no submission in flight uses it.
     void reset_idle();
 
 private:
@@ -83,7 +84,7 @@ public:
     Memory(const Memory&) = delete;
     Memory& operator=(const Memory&) = delete;
 
-    /// Why the device cannot hold such a resource however much memory is free, in words; null: it can.
+    /// Why the device could not hold such a resource however much memory is free, as a message; null: it can.
     std::optional<std::string> why_not(const std::string& name, const ResourceDesc& desc,
                                        Placement placement = Placement::device) const;
     bool can_create(const ResourceDesc& desc) const { return !why_not("", desc); }
@@ -91,11 +92,11 @@ public:
     /// never could (`why_not`). `purpose`: what it is for, in the user's words.
     Storage create(const std::string& name, const ResourceDesc& desc, Placement placement = Placement::device,
                    const char* purpose = "a step of the work");
-    /// Set a function that frees memory which is allocated and idle; it is called before a budget refuses.
+    /// Sets a function that frees allocated but idle memory; it is called before an allocation is refused.
     void free_idle_by(std::function<void()> free_idle) { free_idle_ = std::move(free_idle); }
     void free_idle();
 
-    /// Vulkan's side of a storage, for the executor.
+    /// The Vulkan objects of a storage, for the executor.
     struct Object {
         std::string name;
         ResourceDesc desc;
@@ -105,18 +106,18 @@ public:
         VkImageView view = VK_NULL_HANDLE;
         VkDeviceMemory memory = VK_NULL_HANDLE;
         uint64_t offset = 0;           ///< in `memory`
-        MemoryBlock* block = nullptr;  ///< that `memory` belongs to; null: to this object alone
-        uint64_t bytes = 0;            ///< as counted by the device
+        MemoryBlock* block = nullptr;  ///< the block that `memory` belongs to; null: memory of this object alone
+        uint64_t bytes = 0;            ///< as counted against the budget
         std::byte* mapped = nullptr;
         bool in_general_layout = false;
         ResourceState state;  ///< what the last submitted frame left in flight
     };
     Object& object(uint32_t id);
 
-    /// Frees what was given back and is not in use any more.
+    /// Frees released memory that is no longer in use.
     void collect() noexcept;
 
-    // What was given back counts as free: whoever needs it waits for it.
+    // Released memory counts as free: an allocation that needs it waits for it.
     uint64_t device_bytes() const { return device_bytes_ - retired_device_bytes_; }
     uint64_t host_bytes() const { return host_bytes_ - retired_host_bytes_; }
     uint64_t peak_device_bytes() const { return peak_device_bytes_; }
@@ -125,7 +126,7 @@ public:
     uint64_t device_bytes_left() const { return budget_.device_bytes - device_bytes(); }
     uint64_t host_bytes_left() const { return budget_.host_bytes - host_bytes(); }
     std::map<std::string, uint64_t> bytes_by_name() const;
-    /// Allocations of the driver's memory that there are, and that were made so far.
+    /// Driver allocations that exist, and the total made so far.
     uint64_t allocations() const { return allocations_; }
     uint64_t allocations_made() const { return allocations_made_; }
     Device& device() { return device_; }
@@ -150,7 +151,7 @@ private:
     Budget budget_;
     std::unordered_map<uint32_t, Object> objects_;
     struct Retired {
-        uint64_t last = 0;  ///< submission that may use it
+        uint64_t last = 0;  ///< the last submission that may use it
         Object object;
     };
     std::deque<Retired> retired_;

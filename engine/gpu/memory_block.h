@@ -1,6 +1,6 @@
 #pragma once
-// An allocation that small buffers share, or small images: drivers allow few allocations, 4096 at least, and take long
-// for each. Knows where in it there is room, and nothing of Vulkan but the handle. One thread at a time.
+// An allocation shared by small buffers, or by small images: drivers limit the number of allocations, some to 4096, and
+// take long for each. Tracks the free ranges in it, and knows nothing of Vulkan but the handle. One thread at a time.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,31 +15,32 @@ enum class Placement {
     device,    ///< where the device is fastest; counts against the device budget
     upload,    ///< mapped, written by the host; host budget
     download,  ///< mapped and cached, read by the host; host budget
-    values,    ///< as upload, in the device's own memory where the host can write there: what kernels read often
+    values,    ///< as upload, but in device memory if the host can write there: for data that kernels read often
 };
 
 class MemoryBlock {
 public:
     static constexpr uint64_t BYTES = uint64_t{1} << 20;
-    /// What is larger has an allocation of its own.
+    /// Larger resources get an allocation of their own.
     static constexpr uint64_t MAX_SHARE = BYTES / 8;
 
     MemoryBlock(VkDeviceMemory of, Placement where, bool of_images, uint32_t memory_type, std::byte* begin)
         : memory(of), placement(where), holds_images(of_images), type(memory_type), mapped(begin)
     {}
-    /// Where there is room for so many bytes, which are then in use; null: nowhere. `alignment`: a power of two.
+    /// Allocates `bytes` and returns their offset; null: no room. `alignment`: a power of two.
     std::optional<uint64_t> take(uint64_t bytes, uint64_t alignment);
     void give_back(uint64_t offset);
     bool is_empty() const { return used_.empty(); }
 
     const VkDeviceMemory memory;
     const Placement placement;
-    const bool holds_images;  ///< alone: beside buffers they would have to keep a distance that devices choose
+    const bool holds_images;  ///< and no buffers: next to those, images would need a device-specific distance
+                              ///< (bufferImageGranularity)
     const uint32_t type;
-    std::byte* const mapped;  ///< null: it is not
+    std::byte* const mapped;  ///< null: not mapped
 
 private:
-    std::map<uint64_t, uint64_t> used_;  ///< begin and end
+    std::map<uint64_t, uint64_t> used_;  ///< from begin to end
 };
 
 }  // namespace shvr::gpu

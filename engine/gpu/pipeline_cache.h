@@ -1,10 +1,10 @@
 #pragma once
-// What the driver compiled, kept in a file from one start of the program to the next: the driver's own data, and the
-// kernels that were in use, which are likely to be again.
+// Keeps compiled pipelines in a file between runs of the program: the driver's own cache data, and the list of kernels
+// that were in use, which are likely to be needed again.
 //
-// There is one file for each device, in $XDG_CACHE_HOME/shvr or ~/.cache/shvr, written whole or not at all. One that is
-// damaged, or that another driver wrote, counts as none and is replaced; so does one that has grown beyond MAX_BYTES.
-// Nothing here ever fails: without a file all is compiled anew.
+// There is one file per device, in $XDG_CACHE_HOME/shvr or ~/.cache/shvr, written atomically. A file that is damaged,
+// belongs to another driver or has grown beyond MAX_BYTES is ignored and replaced. Nothing here ever fails: without a
+// file, everything is compiled again.
 
 #include <atomic>
 #include <cstddef>
@@ -21,15 +21,15 @@
 
 namespace shvr::gpu {
 
-/// What a file holds.
+/// The contents of a file.
 struct KeptPipelines {
-    std::vector<KernelVariant> likely;  ///< the ones that came last first
-    std::vector<std::byte> data;        ///< the driver's
+    std::vector<KernelVariant> likely;  ///< most recently used first
+    std::vector<std::byte> data;        ///< the driver's cache data
     bool operator==(const KeptPipelines&) const = default;
 };
-/// `driver`: whatever tells it from all others.
+/// `driver`: a string that identifies the driver and device uniquely.
 std::vector<std::byte> encode(const KeptPipelines& kept, const std::string& driver);
-/// Null where the bytes are damaged, or another driver's.
+/// Returns null if the bytes are damaged, or another driver's.
 std::optional<KeptPipelines> decode(std::span<const std::byte> bytes, const std::string& driver);
 
 class PipelineCache {
@@ -43,17 +43,17 @@ public:
     PipelineCache(const PipelineCache&) = delete;
     PipelineCache& operator=(const PipelineCache&) = delete;
 
-    /// For creating pipelines with, on any thread; null where the driver has no memory for it.
+    /// The cache to create pipelines with, on any thread; null if the driver has no memory for it.
     VkPipelineCache handle() const { return handle_; }
     const std::vector<KernelVariant>& likely() const { return kept_.likely; }
 
-    /// A pipeline was made; `was_cached`: of what the driver had compiled before. Any thread.
+    /// Counts a pipeline that was made; `was_cached`: the driver found it in the cache. Any thread.
     void note_made(bool was_cached) { (was_cached ? cached_ : compiled_)++; }
     uint64_t compiled() const { return compiled_; }
     uint64_t cached() const { return cached_; }
 
-    /// Writes the file, if it would tell more than the one that was read: something was compiled, or `used` has kernels
-    /// that were not likely.
+    /// Writes the file if it would contain more than the one that was read: something was compiled, or `used` has
+    /// kernels that were not listed as likely.
     void save(const std::set<KernelVariant>& used) noexcept;
 
 private:
@@ -61,7 +61,7 @@ private:
 
     Device& device_;
     std::string driver_;
-    std::filesystem::path file_;  ///< empty: nowhere
+    std::filesystem::path file_;  ///< empty: no file is used
     KeptPipelines kept_;
     VkPipelineCache handle_ = VK_NULL_HANDLE;
     std::atomic<uint64_t> compiled_ = 0, cached_ = 0;
