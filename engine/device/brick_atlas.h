@@ -1,7 +1,7 @@
 #pragma once
-// Bricks in slots on the device: their codes, aprons included, and the ranges of their cells. Codes are in one image,
-// or in several where one cannot hold enough (StackedLayout). The owner decides which brick goes to which slot
-// (paged_volume.h). One thread, the one that owns the device.
+// Bricks in slots on the device: their codes, aprons included, and the value ranges of their cells. Codes are in one
+// image, or in several if one cannot hold enough (StackedLayout). The owner assigns bricks to slots (paged_volume.h).
+// One thread, the one that owns the device.
 
 #include <vector>
 
@@ -22,7 +22,7 @@ public:
     const glm::uvec3& slots() const { return slots_; }
     /// Slot 0 is never used.
     uint32_t slot_count() const { return slots_.x * slots_.y * slots_.z; }
-    /// The address of that slot as kernels use it.
+    /// The packed address of a slot, as kernels use it.
     uint32_t packed(uint32_t slot) const;
 
     /// Uploads a brick to its slot with the next batch; may wait for the batch before the last one.
@@ -30,7 +30,7 @@ public:
     void flush() { uploads_.flush(); }
     /// Bricks uploaded so far.
     uint64_t uploads() const { return uploads_.uploads(); }
-    /// How many images hold their codes.
+    /// Number of images that hold the codes.
     uint32_t images() const { return uint32_t(codes_.size()); }
 
     void import_codes(FrameGraph& graph, VolumeBinding& volume) const;

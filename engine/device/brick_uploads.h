@@ -1,7 +1,8 @@
 #pragma once
-// Brings bricks to the device in batches: one is filled while the device takes the other, so that cutting, copying on
-// the host and copying to the device overlap. A CPU copies each brick's rows; GPUs, for some of which every slice of a
-// copy is a dispatch, unpack a batch by one kernel (passes/brick_unpack.h). One thread, the one that owns the device.
+// Uploads bricks to the device in double-buffered batches: one is filled while the device copies the other, so that
+// cutting, host copies and device copies overlap. On CPU devices each brick is copied row by row; on GPUs, some of
+// which run a dispatch for every slice of a copy, one kernel unpacks a batch (passes/brick_unpack.h). One thread, the
+// one that owns the device.
 
 #include <array>
 #include <vector>
@@ -16,25 +17,25 @@ class BrickUploads {
 public:
     static constexpr size_t BATCH = 32;  ///< twice 2.5 MiB of staging
 
-    /// Of `bricks` at most in a batch.
+    /// `bricks`: upper bound of a batch.
     BrickUploads(gpu::Executor& executor, gpu::Memory& memory, uint64_t bricks, AtlasCodes codes);
 
-    /// Where a brick goes: its codes, and the ranges of its cells. The images must outlive the copies.
+    /// Destination of a brick: its codes, and the ranges of its cells. The images must outlive the copies.
     struct Target {
         const gpu::Storage* codes;
-        glm::uvec3 code;  ///< the place of the first one
-        /// Which ones: in voxels from the brick's first. Those beyond its apron repeat the apron's.
+        glm::uvec3 code;  ///< texel of its first code
+        /// The box of codes to write, in voxels from the brick's first. Codes outside its apron repeat the apron's.
         glm::ivec3 begin, end;
         const gpu::Storage* cells;
         glm::uvec3 cell;
     };
-    /// Uploads it with the next batch; may wait for the batch before the last one.
+    /// Adds the brick to the next batch; may wait for the batch before the last one.
     void stage(const Target& target, const BrickTexels& texels);
-    /// Begins to upload what was staged.
+    /// Begins to upload the staged bricks.
     void flush();
-    /// Waits until all that was flushed is there.
+    /// Waits until everything flushed is on the device.
     void finish();
-    /// Whether nothing is under way.
+    /// Whether no upload is in flight.
     bool is_idle() const;
     size_t batch() const { return batch_; }
     uint64_t uploads() const { return upload_count_; }
@@ -59,7 +60,7 @@ private:
     bool unpacks_;
     size_t batch_;
     std::array<Staging, 2> staging_;
-    size_t filling_ = 0;           ///< of staging_
+    size_t filling_ = 0;           ///< index into staging_
     std::vector<Target> targets_;  ///< of the bricks in that buffer
     uint64_t upload_count_ = 0;
 };

@@ -19,19 +19,19 @@ public:
         : executor_(executor), memory_(memory), hashed_(hashed)
     {}
 
-    /// Device memory that a mask with so many painted bricks takes at least.
+    /// Minimum device memory of a mask with this many painted bricks.
     static uint64_t bytes_for(uint64_t painted_bricks);
-    /// Uploads `bricks` of `mask` (the changed ones); grows the atlas where they do not fit. Does not wait: frames
-    /// submitted later see them. Where it fails nothing is on the device, and the next update uploads all.
+    /// Uploads `bricks` of `mask` (the changed ones); grows the atlas if they do not fit. Does not wait: frames
+    /// submitted later see them. On failure the device holds no mask, and the next update uploads everything.
     void update(const Mask& mask, std::span<const int64_t> bricks);
 
     /// The slot of a painted brick; gpu::NO_SLOT if it is not on the device.
     uint32_t slot_of(int64_t brick) const;
     bool empty() const { return slots_.empty(); }
     bool is_stale() const { return is_stale_; }
-    /// Boxes of voxels, one for each painted brick of a volume of that size.
+    /// Voxel boxes of the painted bricks, one each, in a volume of that size.
     std::vector<VoxelBox> bricks(const Size3& size) const;
-    /// Handles for a graph; nothing while nothing is painted.
+    /// Handles for a graph; null while nothing is painted.
     std::optional<MaskBinding> import(FrameGraph& graph) const;
 
 private:
@@ -53,7 +53,7 @@ private:
     gpu::Storage atlas_, table_;
     std::vector<gpu::Submission> in_flight_;
     bool is_stale_ = false;       ///< an update failed
-    bool is_table_stale_ = true;  ///< slots were given or taken since it was sent
+    bool is_table_stale_ = true;  ///< slots were assigned or released since it was uploaded
 };
 
 }  // namespace shvr

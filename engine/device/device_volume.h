@@ -23,17 +23,17 @@ namespace shvr {
 /// How many bricks an atlas holds along each axis, at least `slots` in all. Slots fill a row of bricks first; narrow
 /// rows keep a brick's texels close in memory on devices with linear images.
 glm::uvec3 atlas_layout(uint64_t slots, uint32_t brick_texels, uint32_t max_side, bool narrow);
-/// The most slots that it has an answer for.
+/// The largest number of slots that atlas_layout() supports.
 uint64_t max_atlas_slots(uint32_t brick_texels, uint32_t max_side);
 
 /// An atlas of paged bricks: images of the same size, stacked along z (shaders/library/atlas.glsl).
 struct StackedLayout {
-    glm::uvec3 slots{0};  ///< of one image
+    glm::uvec3 slots{0};  ///< slots of one image
     uint32_t images = 1;
     glm::uvec3 all() const { return slots * glm::uvec3(1, 1, images); }
     uint64_t count() const { return uint64_t{slots.x} * slots.y * slots.z * images; }
 };
-/// At least so many slots in as few images as the device's limits allow; null where it takes too many.
+/// At least this many slots in as few images as the device's limits allow; null if it would take too many.
 std::optional<StackedLayout> stacked_layout(uint64_t slots, AtlasCodes codes, const gpu::DeviceTraits& traits);
 
 /// The packed address of the slot with that index, x fastest.
@@ -61,30 +61,30 @@ public:
     const VolumeInfo& info() const { return info_; }
     const IntensityWindow& window() const { return window_; }
 
-    // ---- Loading in slices, where that was asked for: until all is loaded nothing else may be called
+    // ---- Loading in time slices, if requested: until everything is loaded nothing else may be called
 
-    /// Takes what has been read, for about `seconds`; never waits for a disk. True: all is loaded. Fails as the
-    /// constructor of one that loads at once.
+    /// Takes bricks that have been read, for about `seconds`; never waits for a disk. True: all is loaded. Fails like
+    /// the constructor of a volume that loads at once.
     virtual bool load_on(double seconds) = 0;
-    /// The share that is loaded.
+    /// The loaded fraction, 0 to 1.
     virtual double loaded() const = 0;
 
     // ---- The view
 
-    /// Whether look() at this would not wait. If not, it begins to list the bricks that it needs, beside this thread:
-    /// ask again. Fails as look() does.
+    /// Whether look() with these arguments would return without waiting. If not, it starts listing the required bricks
+    /// in the background: ask again. Fails as look() does.
     virtual bool get_ready(const PageView& view, const Visibility& visibility) = 0;
     /// Sets the view; waits until its bricks are listed. Costs nothing if it is unchanged. Returns finest_level().
     virtual int look(const PageView& view, const Visibility& visibility) = 0;
-    /// Sets what is visible, and keeps the view if there is one.
+    /// Sets what is visible, and keeps the current view.
     virtual void look_by(const Visibility& visibility) = 0;
     /// Whether the bricks that the view needs are known.
     virtual bool has_view() const = 0;
-    /// The finest level among the bricks that the view needs; samples may be as far apart as its voxels.
+    /// The finest level among the bricks that the view needs; the sample distance may be as large as its voxels.
     virtual int finest_level() const = 0;
 
-    /// A graph with one short step of the work of prepare() that can be done in advance; null when there is none left.
-    /// The graph must be submitted before the next call.
+    /// A graph with one short step of prepare()'s work that can be done in advance; null when none is left. The graph
+    /// must be submitted before the next call.
     virtual std::optional<FrameGraph> next_preparation(const Visibility& visibility, const DeviceMask& mask) = 0;
     /// Likewise, one step of work that makes later pictures faster without changing them.
     virtual std::optional<FrameGraph> next_refinement(const Visibility& visibility, const DeviceMask& mask) = 0;
@@ -110,17 +110,17 @@ public:
     virtual void take_feedback(const Feedback& feedback, const gpu::FrameResult& result) = 0;
     /// Forgets earlier visits: only the next picture decides which bricks are needed.
     virtual void forget_visits() = 0;
-    /// Whether the rays of pictures wait where a brick is not on the device (engine/passes/raycast.h, RaysInWaiting).
-    /// Visits are then what they wait for, and none is kept from before. Where nothing is paged, no ray ever waits.
-    /// `is_ready`: whether a brick on the device can be drawn; null: all can.
+    /// Whether the rays of pictures stop and wait where a brick is not on the device (engine/passes/raycast.h,
+    /// RaysInWaiting). Visits are then the bricks they wait for, and earlier visits are dropped. In a resident volume
+    /// no ray ever waits. `is_ready`: whether a brick on the device can be drawn; null: all can.
     virtual void let_rays_wait(bool wait, std::function<bool(const BrickKey&)> is_ready = {}) = 0;
     /// Forgets the farthest visits until the visited bricks and those around them, as far away as `reach` gives for
-    /// their level, have room together. False where those of one visit have none.
+    /// their level, fit together. False if even a single visit's bricks do not fit.
     virtual bool limit_visits(const std::vector<int>& reach) = 0;
     /// Whether any ray of the pictures drawn since forget_visits() waits.
     virtual bool has_rays_waiting() const = 0;
     /// Takes loaded bricks. Returns the voxels that may look different now. `wait`: waits for all requested bricks, and
-    /// tells `progress` which share of them has come.
+    /// reports the arrived fraction to `progress`.
     virtual std::vector<VoxelBox> advance(bool wait = false, const Progress& progress = {}) = 0;
 
     enum class State : uint8_t {
@@ -129,34 +129,34 @@ public:
         limited,  ///< the budget cannot hold all visited bricks
     };
     virtual State state() const = 0;
-    /// Bricks that rays visited and that cannot be read; coarser ones are drawn instead.
+    /// Number of bricks that rays visited and that cannot be read; coarser ones are drawn instead.
     virtual size_t missing() const = 0;
-    /// Bricks that failed to load since the last call, one sentence each.
+    /// Messages about bricks that failed to load since the last call, one sentence each.
     virtual std::vector<std::string> take_messages() = 0;
     enum class Presence : uint8_t {
         there,
-        missing,  ///< it may come
-        empty,    ///< it is known to show nothing, and does not come
+        missing,  ///< not on the device; may still be loaded
+        empty,    ///< known to show nothing; not loaded
         failed,   ///< it cannot be read
     };
     virtual Presence presence_of(const BrickKey& key) const = 0;
     /// Whether rays visited the brick, as far as is known.
     virtual bool is_drawn(const BrickKey& key) const = 0;
-    /// Another one whenever is_drawn() or presence_of() may say something else than before, but for places().
+    /// A number that changes whenever the results of is_drawn() or presence_of() may change, except through places().
     virtual uint64_t visits_revision() const = 0;
     /// Also requests the bricks around visited ones, as far away as `reach` gives for their level, because ambient
     /// light arrives from there. Empty: none.
     virtual void want_around(const std::vector<int>& reach) = 0;
     /// Loads level 0 of `voxels` before all else, because the user is likely to touch or paint there next, unless it
-    /// takes more than a quarter of the room. Holds until the next call of this or of region().
+    /// takes more than a quarter of the slots. Valid until the next call of this or of region().
     virtual void prefer(const VoxelBox& voxels) = 0;
 
     // ---- Changes
 
-    /// The source's level 0 voxels in these boxes have changed; updates all that depends on them. Frames submitted
-    /// later see it. Fails where voxels cannot be read.
+    /// Reports that the source's level 0 voxels in these boxes have changed; updates everything that depends on them.
+    /// Frames submitted later see it. Fails if voxels cannot be read.
     virtual void renew(std::span<const VoxelBox> changed) = 0;
-    /// The mask has changed in these bricks of level 0: they are painted now, or no longer.
+    /// Reports that the mask changed in these bricks of level 0: they became painted or unpainted.
     virtual void note_painted(const Mask& mask, std::span<const int64_t> bricks) = 0;
 
     // ---- Work on level 0, and on all bricks on the device
@@ -181,14 +181,15 @@ public:
         uint64_t evictions = 0;
         uint64_t leaves = 0;   ///< leaves of the tree
         uint64_t reached = 0;  ///< leaves that rays visited
-        // What the thread that draws has done itself:
-        uint64_t leaves_looked_up = 0;                 ///< to say what the directory shows in their place
-        uint64_t directory_bytes = 0;                  ///< written, of directories
-        uint64_t waits_for_lists = 0;                  ///< looks that had to wait until the view's bricks were listed
-        uint64_t host_bytes = 0, peak_host_bytes = 0;  ///< of bricks kept on the host
+        // Work done by the drawing thread itself:
+        uint64_t leaves_looked_up = 0;                 ///< to find what the directory shows in their place
+        uint64_t directory_bytes = 0;                  ///< directory bytes written
+        uint64_t waits_for_lists = 0;                  ///< calls of look() that had to wait until the view's bricks
+                                                       ///< were listed
+        uint64_t host_bytes = 0, peak_host_bytes = 0;  ///< bytes of bricks kept on the host
         BrickStore::Counts store;
     };
-    /// Null where nothing is paged.
+    /// Null for resident volumes.
     virtual std::optional<Counts> counts() const = 0;
 
 protected:

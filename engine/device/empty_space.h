@@ -1,6 +1,6 @@
 #pragma once
 // Tracks which part of the leap grid on the device is stale, and schedules its rebuild. A new look (transfer function,
-// visible groups) needs a full rebuild before anything is drawn. Where a few cells changed, a patch is enough for
+// visible groups) needs a full rebuild before anything is drawn. If only a few cells changed, a patch is enough for
 // pictures, and the rest is rebuilt when idle. One thread, the renderer's.
 
 #include <optional>
@@ -11,16 +11,16 @@ namespace shvr {
 
 class EmptySpace {
 public:
-    /// The contents of these cells may have changed.
+    /// Reports that the contents of these cells may have changed.
     void changed(const CellBox& cells);
     /// Sets the look to build the grid for; its `changed` and `mask` are ignored.
     void want(const LeapGridInput& look, const glm::uvec3& cell_counts);
 
-    /// Whether there is work left to do before a picture, and after it.
+    /// Whether there is work left that must precede a picture, and work that may follow it.
     bool is_due() const { return look_ && (!holds_ || !patch_.empty()); }
     bool is_worth_refining() const { return look_ && holds_ && stage_ < LEAP_STAGES; }
-    /// Each adds one pass of its work, and may only be called while there is some. All is built anew where the graph is
-    /// not submitted.
+    /// Each adds one pass of its work, and may only be called while there is some. If the graph is not submitted, the
+    /// whole grid is rebuilt.
     void prepare(FrameGraph& graph, VolumeBinding& volume, LeapGridInput look);
     void refine(FrameGraph& graph, VolumeBinding& volume, LeapGridInput look);
 
@@ -31,8 +31,8 @@ private:
     bool holds_ = false;                 ///< pictures are correct, except for the patch
     CellBox patch_;                      ///< changed cells that the grid does not reflect yet
     uint32_t stage_ = 0;                 ///< the next of LEAP_STAGES
-    CellBox changed_;                    ///< the cells that the running stages cover
-    glm::uvec3 cell_counts_{0};          ///< all of them
+    CellBox changed_;                    ///< the cells that the stages in progress cover
+    glm::uvec3 cell_counts_{0};          ///< the size of the whole grid
 };
 
 }  // namespace shvr

@@ -16,27 +16,27 @@
 
 namespace shvr {
 
-/// Fewest entries of the plain table, and those along each side of the pre-integrated one.
+/// Minimum entries of the plain table, and the side of the pre-integrated one.
 inline constexpr uint32_t MIN_TABLE_ENTRIES = 4096;
 inline constexpr uint32_t STEP_TABLE_SIDE = gpu::TABLE_WIDTH;
 
-/// What a table covers: all codes that the function shows anything of.
+/// The range that a table covers: all codes at which the function is not fully transparent.
 struct TableRange {
     double lower = 0.0, upper = 0.0;  ///< codes
     Samples samples;                  ///< the same in intensities
 };
-/// The plain table has few entries where all control points are at entries, and the function is continuous and nowhere
-/// rises up to 1, so that lines between entries are the function. Otherwise at most one code lies between two entries,
-/// so a step of the function is as sharp as the codes are; entries are whole codes wherever the function begins and
-/// ends at whole ones.
+/// The plain table has few entries if all control points are at entries, and the function is continuous and nowhere
+/// rises up to 1, so that interpolation between entries reproduces the function. Otherwise entries are at most one code
+/// apart, so a step of the function is as sharp as the codes allow; entries are whole codes if the function begins and
+/// ends at whole codes.
 TableRange table_range(const TransferFunction& function, const IntensityWindow& window, bool is_preintegrated);
 
 struct LookTable {
     std::vector<ControlPoint> points;
-    double step_voxels = 0.0;  ///< reference lengths
+    double step_voxels = 0.0;  ///< in reference lengths
     bool preintegrated = false;
     Samples samples;
-    std::vector<glm::vec4> texels;  ///< as raycast.h has them
+    std::vector<glm::vec4> texels;  ///< in the layout of raycast.h
     std::vector<uint32_t> visible_intervals;
 
     bool is_of(const TransferFunction& function, double step, bool is_preintegrated, const Samples& of) const;
@@ -44,8 +44,8 @@ struct LookTable {
 
 LookTable make_look_table(const TransferFunction& function, const IntensityWindow& window, double step_voxels,
                           bool is_preintegrated);
-/// For all 256 colour groups, by number: linear RGB and opacity of a step, 0 where hidden; then as many texels with the
-/// optical depth.
+/// Looks of all 256 colour groups, by number: linear RGB and opacity per step, 0 if hidden; followed by as many texels
+/// with the optical depth.
 std::vector<glm::vec4> make_group_looks(const Groups& groups, double step_voxels);
 
 /// Sets the parameters shared by all kernels that look up a transfer function table.
@@ -68,7 +68,7 @@ public:
     DeviceTable(gpu::Memory& memory, std::string name) : memory_(memory), name_(std::move(name)) {}
     /// Marks the uploaded table as stale.
     void invalidate() { is_sent_ = false; }
-    /// Its handle; uploads `texels` unless they are up to date.
+    /// Returns its handle; uploads `texels` unless they are up to date.
     Resource upload(FrameGraph& graph, std::span<const glm::vec4> texels);
 
 private:
@@ -78,7 +78,7 @@ private:
     bool is_sent_ = false;
 };
 
-/// A scene's tables: of its transfer function, and of its groups. One thread, the renderer's.
+/// A scene's tables: one for its transfer function and one for its groups. One thread, the renderer's.
 class LookTables {
 public:
     explicit LookTables(gpu::Memory& memory)
@@ -87,7 +87,7 @@ public:
 
     /// The table for steps of that many reference lengths.
     const LookTable& table_of(const Look& look, const IntensityWindow& window, double step_voxels);
-    /// What is visible, from whichever table there is: the step length does not matter. Without the guard (leap.h).
+    /// What is visible, from whichever table is cached: the step length does not matter. Excludes the guard (leap.h).
     Visibility visibility_of(const Look& look, const IntensityWindow& window);
     Resource upload_function(FrameGraph& graph, const Look& look, const IntensityWindow& window, double step_voxels);
     Resource upload_groups(FrameGraph& graph, const Look& look, double step_voxels);

@@ -3,14 +3,14 @@
 // eye first. Its images use the slots of the density atlas, so they need no table of their own. Nothing is allocated on
 // the device until a look asks for it.
 //
-//   bricks come, painted voxels, cut     -> cells of those bricks, and values as far as light comes from them
+//   bricks arrive, painted voxels, cut   -> cells of those bricks, and values as far as light comes from them
 //   transfer function, radius            -> all cells, all values
 //   rays, hemisphere                     -> all values
 //
-// Stale values stay until they are renewed; bricks that never had values are fully lit. Renewing what is stale gives
-// the same bits as recomputing everything. Where a brick that light comes from is not on the device yet, the finest
-// coarser one stands in, and the values are renewed when it is: values that had all they need depend on nothing else,
-// and stay when the bricks around them are evicted. One thread, the one that owns the memory.
+// Stale values stay until they are renewed; bricks that never had values are fully lit. Renewing only stale values
+// gives the same bits as recomputing everything. If a brick that light comes from is not on the device yet, the finest
+// coarser one stands in, and the values are renewed once it arrives: values computed with all their bricks present
+// depend on nothing else, and stay when the bricks around them are evicted. One thread, the one that owns the memory.
 
 #include <optional>
 #include <unordered_map>
@@ -29,40 +29,41 @@ class Occlusion {
 public:
     explicit Occlusion(gpu::Memory& memory) : memory_(memory) {}
 
-    /// What the values depend on.
+    /// The settings that the values depend on.
     struct Look {
         TransferFunction function;
         Visibility visibility;             ///< of the same transfer function
         std::array<double, 256> groups{};  ///< opacities per reference length; 0: hidden
-        CutBox cut;                        ///< what is cut away does not block light
+        CutBox cut;                        ///< geometry that is cut away does not block light
         double radius = 16.0;              ///< reference lengths
         uint32_t rays = 32;
         bool full_sphere = false;
         double gradient_fade = 0.0;  ///< codes per voxel
-        bool preintegrated = false;  ///< a step may show what its ends have, half a step from where it is lit
+        bool preintegrated = false;  ///< a step may show the opacity of its ends, half a step from where it is lit
     };
 
     /// Frees all memory.
     void clear();
-    /// Sets the look to compute for. Fails where the budget cannot hold the images.
+    /// Sets the look to compute for. Fails if the budget cannot hold the images.
     void look(const Look& look, const DeviceVolume& volume, const DeviceMask& mask);
-    /// These voxels have been painted; or, with an apron (in voxels of each brick's own level), their densities
+    /// Marks voxels that have been painted or, with an apron (in voxels of each brick's own level), whose densities
     /// changed.
     void changed(const VoxelBox& voxels, int64_t apron = 0);
 
-    /// Device memory for each slot of the atlas, and besides, under that budget.
+    /// Device memory per slot of the atlas, and for scratch images under that budget.
     static uint64_t slot_bytes();
     static uint64_t scratch_bytes(const gpu::DeviceTraits& traits, uint64_t device_budget);
 
     bool exists_for(const DeviceVolume& volume) const { return volume_ == &volume; }
     bool has_memory() const { return bool(values_); }
-    /// For each level: how many bricks on each side of a brick its light comes from.
+    /// Per level: how many bricks away, on each side of a brick, its light may come from.
     std::vector<int> reach() const;
     /// Whether anything is stale.
     bool is_due();
-    /// Whether pictures show the final light of a brick: it is on the device, and its values had all they need.
+    /// Whether pictures show the final light of a brick: it is on the device, and its values were computed with all
+    /// bricks they need.
     bool is_lit(const BrickKey& key);
-    /// Bounds of one slice.
+    /// Limits of one slice.
     struct Most {
         size_t bricks = 1;       ///< bricks whose values are computed, up to gpu::OCCLUSION_SLICE
         size_t cell_bricks = 8;  ///< bricks whose cells are computed
@@ -70,14 +71,14 @@ public:
     /// Adds the next slice to a graph that must be submitted, and returns the voxels that it updates. `eye` in voxels.
     std::vector<VoxelBox> next(FrameGraph& graph, const VolumeBinding& volume, const std::optional<MaskBinding>& mask,
                                const glm::dvec3& eye, const Most& most);
-    /// Handles for a graph that must be submitted; adds passes that set bricks that never had values to fully lit.
+    /// Handles for a graph that must be submitted; adds passes that set bricks without any values to fully lit.
     OcclusionBinding bring_up_to_date(FrameGraph& graph);
 
     struct Counts {
         uint64_t cells = 0;   ///< bricks whose cells have been computed
         uint64_t values = 0;  ///< bricks whose values have been computed
-        uint64_t looks = 0;   ///< at the paint and the neighbours of a brick, whether it is seen
-        uint64_t walks = 0;   ///< bricks asked whether they are due
+        uint64_t looks = 0;   ///< checks of a brick's paint and neighbours for whether it is visible
+        uint64_t walks = 0;   ///< bricks checked for being due
     };
     const Counts& counts() const { return counts_; }
 
@@ -87,8 +88,8 @@ private:
         BrickTexels::Range range;
         bool needs_cells = true, needs_values = true;
         bool is_new = true;             ///< its values have never been computed
-        bool is_exact = false;          ///< every brick that its values needed was there
-        std::optional<bool> is_seen{};  ///< not known since its range, look, paint or neighbours changed
+        bool is_exact = false;          ///< every brick that its values needed was on the device
+        std::optional<bool> is_seen{};  ///< unknown since its range, look, paint or neighbours changed
     };
     using Entries = std::unordered_map<BrickKey, Entry, BrickKeyHash>;
 
@@ -123,13 +124,13 @@ private:
     gpu::Storage near_;
     std::array<gpu::Storage, gpu::OCCLUSION_SIZES> around_;
     bool is_paged_ = false;
-    uint32_t slice_ = gpu::OCCLUSION_SLICE;  ///< bricks that the scratch images hold
+    uint32_t slice_ = gpu::OCCLUSION_SLICE;  ///< capacity of the scratch images, in bricks
     bool images_are_new_ = false;
     Entries entries_;
-    uint64_t revision_ = 0;  ///< of the volume's places()
+    uint64_t revision_ = 0;  ///< places_revision() of the volume
     Counts counts_;
 
-    /// What is due depends on, beside what is done.
+    /// Inputs of the due set, apart from completed work.
     struct Cause {
         uint64_t visits = 0;   ///< DeviceVolume::visits_revision
         uint64_t changes = 0;  ///< changes_
@@ -140,10 +141,10 @@ private:
         double distance;
         BrickKey key;
     };
-    uint64_t changes_ = 1;            ///< counts what makes entries due
-    Cause nothing_due_{}, queued_{};  ///< for which nothing was due; for which the queue was filled
+    uint64_t changes_ = 1;            ///< incremented when entries may become due
+    Cause nothing_due_{}, queued_{};  ///< at which nothing was due; for which the queue was filled
     glm::dvec3 queued_eye_{0.0};
-    std::vector<Candidate> queue_;  ///< the nearest that are due, of one level, the nearest last
+    std::vector<Candidate> queue_;  ///< the nearest that are due, of one level, nearest last
 };
 
 }  // namespace shvr

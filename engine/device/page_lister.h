@@ -1,10 +1,10 @@
 #pragma once
-// Lists the bricks that a view needs, on a thread of its own: at 10^5 bricks that takes 10 ms, which the thread that
-// draws must not wait for while a camera moves. The lister has a copy of what is known of the bricks, and is told every
-// change; a list is as of the changes that were told before it was asked for, and whoever takes it makes up for the
-// rest, of which it keeps account. A few lists are kept, for panes that take turns.
+// Lists the bricks that a view needs, on its own thread: for 10^5 bricks that takes 10 ms, for which the drawing thread
+// must not wait while a camera moves. The lister has a copy of what is known of the bricks, and is notified of every
+// change. A list reflects the changes noted before it was requested; its taker applies the later ones (changes_since).
+// A few lists are kept, for panes that alternate.
 //
-// One thread asks, and is told nothing while it asks; the lister owns the other.
+// One thread calls it and never notes changes during a request; the lister owns the other thread.
 
 #include <condition_variable>
 #include <deque>
@@ -23,7 +23,7 @@
 
 namespace shvr {
 
-/// What a picture shows, as far as its bricks depend on it.
+/// The parts of a look on which a picture's bricks depend.
 struct PageSight {
     PageView view;
     Visibility visibility;
@@ -31,12 +31,12 @@ struct PageSight {
 
 struct BrickEvent {
     enum class Kind : uint8_t {
-        placed,   ///< on the device now; `number`: its packed slot
-        gone,     ///< and now no longer
-        read,     ///< `number`: its range, as KnownBricks keeps it
-        unread,   ///< its voxels have changed
-        painted,  ///< `number`: painted bricks of level 0 in it
-        other,    ///< something that concerns this brick alone, and that is known elsewhere
+        placed,   ///< was put on the device; `number`: its packed slot
+        gone,     ///< is no longer on the device
+        read,     ///< was read; `number`: its range, as KnownBricks keeps it
+        unread,   ///< its voxels have changed, so its range is unknown
+        painted,  ///< `number`: count of painted level 0 bricks in it
+        other,    ///< another change of this brick alone, whose details are kept elsewhere
     };
     BrickKey key;
     Kind kind = Kind::other;
@@ -44,8 +44,8 @@ struct BrickEvent {
 };
 
 /// What is known of a volume's paged bricks: which are on the device and where, the ranges of those that were read,
-/// which are painted. From it follows what a view needs, and what is drawn in the place of a brick. Changes are plain
-/// data, so that two threads can each have a copy. One thread for each.
+/// which are painted. From this follow the bricks that a view needs and the stand-in drawn for a missing brick. Changes
+/// are plain data, so that two threads can each have a copy. One thread for each.
 class KnownBricks {
 public:
     KnownBricks(const VolumeInfo& info, int levels, const IntensityWindow& window,
@@ -66,17 +66,17 @@ public:
         return {key, BrickEvent::Kind::read, range.minimum | uint32_t{range.maximum} << 16};
     }
     std::optional<BrickTexels::Range> range_of(const BrickKey& key) const;
-    /// Painted bricks of level 0 in it.
+    /// Number of painted level 0 bricks in it.
     uint32_t painted_in(const BrickKey& key) const { return painted_.find(key).value_or(0); }
 
-    /// Whether paint may show in it, be it that of a brick beside it.
+    /// Whether paint may show in it, including paint of neighbouring bricks.
     bool is_painted(const PageSight& sight, const BrickKey& key) const;
-    /// Whether anything in it, or in the bricks below it, may be visible, by what the file says.
+    /// Whether anything in it, or in the finer bricks below it, may be visible according to the file.
     bool may_show(const PageSight& sight, const BrickKey& key) const;
     /// Whether it was read and shows nothing.
     bool is_empty(const PageSight& sight, const BrickKey& key) const;
-    /// What the directory (shaders/pages.h) shows in the place of a leaf: nothing, its brick, or the finest one above
-    /// it that is there.
+    /// What the directory (shaders/pages.h) shows at a leaf:
+    /// nothing, its brick, or its finest ancestor on the device.
     uint32_t entry_of(const PageSight& sight, const BrickKey& leaf) const;
 
 private:
@@ -89,38 +89,38 @@ private:
     BrickMap slots_, ranges_, painted_;
 };
 
-/// What a view needs, ready to be drawn with.
+/// The result of listing a view, ready for drawing.
 struct PageList {
     PageSight sight;
     std::shared_ptr<const PageTree> tree;
     BrickMap leaves;                ///< the number of each leaf of the tree
     std::vector<uint32_t> entries;  ///< the directory of shaders/pages.h
-    uint64_t changes = 0;           ///< it is as after so many of them
-    bool has_entries = true;        ///< false: its entries are to be made
+    uint64_t changes = 0;           ///< it reflects the first `changes` changes
+    bool has_entries = true;        ///< false: its entries must still be made
 };
 
 class PageLister {
 public:
-    /// `known`: of no brick yet. Its source must be readable by any thread.
+    /// `known`: still without any brick. Its source must be readable by any thread.
     explicit PageLister(KnownBricks known);
     ~PageLister();
     PageLister(const PageLister&) = delete;
 
     void note(const BrickEvent& change);
-    /// Changes noted so far, and the later ones of them; null where that is too long ago.
+    /// Count of changes noted so far, and the changes after number `changes`; null if those are no longer in the log.
     uint64_t changes() const { return first_ + log_.size(); }
     std::optional<std::span<const BrickEvent>> changes_since(uint64_t changes) const;
 
-    /// Whether take() would not wait. If not, it begins with the list unless it is busy with another.
+    /// Whether take() would return without waiting. If not, it starts the list unless another is in progress.
     bool get_ready(const PageView& view, const Visibility& visibility);
     /// Waits for the list. Fails as the source does.
     std::shared_ptr<PageList> take(const PageView& view, const Visibility& visibility);
-    /// Keeps a list that was taken.
+    /// Puts a taken list back into the cache.
     void keep(std::shared_ptr<PageList> list);
-    /// All lists are out of date, because the source or the paint has changed.
+    /// Marks all lists as out of date, because the source or the paint has changed.
     void forget();
 
-    /// Lists made, and how often take() had to wait for one.
+    /// Number of lists made, and of calls of take() that had to wait.
     uint64_t lists_made() const { return lists_made_; }
     uint64_t waits() const { return waits_; }
 
@@ -145,15 +145,15 @@ private:
 
     std::vector<BrickEvent> log_;
     uint64_t first_ = 0;                           ///< changes before the log
-    uint64_t handed_over_ = 0;                     ///< changes that the other thread was told
+    uint64_t handed_over_ = 0;                     ///< changes already passed to the lister's thread
     uint64_t outdated_ = 0;                        ///< calls of forget()
-    std::deque<std::shared_ptr<PageList>> lists_;  ///< the last one is the latest
+    std::deque<std::shared_ptr<PageList>> lists_;  ///< most recent last
     bool is_busy_ = false;
     uint64_t lists_made_ = 0, waits_ = 0;
 
-    KnownBricks known_;  ///< of the other thread
+    KnownBricks known_;  ///< owned by the lister's thread
 
-    std::mutex mutex_;  ///< of the next three
+    std::mutex mutex_;  ///< guards the next three members
     std::vector<BrickEvent> told_;
     std::optional<Asked> asked_;
     std::optional<Made> made_;

@@ -11,8 +11,8 @@
 // device. While the view rests, needed bricks are never evicted, so nothing is loaded twice and the picture only
 // improves.
 //
-// What a brick that comes or goes costs does not depend on how many the view has: its entries of the directory are
-// patched, on the host and on the device.
+// The cost of a brick that arrives or is evicted does not depend on how many bricks the view has: its directory entries
+// are patched, on the host and on the device.
 //
 // One thread, the one that owns the executor; nothing here waits for a loader unless its comment says so.
 
@@ -30,24 +30,25 @@ namespace shvr {
 
 class PagedVolume final : public DeviceVolume {
 public:
-    /// Room for a region of 64^3 voxels anywhere, its surroundings, and the coarsest levels.
+    /// Enough for a region of 64^3 voxels anywhere, its surroundings, and the coarsest levels.
     static constexpr uint64_t MIN_SLOTS = 64;
 
     struct Options {
         AtlasCodes codes = AtlasCodes::exact16;
         int threads = 1;            ///< loader threads
-        uint64_t host_bytes = 0;    ///< of bricks kept on the host
-        uint64_t device_bytes = 0;  ///< of the atlas and its tables
-        bool in_slices = false;     ///< the coarsest level is not read at once, but taken by `load_on`
+        uint64_t host_bytes = 0;    ///< budget of the bricks kept on the host
+        uint64_t device_bytes = 0;  ///< budget of the atlas and its tables
+        bool in_slices = false;     ///< the constructor does not read the coarsest level; `load_on` takes it in time
+                                    ///< slices
     };
-    /// Reads the coarsest level. Fails where the budget holds too few bricks to work with.
+    /// Reads the coarsest level. Fails if the budget holds too few bricks to work with.
     PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
                 const IntensityWindow& window, const Options& options);
 
     bool load_on(double seconds) override;
     double loaded() const override;
 
-    /// Fails where so much device memory holds too few bricks of such a volume, its coarsest level among them.
+    /// Fails if `device_bytes` hold too few bricks of such a volume, including its coarsest level.
     static void check_room(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, AtlasCodes codes,
                            uint64_t device_bytes);
 
@@ -97,7 +98,7 @@ public:
 private:
     PageView rounded(PageView view) const;
     void install(std::shared_ptr<PageList> list);
-    /// Nothing, before something is looked at.
+    /// An empty sight before the first look.
     const PageSight& sight() const { return list_ ? list_->sight : no_sight_; }
     const PageTree& tree() const { return *list_->tree; }
     std::optional<uint32_t> leaf_of(const BrickKey& key) const
@@ -131,7 +132,7 @@ private:
     void fill_leaf(uint32_t leaf);
     void fill_directory();
     void note(const BrickEvent& change);
-    /// Something else about the brick, which says what is drawn in its place.
+    /// Notes another change of the brick that affects what is drawn in its place.
     void note_changed(const BrickKey& key) { note({.key = key}); }
     void note_all_changed();
     gpu::BrickLeapJob job_of(const BrickKey& key, uint32_t slot) const;
@@ -148,21 +149,22 @@ private:
     KnownBricks known_;  ///< the same slots, what was read, and what is painted
     PageLister lister_;
     const PageSight no_sight_{};
-    std::shared_ptr<PageList> list_;  ///< of the view
-    bool list_is_outdated_ = false;   ///< paint makes the view need other bricks: they are being listed
+    std::shared_ptr<PageList> list_;  ///< the current view's list
+    bool list_is_outdated_ = false;   ///< paint makes the view need other bricks, which are being listed
 
     // By leaf.
-    std::vector<bool> is_reached_;  ///< visited by rays since the view is as it is
-    /// Visited before. As good as reached, until there is no room for both: else a camera that turns would end with
-    /// bricks that nobody sees any longer.
+    std::vector<bool> is_reached_;  ///< visited by rays since the view last changed
+    /// Visited earlier. Counts as reached until there is no room for both; otherwise a turning camera would end up with
+    /// bricks that are no longer visible.
     std::vector<bool> was_reached_;
-    std::vector<uint32_t> visited_;  ///< those of both
-    std::set<uint32_t> awaited_;     ///< of these, all that are missing, and perhaps others; the nearest first
+    std::vector<uint32_t> visited_;  ///< leaves in either set
+    std::set<uint32_t> awaited_;     ///< a superset of the missing ones among them; nearest first
     bool rays_wait_ = false;
     std::function<bool(const BrickKey&)> is_ready_;
     /// Bricks that cannot be read and that rays have waited for: coarser ones are drawn from then on.
     std::unordered_set<BrickKey, BrickKeyHash> given_up_;
-    /// The directory is the list's. Entries that differ from those on the device are named, or are all of them.
+    /// The directory is part of the list. Entries that differ from those on the device are listed here, unless all of
+    /// them do.
     std::vector<uint32_t> changed_entries_;
     bool all_entries_changed_ = true;
     bool all_leaves_are_stale_ = true;
@@ -172,7 +174,7 @@ private:
     bool is_limited_ = false;
     size_t pending_ = 0;                                 ///< visited leaves that are requested and can still arrive
     std::unordered_set<BrickKey, BrickKeyHash> region_;  ///< bricks of the last region
-    std::unordered_set<BrickKey, BrickKeyHash> around_;  ///< bricks that want_around() asks for
+    std::unordered_set<BrickKey, BrickKeyHash> around_;  ///< bricks requested by want_around()
     std::vector<int> around_reach_;
     uint64_t around_revision_ = 0;  ///< the value of reached_revision_ that around_ was made for
     uint64_t places_revision_ = 1, reached_revision_ = 1;

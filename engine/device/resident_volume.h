@@ -1,6 +1,6 @@
 #pragma once
 // A volume with all of its bricks on the device, side by side in one image; the value range of every cell; and the leap
-// grid, which is updated when visibility or paint changes. Bricks have slots, as paged ones have, for their ambient
+// grid, which is updated when visibility or paint changes. Bricks have slots, as paged ones do, for their ambient
 // light. A volume that does not fit the device budget is refused with a message before any brick is read.
 //
 // One thread, the one that owns the executor.
@@ -16,7 +16,7 @@ public:
     /// Reads, encodes and uploads every brick, on `threads` workers.
     ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
                    const IntensityWindow& window, AtlasCodes codes, int threads, const Progress& progress = {});
-    /// Begins to, for `load_on`: bricks are read and encoded on threads of their own.
+    /// Starts loading for `load_on`: bricks are read and encoded on worker threads.
     struct InSlices {};
     ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
                    const IntensityWindow& window, AtlasCodes codes, int threads, InSlices);
@@ -24,9 +24,9 @@ public:
     bool load_on(double seconds) override;
     double loaded() const override;
 
-    /// Device memory that such a volume takes, cells and leap grid included.
+    /// Device memory of such a volume, including cells and leap grid.
     static uint64_t bytes_for(const VolumeInfo& info, AtlasCodes codes);
-    /// Whether the device has such large images and buffers, however much memory is free.
+    /// Whether the device supports such large images and buffers, however much memory is free.
     static bool is_possible(const gpu::Memory& memory, const VolumeInfo& info, AtlasCodes codes);
 
     uint64_t brick_count() const;
@@ -78,7 +78,7 @@ private:
     class Builder;
     struct Shape {
         glm::uvec3 atlas_slots;
-        ResourceDesc atlas, page_table, cells;  ///< the last one of cell ranges, leap grid and scratch
+        ResourceDesc atlas, page_table, cells;  ///< `cells`: shared by cell ranges, leap grid and scratch
     };
     static std::optional<Shape> shape_of(const gpu::Memory& memory, const glm::uvec3& brick_counts, AtlasCodes codes);
     void create_images();
@@ -98,9 +98,9 @@ private:
     uint64_t places_revision_ = 1;
     Visibility visibility_;
     EmptySpace empty_space_;
-    std::optional<BrickUploads> uploads_;  ///< while bricks are under way to the device
-    std::vector<uint32_t> slots_;          ///< of the bricks that are loaded, until all are
-    std::unique_ptr<Builder> builder_;     ///< while it is loaded in slices
+    std::optional<BrickUploads> uploads_;  ///< while bricks are being uploaded
+    std::vector<uint32_t> slots_;          ///< of the loaded bricks, until all are loaded
+    std::unique_ptr<Builder> builder_;     ///< while the volume is loaded in slices
 };
 
 }  // namespace shvr

@@ -29,39 +29,41 @@ public:
     struct Options {
         Sampling sampling = Sampling::automatic;
         Paging paging = Paging::automatic;
-        /// Reserve room for ambient occlusion, which takes about as much memory as the bricks.
+        /// Reserves memory for ambient occlusion, about as much as the bricks take.
         bool with_occlusion = false;
         int threads = 1;  ///< workers that build bricks
         uint64_t host_bytes =
             0;                   ///< a quarter is for paged bricks, a quarter for coarser levels of sources without any
-        Progress progress{};     ///< of loading, now and where show() loads again
-        bool in_slices = false;  ///< the constructor only begins: nothing but load_on() may be called until it is done
-        uint64_t reserved_bytes = 0;  ///< of device memory, for what will be shown beside the volume (bytes_to_show)
+        Progress progress{};     ///< for loading, now and when show() loads again
+        bool in_slices = false;  ///< the constructor only starts loading: nothing but load_on() may be called until it
+                                 ///< is done
+        uint64_t reserved_bytes = 0;  ///< device memory kept free for what is shown in addition to the volume
+                                      ///< (bytes_to_show)
     };
     /// Loads the volume. The statistics give the intensity window and the scale of gradients. Fails if the source
-    /// cannot be read, the budget is too small or the device cannot do what `options` ask for.
+    /// cannot be read, the budget is too small or the device does not support `options`.
     Scene(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
           const VolumeStatistics& statistics, const Options& options);
-    /// Loads on, for about `seconds` and without waiting for a disk. True: all is loaded.
+    /// Continues loading for about `seconds`, without waiting for a disk. True: all is loaded.
     bool load_on(double seconds) { return volume_->load_on(seconds); }
     double loaded() const { return volume_->loaded(); }
-    /// Device memory that showing a document takes, an upper bound.
+    /// Device memory needed to show a document, an upper bound.
     static uint64_t bytes_to_show(const Document& document);
-    /// The most that the atlas of paged bricks takes of a budget; and of a device.
+    /// The maximum size of the atlas of paged bricks, as limited by a budget and by a device.
     static uint64_t atlas_share(uint64_t device_budget, bool with_occlusion);
     static uint64_t most_atlas_bytes(const gpu::DeviceTraits& traits, AtlasCodes codes, bool with_occlusion);
-    /// Device memory of a volume that is resident, with its ambient light.
+    /// Device memory of a resident volume, with its ambient light.
     static uint64_t resident_bytes(const VolumeInfo& info, AtlasCodes codes, bool with_occlusion);
-    /// How the device holds the codes of such voxels. Fails where it cannot sample so.
+    /// The format in which the device holds the codes of such voxels. Fails if it does not support that sampling.
     static AtlasCodes codes_for(const gpu::DeviceTraits& traits, VoxelType type, Sampling sampling);
     /// Whether an image of the device could hold all bricks of the source, however much memory is free.
     static bool can_be_resident(const gpu::Memory& memory, const VolumeSource& source, const Options& options);
-    /// Whether such a scene would be paged, even if nothing else were on the device.
+    /// Whether such a scene would be paged even if nothing else were on the device.
     static bool pages_alone(const gpu::Memory& memory, const VolumeSource& source, const Options& options);
-    /// Whether such a scene would be resident and fits beside everything on the device now. Fails where the device
-    /// cannot do what `options` ask for.
+    /// Whether such a scene would be resident and fits in addition to everything on the device now. Fails if the device
+    /// does not support `options`.
     static bool fits_now(gpu::Memory& memory, const VolumeSource& source, const Options& options);
-    /// Fails where the sizes alone tell that such a scene cannot be made; reads no voxels.
+    /// Fails if the sizes alone rule out such a scene; reads no voxels.
     static void check_sizes(gpu::Memory& memory, const VolumeSource& source, const Options& options);
 
     const VolumeInfo& info() const { return volume_->info(); }
@@ -69,7 +71,7 @@ public:
     const gpu::DeviceTraits& traits() const { return memory_.device().traits(); }
     DeviceVolume& volume() { return *volume_; }
     /// Whether pictures draw the finest level everywhere: the volume has no other, so it would be resident under a
-    /// larger budget, and budgets change no picture. Live views draw it as coarse as the screen allows.
+    /// larger budget, and budgets must not change pictures. Live views draw it as coarsely as the screen allows.
     bool draws_finest() const { return draws_finest_; }
     const DeviceMask& mask() const { return *mask_; }
     Occlusion& occlusion() { return occlusion_; }
@@ -79,36 +81,36 @@ public:
 
     // ---- Changes
 
-    /// Shows all paint and offsets of the document, and keeps room for its trace: where there is too little, the
-    /// volume is loaded again with fewer bricks. Call it before anything else refers to this scene's volume. Fails
-    /// where the budget does not hold them.
+    /// Shows all paint and offsets of the document, and reserves memory for its trace: if there is too little, the
+    /// volume is loaded again with fewer bricks. Must be called before anything else refers to this scene's volume.
+    /// Fails if the budget cannot hold them.
     void show(const Document& document);
     /// Shows these changes, which the document already contains: paint, offsets and, once show_surfaces() has been
-    /// called, the trace. Returns whether paint or offsets are among them. Frames submitted later see them. Fails where
-    /// voxels cannot be read, or memory is too short; then `is_behind`.
+    /// called, the trace. Returns whether paint or offsets are among them. Frames submitted later see them. Fails if
+    /// voxels cannot be read or memory is short; then `is_behind`.
     bool show(const Document& document, std::span<const Change> changes);
     void show(const Document& document, const Touched& touched, const std::optional<VoxelBox>& within = {});
-    /// Paint or offsets are not shown as they are, since an update failed.
+    /// Whether paint or offsets shown are out of date because an update failed.
     bool is_behind() const { return mask_->is_stale() || !unshown_density_.empty(); }
-    /// Shows what is not shown yet. Fails as `show`.
+    /// Retries updates that failed. Fails as `show` does.
     void catch_up(const Document& document);
-    /// The mask has changed in these bricks. `within`: a box that holds all changed voxels.
+    /// Updates the mask in these bricks. `within`: a box that holds all changed voxels.
     void update_mask(const Mask& mask, std::span<const int64_t> bricks, const std::optional<VoxelBox>& within = {});
-    /// Offsets have changed in these boxes. Offsets never raise intensities above the volume's window.
+    /// Updates the offsets in these boxes. Offsets never raise intensities above the volume's window.
     void update_density(const DensityField& field, std::span<const VoxelBox> changed);
 
     /// Sets the opaque balls and rods that end rays: these, and those of the trace in the colours of `groups`. Fails as
-    /// `surface_tree` and gpu::Memory::create do; then the earlier ones stay. Where only colours or sizes differ from
-    /// what is shown, only those are written.
+    /// `surface_tree` and gpu::Memory::create do; then the earlier ones stay. If only colours or sizes differ from what
+    /// is shown, only those are written.
     void show_surfaces(std::vector<SurfaceLook> surfaces, const TraceGraph& trace, const Groups& groups);
     /// Shows the trace after these changes. The cost is proportional to the changes, except for thousands of nodes at
     /// once or a change of a group's radius.
     void show_trace(const TraceGraph& trace, std::span<const Change> changes);
-    /// Sets these surfaces, without a trace.
+    /// Sets these surfaces and no trace.
     void set_surfaces(const std::vector<SurfaceLook>& surfaces) { set_keyed_surfaces(keyed(surfaces)); }
     void set_keyed_surfaces(std::vector<KeyedSurface> surfaces);
     /// Removes the surfaces with `keys` and adds `surfaces`, at a cost proportional to the change. Returns false, and
-    /// does nothing, where `set_keyed_surfaces` is as cheap.
+    /// changes nothing, if `set_keyed_surfaces` is as cheap.
     bool replace_surfaces(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces);
 
     /// Takes loaded bricks. `wait`: waits for all requested bricks.
@@ -123,7 +125,7 @@ public:
         VoxelBox voxels;
         Cause cause = Cause::edit;
     };
-    /// Voxels that may look different since the last call, with the reason.
+    /// Voxels that may look different since the last call, each box with its cause.
     std::vector<Changed> take_changed();
     bool has_changed() const { return !changed_.empty(); }
 
@@ -131,23 +133,24 @@ public:
 
     /// Which densities are visible; the step length does not matter.
     Visibility visibility_of(const Look& look);
-    /// Gradients below this, in codes per voxel, fade out.
+    /// Gradients below this value fade out, in codes per voxel.
     double gradient_fade_codes(const Light& light) const;
-    /// Whether the look wants ambient occlusion and memory has room for it. If memory is short, warns once and draws
-    /// without it until it is switched off.
+    /// Whether the look uses ambient occlusion and memory suffices. If memory is short, warns once and draws without it
+    /// until it is switched off.
     bool has_occlusion(const Look& look);
     bool occlusion_has_no_room() const { return occlusion_has_no_room_; }
-    /// Frees what pictures can do without, and notes a message that says `why`; false: there is nothing. No graph that
-    /// uses the scene may be under construction.
+    /// Frees memory that pictures can do without, and adds a message that states `why`; false: there was none to free.
+    /// No graph that uses the scene may be under construction.
     bool give_way(const std::string& why);
     /// Requests the bricks that the look's ambient occlusion needs.
     void want_occlusion(const Look& look);
-    /// The next slice of ambient occlusion in a graph that must be submitted.
+    /// Adds the next slice of ambient occlusion to a graph that must be submitted.
     void add_occlusion(FrameGraph& graph, const Camera& camera, const Occlusion::Most& most);
 
-    /// What pictures lack (bricks that cannot be read, features without room) since the last call, one sentence each.
+    /// Messages about what pictures lack (unreadable bricks, features without memory) since the last call, one sentence
+    /// each.
     std::vector<std::string> take_messages();
-    /// Adds one.
+    /// Adds such a message.
     void note_message(std::string message) { messages_.push_back(std::move(message)); }
 
 private:
@@ -173,7 +176,7 @@ private:
     Occlusion occlusion_;
     bool occlusion_has_no_room_ = false;
     SurfaceScene surfaces_;
-    /// What is shown beside the trace, and the trace's colours; null while no trace is shown.
+    /// The surfaces shown in addition to the trace, and the trace's colours; null while no trace is shown.
     struct TraceLook {
         std::vector<SurfaceLook> surfaces;
         Groups groups;
@@ -181,7 +184,7 @@ private:
     std::optional<TraceLook> trace_look_;
     LookTables tables_;
     std::vector<Changed> changed_;
-    std::vector<VoxelBox> unshown_density_;  ///< whose bricks could not be renewed
+    std::vector<VoxelBox> unshown_density_;  ///< boxes whose bricks could not be updated
     std::vector<std::string> messages_;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// What a volume will take of host and device before it is loaded, from sizes alone: an upper bound of the volume's own
-// share, as Scene makes it.
+// Estimates the host and device memory of a volume before it is loaded, from sizes alone: an upper bound of the
+// volume's own share, as Scene allocates it.
 
 #include <cstdint>
 #include <string>
@@ -12,18 +12,18 @@
 namespace shvr {
 
 struct SceneEstimate {
-    uint64_t device_bytes = 0;  ///< of the volume: all bricks, or the room for those that are paged
+    uint64_t device_bytes = 0;  ///< the volume's: all bricks, or the atlas of paged ones
     uint64_t device_budget = 0;
     uint64_t host_bytes = 0;  ///< bricks kept, and coarser levels where the file has none
     uint64_t host_budget = 0;
-    bool is_paged = false;      ///< bricks are read while they are looked at
-    bool makes_levels = false;  ///< reads all voxels once more, for coarser levels
+    bool is_paged = false;      ///< bricks are loaded on demand
+    bool makes_levels = false;  ///< reads all voxels once more to make coarser levels
     std::string refusal{};      ///< why it cannot be loaded; empty: it can
 };
 
-/// `device_budget`, `host_budget`: of the whole program, in bytes, with nothing else loaded. `can_be_resident`: an
-/// image of the device could hold all bricks (Scene::can_be_resident). `codes`: Scene::codes_for.
-/// `most_atlas_bytes`: Scene::most_atlas_bytes.
+/// `device_budget`, `host_budget`: the whole program's, in bytes, with nothing else loaded. `can_be_resident`: one
+/// image of the device could hold all bricks (Scene::can_be_resident). `codes`: Scene::codes_for. `most_atlas_bytes`:
+/// Scene::most_atlas_bytes.
 /// Reads no voxels. Any thread.
 SceneEstimate estimate_scene(const VolumeSource& source, Paging paging, bool with_occlusion, uint64_t device_budget,
                              uint64_t host_budget, bool can_be_resident, AtlasCodes codes, uint64_t most_atlas_bytes);

@@ -1,5 +1,5 @@
 #pragma once
-// What a trace looks like: balls for nodes, rods for internodes, in the colours of their groups; and which of these a
+// The surfaces of a trace: balls for nodes, rods for internodes, in the colours of their groups; and which of these a
 // command changes. Pure.
 
 #include <optional>
@@ -13,8 +13,8 @@
 
 namespace shvr {
 
-/// Hidden groups are left out. `spacing`: of the volume. Nodes without a radius are drawn with half a voxel's, along
-/// the finest axis.
+/// Omits hidden groups. `spacing`: the volume's. Nodes without a radius are drawn with half a voxel's, along the finest
+/// axis.
 std::vector<KeyedSurface> surfaces_of(const TraceGraph& trace, const Groups& groups, const glm::dvec3& spacing);
 
 /// The keys of the surfaces that changes affect, and those of these surfaces that exist now.
@@ -22,12 +22,12 @@ struct ChangedSurfaces {
     std::vector<uint64_t> keys;
     std::vector<KeyedSurface> now;
 };
-/// For changes that the trace already contains. Null where they may affect all of it, because a group's radius has
+/// For changes that the trace already contains. Null if they may affect the whole trace, because a group's radius has
 /// changed.
 std::optional<ChangedSurfaces> changed_surfaces(const TraceGraph& trace, const Groups& groups,
                                                 const glm::dvec3& spacing, std::span<const Change> changes);
 
-/// The box that may look different after these changes, which the trace already contains; empty where none is of a
+/// The box that may look different after these changes, which the trace already contains; empty if none concerns a
 /// trace.
 VoxelBox trace_reach(const TraceGraph& trace, std::span<const Change> changes, const glm::dvec3& spacing);
 
