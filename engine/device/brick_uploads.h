@@ -61,7 +61,7 @@ private:
     size_t batch_;
     std::array<Staging, 2> staging_;
     size_t filling_ = 0;           ///< index into staging_
-    std::vector<Target> targets_;  ///< of the bricks in that buffer
+    std::vector<Target> targets_;  ///< targets of the bricks in that buffer
     uint64_t upload_count_ = 0;
 };
 

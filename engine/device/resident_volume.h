@@ -99,7 +99,7 @@ private:
     Visibility visibility_;
     EmptySpace empty_space_;
     std::optional<BrickUploads> uploads_;  ///< while bricks are being uploaded
-    std::vector<uint32_t> slots_;          ///< of the loaded bricks, until all are loaded
+    std::vector<uint32_t> slots_;          ///< slots of the loaded bricks, until all are loaded
     std::unique_ptr<Builder> builder_;     ///< while the volume is loaded in slices
 };
 
