@@ -116,9 +116,9 @@ public:
     void wait_idle();
     void wait_idle_or_lost() noexcept;
 
-    // The queue completes submissions in the order in which they were made, whoever made them. A submitter takes a
-    // number for its submission afterwards and reports when its fence is signalled, so that the device's progress is
-    // known to all.
+    // The queue completes submissions in submission order across all submitters.
+    // A submitter takes a number for its submission afterwards and reports when
+    // its fence is signalled, so that all users of the device know its progress.
     uint64_t note_submission() { return ++submitted_; }
     void note_done(uint64_t number) { done_ = std::max(done_, number); }
     uint64_t submitted() const { return submitted_; }
