@@ -1,11 +1,11 @@
 #pragma once
-// A picture that is made part by part and handed on in bands of rows, so that it may be larger than device and host can
-// hold, and leaves time for other work in between. The parts together equal a picture drawn whole, bit for bit. One
-// thread, the renderer's.
+// Renders a picture part by part and delivers it in bands of rows, so that it may exceed the memory of device and host,
+// and other work can run in between. The parts together equal a picture drawn whole, bit for bit. One thread, the
+// renderer's.
 //
-//   picture -> bands of rows, as high as the host has room for -> panes that a band meets -> parts, as large as the
-//   device has room for -> quarters, where a part needs more bricks than there is room for -> small ones in rounds:
-//   their rays wait before bricks that are not there, and go on when those are (engine/passes/raycast.h)
+//   picture -> bands of rows, as high as host memory allows -> panes that a band meets -> parts, as large as device
+//   memory allows -> quarters, if a part needs more bricks than fit -> small parts in rounds: their rays wait at
+//   missing bricks, and resume when those have arrived (engine/passes/raycast.h)
 
 #include <functional>
 
@@ -16,7 +16,7 @@ namespace shvr {
 
 class PictureJob {
 public:
-    /// Takes the next rows from the top, as wide as the picture.
+    /// Receives the next rows from the top, as wide as the picture.
     using TakeRows = std::function<void(ImageF rows)>;
     PictureJob(Renderer& renderer, const Session& session, const Camera& camera, const RenderOptions& options,
                TakeRows take_rows);
@@ -25,21 +25,21 @@ public:
     PictureJob& operator=(const PictureJob&) = delete;
 
     bool is_done() const { return parts_.empty() && !rounds_ && band_end_ == size_.y; }
-    /// Draws the next part. Of a paged volume waits for it, and for bricks: a part is drawn again until all bricks that
-    /// its rays visit are on the device. A part that needs more bricks than there is room for is split into quarters,
-    /// or drawn by rays that wait for them. Where nothing is paged, and a GPU draws, waits for the part before, so that
-    /// the device has work while that one's pixels are taken. Hands on the rows of a band that is done.
+    /// Draws the next part. For a paged volume, waits for the part and for bricks: a part is drawn again until all
+    /// bricks that its rays visit are on the device. A part that needs more bricks than fit is split into quarters, or
+    /// drawn by rays that wait for bricks. For a resident volume on a GPU, waits only for the previous part, so that
+    /// the device stays busy while that part's pixels are copied. Delivers the rows of each finished band.
     ///
-    /// `waits` false: for no brick that is read; the next step goes on with the part, and others may look at the volume
-    /// and draw meanwhile.
+    /// With `waits` false it waits for no brick being read; the next step continues with the part, and other callers
+    /// may set the volume's view and draw in between.
     void step(bool waits = true);
-    /// The last step left a part whose bricks are still to come, or their light.
+    /// Whether the last step left a part whose bricks, or whose light, are still to come.
     bool is_waiting() const { return rounds_.has_value(); }
-    /// The share of all pixels drawn so far.
+    /// The fraction of all pixels drawn so far.
     double progress() const { return double(drawn_pixels_) / double(uint64_t(size_.x) * size_.y); }
     /// Whether nothing is missing from what is drawn so far.
     bool is_complete() const { return picture_.complete && !scene().occlusion_has_no_room() && rays_cut_short_ == 0; }
-    /// All but the image. Call it once no step follows.
+    /// The picture without its image. Call it after the last step.
     Picture take();
 
 private:
@@ -50,7 +50,7 @@ private:
     /// A part that the device is drawing.
     struct UnderWay {
         PicturePart part;
-        glm::uvec2 origin;  ///< in the picture
+        glm::uvec2 origin;  ///< its first pixel in the picture
         uint32_t pixels;    ///< the read-back
         DeviceVolume::Feedback feedback;
         gpu::Submission submission;
@@ -86,24 +86,24 @@ private:
     uint32_t band_begin_ = 0, band_end_ = 0;  ///< rows of the picture
     ImageF band_;
     size_t pane_ = 0;
-    std::vector<PicturePart> parts_;  ///< of the pane within the band, still to be drawn, the next one last
+    std::vector<PicturePart> parts_;  ///< parts of the pane within the band still to be drawn, next one last
     /// A part that is drawn until no brick is missing.
     struct Rounds {
         PicturePart part;
-        int round = 0;          ///< of which its light is renewed, it is drawn, and its bricks are loaded
+        int round = 0;          ///< each round renews its light, draws it, and loads its bricks
         bool is_drawn = false;  ///< in this round
         std::vector<gpu::PassReport> passes{};
-        /// Where its rays wait for bricks, or for their light as well.
+        /// The state of rays that wait for bricks, or also for their light.
         std::optional<WaitingRays> rays{};
         bool waits_for_light = false;
     };
     std::optional<Rounds> rounds_;         ///< begun by draw_completely
     std::optional<UnderWay> under_way_;    ///< begun by draw_ahead
-    std::optional<double> last_taken_ms_;  ///< of a clock that does not go back
+    std::optional<double> last_taken_ms_;  ///< time on a monotonic clock
     Picture picture_;
     uint64_t drawn_pixels_ = 0;
     uint64_t rays_cut_short_ = 0;
-    double told_ = 0.0;  ///< share, which never falls
+    double told_ = 0.0;  ///< progress last reported, which never falls
 };
 
 }  // namespace shvr

@@ -1,5 +1,6 @@
 #pragma once
-// How pictures show the probe: a ball, a shell around it, and what its brush would change. Plain values; any thread.
+// How pictures show the probe: a ball, a shell around it, and the voxels that its brush would change. Plain values; any
+// thread.
 
 #include <memory>
 #include <optional>
@@ -12,27 +13,27 @@ namespace shvr {
 /// A thin-shell iso-surface in the probe's region (shaders/library/shell.glsl).
 struct ShellLook {
     double threshold = 0.0;  ///< intensity
-    double opacity = 0.4;    ///< of one crossing
+    double opacity = 0.4;    ///< of one crossing of the surface
     bool is_box = false;     ///< the region's shape; otherwise a ball
     bool operator==(const ShellLook&) const = default;
 };
 
-/// What is drawn of the probe: a ball that ends rays, and a shell.
+/// The drawn parts of the probe: a ball that ends rays, and a shell.
 struct ProbeLook {
     glm::dvec3 center{0.0};     ///< volume space
-    double radius = 1.0;        ///< of its region, physical units
+    double radius = 1.0;        ///< of the probe's region, physical units
     glm::dvec3 color{1.0};      ///< linear light
     double ball_share = 1.0;    ///< radius of the ball as a share of `radius`; 0: no ball
-    double ball_opacity = 1.0;  ///< of its surface
+    double ball_opacity = 1.0;  ///< opacity of the ball's surface
     std::optional<ShellLook> shell;
     std::shared_ptr<const PaintPreview>
-        preview;  ///< what its brush would change, also shown in slices; null: not shown
+        preview;  ///< voxels that its brush would change, also shown in slices; null: not shown
     bool has_silhouette = true, has_arrow = true;  ///< lines over the picture, where lines are drawn
     bool operator==(const ProbeLook&) const = default;
-    /// The radius of a ball that encloses all of it. `spacing`: of the volume.
+    /// The radius of a ball that encloses all of it. `spacing`: the volume's.
     double reach(const glm::dvec3& spacing) const;
 };
-/// Size of the ball beside a shell, small enough not to hide it.
+/// Size of the ball inside a shell, small enough not to hide it.
 inline constexpr double BALL_IN_SHELL = 0.12;
 /// The probe's own colour, or its group's; grey where it erases.
 glm::dvec3 probe_color(const Session& session, uint8_t group);

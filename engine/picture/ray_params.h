@@ -1,5 +1,5 @@
 #pragma once
-// Parameters of kernels that follow rays, from a look, a camera and a probe. Computed in double; pure.
+// Parameters of the kernels that trace rays, from a look, a camera and a probe. Computed in double; pure.
 
 #include "engine/device/scene.h"
 #include "engine/passes/preview.h"
@@ -9,13 +9,13 @@
 
 namespace shvr {
 
-/// `step_voxels`: between samples, in reference lengths.
+/// `step_voxels`: sample distance in reference lengths.
 gpu::RaycastParams raycast_params(const Look& look, const Camera& camera, Scene& scene, const VolumeBinding& binding,
                                   const PicturePart& part, double step_voxels);
-/// Sets what depends on the camera: rays, their entry into the volume, light and depth.
+/// Sets the parameters that depend on the camera: rays, their entry into the volume, light and depth.
 void set_rays(gpu::RaycastParams& params, const Look& look, const Camera& camera, const VolumeInfo& info,
               const glm::uvec2& pixels);
-/// A slice shows the whole volume in grey, whatever is cut away.
+/// Sets the parameters of a slice, which shows the whole volume in grey, ignoring cuts.
 void set_slice(gpu::RaycastParams& params, const Look& look, Scene& scene);
 void set_shell(RaycastInput& input, const ProbeLook& probe, Scene& scene);
 void set_ball(gpu::SurfaceParams& params, const ProbeLook& probe, const VolumeInfo& info);
