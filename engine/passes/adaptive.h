@@ -1,5 +1,5 @@
 #pragma once
-// Pictures whose rays are closer where there is more to see (shaders/adaptive.h).
+// Pictures with denser rays where there is more detail (shaders/adaptive.h).
 
 #include <optional>
 
@@ -9,22 +9,22 @@
 
 namespace shvr {
 
-/// Blocks of pixels that are drawn, and no others.
+/// Blocks of pixels to which drawing is limited.
 struct ListedBlocks {
-    Resource numbers;  ///< of blocks, in a buffer, gpu::NO_BLOCK beyond the last
-    Resource counts;   ///< of workgroups, as Pass::dispatch_counted takes them
+    Resource numbers;  ///< block numbers, in a buffer, gpu::NO_BLOCK beyond the last
+    Resource counts;   ///< workgroup counts, as Pass::dispatch_counted takes them
     uint32_t most_groups = 0;
     uint32_t groups_in_dispatch = 0;
 };
 
 struct AdaptiveInput {
     glm::uvec2 pixel_begin{0}, pixel_end{0};  ///< the part of the picture
-    glm::uvec2 target{0};                     ///< texel of its first pixel
+    glm::uvec2 target{0};                     ///< texel of the part's first pixel
     double tolerance = 0.0;
     PixelGroups pixel_groups;  ///< of the passes that draw the blocks
 };
 
-/// Pixels of the coarse picture that a part needs: coarse_begin, and so many from there.
+/// The coarse picture's pixels that a part needs: the first one, and their number along each axis.
 glm::uvec2 coarse_begin(const AdaptiveInput& input);
 glm::uvec2 coarse_size(const AdaptiveInput& input);
 
@@ -32,15 +32,15 @@ struct Adapted {
     Resource target;
     ListedBlocks blocks;
 };
-/// Draws the pixels of `target` that lie between alike ones of `coarse`, and lists the blocks of all others. Both are
-/// rgba32_float pictures; `coarse` has pixel coarse_begin() in its first texel.
+/// Fills in the pixels of `target` that lie between similar ones of `coarse`, and lists the blocks of all others. Both
+/// are rgba32_float pictures; the first texel of `coarse` is pixel coarse_begin().
 Adapted adaptive(FrameGraph& graph, Resource coarse, Resource target, const AdaptiveInput& input);
 
-/// Blocks of 4 x 2 pixels take so many bytes on the device, for each pixel.
+/// Device bytes of the lists of 4 x 2 pixel blocks, per pixel.
 inline constexpr uint64_t LISTED_BLOCKS_BYTES = 1;
 
-/// For kernels that include library/listed_blocks.glsl: what their constant BLOCKS_ALONE says, and how many groups they
-/// have if it is 1.
+/// For kernels that include library/listed_blocks.glsl: sets their constant BLOCKS_ALONE and, if it is 1, the number of
+/// their groups.
 void listed_groups(Pass& pass, const std::optional<ListedBlocks>& blocks);
 
 }  // namespace shvr

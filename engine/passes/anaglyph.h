@@ -1,5 +1,5 @@
 #pragma once
-// Two eyes' pictures in one, for glasses with a red left and a cyan right side (shaders/anaglyph.comp).
+// Combines both eyes' pictures into one, for glasses with a red left and a cyan right side (shaders/anaglyph.comp).
 
 #include "engine/graph/frame_graph.h"
 

@@ -1,6 +1,6 @@
 #pragma once
-// How far rays may leap within bricks (shaders/brick_leap.comp): one workgroup per brick, run when bricks arrive, and
-// for all bricks on the device when the transfer function or the groups change.
+// Computes how far rays may leap within bricks (shaders/brick_leap.comp): one workgroup per brick, run when bricks
+// arrive, and for all bricks on the device when the transfer function or the groups change.
 
 #include <array>
 #include <span>
@@ -16,7 +16,7 @@ struct Visibility {
     gpu::BrickLeapParams params{};
     std::vector<uint32_t> visible_intervals;  ///< engine/look/transfer_function.h
     std::array<uint32_t, 8> visible_groups{};
-    /// As kernels compute it (shaders/library/occupancy.glsl).
+    /// Whether anything in a range of codes is visible, as kernels compute it (shaders/library/occupancy.glsl).
     bool shows(double lower_code, double upper_code) const;
 };
 bool operator==(const Visibility& a, const Visibility& b);

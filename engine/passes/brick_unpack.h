@@ -1,5 +1,5 @@
 #pragma once
-// Moves bricks from a buffer into their places on the device (shaders/brick_unpack.comp): all of a batch at once.
+// Moves a whole batch of bricks from a buffer to their places on the device (shaders/brick_unpack.comp).
 
 #include <span>
 

@@ -6,7 +6,8 @@
 
 namespace shvr {
 
-/// Writes a part of `display` (rgba8_unorm) from a part of `color` (rgba32_float); returns the new version of it.
+/// Writes a part of `display` (rgba8_unorm) from a part of `color` (rgba32_float); returns the new version of
+/// `display`.
 Resource encode(FrameGraph& graph, Resource color, Resource display, const gpu::EncodeParams& params);
 
 }  // namespace shvr

@@ -21,7 +21,7 @@
 
 namespace shvr {
 
-/// Half open.
+/// A half-open box of cells.
 struct CellBox {
     glm::uvec3 begin{0}, end{0};
     bool empty() const { return glm::any(glm::lessThanEqual(end, begin)); }
@@ -29,7 +29,7 @@ struct CellBox {
 };
 
 struct LeapGridInput {
-    gpu::OccupancyParams params;              ///< all but the cells
+    gpu::OccupancyParams params;              ///< complete except for the cells
     CellBox changed;                          ///< cells whose occupancy may have changed
     std::vector<uint32_t> visible_intervals;  ///< engine/look/transfer_function.h
     std::optional<MaskBinding> mask;
@@ -42,7 +42,7 @@ inline constexpr uint32_t LEAP_STAGES = 4;
 /// sample bits are valid after the last stage, provided that all four ran in order with the same input.
 void leap_grid_stage(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input, uint32_t stage);
 
-/// Makes the existing grid correct for the new contents of the changed cells.
+/// Patches the grid so that it is correct for the new contents of the changed cells.
 void leap_grid_patch(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input);
 
 }  // namespace shvr

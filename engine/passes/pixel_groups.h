@@ -10,13 +10,14 @@ inline constexpr uint32_t GROUP_SIDE = 8;  ///< threads, as the kernels declare
 /// How workgroups share the pixels of a picture (shaders/library/rays.glsl).
 struct PixelGroups {
     uint32_t width = 8;  ///< pixels along x that a workgroup covers: 8, 16 or 32
-    /// A dispatch is that many layers of groups, each of every `layers`th row of them. Its layers take nearly the same
-    /// time, which the upper and the lower half of a picture do not. Divides the rows of a tile.
+    /// A dispatch has this many layers of groups along z, interleaved by rows (layer i has every `layers`th row, from
+    /// row i on). Interleaved layers take nearly the same time, unlike the upper and the lower half of a picture.
+    /// Divides the rows of a tile.
     uint32_t layers = 1;
     glm::uvec2 tile{0};  ///< pixels of one dispatch, multiples of 64; 0: all at once
 };
 
-/// One thread per pixel.
+/// Dispatches one thread per pixel.
 inline void pixel_groups(Pass& pass, const glm::uvec2& pixels, const PixelGroups& groups)
 {
     const glm::uvec2 group(groups.width, GROUP_SIDE * GROUP_SIDE / groups.width);
@@ -29,7 +30,7 @@ inline void pixel_groups(Pass& pass, const glm::uvec2& pixels, const PixelGroups
     pass.dispatch(threads(all), groups.tile.x > 0 ? threads(groups.tile / group) : glm::uvec3(0));
 }
 
-/// One workgroup for each of `count` jobs, or `depth` of them where they share a job's work.
+/// Dispatches one workgroup for each of `count` jobs, or `depth` workgroups that share a job's work.
 inline void group_each(Pass& pass, size_t count, uint32_t depth = 1)
 {
     pass.dispatch({GROUP_SIDE * uint32_t(count), GROUP_SIDE, depth});

@@ -1,5 +1,5 @@
 #pragma once
-// The voxels that a brush would change, in a picture (shaders/preview.comp).
+// Draws the voxels that a brush would change (shaders/preview.comp).
 
 #include <optional>
 #include <span>
@@ -12,10 +12,10 @@
 namespace shvr {
 
 struct PreviewInput {
-    gpu::RaycastParams params;  ///< the same as the ray caster's: pixels, light and distance blending are read
+    gpu::RaycastParams params;  ///< the same as the ray caster's; pixels, light and distance blending are used
     gpu::PreviewParams preview;
-    std::span<const uint32_t> words;   ///< a bit per voxel, as params.words_per_row says
-    std::optional<Resource> surfaces;  ///< of the same pixels; not in slices
+    std::span<const uint32_t> words;   ///< a bit per voxel, in rows of params.words_per_row
+    std::optional<Resource> surfaces;  ///< for the same pixels; not in slices
     bool slice = false;
     PixelGroups pixel_groups;
 };
@@ -24,10 +24,10 @@ struct PreviewSeen {
     std::optional<Resource> surfaces;  ///< input for the ray caster, with the preview added; none in slices
     Resource seen;                     ///< for `preview_over`
 };
-/// All its resources last for this frame only.
+/// All its resources are transient: valid in this frame only.
 PreviewSeen preview(FrameGraph& graph, const PreviewInput& input);
 
-/// One is likely to be drawn before long.
+/// Hints that a preview is likely to be drawn soon.
 void expect_preview(FrameGraph& graph, const PreviewInput& input);
 
 /// Draws the preview over the picture in `target`, which the ray caster made with those surfaces. Returns its new

@@ -1,5 +1,5 @@
 #pragma once
-// Takes colour out of a picture (shaders/saturation.comp).
+// Desaturates a picture (shaders/saturation.comp).
 
 #include "engine/graph/frame_graph.h"
 #include "shaders/saturation.h"

@@ -25,15 +25,16 @@ struct PageBinding {
 };
 
 struct VolumeBinding {
-    Resource atlas;  ///< bricks with their aprons, as `codes` says
-    /// Images of the same size that are stacked upon it (shaders/library/atlas.glsl); of paged volumes.
+    Resource atlas;  ///< bricks with their aprons, in the layout of `codes`
+    /// Images of the same size stacked on top of it (shaders/library/atlas.glsl); for paged volumes.
     std::vector<Resource> more_atlases;
     Resource cell_ranges;  ///< r32ui per cell of the volume, or of every slot: minimum | maximum << 16
     // Resident volumes:
     Resource page_table;                   ///< uint per brick: slot
     Resource leap;                         ///< r32ui per cell, see shaders/leap.h
     std::array<Resource, 2> leap_scratch;  ///< intermediate results of its stages
-    std::optional<Resource> sample_bits;   ///< r32ui, two per cell, see shaders/leap.h; of exact texels, where wanted
+    std::optional<Resource> sample_bits;   ///< r32ui, two per cell, see shaders/leap.h; only for exact texels, if
+                                           ///< wanted
     // Paged volumes:
     std::optional<PageBinding> pages;
     glm::uvec3 brick_counts{1};
@@ -44,7 +45,8 @@ struct VolumeBinding {
     bool is_filtered() const { return codes == AtlasCodes::filtered; }
 };
 
-/// The constants of kernels that read codes (shaders/library/atlas.glsl). `is_stacked`: they know stacked images.
+/// The constants of kernels that read codes (shaders/library/atlas.glsl). `is_stacked`: the kernel supports stacked
+/// images.
 inline std::vector<std::pair<std::string, uint32_t>> constants_of_codes(const VolumeBinding& volume, bool is_stacked)
 {
     std::vector<std::pair<std::string, uint32_t>> constants;
@@ -53,7 +55,8 @@ inline std::vector<std::pair<std::string, uint32_t>> constants_of_codes(const Vo
     return constants;
 }
 
-/// Binds the atlas to a kernel that knows stacked images. Those that are not there are never read.
+/// Binds the atlas to a kernel that supports stacked images. Bindings without an image get the first one and are never
+/// read.
 inline void bind_stacked_atlas(Pass& pass, const VolumeBinding& volume)
 {
     pass.read("atlas", volume.atlas);
@@ -62,7 +65,7 @@ inline void bind_stacked_atlas(Pass& pass, const VolumeBinding& volume)
                   i < volume.more_atlases.size() ? volume.more_atlases[i] : volume.atlas);
 }
 
-/// Likewise to one that knows them where bricks are paged.
+/// Binds the atlas to a kernel that supports stacked images for paged bricks only.
 inline void bind_atlas(Pass& pass, const VolumeBinding& volume)
 {
     if (volume.pages)
@@ -71,7 +74,7 @@ inline void bind_atlas(Pass& pass, const VolumeBinding& volume)
         pass.read("atlas", volume.atlas);
 }
 
-/// And sets its constants.
+/// Binds the atlas and sets its constants.
 inline void read_atlas(Pass& pass, const VolumeBinding& volume)
 {
     for (const auto& [name, value] : constants_of_codes(volume, volume.pages.has_value())) pass.constant(name, value);
@@ -84,7 +87,7 @@ struct RegionBricks {
     std::vector<uint32_t> slots;  ///< x fastest
 };
 
-/// The painted voxels on the device; absent while nothing is painted.
+/// The painted voxels on the device; null while nothing is painted.
 struct MaskBinding {
     Resource mask;        ///< r8ui, bricks without aprons
     Resource mask_table;  ///< slots of painted bricks, see shaders/library/mask.glsl
