@@ -1,10 +1,11 @@
 #pragma once
-// Carries out annotation commands: asks the device which voxels a brush selects, records the result in the history and
+// Executes annotation commands: asks the device which voxels a brush selects, records the result in the history and
 // uploads the changed voxels. Scripts, keys, menus and the stylus all go through here.
 //
 //   PaintOp -> positions along the stroke -> RegionQuery (device) -> VoxelSelection -> records -> Work -> device
 //
-// The device says what a brush selects; which of that changes is decided where the records are made (painting.h).
+// The device decides what a brush selects; which of these voxels change is decided where the records are made
+// (painting.h).
 //
 // A script paints a whole stroke and waits. A user begins a stroke, extends it and ends it; it is painted as the device
 // answers, as one command however many answers that takes. One thread, the renderer's.
@@ -21,99 +22,100 @@
 
 namespace shvr {
 
-/// `op` as a session has it painted: with a number in place of an automatic offset, and with the groups that are
-/// locked. Everything that is painted or previewed for a person comes through here.
+/// `op` as painted in a session: with an automatic offset replaced by a number, and with the session's locked groups.
+/// Everything that is painted or previewed for a user passes through here.
 PaintOp in_session(PaintOp op, const Session& session);
 
-/// The files in which a session keeps its work.
+/// The files in which a session stores its work.
 WorkFiles work_files(const Session& session, const VolumeInfo& volume);
-/// And the lasting settings of an `OpenedSession`, but for those that the "key=value" settings in `overridden` set this
-/// time only.
+/// The same with the lasting settings of an `OpenedSession`, except those set for this run only by the "key=value"
+/// settings in `overridden`.
 WorkFiles work_files(const Session& session, const VolumeInfo& volume, const std::vector<std::string>& overridden);
-/// The kept settings, too, for callers that take Work::kept_settings() and tell Work::keep_settings what has changed.
+/// Adds the kept settings, for callers that apply Work::kept_settings() and report changes to Work::keep_settings.
 WorkFiles with_kept_settings(WorkFiles files, const Session& session, const std::vector<std::string>& overridden);
 
 class Annotator {
 public:
-    /// So often what failed for want of memory is tried: with the pauses of a person's window, for 5 s.
+    /// Number of attempts after running out of memory: with the pauses of a user's window, for 5 s.
     static constexpr int MOST_TRIES = 20;
 
     /// The volume must be loaded; the mask starts unpainted.
     explicit Annotator(Renderer& renderer);
-    /// Goes on with work that is open, perhaps on another thread until now. The caller lets the scene show it.
+    /// Continues work that is already open, perhaps on another thread until now. The caller makes the scene show it.
     Annotator(Renderer& renderer, std::unique_ptr<Work> work);
 
     /// For saving, file names and the trace's selection. Use the functions below to change annotations, so that the
-    /// device shows the change. Where it cannot, for want of memory, they do not fail: `is_behind`.
+    /// device shows the change. If it cannot, for lack of memory, they do not fail: see `is_behind`.
     Work& work() { return *work_; }
     const Work& work() const { return *work_; }
-    /// For another annotator; this one is of no use any more.
+    /// Releases the work for another annotator; this one must not be used any more.
     std::unique_ptr<Work> take_work() { return std::move(work_); }
     const Document& document() const { return work_->document(); }
     const History& history() const { return work_->history(); }
     Renderer& renderer() const { return renderer_; }
-    /// Counts the changes of groups and offsets.
+    /// Incremented by changes of groups and offsets.
     uint64_t revision() const { return revision_; }
 
-    /// As Work::open and Work::choose; also update the device.
+    /// As Work::open and Work::choose; these also update the device.
     std::vector<Notice> open(const WorkFiles& files, const Work::Opening& opening = {});
     std::vector<Notice> choose(Belief belief);
 
     /// The voxels that `op` selects, whatever their group.
     VoxelSelection select(const PaintOp& op);
-    /// The exact preview: the voxels that paint(op) would change now. Paints nothing and waits; Previewer
+    /// The exact preview: the voxels that paint(op) would change now. Paints nothing, but waits; Previewer
     /// (engine/live/previewer.h) does not.
     PaintPreview preview(const PaintOp& op);
     /// The same, from the device's answers for all regions of `op`.
     PaintPreview preview(const PaintOp& op, std::span<const RegionAnswer> answers) const;
     /// Paints, as one command. Returns how many voxels changed their group plus how many changed their offset;
-    /// `last_stroke` says more. All regions of a stroke see the volume as it was before it.
+    /// `last_stroke` has details. All regions of a stroke see the volume as it was before it.
     int64_t paint(const PaintOp& op);
 
-    /// Begins a stroke by hand; ignores `brush.path`. Does not wait: `advance` paints. Later regions may see offsets
-    /// that earlier ones have painted. The locks are those of `brush` to the stroke's end. Strokes that have ended and
-    /// are not painted yet are painted first, in order: a hand need not wait for the device.
+    /// Begins an interactive stroke; ignores `brush.path`. Does not wait: `advance` paints. Later regions may see
+    /// offsets that earlier ones have painted. The locks of `brush` apply until the stroke ends. Strokes that have
+    /// ended and are not painted yet are painted first, in order: the user need not wait for the device.
     void begin_stroke(const PaintOp& brush);
     void extend_stroke(const glm::dvec3& voxel);
-    /// The next position is not joined to the last one: nothing is painted in between.
+    /// Separates the next position from the last one: nothing is painted in between.
     void lift_stroke()
     {
         if (stroke_is_open()) strokes_.back().last.reset();
     }
     void end_stroke();
-    /// A stroke is open, or part of one has not been painted yet.
+    /// Whether a stroke is open, or part of one has not been painted yet.
     bool stroke_is_running() const { return !strokes_.empty(); }
-    /// The last stroke has begun and not ended.
+    /// Whether the last stroke has begun and not ended.
     bool stroke_is_open() const { return !strokes_.empty() && !strokes_.back().has_ended; }
-    /// Ends all at once: what is painted stays, the rest is dropped.
+    /// Ends all strokes at once: painted parts stay, the rest is dropped.
     void drop_strokes();
-    /// Asks the device again for what it has not answered yet: it has been started again.
+    /// Repeats the queries that the device has not answered, after it was restarted.
     void drop_queries();
-    /// Shows what memory was too short for, paints a finished answer of the first stroke and submits the next query.
-    /// Returns the voxels that may look different. Where the driver has too little memory it fails with a MemoryError
-    /// and goes on when it is called again, up to MOST_TRIES times on end; where a stroke cannot go on (that, a brush
-    /// that is too large, or bricks or the journal fail), it fails with another, drops the rest of it, and says so.
+    /// Shows changes for which memory was too short, paints a finished answer of the first stroke and submits the next
+    /// query. Returns the voxels that may look different. If the driver is out of memory it throws MemoryError and
+    /// retries when called again, up to MOST_TRIES times in a row; if a stroke cannot continue (retries exhausted, a
+    /// brush that is too large, bricks or the journal fail), it throws another error, drops the rest of the stroke, and
+    /// says so.
     std::optional<VoxelBox> advance();
-    /// What is painted is not shown as it is: `advance` tries it.
+    /// Whether the picture lags behind the annotation after a failed update, which `advance` retries.
     bool is_behind() const { return renderer_.scene().is_behind() && tries_to_show_ < MOST_TRIES; }
-    /// Tries it at once; fails where it cannot.
+    /// Retries at once; fails if that is not possible.
     void catch_up();
-    /// Counts the strokes by hand that are painted to their end.
+    /// Number of interactive strokes painted to their end.
     uint64_t strokes_done() const { return strokes_done_; }
-    /// What the last finished stroke did, by hand or by `paint`.
+    /// The result of the last finished stroke, interactive or by `paint`.
     const StrokeResult& last_stroke() const { return last_stroke_; }
 
     /// Applies changes made by trace_edit.h as one command; not while a stroke is running. Returns the command, valid
-    /// until the history changes; null where `changes` is empty.
+    /// until the history changes; null if `changes` is empty.
     const Command* edit_trace(std::string label, std::vector<TraceChange> changes);
 
-    /// Applies changes that fit as one command; not while a stroke is running. Null where there are none.
+    /// Applies matching changes as one command; not while a stroke is running. Null if there are none.
     const Command* perform(std::string label, std::vector<Change> changes);
 
-    /// As Work::change_settings; not while a stroke is running. The session is the caller's.
+    /// As Work::change_settings; not while a stroke is running. The caller updates the session.
     const Command* change_settings(std::string label, const SettingValues& values);
 
-    /// The command undone or redone; null where there is none left, or a stroke is running.
+    /// Returns the command undone or redone; null if none is left, or a stroke is running.
     const Command* undo();
     const Command* redo();
     /// As Work::revert; null also while a stroke is running.
@@ -123,22 +125,22 @@ private:
     /// Accumulates the answers of a stroke.
     struct Answered {
         VoxelSelection selection;
-        std::optional<DensityStroke> density;  ///< where the brush paints offsets
+        std::optional<DensityStroke> density;  ///< if the brush paints offsets
     };
     struct Stroke {
         PaintOp brush;
         RegionQuery query;
-        std::vector<glm::dvec3> positions{};  ///< regions for those from `next` on have not been painted yet
+        std::vector<glm::dvec3> positions{};  ///< regions from position `next` on have not been painted yet
         size_t next = 0;
-        size_t asked_to = 0;               ///< the end of those in the query
-        std::optional<glm::dvec3> last{};  ///< the last position of the hand
+        size_t asked_to = 0;               ///< end of the positions in the query
+        std::optional<glm::dvec3> last{};  ///< last position of the hand
         bool has_ended = false;
         bool is_recorded = false;  ///< the last command of the history is this stroke's
         StrokeTally tally{brush};
-        StrokeResult result = tally.result();  ///< of what is painted
-        int failed_tries = 0;                  ///< on end
+        StrokeResult result = tally.result();  ///< of the painted part
+        int failed_tries = 0;                  ///< in a row
     };
-    /// The records of an answer.
+    /// The records made from an answer.
     struct Records {
         std::vector<MaskBrickChange> groups{};
         std::vector<DensityBrickChange> offsets{};
@@ -159,7 +161,7 @@ private:
     void try_to_show(const Update& update);
 
     Renderer& renderer_;
-    std::deque<Stroke> strokes_;  ///< the first is being painted; the last alone may be open
+    std::deque<Stroke> strokes_;  ///< the first is being painted; only the last may be open
     uint64_t strokes_done_ = 0;
     StrokeResult last_stroke_;
     uint64_t revision_ = 0;

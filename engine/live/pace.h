@@ -1,9 +1,9 @@
 #pragma once
-// What a unit of work costs on the device, from the times of the last graphs: how much of it fits into the next one.
+// Estimates the device time of a unit of work from the last graphs, and so how many units fit into the next one.
 //
 // A pixel may cost twenty times more in one place than in another, and a graph that is too short does less harm than
-// one that is too long: the estimate rises at once, and is the largest of the last eight. So clocks that ramp up, or a
-// time that was wrong, are forgotten after eight graphs. One thread.
+// one that is too long: the estimate rises at once, and is the maximum of the last eight. So clock ramp-ups and wrong
+// measurements are forgotten after eight graphs. One thread.
 
 #include <algorithm>
 #include <array>
@@ -16,16 +16,16 @@ public:
 
     /// `first_ms`: assumed until something was measured.
     explicit Pace(double first_ms) : first_ms_(first_ms) {}
-    /// Of one unit.
+    /// Estimated time of one unit.
     double ms() const { return count_ == 0 ? first_ms_ : *std::max_element(last_.begin(), last_.begin() + known()); }
-    /// A graph of so many units took that long.
+    /// Records that a graph of `units` units took `graph_ms`.
     void learn(double graph_ms, double units)
     {
         constexpr double LEAST_MS = 1e-7;
         if (!(units > 0.0)) return;
         last_[count_++ % GRAPHS] = std::max(graph_ms / units, LEAST_MS);
     }
-    /// How many units fit into that time.
+    /// How many units fit into `budget_ms`.
     double affords(double budget_ms) const { return budget_ms / ms(); }
 
 private:

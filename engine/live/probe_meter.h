@@ -1,7 +1,7 @@
 #pragma once
-// How much of the probe's ball is relevant: the share of its voxels that are at or above a threshold, offsets included.
-// The device counts, as it does for a brush that fills. One question is in flight at a time and nothing waits; nothing
-// is submitted while the ball and the densities stay as they are. One thread, the annotator's.
+// Measures how much of the probe's ball is relevant: the fraction of its voxels at or above a threshold, including
+// offsets. The device counts, as it does for a filling brush. One query is in flight at a time and nothing waits;
+// nothing is submitted while the ball and the densities stay the same. One thread, the annotator's.
 
 #include <optional>
 
@@ -13,34 +13,34 @@ class ProbeMeter {
 public:
     explicit ProbeMeter(Annotator& annotator) : annotator_(annotator), query_(annotator.renderer()) {}
 
-    /// Where the ball is: one position in voxels; its radius in voxels along x. Null: nobody wants to know.
+    /// The ball: its centre in voxels, its radius in voxels along x. Null: no measurement is wanted.
     struct Ball {
         glm::dvec3 voxel{0.0};
         double radius_voxels = 1.0;
         double threshold = 0.0;
         bool operator==(const Ball&) const = default;
     };
-    /// Call it in every turn: it costs a comparison where nothing has changed.
+    /// Call it in every frame: it only compares while nothing has changed.
     void want(const std::optional<Ball>& ball) { wanted_ = ball; }
-    /// Collects a finished answer and submits the next question. Fails where the ball is larger than a brush may be.
+    /// Collects a finished answer and submits the next query. Fails if the ball is larger than a brush may be.
     void advance();
-    /// Forgets a question that is in flight; it is asked again.
+    /// Drops a query in flight; it is submitted again.
     void drop()
     {
         query_.drop();
         asked_.reset();
     }
-    /// 0 ... 1, of the voxels inside the volume; null where none is, or nothing is known yet. It lags behind a ball
-    /// that moves.
+    /// 0 ... 1, among the voxels inside the volume; null if there are none, or nothing is known yet. Lags behind a
+    /// moving ball.
     std::optional<double> share() const { return wanted_ ? share_ : std::nullopt; }
     bool is_current() const;
-    /// A question is in flight. One whose bricks are missing is not: it is asked again as they come.
+    /// Whether a query is in flight. False while its bricks are missing: it is submitted again as they arrive.
     bool is_asking() const { return query_.is_asking(); }
 
 private:
     struct Asked {
         Ball ball;
-        uint64_t revision = 0;  ///< of the offsets
+        uint64_t revision = 0;  ///< revision of the offsets
         bool operator==(const Asked&) const = default;
     };
     Annotator& annotator_;

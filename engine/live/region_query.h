@@ -25,7 +25,7 @@ struct FrameOfRegions {
     std::vector<RegionAt> regions;  ///< those that contain a voxel of the volume
     size_t end = 0;                 ///< index of the first position without a region yet
 };
-/// The regions of `op` around `positions`, from `first` on.
+/// The regions of `op` around `positions`, from index `first` on.
 FrameOfRegions frame_of_regions(const PaintOp& op, std::span<const glm::dvec3> positions, size_t first,
                                 const VolumeInfo& volume);
 
@@ -33,13 +33,13 @@ FrameOfRegions frame_of_regions(const PaintOp& op, std::span<const glm::dvec3> p
 struct RegionAnswer {
     BrushRegion region;
     glm::dvec3 centre_voxel{0.0};
-    std::vector<uint32_t> words;  ///< selected voxels, laid out as BrushRegion::words_per_row says
+    std::vector<uint32_t> words;  ///< selected voxels, in rows of BrushRegion::words_per_row
 };
 
 class RegionQuery {
 public:
     enum class Wait { no, for_bricks };
-    /// `name`: of the read-backs, in profiles.
+    /// `name`: name of the read-backs in profiles.
     explicit RegionQuery(Renderer& renderer, const char* name = "") : renderer_(renderer), name_(name) {}
 
     /// Queries which voxels of `regions` (at least one) `op` selects, by its brush, threshold and connectivity. Drops
@@ -47,11 +47,11 @@ public:
     /// returns false.
     bool ask(const PaintOp& op, std::vector<RegionAt> regions, Wait wait);
     bool is_asking() const { return bool(frame_); }
-    /// Whether `answer` would not wait.
+    /// Whether `answer` would return without waiting.
     bool is_answered() const { return frame_ && frame_.done(); }
     /// The answers, one per region, in order. Waits if necessary; afterwards no query is in flight.
     std::vector<RegionAnswer> answer();
-    /// Forgets the query that is in flight, if there is one.
+    /// Drops the query in flight, if any.
     void drop() { frame_ = {}; }
     /// Device time of the last answer; 0 where the device has no timestamps.
     double gpu_ms() const { return gpu_ms_; }

@@ -1,6 +1,6 @@
 #pragma once
-// Which voxels around a point can be felt: those at or above a threshold, in a cube, as bits. The device computes them
-// and the host collects the answer some milliseconds later, without waiting.
+// Computes which voxels around a point can be felt: those at or above a threshold, in a cube, as bits. The device
+// computes them and the host collects the answer some milliseconds later, without waiting.
 //
 // One thread, the renderer's.
 
@@ -16,17 +16,17 @@ struct RelevanceBits {
     VoxelBox box;
     int64_t words_per_row = 0;
     std::vector<uint32_t> words;  ///< word + words_per_row * (y + size.y * z)
-    uint64_t asked_ns = 0;        ///< the time given to `ask`: the answer is at least as old
+    uint64_t asked_ns = 0;        ///< the time passed to `ask`; the data is at least that recent
     double gpu_ms = 0.0;          ///< 0 where the device has no timestamps
-    int level = 0;                ///< whose voxels they are
+    int level = 0;                ///< level of the voxels
 };
 
 /// A cube of voxels of a level that suits a ball: 64 a side, 128 for balls of more than 24 voxels, coarser levels for
-/// more than 48; so the hand has some way to go in it.
+/// more than 48; so the hand has some room to move in it.
 struct RelevancePlace {
     int level = 0;
     Size3 level_size{0};      ///< voxels of the level
-    glm::dvec3 spacing{1.0};  ///< of the level
+    glm::dvec3 spacing{1.0};  ///< voxel size of the level
     VoxelBox box;             ///< inside the level
     bool operator==(const RelevancePlace&) const = default;
     /// Whether the box holds all of the ball (physical) that lies in the volume.
@@ -40,9 +40,9 @@ public:
     explicit Relevance(Renderer& renderer) : renderer_(renderer), query_(renderer, "mirror relevance") {}
 
     /// Queries the cube around a point (voxels), clipped to the volume. Drops an answer not yet taken. Submits nothing
-    /// while bricks of the cube are being loaded. Fails where the point is not finite.
+    /// while bricks of the cube are being loaded. Fails if the point is not finite.
     void ask(const glm::dvec3& voxel, double threshold, uint64_t now_ns);
-    /// The same for a box of level 0. Fails where the device has no room for its bricks.
+    /// The same for a box of level 0. Fails if the device has no room for its bricks.
     void ask(const VoxelBox& box, double threshold, uint64_t now_ns);
     bool is_asking() const { return query_.is_asking(); }
     void drop() { query_.drop(); }

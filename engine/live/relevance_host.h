@@ -1,7 +1,7 @@
 #pragma once
-// The relevance pass on the host: the same bits from the file's own voxels, for replay without a device and for where
-// the device is late. Equal to the device's wherever 16-bit codes hold the intensities exactly (IntensityWindow); of
-// other volumes a voxel within half a code of the threshold may differ. Any thread.
+// The relevance pass on the host: the same bits from the file's own voxels, for replay without a device and for when
+// the device is late. Equal to the device's if 16-bit codes hold the intensities exactly (IntensityWindow); in other
+// volumes, voxels within half a code of the threshold may differ. Any thread.
 
 #include <bitset>
 
@@ -12,19 +12,19 @@
 namespace shvr {
 
 /// The cube of `side` voxels around a point (voxels), shifted inside the volume at its borders, so that it is as large
-/// as possible. Fails where the point is not finite.
+/// as possible. Fails if the point is not finite.
 VoxelBox relevance_cube(const glm::dvec3& voxel, const Size3& volume_size, int64_t side);
 
-/// Where to look for a ball around `point`, physical units. Fails where the point is not finite.
+/// The cube to query for a ball around `point`, in physical units. Fails if the point is not finite.
 RelevancePlace relevance_place(const VolumeSource& source, const glm::dvec3& point, double radius);
 
-/// Which voxels of a box of a level are at or above the threshold. `source` holds density offsets already.
+/// Which voxels of a box of a level are at or above the threshold. `source` already includes density offsets.
 RelevanceBits relevance_on_host(const VolumeSource& source, int level, const VoxelBox& box, double threshold);
 
-/// Clears the bits of voxels in other groups than these. A voxel of a coarser level counts by what is painted of those
-/// that it covers: it stays where at least half of them, and at least one, is of these groups. Unpainted ones count
-/// only where group 0 is among these. So what is painted entirely feels the same limited or not, on any level. `mask`
-/// is of the volume.
+/// Clears the bits of voxels outside these groups. A voxel of a coarser level counts by the painted voxels that it
+/// covers: it stays if at least half of them, and at least one, are in these groups. Unpainted voxels count only if
+/// group 0 is included. So a completely painted object feels the same with or without the limit, on any level. `mask`
+/// covers the volume.
 void limit_to_groups(const Mask& mask, const std::bitset<256>& groups, RelevanceBits& bits);
 
 }  // namespace shvr

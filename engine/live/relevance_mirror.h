@@ -1,15 +1,16 @@
 #pragma once
-// Keeps what the hand can feel around the probe up to date, on a thread of its own, so that a main thread that hangs
-// fades nothing. The engine knows no servo: `Ends` connect it to one.
+// Keeps the voxels that can be felt around the probe up to date, on its own thread, so that forces do not fade when the
+// main thread hangs. The engine does not depend on the servo: `Ends` connect it to one.
 //
 //   main thread: choose() ----------+                       +-> Ends::publish
-//   device (a frame or so later):   +-> bits of one cube ---+   again each turn, with the time up to which
+//   device (a frame or so later):   +-> bits of one cube ---+   again each iteration, with the time up to which
 //     wanted() -> Relevance -> offer()   or the host's own      they are known to be true
 //
-// Bits stay true until a person changes threshold, groups or voxels, so the thread dates them anew each turn. Where the
-// ball comes near the cube's border, or something changed, wanted() names a new cube for the device's compute pass. If
-// no answer came within DEVICE_NS (four times that while the held bits still do), or the cube is of a coarser level, or
-// the device declined, the thread reads the voxels itself. The bits are the same (relevance_host.h).
+// Bits stay valid until the user changes threshold, groups or voxels, so the thread updates their time stamp in each
+// iteration. When the ball comes near the cube's border, or something changed, wanted() names a new cube for the
+// device's compute pass. If no answer came within DEVICE_NS (four times that while the held bits still suffice), or the
+// cube is of a coarser level, or the device declined, the thread reads the voxels itself. The bits are the same
+// (relevance_host.h).
 //
 // choose(), wanted(), offer(), decline(), trouble(): any thread. The thread calls `Ends`.
 
@@ -26,24 +27,24 @@
 
 namespace shvr {
 
-/// What a person chose to feel. Shared objects must not change any more.
+/// What the user chose to feel. Shared objects must not change any more.
 struct RelevanceChoice {
     std::shared_ptr<const VolumeSource> source;     ///< without offsets; null: nothing is mirrored
     std::shared_ptr<const DensityField> offsets{};  ///< null: none
     std::shared_ptr<const Mask> mask{};             ///< with `groups`
-    std::optional<std::bitset<256>> groups{};       ///< only what is painted so
+    std::optional<std::bitset<256>> groups{};       ///< limits touch to these painted groups
     double threshold = 0.0;                         ///< intensity
     double radius = 1.0;                            ///< of the ball; physical units
     uint32_t settings = 0;                          ///< counts changes of threshold and groups
     uint64_t voxels = 0;                            ///< counts changes of offsets and mask
-    bool has_device = true;                         ///< somebody asks wanted() and offers what it wants
+    bool has_device = true;                         ///< a caller polls wanted() and offers answers
 };
 
-/// A mirrored cube, as it is published.
+/// A mirrored cube, as published.
 struct MirroredRelevance {
     RelevancePlace place;
     RelevanceBits bits;
-    uint64_t sequence = 0;  ///< of these bits, from 1 on; the same where only `true_at_ns` is new
+    uint64_t sequence = 0;  ///< number of these bits, from 1 on; unchanged if only `true_at_ns` is new
     uint64_t true_at_ns = 0;
     uint32_t settings = 0;
     uint64_t voxels = 0;
@@ -54,23 +55,24 @@ struct MirroredRelevance {
 class RelevanceMirror {
 public:
     static constexpr uint64_t TURN_NS = 8'000'000;
-    static constexpr uint64_t DEVICE_NS = 25'000'000;      ///< the host waits that long for the device
-    static constexpr uint64_t TROUBLE_NS = 1'000'000'000;  ///< until voxels that could not be read are tried again
+    static constexpr uint64_t DEVICE_NS = 25'000'000;      ///< how long the host waits for the device
+    static constexpr uint64_t TROUBLE_NS = 1'000'000'000;  ///< pause before voxels that could not be read are tried
+                                                           ///< again
 
     struct Ends {
-        std::function<std::optional<glm::dvec3>()> probe;  ///< physical; null: not known yet
+        std::function<std::optional<glm::dvec3>()> probe;  ///< physical position; null: not known yet
         std::function<void(const MirroredRelevance&)> publish;
         std::function<uint64_t()> now_ns;               ///< a steady clock
         std::function<void(uint64_t until_ns)> wait{};  ///< for tests; may return early
     };
     explicit RelevanceMirror(Ends ends);
-    /// Ends the thread, after the voxels it may be reading.
+    /// Stops the thread, after the voxels it may be reading.
     ~RelevanceMirror();
     RelevanceMirror(const RelevanceMirror&) = delete;
     RelevanceMirror& operator=(const RelevanceMirror&) = delete;
 
     void choose(RelevanceChoice choice);
-    /// What the device should be asked for now.
+    /// The cube that the device should be asked for now.
     struct Wanted {
         RelevancePlace place;
         double threshold = 0.0;
@@ -79,13 +81,13 @@ public:
         bool operator==(const Wanted&) const = default;
     };
     std::optional<Wanted> wanted() const;
-    /// The device's bits of what was wanted.
+    /// Delivers the device's bits for a wanted cube.
     void offer(const Wanted& wanted, RelevanceBits bits);
-    /// The device cannot answer that: the host does, at once.
+    /// Reports that the device cannot answer: the host computes the bits at once.
     void decline(const Wanted& wanted);
-    /// Why voxels could not be read last, a sentence; empty: they could.
+    /// Why voxels could not be read last time, as a sentence; empty: no failure.
     std::string trouble() const;
-    /// Cubes that the host made so far.
+    /// Number of cubes computed by the host so far.
     uint64_t made_on_host() const;
 
 private:
@@ -105,7 +107,7 @@ private:
 
     Ends ends_;
 
-    mutable std::mutex mutex_;  ///< of the following; held for moments
+    mutable std::mutex mutex_;  ///< guards the members below; held briefly
     std::condition_variable woken_;
     bool ends_now_ = false, is_woken_ = false;
     std::shared_ptr<const RelevanceChoice> choice_;
@@ -114,15 +116,15 @@ private:
     std::string trouble_;
     uint64_t made_on_host_ = 0;
 
-    // The thread's own
+    // Owned by the thread
     std::shared_ptr<const RelevanceChoice> now_;
     MirroredRelevance held_;
-    std::optional<Wanted> waiting_for_;  ///< of the device
+    std::optional<Wanted> waiting_for_;  ///< requested from the device
     uint64_t waiting_since_ns_ = 0, failed_ns_ = 0;
     std::shared_ptr<const VolumeSource> with_offsets_;
     std::shared_ptr<const DensityField> offsets_of_it_;
 
-    std::thread thread_;  ///< last: it uses all else
+    std::thread thread_;  ///< last, because it uses all other members
 };
 
 }  // namespace shvr

@@ -1,5 +1,5 @@
 #pragma once
-// The interactive picture: its panes, each a View, which take turns on the device.
+// The interactive picture: its panes, each a View, which share the device in turn.
 //
 // Sketches come first, pane by pane, so that the whole screen follows the user; then the panes are drawn sharp, in
 // order. Panes share the volume, the paint and the ambient occlusion. One thread, the renderer's; no call waits for the
@@ -17,7 +17,7 @@ class Screen {
 public:
     Screen(Renderer& renderer, const View::Options& options) : renderer_(renderer), options_(options) {}
 
-    /// Sets what to show and redraws everything. Only call it where something changed.
+    /// Sets what to show and redraws everything. Call it only if something changed.
     void look(const Session& session, const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& probe_voxel);
     /// Moves the camera or the probe in the same session; unchanged panes are not redrawn.
     void look_from(const Camera& camera, const glm::dvec3& probe_voxel);
@@ -26,17 +26,17 @@ public:
     void update_occlusion();
 
     void advance();
-    /// Submits so much more of what is due: the thread will wait that long for something else, and the device is not
-    /// to be idle meanwhile.
+    /// Submits that much more of the due work: the thread is about to wait that long for something else, and the device
+    /// should not be idle meanwhile.
     void submit_ahead(double ahead_ms);
-    /// While another picture waits for the bricks that it asked for: panes that show what they should are not made
-    /// sharper, which would ask for theirs instead. Ends once a pane has to follow the user.
+    /// While another picture waits for bricks that it requested, panes that are up to date are not made sharper, which
+    /// would request their bricks instead. Ends when a pane has to follow the user.
     void hold(bool is_held) { is_held_ = is_held; }
     bool is_held() const { return is_held_; }
     void wait();
     /// Frees all panes and their device memory; look() makes new ones.
     void clear();
-    /// The same, after the device was lost: waits for nothing.
+    /// The same after the device was lost: does not wait.
     void drop();
     bool complete() const;
 
@@ -46,7 +46,7 @@ public:
     };
     /// The panes; the first is the camera's.
     const std::vector<Part>& parts() const { return parts_; }
-    /// The lines drawn over a pane, in its pixels. `shows_cut_box`: whatever the session says.
+    /// The lines drawn over a pane, in its pixels. `shows_cut_box`: draws the cut box even if the session hides it.
     std::vector<Stroke> strokes(const Part& part, const ProbeLook& probe, const TraceMarks& marks = {},
                                 bool shows_cut_box = false) const;
     /// Whether the first pane has something to show.
@@ -81,7 +81,7 @@ private:
     std::vector<Part> parts_;
     size_t turn_ = 0;  ///< index of the pane whose bricks are being loaded
     bool is_held_ = false;
-    uint64_t retired_submissions_ = 0, retired_revisions_ = 0;  ///< of removed panes
+    uint64_t retired_submissions_ = 0, retired_revisions_ = 0;  ///< counts of removed panes
 };
 
 }  // namespace shvr

@@ -1,5 +1,5 @@
 #pragma once
-// What is highlighted in a trace. Pure.
+// Highlights in a trace. Pure.
 
 #include <optional>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace shvr {
 
-/// The highlighted nodes and internodes: the selection, and the node that a click would take. Segments of more than
+/// The highlighted nodes and internodes: the selection, and the node that a click would select. Segments of more than
 /// MAX_MARKS internodes are marked in part.
 struct TraceMarks {
     std::vector<OverlayScene::Ball> balls;
@@ -19,8 +19,8 @@ inline constexpr size_t MAX_MARKS = 2000;
 inline constexpr glm::dvec3 SELECTED_COLOR{1.0, 0.83, 0.02};  ///< yellow, linear light
 inline constexpr glm::dvec3 NEARBY_COLOR{0.45, 0.05, 0.9};    ///< purple
 inline constexpr glm::dvec3 LINKED_COLOR{0.35, 0.26, 0.0};    ///< a darker yellow
-/// `moved_to`: where the selected node is being dragged. `shown_links`: so many internodes
-/// about it, nearest first, are lines as well, since a centre line lies inside of what is seen.
+/// `moved_to`: where the selected node is being dragged. `shown_links`: this many internodes around it, nearest first,
+/// are drawn as lines as well, because a centre line lies hidden inside the visible surface.
 TraceMarks trace_marks(const TraceGraph& trace, std::optional<uint32_t> nearby, double min_radius,
                        const std::optional<glm::dvec3>& moved_to = {}, size_t shown_links = 0);
 
