@@ -1,6 +1,6 @@
 #pragma once
-// Cameras and their rays. All of it is in double precision on the CPU; the device gets two parallel planes of points
-// close to the volume and joins them, so that a camera a million voxels away loses no accuracy.
+// Cameras and their rays. Everything is computed in double precision on the CPU; the device gets two parallel planes of
+// points close to the volume and connects them, so that a camera a million voxels away loses no accuracy.
 
 #include <numbers>
 #include <string>
@@ -29,9 +29,9 @@ struct Camera {
     double height = 1.0;            ///< orthographic: height of the view, physical units
     double near_distance = 0.0;     ///< clip planes along the view direction, physical units; nothing behind the
     double far_distance = 0.0;      ///< eye is seen, whatever the projection; far 0 = no far plane
-    /// Off-axis views (Bourke 1999, "Calculating stereo pairs"): the middle of the picture lies so many heights of the
-    /// view to the right of the line from eye to target, at every depth. The picture's plane stays upright to that
-    /// line.
+    /// Off-axis views (Bourke 1999, "Calculating stereo pairs"): shift of the
+    /// picture's centre to the right of the line from eye to target, in view heights,
+    /// the same at every depth. The image plane stays perpendicular to that line.
     double shift_right = 0.0;
     bool operator==(const Camera&) const = default;
 };
@@ -42,7 +42,7 @@ constexpr std::span<const Spelling<Camera::Projection>> spellings_of(Camera::Pro
     return PROJECTIONS;
 }
 
-/// A camera that follows the volume: one of `camera_sides()`, then turned and tilted about the volume's centre.
+/// A camera defined relative to the volume: one of `camera_sides()`, then turned and tilted about the volume's centre.
 struct SideView {
     std::string side = "front";
     double zoom = 1.0;          ///< the eye's distance is divided by it
@@ -51,34 +51,34 @@ struct SideView {
     bool operator==(const SideView&) const = default;
 };
 
-/// What a session stores: numbers, or a view that takes its numbers from the volume (`camera_of`).
+/// The form stored in a session: explicit numbers, or a view that is computed from the volume (`camera_of`).
 using CameraSpec = std::variant<Camera, SideView>;
 
 /// The ray of pixel (x, y), y down, pixel centres at + 0.5, runs from near_corner + x' * near_dx + y' * near_dy to the
-/// same on the far plane, with x' = x + 0.5, y' = y + 0.5. Everything in voxel space.
+/// same expression on the far plane, with x' = x + 0.5, y' = y + 0.5. Everything in voxel space.
 struct RayPlanes {
     glm::dvec3 near_corner, near_dx, near_dy;
     glm::dvec3 far_corner, far_dx, far_dy;
     bool empty =
-        false;  ///< near plane behind far plane, or volume out of the clip range: nothing of the volume is seen
+        false;  ///< near plane behind far plane, or volume outside the clip range: nothing of the volume is visible
     // Positions between the near plane (0) and the far plane (1), which may lie outside the volume.
     double begin = 0.0;   ///< the start of the camera's clip range; at most 0 unless `empty`
     double middle = 0.5;  ///< the camera's target, or the closer of the two planes if it lies outside them
     double end = 1.0;     ///< the end of the clip range; infinite without a far clip plane
 };
 
-/// The planes stand perpendicular to the view direction, touching the volume's bounding sphere (or at the clip
-/// distances where those are tighter; a perspective eye in or at the sphere puts the near plane 1/1000 of the finest
-/// spacing before the eye). Where the volume is out of the clip range they stand in that range instead, one bounding
+/// The planes are perpendicular to the view direction and touch the volume's bounding sphere (or lie at the clip
+/// distances if those are tighter; for a perspective eye in or at the sphere, the near plane is 1/1000 of the finest
+/// spacing in front of the eye). If the volume is outside the clip range the planes lie in that range, one bounding
 /// sphere apart. Fails as `check_camera` does.
 RayPlanes ray_planes(const Camera& camera, const glm::uvec2& pixels, const VolumeInfo& volume);
 
-/// The depth of a voxel position along the view, as a share: dot(xyz, voxel) + w is 0 where the box `lower` ... `upper`
+/// The normalized depth of a voxel position along the view: dot(xyz, voxel) + w is 0 where the box `lower` ... `upper`
 /// (voxels) begins in front of the eye, or of the near clip plane, and 1 where it ends. Fails as `check_camera` does.
 glm::dvec4 depth_plane(const Camera& camera, const glm::dvec3& lower, const glm::dvec3& upper,
                        const glm::dvec3& spacing);
 
-/// Fails where the camera is degenerate (eye at target, up parallel to the view, angle outside (0, 180), not finite).
+/// Fails if the camera is degenerate (eye at target, up parallel to the view, angle outside (0, 180), not finite).
 void check_camera(const Camera& camera);
 
 /// A camera that sees the whole volume from a direction: "front" (the eye on the -y side), "back" (+y), "left" (-x),
@@ -86,9 +86,9 @@ void check_camera(const Camera& camera);
 /// 30 degrees with a margin of 5 %.
 Camera camera_looking(const std::string& side, const VolumeInfo& volume);
 std::vector<std::string> camera_sides();
-/// The side to look from where nobody chose one: "front", unless that shows less than half of the area of another face,
-/// as it does for a stack of few slices. Then the largest face, from the "top" or the "right" ("right" if these two are
-/// equal, since z is up there).
+/// The default side to look from: "front", unless that shows less than half of the area of another face, as it does for
+/// a stack of few slices. Then the largest face, from the "top" or the "right" ("right" if these two are equal, since z
+/// is up there).
 std::string side_of_largest_face(const VolumeInfo& volume);
 Camera camera_of(const CameraSpec& spec, const VolumeInfo& volume);
 

@@ -8,14 +8,14 @@
 
 namespace shvr {
 
-/// Right-handed and of unit length: right x up = -forward.
+/// A right-handed orthonormal basis: right x up = -forward.
 struct CameraAxes {
     glm::dvec3 right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
 };
 /// Fails as check_camera does.
 CameraAxes axes_of(const Camera& camera);
 
-/// Turns the eye about `pivot`, right and up as seen from the camera; the target turns with it.
+/// Orbits the eye about `pivot`, right and up as seen from the camera; the target moves with it.
 Camera orbited(const Camera& camera, const glm::dvec3& pivot, double right_degrees, double up_degrees);
 /// Rolls the view about its own axis, clockwise for the viewer.
 Camera rolled(const Camera& camera, double degrees);
@@ -24,17 +24,17 @@ Camera moved(const Camera& camera, const glm::dvec3& right_up_forward);
 /// Scales the view by `factor` (above 1: closer) about the point at `pixel`, at the depth of the target.
 Camera zoomed(const Camera& camera, const glm::uvec2& pixels, const glm::dvec2& pixel, double factor);
 
-/// The same direction, towards the middle of a box (volume space), all of which is seen, with a margin of 5 %. Clip
-/// planes stay where they are.
+/// Returns a camera with the same direction, aimed at the centre of a box (volume space) so that all of it is visible,
+/// with a margin of 5 %. Clip planes stay unchanged.
 Camera fitted(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& lower, const glm::dvec3& upper);
-/// The same direction and distance, towards another point. Clip planes stay where they are.
+/// Returns a camera with the same direction and distance, aimed at another point. Clip planes stay unchanged.
 Camera looking_at(const Camera& camera, const glm::dvec3& target);
-/// The camera that sees the same voxels where the spacing of the volume is `ratio` times what it was: along the view
-/// and upwards exactly, to the right where the ratio is equal along all axes.
+/// The camera that sees the same voxels when the spacing of the volume is `ratio` times the old one: exact along the
+/// view and upwards, and to the right if the ratio is equal along all axes.
 Camera respaced(const Camera& camera, const glm::dvec3& ratio);
 
-/// Where a point is seen: pixel coordinates, and its distance from the eye along the view. Null for points beside or
-/// behind the eye of a perspective camera.
+/// The projection of a point: pixel coordinates, and its distance from the eye along the view. Null for points level
+/// with or behind the eye of a perspective camera.
 struct Projected {
     glm::dvec2 pixel{0.0};
     double depth = 0.0;
@@ -45,7 +45,7 @@ glm::dvec3 unproject(const Camera& camera, const glm::uvec2& pixels, const glm::
 /// The size of a pixel at a depth.
 double pixel_size(const Camera& camera, const glm::uvec2& pixels, double depth);
 
-/// Pixels, half open. Empty where begin is not below end.
+/// A half-open box of pixels. Empty unless begin is below end.
 struct PixelBox {
     glm::uvec2 begin{0}, end{0};
     bool empty() const { return begin.x >= end.x || begin.y >= end.y; }
@@ -54,7 +54,7 @@ struct PixelBox {
 };
 /// The smallest box around both.
 PixelBox united(const PixelBox& a, const PixelBox& b);
-/// The pixels that may show some of a box (volume space), with a margin of one pixel; the whole picture where the box
+/// The pixels that may show some of a box (volume space), with a margin of one pixel; the whole picture if the box
 /// reaches behind the eye.
 PixelBox pixels_of_box(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& lower,
                        const glm::dvec3& upper);

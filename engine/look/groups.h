@@ -1,7 +1,7 @@
 #pragma once
 // Colour groups override the transfer function where a voxel is painted. They form a tree: a group inherits what it
-// does not set from its parent, and hiding or locking a group does so to all below it. Changing a group changes no
-// voxel.
+// does not set from its parent, and hiding or locking a group applies to all its descendants. Changing a group changes
+// no voxel.
 
 #include <bitset>
 #include <cstdint>
@@ -17,15 +17,15 @@ namespace shvr {
 struct GroupSettings {
     std::string name;                 ///< empty: "group N"
     uint8_t parent = 0;               ///< 0: none
-    std::optional<glm::dvec3> color;  ///< linear light; default: the parent's, or one of ten in turn
+    std::optional<glm::dvec3> color;  ///< linear light; default: the parent's, or one of ten colours, cyclically
     std::optional<double> opacity;    ///< per reference length; default: the parent's, or 1
-    bool visible = true;              ///< false: neither its voxels nor those of groups below it are drawn
-    bool locked = false;              ///< true: no brush changes which voxels are in it, nor in groups below it
+    bool visible = true;              ///< false: its voxels and those of its descendants are not drawn
+    bool locked = false;              ///< true: no brush changes which voxels belong to it or its descendants
     bool operator==(const GroupSettings&) const = default;
 };
-using Groups = std::map<uint8_t, GroupSettings>;  ///< 1 ... 255; a group without an entry has nothing set
+using Groups = std::map<uint8_t, GroupSettings>;  ///< keys 1 ... 255; a group without an entry has nothing set
 
-/// The resulting look.
+/// The effective look of a group.
 struct ColorGroup {
     std::string name;
     glm::dvec3 color{1.0};
@@ -34,23 +34,23 @@ struct ColorGroup {
     bool operator==(const ColorGroup&) const = default;
 };
 
-/// The least difference by CIEDE2000 between any two of the ten colours, and between one of them and the default
-/// transfer function or white, under normal sight and simulated protanopia, deuteranopia and tritanopia (Machado 2009).
+/// The minimum CIEDE2000 difference between any two of the ten colours, and between one of them and the default
+/// transfer function or white, in normal vision and simulated protanopia, deuteranopia and tritanopia (Machado 2009).
 inline constexpr double LEAST_GROUP_DIFFERENCE = 13.0;
 /// Ten distinguishable colours, repeated. Group 0 (unpainted) is fully transparent.
 ColorGroup default_group(uint8_t group);
 ColorGroup group_of(const Groups& groups, uint8_t group);
 
-/// Whether the group or one above it is locked.
+/// Whether the group or one of its ancestors is locked.
 bool is_locked(const Groups& groups, uint8_t group);
-/// `is_locked` of every group; [0], for what is unpainted, is never set.
+/// `is_locked` of every group; [0], the unpainted voxels, is never set.
 std::bitset<256> locked_groups(const Groups& groups);
 
 /// 0 if the group has no parent.
 uint8_t parent_of(const Groups& groups, uint8_t group);
-/// Whether `group` is `above`, or below it in the tree. Then it must not become the parent of `above`.
+/// Whether `group` is `above` or one of its descendants. Then it must not become the parent of `above`.
 bool is_within(const Groups& groups, uint8_t group, uint8_t above);
-/// A group that is its own ancestor, if any. The other functions need groups without cycles.
+/// A group that is its own ancestor, if any. The other functions require groups without cycles.
 std::optional<uint8_t> group_in_cycle(const Groups& groups);
 
 }  // namespace shvr

@@ -1,7 +1,7 @@
 #pragma once
-// Lines over a picture: the frustum of the main camera in maps, the positions of slices, and the probe where something
-// hides it or where it is out of sight. They are computed once, as straight strokes in pixels; the window draws them
-// its own way, and `draw_strokes` draws them into image files. Pure; any thread.
+// Lines over a picture: the main camera's frustum in maps, the positions of slices, and the probe if something hides it
+// or it is out of sight. They are computed once, as straight strokes in pixels; the window draws them with its own
+// renderer, and `draw_strokes` draws them into image files. Pure; any thread.
 
 #include <optional>
 #include <span>
@@ -19,19 +19,19 @@ struct Stroke {
     double width = 1.5;             ///< pixels
 };
 
-/// What the strokes show.
+/// The objects from which strokes are made.
 struct OverlayScene {
     Camera main;                ///< camera whose frustum maps show
-    glm::uvec2 main_pixels{1};  ///< of its pane
+    glm::uvec2 main_pixels{1};  ///< size of the main pane
     struct Probe {
         glm::dvec3 center{0.0};   ///< volume space
         double radius = 1.0;      ///< physical units
         glm::dvec3 color{1.0};    ///< linear light
         bool is_outlined = true;  ///< draw its silhouette
-        bool has_arrow = true;    ///< or an arrow where it is out of sight
+        bool has_arrow = true;    ///< draw an arrow if it is out of sight
     };
     Probe probe;
-    /// Highlights of the trace: nodes as rings, internodes as lines along their middles.
+    /// Highlights of the trace: nodes as rings, internodes as lines along their axes.
     struct Ball {
         glm::dvec3 center{0.0};  ///< volume space
         double radius = 1.0;     ///< physical units
@@ -43,26 +43,26 @@ struct OverlayScene {
     };
     std::vector<Ball> balls{};
     std::vector<Line> lines{};
-    /// A box in volume space of which the edges are drawn: what the cutting planes leave.
+    /// A box in volume space whose edges are drawn: the part that the cutting planes keep.
     struct Box {
         glm::dvec3 lower{0.0}, upper{0.0};
     };
     std::optional<Box> box{};
 };
-/// What the cutting planes leave of a volume.
+/// The part of a volume that the cutting planes keep.
 OverlayScene::Box box_of(const CutBox& cut, const VolumeInfo& volume);
 
 std::vector<Stroke> strokes_of(const Pane& pane, const OverlayScene& scene, const VolumeInfo& volume);
 
-/// The silhouette of a ball, as a closed line: the circle in which lines from the eye touch it. Empty if the eye is
-/// inside it, or if part of it is beside or behind the eye.
+/// The silhouette of a ball as a closed line: the circle in which lines from the eye touch it. Empty if the eye is
+/// inside it, or if part of it is level with or behind the eye.
 std::vector<glm::dvec2> silhouette_of(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& center,
                                       double radius);
 
-/// Anti-aliased, over premultiplied light. `pane`: the pixels of the picture that stroke coordinates refer to; nothing
-/// is drawn outside. `image` holds all of the picture's rows from `first_row` on, or some of them.
+/// Draws anti-aliased strokes over premultiplied light. `pane`: the pixels of the picture that stroke coordinates refer
+/// to; nothing is drawn outside. `image` holds some or all of the picture's rows, from `first_row` on.
 void draw_strokes(ImageF& image, std::span<const Stroke> strokes, const PixelBox& pane, uint32_t first_row = 0);
-/// The same on a screen's opaque pixels.
+/// The same for a screen's opaque pixels.
 void draw_strokes(Image8& image, std::span<const Stroke> strokes, const PixelBox& pane);
 
 }  // namespace shvr

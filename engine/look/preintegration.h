@@ -15,7 +15,7 @@
 namespace shvr {
 
 /// Entry [back * entries + front], each at one of the samples: linear RGB times opacity, and opacity, of a step of
-/// `step_voxels` reference lengths, and its optical depth. Without densities at which rays end (opaque_intervals):
+/// `step_voxels` reference lengths, and its optical depth. Excludes densities at which rays end (opaque_intervals):
 /// steps that only come near them would be opaque too. About 20 ms for 256 samples on one core.
 BakedTable preintegrated_table(const TransferFunction& function, double step_voxels, const Samples& samples);
 

@@ -10,10 +10,10 @@
 
 namespace shvr {
 
-/// Null if the text is no such colour; alpha is 1 if not given.
+/// Returns null if the text is not such a colour; alpha is 1 if not given.
 std::optional<glm::dvec4> color_of(std::string_view text);
 
-/// Rounded to 8 bits a channel; "#rrggbb" where alpha is 1.
+/// Rounds to 8 bits per channel; "#rrggbb" if alpha is 1.
 std::string text_of_color(const glm::dvec4& linear);
 
 }  // namespace shvr

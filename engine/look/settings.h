@@ -15,7 +15,7 @@ namespace shvr {
 /// The largest OcclusionSettings::radius; limited by the bricks gathered around a brick (engine/passes/occlusion.h).
 inline constexpr double MAX_OCCLUSION_RADIUS = 60.0;
 
-/// A point of the curve that maps the light that arrives to the light that is seen; linear in between, level outside.
+/// A point of the curve from arriving light to visible light; linear in between, constant outside.
 struct OcclusionPoint {
     double arrives = 0.0, seen = 0.0;  ///< shares
     bool operator==(const OcclusionPoint&) const = default;
@@ -28,13 +28,13 @@ struct OcclusionSettings {
     double radius = 16.0;                   ///< distance that light comes from, in reference lengths
     uint32_t rays = 32;                     ///< per voxel
     bool full_sphere = false;               ///< also rays from behind surfaces
-    double curve = 1.0;                     ///< exponent of the light that arrives: above 1 darker
+    double curve = 1.0;                     ///< exponent of the arriving light; above 1 is darker
     bool automatic = true;                  ///< false: the window renews it on request
-    std::vector<OcclusionPoint> mapping{};  ///< instead of `curve`, by `arrives`; empty: none
+    std::vector<OcclusionPoint> mapping{};  ///< replaces `curve`, sorted by `arrives`; empty: none
     bool operator==(const OcclusionSettings&) const = default;
 };
 
-/// The share of the light that is seen of one that arrives, at full strength.
+/// The visible share of arriving light, at full strength.
 double seen_of(const OcclusionSettings& settings, double arrives);
 
 struct Light {
@@ -78,10 +78,10 @@ constexpr std::span<const Spelling<Paging>> spellings_of(Paging)
     return PAGINGS;
 }
 
-/// How voxels look that no group holds, beside the transfer function.
+/// How unpainted voxels look, in addition to the transfer function.
 struct Unpainted {
     bool visible = true;
-    double opacity = 1.0;  ///< the transfer function's opacities are multiplied by it
+    double opacity = 1.0;  ///< factor on the transfer function's opacities
     bool operator==(const Unpainted&) const = default;
 };
 
@@ -95,14 +95,14 @@ struct RenderSettings {
     double detail = 1.0;  ///< minimum voxels per pixel, if the volume has several levels; 0: always the finest
     bool skip_empty_space = true;
     bool preintegration = false;  ///< classify steps by both of their ends (preintegration.h); for steps of at most 1
-    /// Of painted groups: between voxels, the label that weighs most among the eight around a sample, instead of the
-    /// nearest voxel's. Slices and occlusion keep to voxels.
+    /// Smooth borders of painted groups: between voxels, the label with the largest weight among the eight around a
+    /// sample, instead of the nearest voxel's. Slices and occlusion use the nearest voxel.
     bool smooth_borders = false;
-    /// Above 0: rays through every second pixel of every second row, and through all pixels only where those around
-    /// differ by more than this, of square roots of linear light; all others are interpolated
+    /// Above 0: traces rays through every second pixel of every second row, and through the others only if the
+    /// surrounding ones differ by more than this in square roots of linear light; other pixels are interpolated
     /// (engine/passes/adaptive.h).
     double adaptive_tolerance = 0.0;
-    double saturation = 1.0;  ///< of all that is drawn, before lines over it; 0: greys of the same luminance
+    double saturation = 1.0;  ///< saturation of everything drawn, before lines over it; 0: greys of the same luminance
     bool operator==(const RenderSettings&) const = default;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// Shapes of one colour over a picture: words whose letters somebody else has drawn, and what they stand on. Beside the
-// lines of overlay.h. Pure; any thread.
+// Single-colour shapes over a picture: text rasterized by the caller, and its background. Complements the lines of
+// overlay.h. Pure; any thread.
 
 #include <cstdint>
 #include <span>
@@ -18,10 +18,10 @@ struct Stamp {
     glm::dvec3 color{1.0};          ///< linear light
 };
 
-/// In order, over premultiplied light. `pane`: the pixels of the picture that stamps refer to; nothing is drawn
-/// outside. `image` holds all of the picture's rows from `first_row` on, or some of them.
+/// Draws stamps in order over premultiplied light. `pane`: the pixels of the picture that stamps refer to; nothing is
+/// drawn outside. `image` holds some or all of the picture's rows, from `first_row` on.
 void draw_stamps(ImageF& image, std::span<const Stamp> stamps, const PixelBox& pane, uint32_t first_row = 0);
-/// The same on a screen's opaque pixels.
+/// The same for a screen's opaque pixels.
 void draw_stamps(Image8& image, std::span<const Stamp> stamps, const PixelBox& pane);
 
 }  // namespace shvr

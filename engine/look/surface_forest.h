@@ -14,7 +14,7 @@ namespace shvr {
 
 class SurfaceForest {
 public:
-    /// Maximum number of surfaces in the small hierarchy: two milliseconds to build.
+    /// Maximum number of surfaces in the small hierarchy, which takes two milliseconds to build.
     static constexpr size_t MAX_SURFACES_ADDED = 2048;
 
     SurfaceForest() = default;
@@ -27,14 +27,14 @@ public:
     /// the changes and MAX_SURFACES_ADDED, not to the forest.
     bool replace(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces, const VolumeInfo& volume);
 
-    /// Gives the surfaces that there are other looks: `surfaces`, sorted by key, are all of them. Returns false, and
-    /// changes nothing, if others are there, or if a new forest is as cheap. Fails as `surface_tree` does, and then
-    /// changes nothing. What is written is what looks different, and boxes where something changed its size.
+    /// Changes the looks of existing surfaces: `surfaces`, sorted by key, are all of them. Returns false, and changes
+    /// nothing, if the keys differ, or if a new forest is as cheap. Fails as `surface_tree` does, and then changes
+    /// nothing. Writes only surfaces that look different, and boxes in which a size changed.
     bool restyle(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume);
 
     const std::vector<gpu::SurfaceNode>& nodes() const { return nodes_; }
     const std::vector<gpu::Surface>& list() const { return list_; }
-    /// Upper bound of the number of nodes, whatever `replace` does.
+    /// Upper bound of the number of nodes, after any `replace`.
     size_t max_nodes() const { return base_nodes_ + (may_grow() ? 2 * MAX_SURFACES_ADDED : 0); }
     size_t max_surfaces() const { return base_list_ + (may_grow() ? MAX_SURFACES_ADDED : 0); }
 
@@ -54,16 +54,16 @@ private:
     std::vector<gpu::SurfaceNode> nodes_;
     std::vector<gpu::Surface> list_;
     size_t base_nodes_ = 0, base_list_ = 0;  ///< of the large hierarchy, which comes first
-    std::vector<uint64_t> keys_;             ///< of its surfaces, in the order of `list_`
-    std::vector<uint32_t> leaves_;           ///< and their nodes
-    /// Its keys, sorted, with their index in `list_`; GONE: removed.
+    std::vector<uint64_t> keys_;             ///< keys of its surfaces, in the order of `list_`
+    std::vector<uint32_t> leaves_;           ///< their leaf nodes
+    /// Keys of the large hierarchy, sorted, with their index in `list_`; GONE: removed.
     struct Place {
         uint64_t key;
         uint32_t at;
     };
     static constexpr uint32_t GONE = ~0u;
     std::vector<Place> places_;
-    std::vector<KeyedSurface> added_;  ///< by key
+    std::vector<KeyedSurface> added_;  ///< sorted by key
     Written written_;
 };
 

@@ -21,8 +21,8 @@ struct SurfaceLook {
     bool operator==(const SurfaceLook&) const = default;
 };
 
-/// What a surface belongs to. Sorted: those of a session by their index, then nodes and internodes of the trace by
-/// their numbers. Of two surfaces at the same length along a ray, the earlier one is seen.
+/// The owner of a surface. Sort order: a session's surfaces by index, then nodes and internodes of the trace by number.
+/// Of two surfaces at the same length along a ray, the earlier one is visible.
 enum class SurfaceKind : uint8_t { session, node, internode };
 constexpr uint64_t surface_key(SurfaceKind kind, uint32_t number)
 {
@@ -43,7 +43,7 @@ inline constexpr size_t MAX_SURFACES = 1'000'000;
 struct SurfaceTree {
     std::vector<gpu::SurfaceNode> nodes;
     std::vector<gpu::Surface> list;  ///< in the order of the leaves
-    std::vector<uint64_t> keys;      ///< of `list`
+    std::vector<uint64_t> keys;      ///< keys of `list`
 };
 
 /// Fails, naming the surface, if there are more than MAX_SURFACES, or if one is not finite, has no size, or is farther
@@ -51,10 +51,10 @@ struct SurfaceTree {
 SurfaceTree surface_tree(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume,
                          size_t max_in_leaf = gpu::SURFACES_IN_LEAF);
 
-/// One of them as it would be in the tree's list. Fails as `surface_tree` does.
+/// Encodes one surface as in the tree's list. Fails as `surface_tree` does.
 gpu::Surface surface_on_device(const KeyedSurface& surface, const VolumeInfo& volume);
 
-/// Fits the boxes of `nodes`, which are whole trees, to what lies in their leaves. Returns the nodes that changed.
+/// Fits the boxes of `nodes`, which are whole trees, to the surfaces in their leaves. Returns the nodes that changed.
 std::vector<uint32_t> refit(std::span<gpu::SurfaceNode> nodes, std::span<const gpu::Surface> list);
 
 }  // namespace shvr

@@ -25,12 +25,12 @@ class TransferFunction {
 public:
     TransferFunction() = default;
     /// Sorts by intensity; points at the same intensity keep their order and make a step (the last one holds at the
-    /// intensity itself). Fails where a number is not finite, an opacity or colour lies outside [0, 1], or an
-    /// intensity outside the range of float32 (no voxel holds such a value).
+    /// intensity itself). Fails if a number is not finite, an opacity or colour lies outside [0, 1], or an intensity
+    /// outside the range of float32 (no voxel holds such a value).
     explicit TransferFunction(std::vector<ControlPoint> points);
 
     std::span<const ControlPoint> points() const { return points_; }
-    /// Nothing is rendered with fewer than two points, where all lie at one intensity, or where no opacity is above 0.
+    /// True if there are fewer than two points, all lie at one intensity, or no opacity is above 0.
     bool draws_nothing() const;
     double lower() const { return points_.empty() ? 0.0 : points_.front().intensity; }
     double upper() const { return points_.empty() ? 0.0 : points_.back().intensity; }
@@ -58,7 +58,7 @@ struct Samples {
     bool operator==(const Samples&) const = default;
     double at(uint32_t entry) const;
 };
-/// From function.lower() to function.upper().
+/// Samples from function.lower() to function.upper().
 Samples whole_range(const TransferFunction& function, uint32_t entries);
 
 /// Samples of the function: linear RGB, and opacity of one step. Samples, not averages: a spike between two of them is
@@ -69,16 +69,17 @@ struct BakedTable {
 };
 BakedTable bake_table(const TransferFunction& function, double step_voxels, const Samples& samples);
 
-/// An interval of intensities, or a single one, at which opacity is 1: rays that come by it end there.
+/// An interval of intensities, or a single one, at which opacity is 1: rays that pass through it end there.
 struct OpaqueInterval {
     double lower = 0.0, upper = 0.0;
     glm::dvec3 lower_color{0.0}, upper_color{0.0};  ///< linear light
 };
-/// All of them, by intensity.
+/// All opaque intervals, sorted by intensity.
 std::vector<OpaqueInterval> opaque_intervals(const TransferFunction& function);
 
-/// For each k the number of table intervals [j, j+1] with j < k in which the table's opacity is above 0; entries
-/// long. Interval j..k holds something visible exactly where result[k+1] - result[j] > 0. Integers, so nothing cancels.
+/// For each k, the number of table intervals [j, j+1] with j < k in which the table's opacity is above 0; `entries`
+/// long. Interval j..k contains something visible exactly if result[k+1] - result[j] > 0. Integers, so there is no
+/// cancellation.
 std::vector<uint32_t> visible_intervals(std::span<const glm::vec4> table);
 
 }  // namespace shvr
