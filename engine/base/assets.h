@@ -1,5 +1,5 @@
 #pragma once
-// Locates the files that the program ships beside its code. Any thread.
+// Locates the data files that the program ships with. Any thread.
 
 #include <filesystem>
 #include <string>

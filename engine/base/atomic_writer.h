@@ -1,5 +1,5 @@
 #pragma once
-// Writes a file all or nothing: the bytes go into a temporary file beside the target, which is synced and renamed over
+// Writes a file all or nothing: the bytes go into a temporary file next to the target, which is synced and renamed over
 // it at the end. Without `commit` the target stays as it was and the temporary file is removed.
 //
 // Every failure is one sentence with the target's path and the system's reason. One thread at a time.
@@ -19,8 +19,8 @@ namespace shvr {
 /// Syncs the folder that contains `path`, so that a new or renamed file survives a power cut.
 void sync_folder(const std::filesystem::path& path);
 
-/// Removes the temporary files of all writers that have not committed. For signal handlers: calls nothing that they may
-/// not call. The program must end afterwards.
+/// Removes the temporary files of all writers that have not committed. For signal handlers: calls only
+/// async-signal-safe functions. The program must terminate afterwards.
 void remove_temporary_files();
 
 class AtomicWriter {
@@ -32,7 +32,7 @@ public:
     AtomicWriter& operator=(const AtomicWriter&) = delete;
 
     void append(std::span<const std::byte> content);
-    /// For formats that patch what they have written. Not together with `append`.
+    /// For formats that patch bytes already written. Not together with `append`.
     void write_at(int64_t offset, std::span<const std::byte> content);
     /// Fails if fewer bytes were written.
     void read_back(int64_t offset, std::span<std::byte> content) const;
@@ -49,7 +49,7 @@ private:
     std::optional<mode_t> old_permissions_;
     FileDescriptor descriptor_;
     bool is_renamed_ = false;
-    std::atomic<const char*>* listed_ = nullptr;  ///< where remove_temporary_files finds its name
+    std::atomic<const char*>* listed_ = nullptr;  ///< the slot in which remove_temporary_files finds its name
 };
 
 }  // namespace shvr

@@ -1,7 +1,7 @@
 #pragma once
-// LDR-FLIP: how strongly a person who flips between two pictures sees them differ, from 0 (not at all) to 1, per pixel.
-// Andersson et al. 2020, "FLIP: A Difference Evaluator for Alternating Images". A metric to report, not to gate on: a
-// difference of one 8-bit level everywhere already gives 0.03. Alpha is ignored. Any thread may call these.
+// LDR-FLIP: the perceived difference, from 0 (none) to 1 per pixel, of two pictures shown alternately. Andersson et al.
+// 2020, "FLIP: A Difference Evaluator for Alternating Images". A metric to report, not to gate on: a difference of one
+// 8-bit level everywhere already gives 0.03. Alpha is ignored. Any thread may call these.
 
 #include <numbers>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace shvr {
 
-/// A screen 0.7 m wide with 3840 pixels, seen from 0.7 m.
+/// Pixels per degree of a screen 0.7 m wide with 3840 pixels, seen from 0.7 m.
 inline constexpr double FLIP_PIXELS_PER_DEGREE = 3840.0 * std::numbers::pi / 180.0;
 
 /// One value per pixel, rows from the top. Both pictures must have the same size.

@@ -16,7 +16,7 @@ struct Image8 {
     bool operator==(const Image8&) const = default;
 };
 
-/// Pictures as the renderer makes them: linear light, RGB premultiplied by alpha, unclamped, rows from the top.
+/// Pictures as rendered: linear light, RGB premultiplied by alpha, unclamped, rows from the top.
 struct ImageF {
     int width = 0, height = 0;
     std::vector<float> rgba;  ///< 4 * width * height
@@ -29,7 +29,7 @@ double srgb_encode(double linear);
 double srgb_decode(double encoded);
 
 /// Un-premultiplies, clamps to 0..1, encodes and rounds to nearest. Alpha is not encoded. A pixel whose alpha rounds to
-/// 0 becomes 0,0,0,0. NaN becomes 0; `count_not_finite` tells whether there is any.
+/// 0 becomes 0,0,0,0. NaN becomes 0; `count_not_finite` reports whether there is any.
 Image8 to_image8(const ImageF& image);
 /// The same for pixels of both kinds, of equal number.
 void encode_pixels(std::span<const float> light, std::span<uint8_t> encoded);

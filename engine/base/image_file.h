@@ -17,43 +17,43 @@
 
 namespace shvr {
 
-/// Pixels of a picture that is read, or written from memory.
+/// Maximum number of pixels of a picture that is read, or written from memory.
 inline constexpr int64_t MAX_IMAGE_PIXELS = int64_t{1} << 28;
-/// Pixels along each side of a picture that is written row by row.
+/// Maximum side in pixels of a picture that is written row by row.
 inline constexpr int64_t MAX_IMAGE_SIDE = 65536;
 
 /// Grey, palette and colour files of 1 to 16 bits become 8-bit RGBA. Values are taken as sRGB unless the file says
 /// otherwise (gAMA chunk); then libpng converts them, approximating the sRGB curve by a power of 2.2 (up to 9 levels
 /// off near black, 2 in the middle).
 Image8 read_png(const std::filesystem::path& path);
-/// Texts in a picture file, each by its keyword (1 to 79 Latin letters and single spaces), in UTF-8; written compressed
-/// (iTXt) before the pixels. Of at most MAX_PICTURE_TEXT bytes each.
+/// Texts in a picture file, each with its keyword (1 to 79 Latin letters and single spaces), in UTF-8; written
+/// compressed (iTXt) before the pixels. At most MAX_PICTURE_TEXT bytes each.
 using PictureTexts = std::vector<std::pair<std::string, std::string>>;
 inline constexpr size_t MAX_PICTURE_TEXT = size_t{16} << 20;
-/// The first text of that keyword (iTXt or zTXt or tEXt) that lies before the pixels; nothing where there is none, or
-/// the file is no PNG file. Reads no pixels. Fails where the text is larger than MAX_PICTURE_TEXT, or damaged.
+/// The first text with that keyword (iTXt, zTXt or tEXt) before the pixels; null if there is none, or the file is not a
+/// PNG file. Reads no pixels. Fails if the text is larger than MAX_PICTURE_TEXT, or damaged.
 std::optional<std::string> read_png_text(const std::filesystem::path& path, std::string_view keyword);
 /// Replaces an existing file atomically; leaves it untouched on failure (atomic_file.h).
 void write_png(const std::filesystem::path& path, const Image8& image, const PictureTexts& texts = {});
 
-/// A picture file that is written row by row, in memory of a few rows. It appears under its name with `commit`;
-/// without it, the old file stays as it was and nothing else is left (atomic_writer.h). One thread at a time.
+/// A picture file that is written row by row, in memory of a few rows. `commit` gives it its final name; without it,
+/// the old file stays as it was and nothing else is left (atomic_writer.h). One thread at a time.
 class ImageWriter {
 public:
     virtual ~ImageWriter() = default;
     ImageWriter(const ImageWriter&) = delete;
     ImageWriter& operator=(const ImageWriter&) = delete;
 
-    /// The next rows, from the top; as wide as the picture. Fails where they cannot be written.
+    /// Adds the next rows from the top, as wide as the picture. Fails if they cannot be written.
     virtual void add(const ImageF& rows) = 0;
-    /// All rows have been added.
+    /// Completes the file once all rows have been added.
     virtual void commit() = 0;
 
 protected:
     ImageWriter() = default;
 };
-/// As `write_pfm` where the name ends in .pfm, and then without texts, as `write_png` otherwise; both as `to_image8`
-/// for light.
+/// Writes as `write_pfm`, without texts, if the name ends in .pfm, otherwise as `write_png` with light converted as by
+/// `to_image8`.
 std::unique_ptr<ImageWriter> image_writer(const std::filesystem::path& path, int64_t width, int64_t height,
                                           const PictureTexts& texts = {});
 

@@ -1,7 +1,7 @@
 #pragma once
-// How much two pictures of the same size differ: numbers to report, and tolerances for gates. Everything compares the
-// stored bytes, sRGB with straight alpha; nothing is composited. Alpha counts as a fourth channel where a comment says
-// "all channels"; SSIM and FLIP use RGB only. Any thread may call these.
+// Measures how much two pictures of the same size differ: numbers to report, and tolerances for gates. Everything
+// compares the stored bytes, sRGB with straight alpha; nothing is composited. Alpha counts as a fourth channel where a
+// comment says "all channels"; SSIM and FLIP use RGB only. Any thread may call these.
 
 #include <optional>
 #include <string>
@@ -15,7 +15,7 @@ namespace shvr {
 struct PixelDifference {
     double max_abs = 0.0;           ///< 8-bit levels, all channels
     double rmse = 0.0;              ///< 8-bit levels, all channels
-    std::optional<double> psnr_db;  ///< 20 log10(255 / rmse); nothing if the pictures are equal (it is infinite)
+    std::optional<double> psnr_db;  ///< 20 log10(255 / rmse); null if the pictures are equal (it is infinite)
     double mean_error = 0.0;        ///< |mean of the signed difference| / 255, maximum over all channels: a tint
     double fraction_over_1 = 0.0;   ///< fraction of pixels with any channel off by more than 1 level
     double fraction_over_4 = 0.0;   ///< the same for 4 levels
@@ -30,7 +30,7 @@ struct ImageDifference : PixelDifference {
     double flip_p99 = 0.0;   ///< 99th percentile
 };
 
-/// Both fail if the sizes differ, and state them.
+/// Both fail, stating the sizes, if these differ.
 PixelDifference compare_pixels(const Image8& a, const Image8& b);
 ImageDifference compare(const Image8& a, const Image8& b, const Progress& progress = {});
 
@@ -39,14 +39,14 @@ Image8 difference_picture(const Image8& a, const Image8& b, double gain = 16.0);
 
 struct Tolerance {
     double max_abs = 0.0;              ///< 8-bit levels
-    double max_fraction_over_1 = 0.0;  ///< of the pixels
+    double max_fraction_over_1 = 0.0;  ///< fraction of the pixels
     double max_mean_error = 0.0;       ///< as PixelDifference::mean_error
 };
 inline constexpr Tolerance EXACT_TOLERANCE{};
-/// For the same arithmetic on another driver or processor. The mean catches a tiny bias that is everywhere.
+/// For the same arithmetic on another driver or processor. The mean catches a tiny bias that affects all pixels.
 inline constexpr Tolerance TIGHT_TOLERANCE{.max_abs = 2.0, .max_fraction_over_1 = 0.0005, .max_mean_error = 1e-4};
 
-/// Every limit that is exceeded, with the value found; nothing if none is.
+/// Every limit that is exceeded, with the value found; null if none is.
 std::optional<std::string> why_not_within(const PixelDifference& difference, const Tolerance& tolerance);
 
 }  // namespace shvr

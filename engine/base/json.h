@@ -39,9 +39,9 @@ NumberRange above_zero(double lower, double upper);
 
 /// Limits on a text, checked before its values are read.
 struct JsonLimits {
-    int depth = 16;                      ///< levels of nesting; reading and showing values uses stack for each
+    int depth = 16;                      ///< levels of nesting; reading and printing values uses stack space for each
     const char* expected = "an object";  ///< for the message if the text is not JSON or nests deeper
-    bool may_repeat_keys = false;        ///< the last one counts: for metadata of other programs
+    bool may_repeat_keys = false;        ///< the last one counts: for metadata written by other programs
 };
 
 class JsonDocument;
@@ -99,7 +99,7 @@ public:
         const std::span<const Spelling<Value>> spellings = spellings_of(Value{});
         return spellings[choice(names_of(spellings))].value;
     }
-    /// The result of `parse`, an optional, for a text; fails if it is empty.
+    /// Applies `parse`, which returns an optional, to a text; fails if the result is empty.
     template <class Parse>
     auto parsed(const Parse& parse, const std::string& expected) const
     {
@@ -107,9 +107,9 @@ public:
         if (!value) refuse(expected);
         return *value;
     }
-    std::string dump() const;  ///< as JSON without spaces
+    std::string dump() const;  ///< serialized as JSON without spaces
 
-    // The value, or `fallback` if it is missing.
+    // These return the value, or `fallback` if it is missing.
     double number(double fallback, const NumberRange& range) const { return exists() ? number(range) : fallback; }
     int64_t whole(int64_t fallback, int64_t lower, int64_t upper) const
     {
@@ -157,7 +157,7 @@ public:
 
     JsonNode root() const { return {*this, value_.get()}; }
     const std::string& origin() const { return origin_; }
-    /// For changes; invalidates existing nodes.
+    /// For modifications; they invalidate existing nodes.
     nlohmann::json& value() { return *value_; }
     const nlohmann::json& value() const { return *value_; }
 

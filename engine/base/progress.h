@@ -1,5 +1,5 @@
 #pragma once
-// How long work says how far it is, and how it is stopped; and the line of text that a person sees of it.
+// How long-running work reports progress and is stopped, and the progress line that a user sees.
 
 #include <functional>
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace shvr {
 
-/// Called now and then by long work, on the thread that asked for it, with the share that is done (0 ... 1). What it
-/// throws ends the work, which then leaves nothing half done. An empty function: nobody wants to know.
+/// Called now and then by long-running work, on the thread that runs it, with the completed fraction (0 ... 1). An
+/// exception from it ends the work, which then leaves nothing half done. An empty function: progress is not reported.
 using Progress = std::function<void(double fraction)>;
 
 /// The work was stopped by the user.
@@ -23,7 +23,7 @@ inline void tell(const Progress& progress, double fraction)
     if (progress) progress(fraction);
 }
 
-/// For a part of the work: its 0 ... 1 is `lower` ... `upper` of the whole. `progress` is copied.
+/// Progress of a part of the work: its 0 ... 1 is `lower` ... `upper` of the whole. `progress` is copied.
 inline Progress part_of(const Progress& progress, double lower, double upper)
 {
     if (!progress) return {};
@@ -33,32 +33,33 @@ inline Progress part_of(const Progress& progress, double lower, double upper)
 /// "5 s", "2 min 5 s", "3 h 20 min": rounded up.
 std::string duration_text(double seconds);
 
-/// What a person sees while a command runs: nothing in the first second; then on a terminal one line that is rewritten,
+/// The progress line of a command: nothing in the first second; then on a terminal one line that is rewritten,
 /// elsewhere at most one line every ten seconds. One thread at a time.
 class ProgressLine {
 public:
     struct Place {
         bool is_terminal = false;
-        std::function<void(const std::string& text)> write;  ///< as it is, with its control characters and line ends
-        std::function<double()> seconds;                     ///< since any moment
+        std::function<void(const std::string& text)> write;  ///< prints text as it is, with its control characters and
+                                                             ///< line ends
+        std::function<double()> seconds;                     ///< time since any fixed moment
     };
     explicit ProgressLine(Place place);
     ~ProgressLine() { clear(); }
     ProgressLine(const ProgressLine&) = delete;
 
-    /// A new stretch of work begins, as in "measuring"; its time left is estimated anew.
+    /// Starts a new stage of the work, as in "measuring"; its time left is estimated from scratch.
     void begin(std::string what);
-    /// A share below 0 is not known; then the time since `begin` is said. `detail`: said after the share, as in
-    /// "120 MB/s"; may be empty. Without `seconds_left` that is estimated from the time since `begin`.
+    /// A negative fraction means unknown; then the time since `begin` is shown. `detail`: shown after the fraction, as
+    /// in "120 MB/s"; may be empty. Without `seconds_left`, the time left is estimated from the time since `begin`.
     void show(double fraction, const std::string& detail = {}, double seconds_left = -1.0);
-    /// Takes the line away from a terminal, before anything else is printed there.
+    /// Erases the line from a terminal, before anything else is printed there.
     void clear();
 
 private:
     Place place_;
     std::string what_;
     double started_, begun_ = 0.0, told_ = 0.0;
-    double first_fraction_ = -1.0;  ///< work that was done before `begin`, as in a resumed import; below 0: none seen
+    double first_fraction_ = -1.0;  ///< work done before `begin`, as in a resumed import; below 0: none yet
     bool has_told_ = false, is_shown_ = false;
 };
 

@@ -12,7 +12,7 @@
 
 namespace shvr {
 
-/// '0' ... '9', whatever the locale.
+/// '0' ... '9', in any locale.
 inline bool is_digit(char character)
 {
     return character >= '0' && character <= '9';
@@ -23,7 +23,7 @@ std::string lower_case(std::string_view text);
 std::vector<std::string_view> words_of(std::string_view text);
 /// Whether it contains control characters, which terminals interpret.
 bool has_controls(std::string_view text);
-/// With each such character replaced by a question mark.
+/// The text with each control character replaced by a question mark.
 std::string printable(std::string_view text);
 /// For messages: in quotes, at most 60 characters, no control characters.
 std::string in_quotes(std::string_view text);

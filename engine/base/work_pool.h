@@ -1,6 +1,6 @@
 #pragma once
 // Worker threads for long work that is split into many small tasks. Tasks come in batches; urgent batches run before
-// others. The first exception in a batch drops its tasks that have not begun, and is rethrown to the waiting thread.
+// others. The first exception in a batch drops its tasks that have not started, and is rethrown in the waiting thread.
 //
 // One thread owns the pool: it starts batches and waits for them. A task may use anything that outlives its batch;
 // `worker` (0 ... workers() - 1) selects its own scratch memory.
@@ -26,7 +26,7 @@ public:
     /// `poll` ends the batch being waited for and is rethrown. Workers call `before_task` before every task; an
     /// exception from it counts as one from the task.
     explicit WorkPool(int threads, std::function<void()> poll = {}, std::function<void()> before_task = {});
-    /// Drops tasks that have not begun, and waits for the rest.
+    /// Drops tasks that have not started, and waits for the rest.
     ~WorkPool();
     WorkPool(const WorkPool&) = delete;
 
