@@ -11,9 +11,9 @@
 
 namespace shvr {
 
-/// A brick as the device holds it. `codes` is x fastest, gpu::BRICK_TEXELS a side; voxels outside the volume repeat
-/// the nearest voxel inside. `cell_ranges` holds, for each of the gpu::BRICK_CELLS^3 cells, minimum and maximum code
-/// over every voxel that a trilinear sample inside the cell can touch (the cell's voxels and one voxel around).
+/// A brick as the device holds it. `codes` is x fastest, gpu::BRICK_TEXELS a side; voxels outside the volume repeat the
+/// nearest voxel inside. `cell_ranges` holds, for each of the gpu::BRICK_CELLS^3 cells, minimum and maximum code over
+/// every voxel that a trilinear sample inside the cell can touch (the cell's voxels and one voxel around).
 struct BrickTexels {
     static constexpr size_t TEXELS = size_t{gpu::BRICK_TEXELS} * gpu::BRICK_TEXELS * gpu::BRICK_TEXELS;
     static constexpr size_t CELLS = size_t{gpu::BRICK_CELLS} * gpu::BRICK_CELLS * gpu::BRICK_CELLS;

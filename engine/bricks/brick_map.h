@@ -1,7 +1,7 @@
 #pragma once
-// A number for each brick of a set: a flat hash table with linear probing, for sets of 10^5 that are made anew when a
-// camera moves, and asked for every brick. Made four times as fast as the standard library's, whose entries are
-// allocations, and asked nearly three times as fast (engine/device/MEASURED.md). One thread.
+// Maps each brick of a set to a number: a flat hash table with linear probing, for sets of 10^5 bricks that are rebuilt
+// when a camera moves, and queried for every brick. It is built four times as fast as the standard library's, whose
+// entries are allocations, and queried nearly three times as fast (engine/device/MEASURED.md). One thread.
 
 #include <optional>
 #include <vector>
@@ -16,7 +16,7 @@ public:
     bool contains(const BrickKey& key) const { return !entries_.empty() && entries_[place_of(key)].key != NONE; }
     std::optional<uint32_t> find(const BrickKey& key) const;
 
-    /// Forgets all bricks; has room for so many, and keeps the room it had.
+    /// Removes all bricks; reserves capacity for `room` bricks and keeps the existing capacity.
     void clear(size_t room = 0);
     /// Adds a brick, or replaces its number.
     void set(const BrickKey& key, uint32_t number);
@@ -25,7 +25,7 @@ public:
 private:
     static constexpr uint64_t NONE = 0;
     struct Entry {
-        uint64_t key = NONE;  ///< as `word_of`
+        uint64_t key = NONE;  ///< result of `word_of`
         uint32_t number = 0;
     };
     /// Never NONE: bricks are at most 2^15 along an axis.
@@ -39,9 +39,9 @@ private:
     size_t place_of(const BrickKey& key) const;
     void enlarge(size_t entries);
 
-    std::vector<Entry> entries_;  ///< a power of two, at most half of them taken
+    std::vector<Entry> entries_;  ///< the size is a power of two; at most half of the entries are used
     size_t size_ = 0;
-    int shift_ = 63;  ///< 64 - log2 of their number
+    int shift_ = 63;  ///< 64 - log2 of the number of entries
 };
 
 }  // namespace shvr

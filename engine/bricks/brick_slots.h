@@ -1,6 +1,6 @@
 #pragma once
-// Assigns bricks to a fixed number of slots, and chooses which brick to evict: of those that are not needed, the least
-// recently used. Deterministic plain data: no device, no clock, no files; the owner manages the slots' contents
+// Assigns bricks to a fixed number of slots, and chooses which brick to evict: the least recently used of those that
+// are not needed. Deterministic plain data: no device, no clock, no files; the owner manages the slots' contents
 // (engine/device/paged_volume.h).
 //
 // Finding a slot takes constant time; after needs_changed() the next eviction sorts all slots. One thread.
@@ -14,47 +14,49 @@
 
 namespace shvr {
 
-/// What needs a brick. Work on a region of level 0 has priority over pictures.
+/// Why a brick is needed. Work on a region of level 0 has priority over pictures.
 enum class BrickNeed : uint8_t { none, picture, region };
 
 class BrickSlots {
 public:
-    /// Slots 1 ... count - 1; slot 0 is never used. Calls `need` when it has to make room.
+    /// Uses slots 1 ... count - 1; slot 0 is never used. Calls `need` when it has to evict a brick.
     BrickSlots(uint32_t count, std::function<BrickNeed(const BrickKey&)> need);
 
     uint32_t count() const { return uint32_t(slots_.size()); }
-    /// Bricks and their slots, in the order of these.
+    /// Bricks and their slots, sorted by slot.
     std::vector<std::pair<BrickKey, uint32_t>> placed() const;
     size_t placed_count() const { return placed_.size(); }
     bool contains(const BrickKey& key) const { return placed_.contains(key); }
     std::optional<uint32_t> find(const BrickKey& key) const { return placed_.find(key); }
     bool is_pinned(uint32_t slot) const { return slots_[slot].is_pinned; }
     size_t free_count() const { return free_.size(); }
-    /// Number of slots that are free, or whose bricks neither a picture nor a region needs. Asks about all of them.
+    /// Number of slots that are free, or whose bricks neither a picture nor a region needs. Calls `need` for all of
+    /// them.
     size_t room() const;
     /// Bricks evicted so far.
     uint64_t evictions() const { return evictions_; }
 
-    /// Later uses count as more recent than all before.
+    /// Makes later uses count as more recent than all before.
     void tick() { ++now_; }
     void use(const BrickKey& key);
-    /// To be called where `need` may answer less than before; a brick that is needed more is noticed in its turn.
+    /// To be called if `need` may have decreased for any brick; an increased need is noticed when the brick is
+    /// considered.
     void needs_changed() { evictable_is_stale_ = true; }
 
     struct Placed {
         uint32_t slot = 0;
-        std::optional<BrickKey> evicted;  ///< the brick that was in the slot
+        std::optional<BrickKey> evicted;  ///< the brick that previously occupied the slot
     };
     /// Places a brick that has no slot and marks it as used now: in a free slot, or in that of a brick that is not
-    /// needed; for a region, then also in that of a brick that only the picture needs. Null where there is no room.
-    /// Pinned bricks stay until they are removed.
+    /// needed; for a region, also in that of a brick that only the picture needs. Null if there is no such slot. Pinned
+    /// bricks stay until they are removed.
     std::optional<Placed> place(const BrickKey& key, BrickNeed need, bool is_pinned);
     void remove(const BrickKey& key);
 
 private:
     struct Slot {
         std::optional<BrickKey> key;
-        uint64_t used = 0;  ///< now_ of the last use
+        uint64_t used = 0;  ///< value of now_ at the last use
         bool is_pinned = false;
     };
     struct Candidate {

@@ -1,7 +1,7 @@
 #pragma once
-// The host's tier of a volume's bricks: loader threads read, decode and cut the wanted bricks, most wanted first, and
-// the store keeps them within a byte budget. Bricks that are no longer wanted are not started. A brick that cannot be
-// read is reported once and never tried again.
+// The host tier of a volume's bricks: loader threads read, decode and cut the wanted bricks, most wanted first, and the
+// store keeps them within a byte budget. Bricks that are no longer wanted are not started. A brick that cannot be read
+// is reported once and never tried again.
 //
 // One thread makes all calls (want, take, get); the store owns the loader threads.
 
@@ -28,7 +28,7 @@ public:
     };
     struct Counts {
         uint64_t loads = 0;    ///< bricks read and cut
-        uint64_t hits = 0;     ///< bricks taken from those kept
+        uint64_t hits = 0;     ///< bricks found in the store
         uint64_t dropped = 0;  ///< wanted bricks that became unwanted before a loader started them
         uint64_t failures = 0;
     };
@@ -41,14 +41,14 @@ public:
 
     /// Sets the wanted bricks, most wanted first. Replaces the previous list.
     void want(std::vector<BrickKey> keys);
-    /// At most `most` of the wanted bricks that are ready; each is handed out once per list. Does not wait.
+    /// Returns up to `most` of the wanted bricks that are ready; each is returned once per list. Does not wait.
     std::vector<Finished> take(size_t most);
     /// Waits until there is something to take; false if nothing more will arrive.
     bool wait();
     /// Returns one brick at once: reads it on this thread unless it is kept. Null if it cannot be read.
     Texels get(const BrickKey& key);
-    /// The source's voxels of these bricks have changed: drops kept copies, and re-reads bricks that a loader read
-    /// before. Call it after the source has changed.
+    /// Reports that the source's voxels of these bricks have changed: drops kept copies, and re-reads bricks that a
+    /// loader read earlier. Call it after the source has changed.
     void renew(std::span<const BrickKey> keys);
     /// Why a brick cannot be read; null if it can be, or was not tried.
     std::optional<std::string> failure_of(const BrickKey& key) const;
@@ -79,15 +79,15 @@ private:
     mutable std::mutex mutex_;
     std::condition_variable_any work_, finished_;
     std::vector<BrickKey> wanted_;
-    size_t next_wanted_ = 0;                              ///< the loaders' place in the list
-    std::unordered_set<BrickKey, BrickKeyHash> untaken_;  ///< wanted and not handed out
+    size_t next_wanted_ = 0;                              ///< index of the next brick that a loader will take
+    std::unordered_set<BrickKey, BrickKeyHash> untaken_;  ///< wanted, but not yet returned
     std::list<BrickKey> ready_;                           ///< in order of arrival
     std::unordered_map<BrickKey, Kept, BrickKeyHash> kept_;
     std::list<BrickKey> by_age_;  ///< keys of `kept_`, least recently used first
     std::unordered_set<BrickKey, BrickKeyHash> loading_;
     std::unordered_set<BrickKey, BrickKeyHash> outdated_;  ///< keys of `loading_` that must be read again
     std::unordered_map<BrickKey, std::string, BrickKeyHash> failed_;
-    std::atomic<bool> has_failures_ = false;  ///< so that nobody takes the mutex for each brick of a picture
+    std::atomic<bool> has_failures_ = false;  ///< avoids locking the mutex for each brick of a picture
     std::unordered_set<std::string> known_messages_;
     std::vector<std::string> messages_;
     Counts counts_;

@@ -1,7 +1,7 @@
 #pragma once
-// Which bricks a picture needs: the tree of a volume's bricks, cut where they are as fine as the screen can show,
-// without bricks that are outside the view, cut away or invisible under the transfer function. Plain data made in
-// double on the CPU; no device.
+// Determines which bricks a picture needs: the tree of a volume's bricks, cut where they are as fine as the screen can
+// show, without bricks that are outside the view, cut away or invisible under the transfer function. Plain data,
+// computed in double on the CPU; no device.
 //
 // A brick is fine enough when its voxels, along the finest axis, are no larger than a pixel at the brick's nearest
 // point, divided by `detail`. This depends on the view alone, never on loaded bricks or a budget, so pictures under
@@ -19,7 +19,7 @@ struct PageView {
     Camera camera;
     std::optional<Camera> other_eye;
     glm::uvec2 pixels{1};
-    double detail = 1.0;  ///< voxels per pixel at least; 0: the finest level everywhere
+    double detail = 1.0;  ///< minimum voxels per pixel; 0: the finest level everywhere
     CutBox cut;
     bool shows_all = false;  ///< ignore the transfer function
     /// Bricks of these voxels are always shown.
@@ -30,29 +30,29 @@ struct PageView {
 struct PageTree {
     struct Leaf {
         BrickKey key;
-        double depth = 0.0;  ///< of its nearest point, along the view; near bricks are loaded first
+        double depth = 0.0;  ///< depth of its nearest point along the view; near bricks are loaded first
     };
     static constexpr uint32_t NO_LEAF = 0xffffffffu;
 
     std::vector<Leaf> leaves;  ///< nearest first
-    int finest_level = 0;      ///< of all leaves: it sets the distance between samples
+    int finest_level = 0;      ///< of all leaves; determines the sample distance
     int cell_shift = 5;        ///< log2 of the side of a cell of the directory's grid, in voxels
     glm::uvec3 counts{1};      ///< cells of the grid
-    int depth = 0;             ///< levels of nodes below it
+    int depth = 0;             ///< levels of nodes below the grid
     /// The directory of shaders/pages.h, as far as the view determines it: empty space, and the nodes. Where
     /// `leaf_of_entry` names a leaf, the caller fills in the brick to draw for it.
     std::vector<uint32_t> entries;
     std::vector<uint32_t> leaf_of_entry;
-    /// The other way round: leaf i shows in `entries_of_leaves`[`begin_of_leaf`[i] ... `begin_of_leaf`[i + 1] - 1].
+    /// The inverse: leaf i shows in `entries_of_leaves`[`begin_of_leaf`[i] ... `begin_of_leaf`[i + 1] - 1].
     std::vector<uint32_t> entries_of_leaves, begin_of_leaf;
 };
 
-/// `levels` as VolumeSource::levels. `shows`: whether anything in a brick, or in the bricks below it, may be visible. A
-/// view that needs more than `max_leaves` gets half the detail, repeatedly.
+/// `levels` as VolumeSource::levels. `shows`: whether anything in a brick, or in the finer bricks below it, may be
+/// visible. If a view needs more than `max_leaves`, its detail is halved repeatedly.
 PageTree make_page_tree(const VolumeInfo& volume, int levels, const PageView& view,
                         const std::function<bool(const BrickKey&)>& shows, size_t max_leaves = size_t{1} << 17);
 
-/// Visits the entries of the directory that show a leaf below a brick, or the brick itself where it is one, each once.
+/// Visits the directory entries of all leaves at or below a brick, each once.
 void for_each_entry_below(const PageTree& tree, const BrickKey& key,
                           const std::function<void(uint32_t entry, uint32_t leaf)>& visit);
 

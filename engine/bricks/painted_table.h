@@ -1,7 +1,7 @@
 #pragma once
-// Finds the slots of painted bricks where a table of all bricks would be too large: a hash table in which each brick is
-// at one of two places (cuckoo hashing, Pagh and Rodler 2004). Kernels look at both, always, which takes six loads and
-// no loop.
+// Finds the slots of painted bricks when a table of all bricks would be too large: a hash table in which each brick is
+// at one of two places (cuckoo hashing, Pagh and Rodler 2004). Kernels always check both, which takes six loads and no
+// loop.
 
 #include <cstdint>
 #include <span>
@@ -13,12 +13,12 @@ namespace shvr {
 
 struct PaintedBrick {
     glm::uvec3 brick;   ///< in bricks of the mask, below 65536 along x and y
-    uint32_t slot = 0;  ///< never gpu::NO_SLOT, which is what free entries have
+    uint32_t slot = 0;  ///< never gpu::NO_SLOT, which marks free entries
 };
 
-/// The table, as shaders/library/mask.glsl reads it: the index of its last entry, then its entries
-/// (gpu::MASK_ENTRY). It has at least two for a brick, and twice as many where not all bricks find a place among those
-/// within a few hundred moves.
+/// The table in the layout of shaders/library/mask.glsl: the index of its last entry, then its entries
+/// (gpu::MASK_ENTRY). It has at least two entries per brick, and twice as many if inserting fails after a few hundred
+/// moves.
 std::vector<uint32_t> painted_table(std::span<const PaintedBrick> bricks);
 
 }  // namespace shvr
