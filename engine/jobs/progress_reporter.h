@@ -1,6 +1,6 @@
 #pragma once
-// Where long work in several stretches tells how far it is, and whether it is to end: a job (jobs.h), the line of a
-// command, or nowhere. One thread at a time, the one that works.
+// Receives the progress of long work in several stages, and tells it when to stop: for a job (jobs.h), the progress
+// line of a command, or nothing. One thread at a time, the one that works.
 
 #include <atomic>
 #include <string>
@@ -17,17 +17,17 @@ public:
     ProgressReporter(const ProgressReporter&) = delete;
     ProgressReporter& operator=(const ProgressReporter&) = delete;
 
-    /// A stretch of work begins, as in "writing stem.swc"; its time left is estimated anew. The result throws `Stopped`
-    /// once the work is to end, as does this; it must not outlive the reporter.
+    /// Starts a stage, as in "writing stem.swc"; its time left is estimated from scratch. The returned function, and
+    /// this one, throw `Stopped` if the work is to stop; it must not outlive the reporter.
     virtual Progress begin(const std::string& what) = 0;
-    /// The same as calling the result with the share, with a detail, as in "120 MB/s", and a better estimate of the
-    /// time left.
+    /// Like calling that function with a fraction, with a detail, as in "120 MB/s", and a better estimate of the time
+    /// left.
     virtual void show(double fraction, const std::string& detail, double seconds_left) = 0;
-    /// For functions that look for themselves. It outlives the work.
+    /// For functions that poll for themselves. It outlives the work.
     virtual const std::atomic<bool>& stop_requested() const = 0;
 };
 
-/// For those who only want the share of each stretch, or nothing.
+/// For callers that only need the fraction of each stage, or nothing.
 class PlainReporter final : public ProgressReporter {
 public:
     explicit PlainReporter(Progress progress = {}) : progress_(std::move(progress)) {}
