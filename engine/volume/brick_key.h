@@ -36,7 +36,7 @@ inline VoxelBox voxels_of(const BrickKey& key, const Size3& size)
     return {side * Size3(key.brick), glm::min(side * (Size3(key.brick) + int64_t{1}), size)};
 }
 
-/// Calls visit(key) for a brick and the 26 around it, of which some may be outside the volume.
+/// Calls visit(key) for a brick and the 26 around it, some of which may be outside the volume.
 template <class Visit>
 void for_each_around(const BrickKey& key, const Visit& visit)
 {

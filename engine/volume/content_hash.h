@@ -1,7 +1,7 @@
 #pragma once
-// Identifies the voxels of a volume, whichever file they come from: XXH3-128 of every slice along z (voxels x fastest,
-// then y, little-endian), then XXH3-128 of those hashes in order, each in its canonical form. It detects changes and
-// mistakes, not forgery. Written as "xxh3-128:" and 32 hexadecimal digits.
+// Identifies the voxels of a volume independently of its file: XXH3-128 of every slice along z (voxels x fastest, then
+// y, little-endian), then XXH3-128 of those hashes in order, each in its canonical form. Detects changes and mistakes,
+// not forgery. Written as "xxh3-128:" and 32 hexadecimal digits.
 
 #include <array>
 #include <memory>
@@ -33,12 +33,12 @@ private:
 
 std::string content_hash(std::span<const SliceHash> slices);
 
-/// Reads all of level 0, slice by slice. Any thread may call it.
+/// Hashes all of level 0, slice by slice. Any thread may call it.
 std::string content_hash(const VolumeSource& source);
 
-/// Forwards to another source, which must outlive it, and hashes what `read` returns of level 0, as long as reads fetch
-/// whole rows, each once and in order, of one or more slices at a time, as `content_hash` does, and `measure` where it
-/// reads all. One thread at a time.
+/// Forwards to another source, which must outlive it, and hashes the voxels that `read` returns of level 0. The reads
+/// must fetch whole rows, each once and in order, of one or more slices at a time, as `content_hash` does, and
+/// `measure` if it reads everything. One thread at a time.
 class HashedSource final : public VolumeSource {
 public:
     explicit HashedSource(const VolumeSource& source);
@@ -54,15 +54,15 @@ public:
         return source_.stored_blocks(level, most);
     }
     std::optional<VolumeStatistics> statistics() const override { return source_.statistics(); }
-    /// Empty unless all slices have been read. Later reads do not count.
+    /// Empty unless all slices have been read. Later reads are not hashed.
     std::string hash() const;
 
 private:
     const VolumeSource& source_;
-    mutable std::vector<SliceHasher> hashers_;  ///< of the slices being read
-    mutable std::vector<SliceHash> slices_;     ///< of the slices read
-    mutable int64_t rows_ = 0;                  ///< of the slices being read
-    mutable bool is_out_of_order_ = false;      ///< the rest is not hashed
+    mutable std::vector<SliceHasher> hashers_;  ///< one per slice being read
+    mutable std::vector<SliceHash> slices_;     ///< hashes of the completed slices
+    mutable int64_t rows_ = 0;                  ///< rows read of the current slices
+    mutable bool is_out_of_order_ = false;      ///< the reads are not hashed any further
 };
 
 }  // namespace shvr

@@ -1,6 +1,6 @@
 #pragma once
-// Work on a volume of which some cannot be read, as a chunk that is cut short: either it ends with a sentence, or it
-// goes on without that, counts it, and says so.
+// Handles volumes with unreadable parts, such as a truncated chunk: the work either ends with a message, or continues
+// without that part, counts it, and reports it.
 
 #include <atomic>
 #include <functional>
@@ -12,42 +12,42 @@
 
 namespace shvr {
 
-/// What could not be read of one volume. Each block counts once, however often it is tried. Any thread.
+/// The unreadable parts of one volume. Each block counts once, however often it is tried. Any thread.
 class Gaps {
 public:
-    /// `refused_with`: what a person can do about a gap, which then ends the work; empty: work goes on.
+    /// `refused_with`: advice for the user about a gap, which then ends the work; empty: work continues.
     explicit Gaps(std::string refused_with = {}) : refused_with_(std::move(refused_with)) {}
 
-    /// Throws an `Error` with the reason, where gaps are refused.
+    /// Throws an `Error` with the reason if gaps are refused.
     void expect_none(const std::string& reason) const;
-    /// All of a block, by however little of it that was noticed.
+    /// Counts a whole block as missing, even if the error concerned only part of it.
     void add(const VoxelBox& block, const std::string& reason);
     bool empty() const { return voxels() == 0; }
-    /// Whether `expect_none` has told, beside the reason, what a person can do.
+    /// Whether `expect_none` has thrown an error with the reason and the advice.
     bool has_refused() const { return has_refused_; }
     int64_t voxels() const;
-    /// How much is missing, and the first reason; empty if nothing is.
+    /// A message stating how much is missing, and the first reason; empty if nothing is.
     std::string in_words() const;
 
 private:
     std::string refused_with_;
     mutable std::atomic<bool> has_refused_ = false;
     mutable std::mutex mutex_;
-    std::unordered_map<int64_t, int64_t> voxels_;  ///< of each block, by its first voxel
+    std::unordered_map<int64_t, int64_t> voxels_;  ///< number of voxels per block, by its first voxel
     int64_t sum_ = 0;
     std::string first_reason_;
 };
 
-/// Reads a box of level 0 into `voxels`, and hands out what could be read: all of it, or else blocks of the file, or
-/// slices where it has none. The rest is added to `gaps`; without these the first failure is thrown. `Stopped` always
-/// is.
+/// Reads a box of level 0 into `voxels`, and passes on every readable part: all of it, or else blocks of the file, or
+/// slices if it has none. The rest is added to `gaps`; without these the first failure is thrown. `Stopped` is always
+/// thrown.
 using TakePart = std::function<void(const VoxelBox& part, std::span<const std::byte> voxels)>;
 void read_parts(const VolumeSource& source, const VoxelBox& box, std::span<std::byte> voxels, Gaps* gaps,
                 const TakePart& take);
 
-/// A volume in which each voxel that cannot be read is as low as its type allows, or NaN. Both must outlive it. Where
-/// there are several levels, who reads those brick by brick knows better what to show instead of one that fails: there
-/// it fails.
+/// A volume in which unreadable voxels have the lowest value of their type, or NaN. Both arguments must outlive it. If
+/// there are several levels, reads of single bricks fail instead, because such callers know better what to show in
+/// place of a missing brick.
 class GapSource final : public VolumeSource {
 public:
     GapSource(const VolumeSource& source, Gaps& gaps) : VolumeSource(source.info()), source_(source), gaps_(gaps) {}

@@ -1,5 +1,5 @@
 #pragma once
-// How a coarser level is computed from a finer one, in projects and in memory alike.
+// How a coarser level is computed from a finer one, both in projects and in memory.
 //
 // A voxel is the mean of the up to 2^3 voxels below it: only those inside the volume count, and only finite ones; NaN
 // if none is left. Sums are exact for integers and computed in double for floats, along y and z before x. Integers are
@@ -15,8 +15,8 @@
 namespace shvr {
 
 enum class Halving {
-    mean,   ///< of intensities
-    label,  ///< of labels, which have no mean
+    mean,   ///< mean of intensities
+    label,  ///< most frequent label, as labels have no mean
 };
 
 /// Holds the sum of eight voxels without overflow.
@@ -43,7 +43,7 @@ T mean_of(HalvingSum<T> sum)
         return static_cast<T>(sum);
     } else {
         constexpr int SHIFT = COUNT == 8 ? 3 : COUNT == 4 ? 2 : 1;
-        // Half of the divisor less one, plus one more if that rounds a tie to even.
+        // Half of the divisor minus one, plus one more if that rounds a tie to even.
         const HalvingSum<T> odd = (sum >> SHIFT) & 1;
         return static_cast<T>((sum + (HalvingSum<T>{1} << (SHIFT - 1)) - 1 + odd) >> SHIFT);
     }

@@ -1,9 +1,9 @@
 #pragma once
-// Density offsets: values that a user adds to single voxels to make them visible. They are kept beside the volume, in
-// bricks of 32^3, and added when voxels are read (offset_source.h); the volume's own file is never written.
+// Density offsets: values that a user adds to single voxels to make them visible. They are stored separately from the
+// volume, in bricks of 32^3, and added when voxels are read (offset_source.h); the volume's own file is never written.
 //
-// An offset has 32 bits: an int32 for volumes of integers, which is exact, and a float for volumes of floats. All bits
-// 0 means "none" for both; -0 does not occur. Any thread may call these.
+// An offset has 32 bits: an int32 for integer volumes, which is exact, and a float for float volumes. All bits 0 means
+// "none" for both; -0 does not occur. Any thread may call these.
 
 #include <array>
 #include <bit>

@@ -2,11 +2,11 @@
 // A volume with density offsets: another source's values plus an offset per voxel, clamped to the range of the type.
 // Voxels without an offset are returned bit for bit.
 //
-// Coarser levels: the other source's value plus the offsets, which are halved like levels (halving.h). This equals the
+// Coarser levels: the base source's value plus the offsets, which are halved like levels (halving.h). This equals the
 // mean of the sums except for one rounding and for clamped voxels.
 //
-// Threads. One thread sets offsets while any thread reads. Bricks of offsets are immutable: a reader fetches the bricks
-// it needs under a lock and adds them without it, so each read sees the offsets of one moment.
+// Threads: one thread sets offsets while any thread reads. Bricks of offsets are immutable: a reader fetches the bricks
+// it needs under a lock and adds them without it, so each read sees a consistent snapshot of the offsets.
 
 #include <atomic>
 #include <shared_mutex>
@@ -27,7 +27,7 @@ public:
         glm::ivec3 brick{0};
         std::shared_ptr<const OffsetBrick> offsets;
     };
-    /// Costs an eighth of a brick's work for each coarser level.
+    /// For each coarser level, costs an eighth of the work per brick.
     void set(std::span<const Brick> bricks);
     /// Whether no voxel has an offset.
     bool empty() const { return !any_.load(std::memory_order_acquire); }
@@ -36,9 +36,9 @@ public:
     Size3 block() const override { return base_->block(); }
     int levels() const override { return base_->levels(); }
     void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const override;
-    /// The range of the other source, widened by the offsets there and in neighbouring bricks.
+    /// The range of the base source, widened by the offsets there and in neighbouring bricks.
     std::optional<ValueRange> brick_range(int level, const Size3& brick) const override;
-    /// Those of the other source, and all that hold an offset.
+    /// The blocks of the base source, and all that hold an offset.
     std::optional<StoredBlocks> stored_blocks(int level, int64_t most) const override;
     /// Unknown for volumes with offsets.
     std::optional<VolumeStatistics> statistics() const override;
@@ -46,7 +46,7 @@ public:
 private:
     struct Entry {
         std::shared_ptr<const OffsetBrick> offsets;  ///< null: all offsets of this level are 0
-        ValueRange range;                            ///< of 0 and all offsets of level 0 below this brick
+        ValueRange range;                            ///< range of 0 and all level 0 offsets below this brick
     };
     using Entries = std::unordered_map<BrickKey, Entry, BrickKeyHash>;
     const Entry* find(const Entries& changed, const BrickKey& key) const;

@@ -1,11 +1,11 @@
 #pragma once
-// Where voxels come from. A source has one volume and returns boxes of it in the file's own type; it knows nothing of
+// Sources of voxels. A source has one volume and returns boxes of it in the file's own type; it knows nothing of
 // windows or devices. Readers are functions: a null source means "not my format", an `Error` means "mine, but broken".
 // `open_volume` (open_volume.h) tries them in a fixed order.
 //
 // Levels. Level 0 is the volume. A voxel of level l covers 2^l voxels of level 0 along each axis, exactly aligned:
 // voxel i covers [2^l i, 2^l (i + 1)), so position p of level 0 is position p / 2^l of level l. A level has ceil(size /
-// 2^l) voxels along each axis; the last ones may cover fewer. Most files have level 0 alone.
+// 2^l) voxels along each axis; the last ones may cover fewer. Most files have only level 0.
 
 #include <filesystem>
 #include <functional>
@@ -18,12 +18,12 @@
 
 namespace shvr {
 
-/// Which parts of a level are stored where most of it may not be, as in a sparse file: work on it then costs what is
+/// The stored parts of a level that may be mostly absent, as in a sparse file: work on it then costs only what is
 /// stored.
 struct StoredBlocks {
     Size3 block{1};                    ///< voxels of a block; block i covers [i * block, (i + 1) * block)
-    double fill = 0.0;                 ///< of every voxel outside all blocks; may be infinite or NaN
-    std::vector<glm::ivec3> blocks{};  ///< each once, by z, then y, then x
+    double fill = 0.0;                 ///< value of every voxel outside all blocks; may be infinite or NaN
+    std::vector<glm::ivec3> blocks{};  ///< each once, sorted by z, then y, then x
 };
 
 /// The user's choice for files that hold several volumes. Without a choice, a reader refuses such a file with a message
@@ -31,8 +31,8 @@ struct StoredBlocks {
 struct OpenOptions {
     std::string channel{};  ///< "red", "green", "blue", "alpha", a channel's name in the file, or its number from 1
     std::string frame{};    ///< a number from 1, if there are several time points
-    int level = 0;          ///< of a file with several: 0 the finest; what is opened begins there (coarser.h)
-    /// Of what is opened: given, or instead of what the file states (engine/formats/restated.h).
+    int level = 0;          ///< level of a file with several, 0 the finest; the opened volume starts there (coarser.h)
+    /// Replaces the spacing that the file states, or lacks (engine/formats/restated.h).
     std::optional<glm::dvec3> spacing{};
     std::string unit{};  ///< empty: the file's
     bool operator==(const OpenOptions&) const = default;
@@ -58,12 +58,12 @@ public:
     virtual int levels() const { return 1; }
     /// Like `read`, for any level.
     virtual void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const;
-    /// What is known, without reading voxels, about the values of level 0 and of all levels up to `level` within brick
-    /// `brick` of that level (gpu::BRICK_SIZE voxels a side, from voxel 0 on) and one voxel of `level` around it.
-    /// Nothing if the source does not know.
+    /// The range, known without reading voxels, of the values of level 0 and of all levels up to `level` within brick
+    /// `brick` of that level (gpu::BRICK_SIZE voxels a side, from voxel 0 on) and one voxel of `level` around it. Null
+    /// if the source does not know.
     virtual std::optional<ValueRange> brick_range(int level, const Size3& brick) const;
-    /// Where the level stores anything, without reading voxels. Nothing if the source does not know, or if more than
-    /// `most` blocks are stored.
+    /// The stored blocks of the level, without reading voxels. Null if the source does not know, or if more than `most`
+    /// blocks are stored.
     virtual std::optional<StoredBlocks> stored_blocks(int level, int64_t most) const;
     /// The statistics of level 0 if the source knows them; `measure` computes them.
     virtual std::optional<VolumeStatistics> statistics() const { return std::nullopt; }
@@ -76,23 +76,23 @@ private:
 };
 
 struct MeasureOptions {
-    bool exact = false;  ///< level 0 and all of its voxels, whatever it takes
+    bool exact = false;  ///< measures all voxels of level 0, whatever the cost
     Progress progress{};
-    Gaps* gaps = nullptr;  ///< takes what cannot be read, which then counts nowhere (gaps.h); null: that is thrown
+    Gaps* gaps = nullptr;  ///< receives unreadable parts, which are left out (gaps.h); null: failures are thrown
 };
 /// Passes over the volume in slabs of bounded size: at most 32 MiB, at least one row. Types of 32 and 64 bits need a
 /// second pass for the histogram, whose range the first one finds, without outliers (outliers.h). A volume without a
 /// finite voxel has minimum = maximum = mean = 0. Statistics that the source knows are not measured.
 ///
-/// Large volumes. Of a source that knows what it stores only that is read, and the rest counts as fill values. The
-/// finest level is measured that has, or stores, no more than MAX_VOXELS_MEASURED (VolumeStatistics::measured_level).
-/// Without such a level the coarsest is, or what level 0 stores, up to MAX_VOXELS_EXACT; beyond that, all is estimated
-/// from a sample (VolumeStatistics::sampled_voxels): 256 pieces of about 2^18 voxels, or as much of the stored blocks,
-/// spread evenly and always the same.
+/// Large volumes: if a source knows what it stores, only that is read, and the rest counts as fill values. The level
+/// that is measured (VolumeStatistics::measured_level) is the finest one that has, or stores, at most
+/// MAX_VOXELS_MEASURED voxels. Without such a level it is the coarsest, or the stored part of level 0, up to
+/// MAX_VOXELS_EXACT; beyond that, everything is estimated from a sample (VolumeStatistics::sampled_voxels): 256 pieces
+/// of about 2^18 voxels, or as much of the stored blocks, spread evenly and always the same.
 VolumeStatistics measure(const VolumeSource& source, const MeasureOptions& options = {});
 inline constexpr int64_t MAX_VOXELS_MEASURED = int64_t{1} << 27;
 inline constexpr int64_t MAX_VOXELS_EXACT = int64_t{1} << 30;
-/// More stored blocks than anybody lists: 2^42 voxels in blocks of 64^3, and 192 MiB.
+/// An upper bound of stored blocks in practice: 2^42 voxels in blocks of 64^3, and 192 MiB.
 inline constexpr int64_t MAX_STORED_BLOCKS = int64_t{1} << 24;
 
 /// Like an exact `measure`, for one level, always by reading its voxels.
@@ -100,7 +100,7 @@ VolumeStatistics measure_level(const VolumeSource& source, int level, const Meas
 /// The statistics of integers of 8 or 16 bits; `lowest` + i occurs `counts[i]` times.
 VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest);
 
-/// What the user should know about the voxels, one sentence each: NaN, infinities, outliers, and whether only a coarser
+/// Warnings for the user about the voxels, one sentence each: NaN, infinities, outliers, and whether only a coarser
 /// level or a sample was measured.
 std::vector<std::string> warnings_of(const VolumeStatistics& statistics);
 

@@ -1,8 +1,8 @@
 #pragma once
 // Deterministic volumes with a known value and gradient, for tests, benchmarks and goldens. No file is involved and no
 // voxel is stored: `read` evaluates the function. Equal parameters give equal bits on every machine: the noise is an
-// integer hash, no library random numbers, and transcendental functions are kept out of a voxel's rounding where
-// possible.
+// integer hash instead of library random numbers, and transcendental functions do not affect a voxel's rounding where
+// that can be avoided.
 
 #include <array>
 
@@ -25,9 +25,9 @@ struct ProceduralSpec {
     VoxelType type = VoxelType::uint8;
     glm::dvec3 spacing{1.0};
     std::string unit = "voxel";
-    /// Number of levels; each is the same function, sampled at the centres of larger voxels. 0: one level, or above
-    /// 2^33 voxels as many as are needed to end with a single brick. Tubes thinner than one and a half voxels of a
-    /// level are as thick as that on it: between the centres of its voxels they would be lost.
+    /// Number of levels; each is the same function, sampled at the centres of larger voxels. 0: one level, or for more
+    /// than 2^33 voxels as many as are needed to end with a single brick. Tubes thinner than one and a half voxels of a
+    /// level are drawn that thick on it: otherwise they would fall between the centres of its voxels.
     int levels = 0;
     bool operator==(const ProceduralSpec&) const = default;
 };
@@ -54,7 +54,7 @@ std::vector<std::string> procedural_kinds();
 ScalarField procedural_field(const ProceduralSpec& spec);
 std::unique_ptr<VolumeSource> open_procedural(const ProceduralSpec& spec);
 
-/// What is in a volume, for those who draw, trace or export it.
+/// The known contents of a volume, for drawing, tracing or exporting them.
 struct ProceduralTruth {
     /// The colour group of a position in voxel coordinates; 0: background.
     std::function<uint8_t(const glm::dvec3& voxel)> group;
@@ -64,9 +64,9 @@ struct ProceduralTruth {
         uint8_t group = 1;
     };
     std::vector<Node> nodes;                   ///< along the centre lines
-    std::vector<std::array<size_t, 2>> links;  ///< an internode each, of the group of its second node
+    std::vector<std::array<size_t, 2>> links;  ///< internodes, each in the group of its second node
 };
-/// Nothing for kinds whose parts are not known. Fails as `open_procedural` does.
+/// Null for kinds whose parts are not known. Fails as `open_procedural` does.
 std::optional<ProceduralTruth> procedural_truth(const ProceduralSpec& spec);
 
 }  // namespace shvr

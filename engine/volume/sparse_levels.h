@@ -12,34 +12,34 @@
 
 namespace shvr {
 
-/// The source's own levels are left as they are; those above are made of its coarsest.
+/// Leaves the source's own levels unchanged; coarser ones are computed from its coarsest.
 class SparseLevels {
 public:
-    /// Plans levels up to a number of them, which may be the source's own; reads nothing. Nothing if the source does
-    /// not know what it stores, or if that is so much that levels without gaps are smaller.
+    /// Plans up to `levels` levels, including the source's own; reads nothing. Null if the source does not know what it
+    /// stores, or if it stores so much that dense levels would be smaller.
     static std::optional<SparseLevels> plan(const VolumeSource& source, int levels);
 
     uint64_t bytes() const;
-    /// Reads what is stored of the source's coarsest level, which must be that of `plan`.
+    /// Reads the stored part of the source's coarsest level; the source must be that of `plan`.
     void build(const VolumeSource& source, const Progress& progress);
 
-    /// Of a level that is not the source's own.
+    /// Reads from a level that is not the source's own.
     void read(int level, const VoxelBox& box, std::span<std::byte> voxels) const;
     /// Whether nothing is stored in a brick and one voxel around it, nor in any finer level below.
     bool is_gap(int level, const Size3& brick) const;
-    /// Of voxels in a gap, and of those below it; lower > upper if none is finite.
+    /// The range of voxels in a gap and of those below it; lower > upper if none is finite.
     ValueRange fills() const { return fills_; }
 
 private:
     /// Tiles of TILE^3 voxels.
     struct Level {
         std::vector<Size3> tiles{};
-        std::unordered_map<uint64_t, size_t> index{};  ///< of tiles, by position
+        std::unordered_map<uint64_t, size_t> index{};  ///< index of each tile, by position
         std::unordered_set<BrickKey, BrickKeyHash> bricks{};
         std::vector<std::byte> voxels{};
 
         void add(const Size3& tile);
-        /// All that a box of voxels meets.
+        /// Adds all tiles that meet a box of voxels.
         void add_all_in(const VoxelBox& box);
     };
     const Level& at(int level) const { return levels_[size_t(level - first_)]; }

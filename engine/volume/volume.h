@@ -28,7 +28,7 @@ inline constexpr const char* VOXEL_TYPE_NAMES = "uint8, int8, uint16, int16, uin
 size_t bytes_of(VoxelType type);
 const char* name_of(VoxelType type);
 bool is_float(VoxelType type);
-/// "uint8", "UCHAR", "unsigned short", "MET_SHORT", ... as the header formats spell them; nothing if unknown. Integers
+/// Parses "uint8", "UCHAR", "unsigned short", "MET_SHORT", ... as spelled in header formats; null if unknown. Integers
 /// of 64 bits are unknown: intensities are computed in double, which cannot represent them.
 std::optional<VoxelType> voxel_type_of(const std::string& name);
 
@@ -40,7 +40,7 @@ struct VoxelBox {
     bool operator==(const VoxelBox&) const = default;
 };
 
-/// Where a spacing or a unit comes from: nobody stated it, the file did, or the user (--spacing, --unit, a session).
+/// Origin of a spacing or a unit: unstated, from the file, or from the user (--spacing, --unit, a session).
 enum class Provenance { assumed, file, given };
 /// "assumed", "file", "given".
 const char* name_of(Provenance provenance);
@@ -56,18 +56,18 @@ struct VolumeInfo {
     Provenance unit_from = Provenance::assumed;
     /// The position that the file states: in frame `frame` ("RAS", "LPS", or "" if it states none), the centre of voxel
     /// 0 is at `origin` and the voxel axes point along the columns of `directions` (unit vectors). It is kept and
-    /// exported, not drawn: volume space is voxel * spacing. It is right-handed: a reader that finds left-handed axes
-    /// reverses the order of voxels along one of them, and records that here and in a warning.
+    /// exported, but not used for drawing: volume space is voxel * spacing. It is right-handed: a reader that finds
+    /// left-handed axes reverses the order of voxels along one of them, and records that here and in a warning.
     glm::dmat3 directions{1.0};
     glm::dvec3 origin{0.0};
     std::string frame{};
-    /// What the reader had to assume or ignore, one sentence each ("no spacing stated; 1 voxel assumed").
+    /// The reader's assumptions and omissions, one sentence each ("no spacing stated; 1 voxel assumed").
     std::vector<std::string> warnings{};
 };
 
-/// Whether anything states where the volume lies. If not, `frame` is empty, and the other two are as they begin.
+/// Whether the file states where the volume lies. If not, `frame` is empty, and the other two have their defaults.
 bool states_place(const VolumeInfo& info);
-/// Three right-handed vectors of length 1, which need not be at right angles, up to the rounding of a text of 7 digits.
+/// Whether they are three right-handed unit vectors, not necessarily orthogonal, up to the rounding of 7-digit text.
 bool are_axes(const glm::dmat3& directions);
 
 /// size.x * size.y * size.z; fails if that exceeds 63 bits. Each side must be 1 ... 2^20.
@@ -87,12 +87,12 @@ struct VolumeStatistics {
     double mean = 0.0;
     int64_t not_finite = 0;
     std::vector<int64_t> histogram{};  ///< 256 bins over range(); values outside it count in the first or last bin
-    /// The extremes without a few outliers, if those would leave too few codes for all other voxels. Unused if every
+    /// The extremes without a few outliers, if these would leave too few codes for all other voxels. Null if every
     /// integer has its own code.
     std::optional<ValueRange> bulk{};
-    int64_t beyond_bulk = 0;     ///< outliers
+    int64_t beyond_bulk = 0;     ///< number of outliers
     int measured_level = 0;      ///< the level that was measured; above 0, voxels are means
-    int64_t sampled_voxels = 0;  ///< above 0: all of this was estimated from so many voxels
+    int64_t sampled_voxels = 0;  ///< above 0: all members were estimated from this many voxels
 
     /// The range used for pictures, thresholds and the histogram.
     ValueRange range() const { return bulk.value_or(ValueRange{minimum, maximum}); }

@@ -1,6 +1,6 @@
 #pragma once
-// How a volume is gone through: which voxels statistics are made of (all of it, those that a sparse one stores, or a
-// sample), and a source that tells how far a reader has come.
+// How a volume is traversed: which voxels statistics are computed from (all, the stored ones of a sparse volume, or a
+// sample), and a source that reports a reader's progress.
 
 #include <optional>
 #include <vector>
@@ -14,22 +14,22 @@ class VoxelWalk {
 public:
     /// All voxels, in whole rows and in order, at most 32 MiB at a time but at least one row of blocks.
     static VoxelWalk all(const VolumeSource& source);
-    /// Those of stored blocks; `rest` are not among them.
+    /// The voxels of stored blocks; the others count as `rest`.
     static VoxelWalk stored(const VolumeSource& source, StoredBlocks blocks);
-    /// Pieces spread evenly, or so many of the stored blocks, with their share of the rest.
+    /// A sample: pieces spread evenly, or as many stored blocks, with their share of the rest.
     static VoxelWalk sample(const VolumeSource& source);
 
-    int64_t voxels() const { return voxels_; }  ///< in all boxes
+    int64_t voxels() const { return voxels_; }  ///< total of all boxes
     int64_t boxes() const;
     VoxelBox box(int64_t index) const;
-    /// Voxels in no box that count too; they are all `fill`.
+    /// Number of voxels in no box that count too; they are all `fill`.
     int64_t rest() const { return rest_; }
     double fill() const { return fill_; }
 
 private:
     Size3 size_{0};
-    Size3 step_{0};                                 ///< of all voxels; x is the whole row
-    std::optional<std::vector<VoxelBox>> boxes_{};  ///< unless all voxels are read
+    Size3 step_{0};                                 ///< box size when all voxels are read; x is the whole row
+    std::optional<std::vector<VoxelBox>> boxes_{};  ///< null if all voxels are read
     int64_t voxels_ = 0, rest_ = 0;
     double fill_ = 0.0;
 };
@@ -39,8 +39,8 @@ int64_t voxels_stored(const StoredBlocks& stored, const Size3& size);
 /// A block clipped to a volume of `size`.
 VoxelBox box_of_block(const StoredBlocks& stored, const glm::ivec3& block, const Size3& size);
 
-/// Another source, which must outlive it, as must `progress`, that tells how much of level 0 has been read, for work
-/// that reads every voxel once. One thread at a time.
+/// Wraps a source and reports how much of level 0 has been read, for work that reads every voxel once. `source` and
+/// `progress` must outlive it. One thread at a time.
 class ToldSource final : public VolumeSource {
 public:
     ToldSource(const VolumeSource& source, const Progress& progress)

@@ -1,5 +1,5 @@
 #pragma once
-// The randomness of procedural volumes: an integer hash, equal on every machine. Its constants are part of the goldens.
+// The noise of procedural volumes: an integer hash, equal on every machine. Its constants are part of the goldens.
 
 #include <cstdint>
 

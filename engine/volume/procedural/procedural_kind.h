@@ -1,6 +1,6 @@
 #pragma once
-// One kind of procedural volume, for source_procedural.cpp. Values are 0 ... 250 and depend on the parameters alone.
-// Objects are immutable; any thread may call them. A `Rows` belongs to one thread.
+// One kind of procedural volume, for source_procedural.cpp. Values are 0 ... 250 and depend only on the parameters.
+// Objects are immutable; any thread may call them. A `Rows` object belongs to one thread.
 
 #include <memory>
 #include <optional>
@@ -27,8 +27,9 @@ public:
         virtual void evaluate(int64_t y, int64_t z, std::span<double> values) = 0;
     };
     virtual std::unique_ptr<Rows> rows(const VoxelBox& box) const;
-    /// The same for a coarser level, `side` voxels to one of its own, in a volume of `size` voxels; box, y and z count
-    /// in voxels of that level. Values at their centres, except for what is thinner than they are (ProceduralSpec).
+    /// The same for a coarser level whose voxels span `side` voxels of a volume of `size` voxels; box, y and z count
+    /// voxels of that level. Values at their centres, except for features that are thinner than they are
+    /// (ProceduralSpec).
     virtual std::unique_ptr<Rows> coarse_rows(double side, const Size3& size, const VoxelBox& box) const;
 };
 
