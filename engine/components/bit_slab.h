@@ -1,6 +1,6 @@
 #pragma once
-// A slab of slices of a volume as bits: which voxels are at or above a threshold. Only the parts of it that the source
-// stores are held; all others are below the threshold. For components.cpp.
+// A slab of slices of a volume as bits: which voxels are at or above a threshold. Holds only the parts that the source
+// stores; all others are below the threshold. For components.cpp.
 
 #include <optional>
 #include <vector>
@@ -10,13 +10,13 @@
 
 namespace shvr {
 
-/// Which rows and columns of each slice can hold voxels at or above the threshold.
+/// The rows and columns of each slice that can hold voxels at or above the threshold.
 class BitLayout {
 public:
     struct Columns {
         int64_t lower = 0, upper = 0;
     };
-    /// Rows [lower, upper) of a layer of slices, in columns that do not touch.
+    /// Rows [lower, upper) of a layer of slices, in disjoint, non-adjacent column ranges.
     struct Strip {
         int64_t lower = 0, upper = 0;
         std::vector<Columns> columns{};
@@ -24,15 +24,15 @@ public:
     struct Layer {
         int64_t lower = 0, upper = 0;  ///< slices
         std::vector<Strip> strips{};
-        int64_t words = 0;  ///< of bits in one slice
+        int64_t words = 0;  ///< words of bits per slice
     };
 
     /// All voxels, as one layer, or those of stored blocks.
     BitLayout(const Size3& size, const std::optional<StoredBlocks>& stored);
 
-    /// The layer with slice z, or else the next one; null if there is none.
+    /// The layer that contains slice z, or else the next one; null if there is none.
     const Layer* layer_from(int64_t z) const;
-    int64_t words() const { return words_; }  ///< in all slices together
+    int64_t words() const { return words_; }  ///< total of all slices
 
 private:
     std::vector<Layer> layers_;
@@ -41,20 +41,20 @@ private:
 
 class BitSlab {
 public:
-    /// All must outlive it.
+    /// All arguments must outlive it.
     BitSlab(const VolumeSource& source, const ThresholdBits& bits, const BitLayout& layout);
 
-    /// Finds the next slab from slice z on, up to `end`: skips slices that hold nothing, and is as thick as the
-    /// source's blocks, so that they are decoded once, unless the bits of that many slices take more than 64 MiB. Reads
-    /// it; false if there is none. Parts that the source knows to be below the threshold are not read.
+    /// Finds and reads the next slab from slice z on, up to `end`: skips empty slices, and is as thick as the source's
+    /// blocks, so that they are decoded once, unless the bits of that many slices take more than 64 MiB. Returns false
+    /// if there is none. Parts that the source knows to be below the threshold are not read.
     bool read(int64_t z, int64_t end);
     int64_t lower() const { return lower_; }
     int64_t upper() const { return upper_; }
-    /// Of the slab's bits, as counted by BitLayout::words.
+    /// Words of the slab's bits, as counted by BitLayout::words.
     int64_t words() const { return layer_->words * (upper_ - lower_); }
 
-    /// Calls `take(y, ends)` for each row with runs of slice z of the slab, in order: the first voxel of every run and
-    /// the one after its last.
+    /// Calls `take(y, ends)` for each row with runs of slice z of the slab, in order; `ends` has the first voxel of
+    /// every run and the one after its last.
     template <class Take>
     void for_each_row(int64_t z, const Take& take)
     {

@@ -1,5 +1,5 @@
 #pragma once
-// The labelled runs of whole slices, and a file that keeps them while a volume is labelled. For components.cpp.
+// The labelled runs of whole slices, and a file that stores them while a volume is labelled. For components.cpp.
 
 #include <atomic>
 #include <cstdint>
@@ -17,11 +17,11 @@ struct LabelledRun {
     uint32_t begin = 0, end = 0, label = 0;
 };
 
-/// The runs of a slice, row by row; rows without any take nothing.
+/// The runs of a slice, row by row; rows without runs are absent.
 struct SliceRuns {
     struct Row {
         uint32_t y = 0;
-        uint32_t end = 0;  ///< of its runs, which begin where those of the row before it end
+        uint32_t end = 0;  ///< end of its runs, which begin at the end of the previous row's
     };
     std::vector<Row> rows{};  ///< ascending
     std::vector<LabelledRun> runs{};
@@ -31,7 +31,7 @@ struct SliceRuns {
         rows.clear();
         runs.clear();
     }
-    /// Of rows[i].
+    /// The runs of rows[i].
     std::span<LabelledRun> runs_of(size_t i)
     {
         const size_t begin = i == 0 ? 0 : rows[i - 1].end;
@@ -40,15 +40,15 @@ struct SliceRuns {
     int64_t bytes() const { return int64_t(rows.capacity() * sizeof(Row) + runs.capacity() * sizeof(LabelledRun)); }
 };
 
-/// An unnamed temporary file, so that nothing is left behind whatever happens. Any thread may write and read different
-/// slices at once; each slice is written once, before it is read.
+/// An unnamed temporary file, so that nothing is left behind even after a crash. Any thread may write and read
+/// different slices at once; each slice is written once, before it is read.
 class RunFile {
 public:
-    /// In `folder`, for so many slices. Fails if no file can be created there.
+    /// Creates it in `folder`, for `slices` slices. Fails if no file can be created there.
     RunFile(const std::filesystem::path& folder, int64_t slices);
 
     void write(int64_t z, const SliceRuns& slice);
-    /// Rows [lower, upper) of a slice.
+    /// Reads rows [lower, upper) of a slice.
     void read(int64_t z, int64_t lower, int64_t upper, SliceRuns& slice) const;
     int64_t bytes() const { return end_; }
 

@@ -1,12 +1,12 @@
 #pragma once
 // Connected components of the voxels at or above a threshold, in a volume that need not fit into memory.
 //
-// Slices are read slab by slab and turned into bits and runs; a run takes the label of a run it touches in the rows
-// before it, or a new one, and labels that meet are joined (label_forest.h). Several threads label ranges of slices in
-// parallel; the ranges are joined where they meet. In memory are a slab and two slices of runs per range, and 12 bytes
-// per provisional label (in a noisy volume up to one per run); the labelled runs themselves go to a temporary file, and
-// only if the labels are wanted. Of a volume that knows what it stores (VolumeSource::stored_blocks) only that is gone
-// through, unless what is missing is at or above the threshold.
+// Slices are read slab by slab and turned into bits and runs; a run takes the label of a run it touches in the
+// preceding rows, or a new one, and labels that meet are joined (label_forest.h). Several threads label ranges of
+// slices in parallel; the ranges are joined where they meet. Memory holds a slab and two slices of runs per range, and
+// 12 bytes per provisional label (in a noisy volume up to one per run); the labelled runs themselves go to a temporary
+// file, and only if the labels are wanted. If a source knows what it stores (VolumeSource::stored_blocks), only that is
+// traversed, unless the fill value is at or above the threshold.
 
 #include <filesystem>
 #include <functional>
@@ -17,13 +17,13 @@
 
 namespace shvr {
 
-enum class Connectivity { faces = 6, corners = 26 };  ///< two voxels are joined if they share one
+enum class Connectivity { faces = 6, corners = 26 };  ///< two voxels are connected if they share a face, or a corner
 
 struct ComponentOptions {
     double threshold = 0.0;  ///< inclusive, in intensity units; not NaN
     Connectivity connectivity = Connectivity::faces;
     int64_t fewest_voxels = 1;   ///< smaller components are dropped
-    int64_t max_components = 0;  ///< only the largest N are kept, the first of equal ones; 0: all
+    int64_t max_components = 0;  ///< keeps only the largest N, the first of equal ones; 0: all
     int threads = 0;             ///< 0: one per core
     /// Folder of the temporary file; if unset, no labels are kept and `labels` may not be called.
     std::optional<std::filesystem::path> run_folder{};
@@ -38,13 +38,14 @@ public:
     };
     struct Counts {
         int64_t found = 0, kept = 0;
-        int64_t foreground_voxels = 0;  ///< of all components
+        int64_t foreground_voxels = 0;  ///< total of all components
         int64_t kept_voxels = 0;
         int64_t largest_voxels = 0;      ///< 0 if there is none
-        std::vector<Component> largest;  ///< of those kept, by size, then by order; at most MAX_LARGEST_LISTED
-        int64_t provisional = 0;         ///< labels
-        int64_t peak_bytes = 0;          ///< of memory while labelling
-        int64_t forest_bytes = 0;        ///< of that, for provisional labels
+        std::vector<Component> largest;  ///< of the kept ones, sorted by size, then by order; at most
+                                         ///< MAX_LARGEST_LISTED
+        int64_t provisional = 0;         ///< number of provisional labels
+        int64_t peak_bytes = 0;          ///< peak memory while labelling
+        int64_t forest_bytes = 0;        ///< part of that for provisional labels
         int64_t run_file_bytes = 0;
     };
     static constexpr size_t MAX_LARGEST_LISTED = 100;
@@ -53,8 +54,8 @@ public:
     const Counts& counts() const { return counts_; }
 
     /// The volume of labels: 0 for dropped and background voxels, and 1 ... kept in the order of components' first
-    /// voxels (z, then y, then x), in the smallest of uint8, uint16 and uint32 that holds them. It may outlive this and
-    /// `source`.
+    /// voxels (z, then y, then x), in the smallest of uint8, uint16 and uint32 that holds them. It may outlive this
+    /// object and `source`.
     virtual std::unique_ptr<VolumeSource> labels() const = 0;
 
 protected:

@@ -1,10 +1,10 @@
 #pragma once
-// Sets of provisional labels, joined as a scan finds that they belong together: union-find with path halving (Tarjan
-// and van Leeuwen 1984) in arrays, where the smallest label represents its set, as in Wu, Otoo and Suzuki 2009. So a
-// label is never smaller than its parent, and one ascending pass resolves all.
+// Sets of provisional labels, joined when a scan finds that they belong together: union-find with path halving (Tarjan
+// and van Leeuwen 1984) in arrays, with the smallest label as representative of its set, as in Wu, Otoo and Suzuki
+// 2009. So a label is never smaller than its parent, and one ascending pass resolves all.
 //
-// Labels lie in blocks that never move: adding them copies nothing, forests are appended to each other at no cost, and
-// the memory is what `bytes` says. One thread at a time.
+// Labels are stored in blocks that never move: adding labels copies nothing, forests are appended to each other
+// cheaply, and `bytes` is the exact memory use. One thread at a time.
 
 #include <array>
 #include <cstdint>
@@ -20,7 +20,7 @@ public:
     /// The maximum number of labels.
     static constexpr uint64_t MOST = uint64_t{1} << 32;
 
-    /// A new set. The caller makes sure that there are no more than MOST.
+    /// Adds a new set. The caller ensures that there are no more than MOST.
     uint32_t add()
     {
         if (next_ % BLOCK == 0) add_block();
@@ -28,7 +28,7 @@ public:
         parent(label) = label;
         return label;
     }
-    /// Labels so far, those that `append` skipped included; their voxels are 0.
+    /// Number of labels so far, including those skipped by `append`, whose voxel count is 0.
     uint64_t size() const { return next_; }
 
     uint32_t root_of(uint32_t label)
@@ -47,7 +47,7 @@ public:
         return a;
     }
 
-    /// While labelling: the parent of a label. Afterwards: whatever the caller stores there.
+    /// While labelling: the parent of a label. Afterwards: free for the caller's use.
     uint32_t& parent(uint32_t label) { return blocks_[label / BLOCK]->parents[label % BLOCK]; }
     uint32_t parent(uint32_t label) const { return blocks_[label / BLOCK]->parents[label % BLOCK]; }
     /// The number of voxels in the label's own runs.

@@ -1,5 +1,5 @@
 #pragma once
-// Voxels at or above a threshold, as one bit each, a row at a time; and the runs of such voxels. Any thread.
+// Voxels at or above a threshold as one bit each, a row at a time, and the runs of such voxels. Any thread.
 
 #include <bit>
 #include <cstdint>
@@ -18,7 +18,7 @@ inline int64_t words_of_row(int64_t voxels)
 
 class ThresholdBits {
 public:
-    /// In intensity units; +-infinity is allowed, NaN is not (SHVR_CHECK).
+    /// `threshold` in intensity units; +-infinity is allowed, NaN is not (SHVR_CHECK).
     ThresholdBits(VoxelType type, double threshold);
 
     VoxelType type() const { return type_; }
