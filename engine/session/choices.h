@@ -1,11 +1,11 @@
 #pragma once
-// What there is to choose from where a file holds several volumes and its settings name none. Any thread.
+// The available choices when a file holds several volumes and its settings select none. Any thread.
 
 #include "engine/formats/choice.h"
 
 namespace shvr {
 
-/// Of an error of opening; empty: another reason.
+/// The choices that an opening error carries; empty if it has another reason.
 inline std::vector<Choice> choices_of(const Error& error)
 {
     const auto* const several = dynamic_cast<const ChoiceNeeded*>(&error);

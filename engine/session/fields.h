@@ -1,5 +1,5 @@
 #pragma once
-// Keys of JSON objects, each stated once: its name, the value it stands for, its range, unit and meaning. A function
+// Keys of JSON objects, each defined once: its name, the value it stands for, its range, unit and meaning. A function
 // `fields(Fields&, Value&)` visits them in the order in which they are written; reading, writing and tables of
 // documentation are visitors:
 //
@@ -27,7 +27,7 @@ namespace shvr {
 /// The documentation of a key.
 struct About {
     const char* meaning = "";   ///< one line; empty for sections that need none
-    const char* unit = "";      ///< stands before the range
+    const char* unit = "";      ///< printed before the range
     const char* allowed = "";   ///< printed instead of unit and range
     const char* standard = "";  ///< the default, if it is not a plain value
     bool is_required = false;
@@ -74,7 +74,7 @@ public:
     void vector(std::string_view name, glm::dvec3& value, const NumberRange& range, const About& about);
     virtual void vector(std::string_view name, std::optional<glm::dvec3>& value, const NumberRange& range,
                         const About& about) = 0;
-    /// As many numbers as `value` has.
+    /// Reads as many numbers as `value` has.
     virtual void numbers(std::string_view name, std::optional<glm::dvec2>& value, const NumberRange& range,
                          const About& about) = 0;
     virtual void wholes(std::string_view name, std::vector<int64_t>& value, int64_t lower, int64_t upper,
@@ -82,7 +82,7 @@ public:
     virtual void any_flag(std::string_view name, std::optional<bool>& value, const About& about) = 0;
     virtual void any_whole(std::string_view name, std::optional<int64_t>& value, int64_t lower, int64_t upper,
                            const About& about) = 0;
-    /// A value with its own format: `read` parses it; `written` returns its JSON, or nothing.
+    /// A value with its own format: `read` parses it; `written` returns its JSON, or null.
     virtual void other(std::string_view name, const std::function<void(const JsonNode&)>& read,
                        const std::function<std::optional<std::string>()>& written, const About& about) = 0;
 
@@ -106,7 +106,7 @@ public:
         };
         items(name, values.size(), most, visit, about);
     }
-    /// An object of objects. `about` is about each; `placeholder` stands for its key in the table.
+    /// An object of objects. `about` describes each; `placeholder` stands for its key in the table.
     virtual void entries(std::string_view name, std::vector<std::string> keys, std::string_view placeholder,
                          const VisitEntry& visit, const About& about) = 0;
 
@@ -116,14 +116,14 @@ public:
     virtual void mention(std::string_view name, const About& about) = 0;
     /// Refuses the input unless the condition holds; an empty `name` means the section itself.
     virtual void check(std::string_view /*name*/, bool /*holds*/, const std::string& /*expected*/) {}
-    /// Runs a check that throws its own errors; the section's key is put in front of their messages.
+    /// Runs a check that throws its own errors; prefixes their messages with the section's key.
     virtual void checked(const std::function<void()>&) {}
 };
 
-/// Reads an object by its keys. Fails at keys that are unknown, missing or hold what they must not. Paths are relative
-/// to `folder`.
+/// Reads an object by its keys. Fails on keys that are unknown, missing or have invalid values. Paths are relative to
+/// `folder`.
 void read_fields(const JsonNode& node, const std::filesystem::path& folder, const Fields::Visit& visit);
-/// The object as one line of JSON. Fails where a text is not valid UTF-8.
+/// The object as one line of JSON. Fails if a text is not valid UTF-8.
 std::string write_fields(const std::filesystem::path& folder, const Fields::Visit& visit);
 
 }  // namespace shvr

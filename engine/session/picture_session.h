@@ -1,14 +1,14 @@
 #pragma once
-// The session inside a picture: what a .png file keeps in texts of its own, so that the picture can be made again.
+// The session inside a picture: text chunks of a .png file from which the picture can be rendered again.
 //
 //   "SHVR session"   the session as in its file (README.md), with the picture's size and camera; paths are relative to
 //                    the picture's folder
-//   "SHVR project"   the session's file that the picture was made of, relative to the same folder; none for a bare
-//                    volume. The journal beside it holds the annotation
-//   "SHVR outline"   "none" where the probe has no outline
+//  "SHVR project"   the session file from which the picture was made, relative to the same folder; none for a bare
+//                   volume. The journal next to it holds the annotation
+//  "SHVR outline"   "none" if the probe has no outline
 //
-// Annotation is not in the picture: where it has changed since, the picture made again shows it as it is now. Programs
-// that write pictures anew drop the texts. Any thread may call these.
+// Annotation is not stored in the picture: if it has changed since, the new picture shows its current state. Programs
+// that re-encode pictures drop the texts. Any thread may call these.
 
 #include <optional>
 
@@ -20,20 +20,20 @@ namespace shvr {
 /// How the picture shows the probe.
 enum class PictureProbe {
     none,
-    plain,        ///< as the window does: always, and without an outline over what hides it
-    as_rendered,  ///< as `shvr render` does: where the session says so, with its outline
+    plain,        ///< as the window does: always, without an outline over objects that hide it
+    as_rendered,  ///< as `shvr render` does: if the session shows it, with its outline
 };
-/// `picture`: its file. `project`: as above; may be empty.
+/// `picture`: the picture's file. `project`: as above; may be empty.
 PictureTexts texts_of_picture(Session session, const Camera& camera, const std::filesystem::path& picture,
                               const std::filesystem::path& project, PictureProbe probe);
-/// Whether a picture made again from that file has the probe's outline: not where it is one of the window.
+/// Whether a picture rendered from that file outlines the probe: false for pictures taken in the window.
 bool outlines_probe(const std::filesystem::path& picture);
 
 struct PictureSession {
     std::string text;
     std::filesystem::path project;  ///< absolute; empty: none
 };
-/// Nothing where the file is no PNG file. Fails where it is one and holds no session.
+/// Null if the file is not a PNG file. Fails if it is one and holds no session.
 std::optional<PictureSession> session_in_picture(const std::filesystem::path& picture);
 
 }  // namespace shvr

@@ -1,5 +1,5 @@
 #pragma once
-// Four ways to weigh a picture's time against its errors, as data: what the window offers and `render.quality` sets.
+// Four trade-offs between a picture's time and its errors, as data: offered by the window and set by `render.quality`.
 // Pure; any thread.
 
 #include <optional>
@@ -12,7 +12,7 @@ namespace shvr {
 
 struct Quality {
     const char* name = "";
-    const char* note = "";  ///< what it is for, with its errors (MEASURED.md)
+    const char* note = "";  ///< its purpose and its errors (MEASURED.md)
     double step_voxels = 0.5;
     double opacity_limit = 1.0;
     Sampling sampling = Sampling::automatic;
@@ -25,7 +25,7 @@ struct Quality {
 /// From the fastest to the most exact.
 std::span<const Quality> qualities();
 void take(RenderSettings& render, const Quality& quality);
-/// The one that has all of these settings; nothing where a person chose others.
+/// The quality with exactly these settings; null if the user chose others.
 std::optional<Quality> quality_of(const RenderSettings& render);
 /// The keys of `render` that a quality sets.
 std::span<const std::string_view> keys_of_quality();

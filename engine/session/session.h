@@ -21,7 +21,7 @@
 
 namespace shvr {
 
-/// What turning the view goes about: the middle of what is looked at, the probe, or a point that was picked.
+/// The point that the view rotates about: the camera's target, the probe, or a picked point.
 enum class Pivot { target, probe, picked };
 inline constexpr Spelling<Pivot> PIVOTS[] = {
     {Pivot::target, "target"}, {Pivot::probe, "probe"}, {Pivot::picked, "picked"}};
@@ -32,34 +32,34 @@ constexpr std::span<const Spelling<Pivot>> spellings_of(Pivot)
 
 /// Settings of the interactive window.
 struct InteractionSettings {
-    double resolution = 0.7;  ///< share of the screen's, along each axis, while something moves; less if that is slow
-    double frames_per_second = 30.0;  ///< at most
-    uint32_t screenshot_scale = 4;    ///< of large screenshots: pixels for one of the window, along each axis
-    double workspace_scale = 1.0;     ///< how far the probe goes for a move of a haptic device's hand
+    double resolution = 0.7;  ///< fraction of the screen's along each axis during motion; less if that is slow
+    double frames_per_second = 30.0;  ///< upper limit
+    uint32_t screenshot_scale = 4;    ///< pixels of large screenshots per pixel of the window, along each axis
+    double workspace_scale = 1.0;     ///< how far the probe moves for a motion of a haptic device's hand
     Pivot pivot = Pivot::target;
-    // Lines and words that the window draws over its pictures
+    // Lines and text that the window draws over its pictures
     bool scale_bar = true;
     bool axes = true;
-    bool probe_label = true;        ///< the probe's depth, and how much of it is relevant
+    bool probe_label = true;        ///< the probe's depth, and how much of its ball is relevant
     bool group_legend = true;       ///< colours and names of the groups that are drawn
-    bool screenshot_marks = false;  ///< screenshots have scale bar, axes, groups and distances as the window shows them
+    bool screenshot_marks = false;  ///< screenshots show scale bar, axes, groups and distances like the window
     bool operator==(const InteractionSettings&) const = default;
 };
 
 inline constexpr double MIN_WORKSPACE_SCALE = 0.01, MAX_WORKSPACE_SCALE = 100.0;
 
-/// What the left mouse button does in the window, where Alt is not held:
+/// Actions of the left mouse button in the window, unless Alt is held:
 ///
 ///   turn      turns the volume
 ///   paint     paints with the active group while held
-///   erase     takes paint away while held, whatever the active group is
-///   trace     a click beside all nodes adds one, linked with the selected one; on a node it selects, a drag moves it
+///  erase     removes paint while held, whatever the active group is
+///  trace     a click away from all nodes adds one, linked to the selected one; on a node it selects, a drag moves it
 ///   select    selects the node or internode that is clicked
-///   measure   a click is one end of a distance, the next one the other
+///  measure   clicks set the two ends of a distance in turn
 ///
 /// F, the stylus, and in the turn tool the right button, paint; they erase in the erase tool, and add a node in the
-/// trace tool. Alt + left turns everywhere, and so do the middle and the right button outside the turn tool; Shift +
-/// left and Shift + middle move, as the middle button does in the turn tool.
+/// trace tool. Alt + left rotates with every tool, and so do the middle and the right button outside the turn tool;
+/// Shift + left and Shift + middle pan, as the middle button does in the turn tool.
 enum class Tool { turn, paint, erase, trace, select, measure };
 inline constexpr Spelling<Tool> TOOLS[] = {{Tool::turn, "turn"},     {Tool::paint, "paint"},
                                            {Tool::erase, "erase"},   {Tool::trace, "trace"},
@@ -69,7 +69,7 @@ constexpr std::span<const Spelling<Tool>> spellings_of(Tool)
     return TOOLS;
 }
 
-/// How the probe is pulled to what is relevant: haptics/proxy.h.
+/// How the probe is pulled towards relevant voxels: haptics/proxy.h.
 enum class Guidance { potential, mean, thesis };
 inline constexpr Spelling<Guidance> GUIDANCES[] = {
     {Guidance::potential, "potential"}, {Guidance::mean, "mean"}, {Guidance::thesis, "thesis"}};
@@ -78,7 +78,7 @@ constexpr std::span<const Spelling<Guidance>> spellings_of(Guidance)
     return GUIDANCES;
 }
 
-/// What of it pulls the probe: haptics/settings.h.
+/// Which aspect of them pulls the probe: haptics/settings.h.
 enum class TouchMode { proximity, surface, object };
 inline constexpr Spelling<TouchMode> TOUCH_MODES[] = {
     {TouchMode::proximity, "proximity"}, {TouchMode::surface, "surface"}, {TouchMode::object, "object"}};
@@ -87,7 +87,7 @@ constexpr std::span<const Spelling<TouchMode>> spellings_of(TouchMode)
     return TOUCH_MODES;
 }
 
-/// The plane of voxels that the probe stays in, by the axis across it.
+/// The plane of voxels to which the probe is confined, named by its normal axis.
 enum class TouchPlane { none, x, y, z };
 inline constexpr Spelling<TouchPlane> TOUCH_PLANES[] = {
     {TouchPlane::none, "none"}, {TouchPlane::x, "x"}, {TouchPlane::y, "y"}, {TouchPlane::z, "z"}};
@@ -96,74 +96,76 @@ constexpr std::span<const Spelling<TouchPlane>> spellings_of(TouchPlane)
     return TOUCH_PLANES;
 }
 
-/// How a hand feels the volume and is helped, with whatever device.
+/// Touch and assistance settings, for any device.
 struct FeelSettings {
     TouchMode mode = TouchMode::proximity;
-    double strength = 1.0;        ///< share of the force
-    double surface_share = 0.4;   ///< of the probe's ball: above it a surface holds
-    double stiffness = 300.0;     ///< N/m of a probe of 2.5 mm in the hand
+    double strength = 1.0;        ///< factor of the force
+    double surface_share = 0.4;   ///< as a share of the probe's ball: above it a surface holds
+    double stiffness = 300.0;     ///< N/m, for a probe of 2.5 mm in the hand's space
     double damping = 1.0;         ///< N s/m
-    std::vector<uint8_t> groups;  ///< those that are felt, ascending, 0: what no group holds; empty: everything
-    bool at_proxy = false;        ///< tools act at the middle of what is touched
-    bool overlap_radius = false;  ///< new nodes are as wide as the ball's filling tells
+    std::vector<uint8_t> groups;  ///< groups that can be felt, ascending, 0: unpainted voxels; empty: everything
+    bool at_proxy = false;        ///< tools act at the centre of the touched part
+    bool overlap_radius = false;  ///< new nodes get a radius that follows from the filled share of the ball
     bool to_nodes = false;        ///< tools act at a node that lies in the ball
     bool to_lines = false;        ///< tools act at the nearest point of a centre line that passes through the ball
-    bool clicks = false;          ///< a short push of the device where contact begins
+    bool clicks = false;          ///< a short pulse of the device when contact begins
     TouchPlane plane = TouchPlane::none;
     bool operator==(const FeelSettings&) const = default;
 };
 inline constexpr double MAX_STIFFNESS = 1000.0, MAX_FELT_DAMPING = 1.2;
 
-/// The probe and the brush. Values not given here are chosen for the volume.
+/// The probe and the brush. Unset values are chosen for the volume.
 struct ProbeSettings {
-    std::optional<glm::dvec3> voxel;  ///< the probe's centre; default: the volume's middle
+    std::optional<glm::dvec3> voxel;  ///< the probe's centre; default: the volume's centre
     BrushSettings brush;
     std::optional<double> haptic_threshold;  ///< intensity; default: the brush's threshold
-    bool shown = false;                      ///< in pictures; the window shows it always
-    /// An iso-surface at the brush's threshold in the probe's region: it shows what density painting would raise above
-    /// it.
+    bool shown = false;                      ///< in pictures; the window always shows it
+    /// Shows an iso-surface at the brush's threshold in the
+    /// probe's region: what density painting would raise above it.
     bool shell = false;
-    double shell_opacity = 0.4;  ///< of one crossing
-    bool preview = false;        ///< the brush's effect at the probe is drawn
+    double shell_opacity = 0.4;  ///< of one crossing of the surface
+    bool preview = false;        ///< draws the brush's effect at the probe
     Tool tool = Tool::turn;
     bool guided = false;
     Guidance guidance = Guidance::potential;
     FeelSettings touch;
     std::optional<glm::dvec3> color;           ///< linear light; default: its group's
-    double opacity = 1.0;                      ///< of its ball
-    bool silhouette = true;                    ///< its outline over whatever hides it
-    bool arrow = true;                         ///< towards it, where it is out of sight
-    std::optional<double> node_radius_voxels;  ///< of new nodes, along x; default: for the volume
-    bool measured_radius = false;              ///< new nodes are as wide as what they lie in, where that can be told
-    bool centered_nodes = true;                ///< clicked nodes go into the middle of what is seen, not onto its wall
-    /// What painting gives voxels to: the active group, or 0.
+    double opacity = 1.0;                      ///< opacity of its ball
+    bool silhouette = true;                    ///< outlines it over objects that hide it
+    bool arrow = true;                         ///< points to it when it is out of sight
+    std::optional<double> node_radius_voxels;  ///< radius of new nodes along x; default: chosen for the volume
+    bool measured_radius = false;              ///< new nodes get the radius of the structure around them, if it can be
+                                               ///< measured
+    bool centered_nodes = true;                ///< clicked nodes are placed at the centre of the visible structure, not
+                                               ///< on its wall
+    /// The group that painting assigns to voxels: the active group, or 0.
     uint8_t painted_group() const { return tool == Tool::erase ? uint8_t(0) : brush.group; }
     bool operator==(const ProbeSettings&) const = default;
 };
 
-/// Of one file.
+/// Limit per file.
 inline constexpr size_t MAX_SESSION_SURFACES = 100'000;
 
-/// A distance between two points that a person measured, in voxels: it follows a spacing that is corrected.
+/// A distance between two points measured by the user, in voxels: it follows corrections of the spacing.
 struct Measurement {
     glm::dvec3 from{0.0}, to{0.0};
     bool operator==(const Measurement&) const = default;
 };
-/// Each step of the history holds all of them, before and after.
+/// Limited because each step of the history stores all of them, before and after.
 inline constexpr size_t MAX_MEASUREMENTS = 1000;
 
 struct Session {
-    std::filesystem::path volume_path;  ///< absolute, or empty where `procedural` is set
+    std::filesystem::path volume_path;  ///< absolute, or empty if `procedural` is set
     std::optional<ProceduralSpec> procedural;
     std::optional<RawLayout> raw_layout;  ///< for bare voxels
     OpenOptions open_options;             ///< selects from files that hold more than one volume
-    /// Of the volume's voxels (content_hash.h), computed by `open_session`; empty if it did not visit all voxels, and
-    /// in a session that was only read. Not written.
+    /// Hash of the volume's voxels (content_hash.h), computed by `open_session`; empty if it did not visit all voxels,
+    /// and in a session that was only read. Not written.
     std::string volume_hash;
     std::map<std::string, CameraSpec> cameras;  ///< by name; may be empty
-    std::string camera_name;                    ///< the one to use, as `camera_named` takes it; may be empty
+    std::string camera_name;                    ///< the one in use, as accepted by `camera_named`; may be empty
     TransferFunction transfer_function;
-    std::string transfer_preset;  ///< `open_session` turns it into a function and clears it
+    std::string transfer_preset;  ///< `open_session` converts it into a function and clears it
     Groups groups;
     Unpainted unpainted;
     Light light;
@@ -176,10 +178,10 @@ struct Session {
     ProbeSettings probe;
     std::vector<SurfaceLook> surfaces;  ///< opaque balls and rods; at most MAX_SESSION_SURFACES in a file
     std::filesystem::path mask_path;    ///< absolute; empty: none; the file need not exist yet
-    /// Likewise for the trace, in a form that `load_trace` reads; default: beside the mask.
+    /// Likewise for the trace, in a form that `load_trace` reads; default: next to the mask.
     std::filesystem::path trace_path;
     std::filesystem::path density_path;  ///< likewise, for density offsets
-    /// The journal beside the session's file (engine/annotation/work/work.h); empty if a bare volume was opened.
+    /// The journal next to the session file (engine/annotation/work/work.h); empty if a bare volume was opened.
     std::filesystem::path journal_path;
     bool operator==(const Session&) const = default;
 
@@ -188,22 +190,23 @@ struct Session {
 };
 
 /// `path`: a session file (.json), a project folder (its shvr/session.json), or a volume file (a session is made for
-/// it: its path, and a transfer function from its statistics, which `warnings` reports).
-/// `settings`: "key=value" with dotted keys ("render.step_voxels=0.25"), applied to the JSON before it is read.
-/// Relative paths in the file are relative to the file. A session file without a transfer function gets the same
-/// automatic one as a volume file. Session files hold at most 16 MiB. A picture that this program made holds the
-/// session it was made of (picture_session.h).
+/// it: its path, and a transfer function from its statistics, which `warnings` reports). `settings`: "key=value" with
+/// dotted keys ("render.step_voxels=0.25"), applied to the JSON before it is read. Relative paths in the file are
+/// relative to the file. A session file without a transfer function gets the same automatic one as a volume file.
+/// Session files hold at most 16 MiB. A picture made by this program holds the session from which it was made
+/// (picture_session.h).
 struct OpenedSession {
     Session session;
     std::shared_ptr<const VolumeSource> source;
     VolumeStatistics statistics;
-    std::vector<std::string> warnings;  ///< of the session; those of the volume are in `source->info().warnings`
-    std::vector<std::string> losses;    ///< what is not there although it was saved
-    std::filesystem::path pictured{};   ///< of a picture: the session or project it was made of; empty: no picture
+    std::vector<std::string> warnings;  ///< about the session; those about the volume are in `source->info().warnings`
+    std::vector<std::string> losses;    ///< saved data that is missing
+    std::filesystem::path pictured{};   ///< for a picture: the session or project from which it was made; otherwise
+                                        ///< empty
 };
 struct OpeningOptions {
     MeasureOptions measure{};
-    /// Called before any voxel is read, to refuse what is too large.
+    /// Called before any voxel is read, to refuse volumes that are too large.
     std::function<void(const Session& session, const VolumeSource& source)> before_reading{};
 };
 OpenedSession open_session(const std::filesystem::path& path, const std::vector<std::string>& settings = {},
@@ -219,7 +222,7 @@ struct UnmeasuredSession {
 UnmeasuredSession open_unmeasured_session(const std::filesystem::path& path,
                                           const std::vector<std::string>& settings = {});
 
-/// The session file that `path` stands for: itself, or a project's, which may be missing; empty for a volume. Fails if
+/// The session file that `path` refers to: itself, or a project's, which may be missing; empty for a volume. Fails if
 /// there is nothing at `path`.
 std::filesystem::path session_file_of(const std::filesystem::path& path);
 /// "scan.journal" for "scan.json".
@@ -231,13 +234,13 @@ Session parse_session(const std::string& text, const std::filesystem::path& fold
 std::unique_ptr<VolumeSource> open_source(const Session& session);
 
 /// The upper end of the darker of two classes of voxels, the air around a scanned object (Otsu's threshold, but never
-/// less than half of all voxels), and the value that nine tenths of the rest lie below.
+/// less than half of all voxels), and the 90th percentile of the rest.
 struct TissueRange {
     double lower = 0.0, upper = 1.0;  ///< intensities, lower < upper
 };
 TissueRange tissue_range(const VolumeStatistics& statistics);
 
-/// A ramp from grey to warm that leaves the darker of two classes of voxels out (Otsu's threshold, but never less than
+/// A ramp from grey to warm that excludes the darker of two classes of voxels (Otsu's threshold, but never less than
 /// half of all voxels), so that the air around a scanned object is invisible. Equal statistics give equal functions.
 TransferFunction automatic_transfer_function(const VolumeStatistics& statistics);
 
@@ -245,18 +248,18 @@ TransferFunction automatic_transfer_function(const VolumeStatistics& statistics)
 /// range: the brush's default threshold.
 double automatic_threshold(const TransferFunction& function, const VolumeStatistics& statistics);
 
-/// The radius of new nodes where nobody chose one, in voxels along x: 1/500 of the volume's diagonal, at least a voxel.
+/// The default radius of new nodes in voxels along x: 1/500 of the volume's diagonal, at least a voxel.
 double automatic_node_radius(const VolumeInfo& info);
 
-/// Intensities that slices draw black and white where nobody chose them: all but the darkest 0.5 % and the brightest
-/// 0.35 % of the voxels lie between them, to a bin of the histogram. The whole range where there is no histogram.
+/// Default intensities drawn black and white in slices: all but the darkest 0.5 % and the brightest 0.35 % of the
+/// voxels lie between them, to the precision of a histogram bin. The whole range if there is no histogram.
 ValueRange automatic_contrast(const VolumeStatistics& statistics);
 
-/// The camera of that name: a named one of the session, a side of `camera_looking`, or a JSON object. Empty: the one
-/// that the session names "front", or else that looks at the side_of_largest_face.
+/// The camera of that name: a named one of the session, a side of `camera_looking`, or a JSON object. Empty: the
+/// session's camera "front", or else one that looks at the side_of_largest_face.
 Camera camera_named(const Session& session, const std::string& name_or_json, const VolumeInfo& volume);
 
-/// The names that `camera_named` takes: cameras of the session, then sides.
+/// The names that `camera_named` accepts: cameras of the session, then sides.
 std::vector<std::string> camera_names(const Session& session);
 
 /// Writes every key in the form that `parse_session` reads. Paths inside `folder` (if that is a project's shvr: inside

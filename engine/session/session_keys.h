@@ -36,7 +36,7 @@ void fields(Fields& f, OcclusionPoint& point);
 void fields(Fields& f, OcclusionSettings& occlusion);
 void fields(Fields& f, DistanceBlend& blend);
 void fields(Fields& f, RenderSettings& render);
-/// Of `render`, how the picture is made, and then how it looks, whatever makes it.
+/// Fields of `render`: how the picture is computed, and how it looks regardless of that.
 void rendering_fields(Fields& f, RenderSettings& render);
 void picture_fields(Fields& f, RenderSettings& render);
 inline constexpr std::string_view PICTURE_KEYS[]{"background", "smooth_borders", "saturation"};
@@ -53,7 +53,7 @@ void camera_fields(Fields& f, Session& session);
 struct SessionKey {
     std::string name;  ///< "groups.N.color": N stands for any number or name, NAME for any name
     std::string meaning, allowed, standard;
-    bool is_text = false;  ///< --set takes the value verbatim
+    bool is_text = false;  ///< --set takes the value verbatim, without quotes
     /// Whether this row describes the key of that name.
     bool covers(std::string_view key) const;
 };
@@ -65,14 +65,14 @@ std::vector<SessionKey> keys_of(const Fields::Visit& visit);
 inline const NumberRange SHARE{0.0, 1.0};
 /// Far beyond any volume in any unit, and far below where squares overflow.
 inline const NumberRange COORDINATE{-1e15, 1e15};
-/// The range of voxels.
+/// The range of voxel values.
 inline const NumberRange INTENSITY{-3.4e38, 3.4e38};
 
 // session_read.cpp
 JsonDocument session_document(std::string_view text, const std::string& origin);
 Session read_session(const JsonDocument& document, const std::filesystem::path& folder);
 CameraSpec read_camera(const JsonNode& node);
-/// An object with these sections.
+/// An object with these sections as JSON.
 std::string text_of_sections(const SettingValues& values);
 /// Reads the sections that `lasting_fields` visits into a new session; the others keep their defaults.
 Session read_lasting(const JsonDocument& document);

@@ -11,22 +11,22 @@ namespace shvr {
 
 struct TransferPreset {
     std::string name, note;
-    std::vector<ControlPoint> points;  ///< `intensity` is the share `at` of the file
-    bool extends = true;               ///< the last point's look goes on to the volume's largest intensity
-    bool is_own = false;               ///< a person's, not one that ships
+    std::vector<ControlPoint> points;  ///< `intensity` is the fraction `at` of the file
+    bool extends = true;               ///< the last point's look extends to the volume's largest intensity
+    bool is_own = false;               ///< made by the user, not shipped
 };
 
 /// All presets, by name; none if the program finds no assets. Fails if a file is broken.
 std::vector<TransferPreset> transfer_presets();
-/// A person's own, from a folder that need not exist; files that are broken are left out, with the reason.
+/// The user's own presets, from a folder that need not exist; broken files are left out, with the reason.
 std::vector<TransferPreset> own_transfer_presets(const std::filesystem::path& folder,
                                                  std::vector<std::string>& warnings);
 TransferPreset read_transfer_preset(const std::filesystem::path& file);
-/// The function as a preset that gives it back, but for rounding, in the volume of these statistics.
+/// The function as a preset that restores it, except for rounding, in the volume with these statistics.
 TransferPreset preset_of(const TransferFunction& function, const std::string& name, const VolumeStatistics& statistics);
-/// The text that `parse_transfer_preset` reads.
+/// The text in the form that `parse_transfer_preset` reads.
 std::string text_of(const TransferPreset& preset);
-/// The name as that of a file in a folder. Fails where it is none.
+/// The file of a preset name in a folder. Fails if the name is not valid for a file.
 std::filesystem::path preset_file(const std::filesystem::path& folder, const std::string& name);
 /// Fails with a list of the names if there is no such preset.
 TransferPreset transfer_preset_named(const std::string& name);
