@@ -1,5 +1,5 @@
 #pragma once
-// How well an annotation agrees with the truth: what `shvr evaluate` does. Any thread.
+// Measures how well an annotation agrees with the truth, for `shvr evaluate`. Any thread.
 
 #include "engine/annotation/measures/trace_score.h"
 #include "engine/annotation/trace/trace_space.h"
@@ -11,16 +11,16 @@ struct EvaluateTask {
     static constexpr const char* TITLE = "Compare with a reference";
 
     std::filesystem::path truth_mask, mask, truth_trace, trace;
-    std::filesystem::path volume;           ///< that all are of: size, spacing and unit where no file states them
+    std::filesystem::path volume;           ///< the volume of all inputs: size, spacing and unit if no file states them
     std::vector<std::string> truth_groups;  ///< "FROM=TO"
-    std::optional<double> slack;            ///< in the unit of the volume; nothing: the longest side of a voxel
+    std::optional<double> slack;            ///< in the unit of the volume; null: the longest side of a voxel
     bool allows_incomplete = false;         ///< voxels of masks that cannot be read count as unpainted
     std::vector<std::string> settings;      ///< "key=value" of a session, for `volume`
     OptionNames names = OptionNames::keys;  ///< in messages; not an option
 };
 void fields(Fields& f, EvaluateTask& task);
 
-/// What was not requested is nothing.
+/// Results that were not requested are null.
 struct EvaluateResult {
     std::optional<TraceSpace> space;
     std::optional<Dice> dice;
@@ -31,7 +31,7 @@ struct EvaluateResult {
     std::vector<std::string> warnings;
 };
 
-/// Refuses what is missing or malformed; reads nothing.
+/// Refuses missing or malformed options; reads nothing.
 void check(const EvaluateTask& task);
 EvaluateResult run(const EvaluateTask& task, ProgressReporter& reporter);
 

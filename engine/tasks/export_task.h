@@ -1,9 +1,9 @@
 #pragma once
-// Exports annotation for other programs, by the extensions of the names: what `shvr export` does.
+// Exports annotation for other programs, in formats given by the file extensions, for `shvr export`.
 //
-// The annotation is lent by reference. To export beside a person who goes on painting, take an `AnnotationSnapshot` on
-// the main thread and export that on another one: bricks of mask and offsets are shared and never change
-// (sparse_bricks.h), so a snapshot costs the tables of bricks and a copy of the trace (MEASURED.md).
+// The annotation is passed by reference. To export in the background while the user goes on painting, take an
+// `AnnotationSnapshot` on the main thread and export that on another one: bricks of mask and offsets are shared and
+// immutable (sparse_bricks.h), so a snapshot costs the tables of bricks and a copy of the trace (MEASURED.md).
 
 #include <functional>
 #include <map>
@@ -25,20 +25,20 @@ constexpr std::span<const Spelling<Positions>> spellings_of(Positions)
 struct ExportTask {
     static constexpr const char* TITLE = "Export annotation";
 
-    // Files to write; empty: not this one.
+    // Files to write; empty: not written.
     std::filesystem::path mask, offset, trace, mesh, metrics;
-    bool labels = false;       ///< the mask also as labels/mask in the project
-    bool break_loops = false;  ///< for forms of traces that hold trees
+    bool labels = false;       ///< writes the mask also as labels/mask in the project
+    bool break_loops = false;  ///< for trace formats that can only hold trees
     Positions space = Positions::physical;
     std::optional<OmeZarrVersion> version;
 
     OptionNames names = OptionNames::keys;  ///< in messages; not an option
 };
 void fields(Fields& f, ExportTask& task);
-/// Files that are there already, which the task would replace.
+/// Existing files that the task would replace.
 std::vector<std::filesystem::path> replaced_files(const ExportTask& task);
 
-/// What is exported, which must stay as it is until `run` returns.
+/// The exported data, which must not change until `run` returns.
 struct AnnotationView {
     const VolumeInfo& volume;
     const Mask& mask;
@@ -47,16 +47,16 @@ struct AnnotationView {
     const Groups& groups;
     std::string volume_hash{};            ///< as Session::volume_hash
     std::filesystem::path project{};      ///< as it was opened; for `labels`
-    std::filesystem::path volume_path{};  ///< as Session::volume_path, which no file may replace
-    std::filesystem::path trace_path{};   ///< as Session::trace_path; for messages where there is no trace
+    std::filesystem::path volume_path{};  ///< as Session::volume_path, which no output may replace
+    std::filesystem::path trace_path{};   ///< as Session::trace_path; for messages if there is no trace
 };
 
-/// A copy that belongs to whoever holds it. Any thread may read it, and destroy it.
+/// An independent copy. Any thread may read it, and destroy it.
 class AnnotationSnapshot {
 public:
     explicit AnnotationSnapshot(const AnnotationView& view);
     AnnotationSnapshot(const AnnotationSnapshot&) = delete;
-    /// Refers to this.
+    /// Refers to this object.
     AnnotationView view() const;
 
 private:
@@ -71,19 +71,19 @@ private:
 
 struct ExportResult {
     std::vector<std::string> written;   ///< paths, in order
-    std::vector<std::string> left_out;  ///< a sentence for each internode that a form could not hold
+    std::vector<std::string> left_out;  ///< a sentence for each internode that a format could not hold
     std::map<int, int64_t> voxels_by_group;
     size_t nodes = 0, internodes = 0;
     std::map<int, double> length_by_group;  ///< in `unit`
     std::string unit;
 };
 
-/// Names and folders, and whether there is what they are to hold.
+/// Checks names and folders, and whether the data to be written exists.
 void check(const ExportTask& task);
 void check(const ExportTask& task, const AnnotationView& annotation);
 
-/// Checks, then writes each file atomically; those that were written before a failure stay. `wrote` is called after
-/// each.
+/// Checks, then writes each file atomically; files written
+/// before a failure stay. `wrote` is called after each file.
 ExportResult run(const ExportTask& task, const AnnotationView& annotation, ProgressReporter& reporter,
                  const std::function<void(const ExportResult& so_far)>& wrote = {});
 

@@ -1,6 +1,6 @@
 #pragma once
-// What a file is, by its contents and not by its name: for what somebody drops onto the window. Reads its first bytes,
-// a small JSON file, or a volume's header. Any thread.
+// Identifies a file by its contents rather than its name, for files dropped onto the window. Reads its first bytes, a
+// small JSON file, or a volume's header. Any thread.
 
 #include <filesystem>
 #include <optional>
@@ -14,7 +14,7 @@ enum class FileContent {
     volume,  ///< also a folder of slices or an OME-Zarr image
     session,
     project,
-    picture,  ///< with a session in it
+    picture,  ///< a picture that contains a session
     mask,
     offsets,
     trace,
@@ -22,9 +22,9 @@ enum class FileContent {
 };
 struct WhatItIs {
     std::optional<FileContent> content;
-    std::string why_not{};  ///< of what is nothing of all that: a sentence with the path
+    std::string why_not{};  ///< if it is none of these: a sentence with the path
 };
-/// `open`: the volume that is open, whose size tells bare masks and offsets; null: none.
+/// `open`: the currently open volume, whose size identifies bare masks and offsets; null: none.
 WhatItIs what_is(const std::filesystem::path& path, const VolumeInfo* open);
 
 }  // namespace shvr

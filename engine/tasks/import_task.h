@@ -1,6 +1,6 @@
 #pragma once
-// Makes a project of a volume: what `shvr import` does. The order is: crop, reverse, blur, downscale. An import that
-// was stopped keeps what is done, and the same import continues it. Any thread.
+// Imports a volume as a project, for `shvr import`. The order is: crop, reverse, blur, downscale. A stopped import
+// keeps what is done, and the same import resumes it. Any thread.
 
 #include "engine/tasks/task_options.h"
 
@@ -15,14 +15,14 @@ struct ImportTask {
     glm::dvec3 blur_voxels{0.0};  ///< sigma
     int downscale = 1;
     bool labels = false;  ///< the voxels are labels
-    std::string raw;      ///< for bare voxels, as `parse_raw_layout` takes it
+    std::string raw;      ///< for bare voxels, in the form of `parse_raw_layout`
     OpenOptions choice;   ///< spacing, unit, channel, frame
     std::optional<OmeZarrVersion> version;
-    bool shards = false;  ///< of version 0.5: many chunks in a file
+    bool shards = false;  ///< version 0.5 only: many chunks per file
     bool overwrite = false;
     int threads = 0;
 
-    std::string program = "shvr import";    ///< told to others who want the project that is being replaced
+    std::string program = "shvr import";    ///< shown to other processes that want the project being replaced
     OptionNames names = OptionNames::keys;  ///< in messages; these two are not options
 };
 void fields(Fields& f, ImportTask& task);
@@ -35,7 +35,7 @@ struct ImportResult {
 
 /// Refuses options that contradict each other; reads nothing.
 void check(const ImportTask& task);
-/// A project that is replaced stays until the new one is complete, and nobody may be writing it.
+/// A project that is being replaced stays until the new one is complete; fails if another process is writing it.
 ImportResult run(const ImportTask& task, ProgressReporter& reporter);
 
 }  // namespace shvr

@@ -1,5 +1,5 @@
 #pragma once
-// Connected components of a whole volume: what `shvr label` does. Any thread.
+// Labels the connected components of a whole volume, for `shvr label`. Any thread.
 
 #include "engine/components/components.h"
 #include "engine/tasks/task_options.h"
@@ -12,10 +12,10 @@ struct LabelTask {
     double threshold = 0.0;  ///< inclusive, in intensity units
     Connectivity connectivity = Connectivity::faces;
     int64_t fewest_voxels = 1;     ///< smaller components are left out
-    int64_t largest = 0;           ///< only so many, the largest; 0: all
-    std::filesystem::path output;  ///< .zarr, .nrrd, .tif, .mask, or IMAGE/labels/NAME; empty: counts alone
+    int64_t largest = 0;           ///< keeps only the largest N; 0: all
+    std::filesystem::path output;  ///< .zarr, .nrrd, .tif, .mask, or IMAGE/labels/NAME; empty: only counts
     std::optional<OmeZarrVersion> version;
-    bool allows_incomplete = false;  ///< voxels that cannot be read are as low as their type allows
+    bool allows_incomplete = false;  ///< voxels that cannot be read get the lowest value of their type
     int threads = 0;
 
     OptionNames names = OptionNames::keys;  ///< in messages; not an option
@@ -26,17 +26,17 @@ struct LabelResult {
     Components::Counts counts;
     double seconds = 0.0;
     double label_seconds = 0.0;     ///< without writing
-    std::optional<VoxelType> type;  ///< of labels; nothing where none are written
+    std::optional<VoxelType> type;  ///< type of the labels; null if none are written
     int64_t voxels_not_read = 0;
-    std::vector<std::string> warnings;  ///< that voxels could not be read
+    std::vector<std::string> warnings;  ///< about voxels that could not be read
 };
 
-/// Options and names.
+/// Checks options and names.
 void check(const LabelTask& task);
-/// Also whether the output can be written for such a volume: of a sparse one an OME-Zarr costs what is stored, all
-/// other forms hold every voxel. `volume`: its file, or empty, which the output may not replace.
+/// Also checks whether the output can be written for such a volume: for a sparse one an OME-Zarr needs only what is
+/// stored, all other formats hold every voxel. `volume`: its file, which the output may not replace, or empty.
 void check(const LabelTask& task, const VolumeSource& source, const std::filesystem::path& volume);
-/// `source`: with density offsets, if there are any. `name`: of the volume, for the line of progress.
+/// `source`: includes density offsets, if any. `name`: the volume's, for the progress line.
 LabelResult run(const LabelTask& task, const VolumeSource& source, const std::string& name, ProgressReporter& reporter);
 
 }  // namespace shvr

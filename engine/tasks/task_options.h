@@ -1,6 +1,6 @@
 #pragma once
-// The options of tasks as JSON, as scripts and logs hold them: {"mask": "out.tif", "space": "volume"}. Options that are
-// missing keep their defaults; unknown ones are refused by name. Any thread.
+// The options of tasks as JSON, for scripts and logs: {"mask": "out.tif", "space": "volume"}. Options that are missing
+// keep their defaults; unknown ones are refused by name. Any thread.
 
 #include "engine/jobs/progress_reporter.h"
 #include "engine/projects/import_volume.h"
@@ -9,7 +9,7 @@
 
 namespace shvr {
 
-/// How sentences call an option: by its key, or as on the command line: "break_loops" or "--break-loops".
+/// How messages refer to an option: by its key, or as on the command line: "break_loops" or "--break-loops".
 enum class OptionNames { keys, command_line };
 std::string option_name(OptionNames names, std::string_view key);
 
@@ -23,14 +23,14 @@ Task from_json(std::string_view text, const std::filesystem::path& folder, const
     return task;
 }
 
-/// Every option that has a value, on one line. Paths inside `folder` are relative to it.
+/// Writes every option that has a value, on one line. Paths inside `folder` are relative to it.
 template <class Task>
 std::string to_json(Task task, const std::filesystem::path& folder)
 {
     return write_fields(folder, [&](Fields& f) { fields(f, task); });
 }
 
-/// Name, meaning, range and default of each, for documentation and dialogs.
+/// Name, meaning, range and default of each option, for documentation and dialogs.
 template <class Task>
 std::vector<SessionKey> options_of()
 {
@@ -41,15 +41,15 @@ std::vector<SessionKey> options_of()
 /// "ome_zarr", a version of OME-Zarr or "automatic".
 void version_field(Fields& f, std::optional<OmeZarrVersion>& version, const char* automatic);
 
-/// "allow_incomplete": what cannot be read is left out, counted and said, instead of ending the task.
+/// "allow_incomplete": unreadable data is left out, counted and reported, instead of ending the task.
 void incomplete_field(Fields& f, bool& allows_incomplete, const char* counts_as);
-/// What of a volume the task may do without: nothing, unless that is allowed.
+/// The handling of unreadable data: refused, unless allowed.
 Gaps gaps_of(bool allows_incomplete, OptionNames names);
 
 /// "threads": worker threads, 0 ... 1024; 0: one per core.
 void threads_field(Fields& f, int& threads);
 void check_threads(int threads, OptionNames names);
-/// An array of texts that are not empty; not written where there are none.
+/// An array of non-empty texts; not written if it is empty.
 void texts_field(Fields& f, std::string_view name, std::vector<std::string>& texts, const About& about);
 
 }  // namespace shvr
