@@ -12,8 +12,8 @@ namespace shvr {
 
 class ImportBox {
 public:
-    /// `source` must outlive it. Where voxels are to be reversed, all of them are looked at first, which `progress` is
-    /// told of.
+    /// `source` must outlive it. If voxels are to be reversed, the constructor first reads all of them to find their
+    /// range, and reports that to `progress`.
     ImportBox(const VolumeSource& source, const VoxelBox& box, bool reverses, const Progress& progress = {});
 
     VoxelType type() const { return source_.info().type; }
@@ -35,7 +35,7 @@ private:
     double ends_ = 0.0;  ///< smallest plus largest value of the source, for reversing
 };
 
-/// As import_prepare.h has it; `progress` is told how far the look at voxels that are to be reversed is.
+/// As in import_prepare.h; `progress` reports the pass that finds the range for reversing.
 std::unique_ptr<Preparation> make_preparation(const VolumeSource& source, const PreparationOptions& options,
                                               const Progress& progress);
 

@@ -1,6 +1,6 @@
 #pragma once
-// The chunks of all levels of a project under construction, as files in its folder, and their checksums. Those of a
-// level with shards are loose, in PROJECT/shvr/chunks, until they are packed into shards.
+// The chunks of all levels of a project under construction, as files in its folder, and their checksums. Chunks of a
+// level with shards are loose files in PROJECT/shvr/chunks until they are packed into shards.
 
 #include <atomic>
 #include <filesystem>
@@ -22,11 +22,12 @@ public:
     /// different chunks at once.
     void write(int level, const Size3& chunk, std::span<const std::byte> voxels, int worker);
 
-    int64_t shards(int level) const;  ///< 0: the level has none
-    /// Once all chunks of the level are written: makes the shard's file of their files, and removes these. Does nothing
-    /// where it is done already. Writes no file if no chunk of the shard has one. Any thread may pack any shard.
+    int64_t shards(int level) const;  ///< 0: the level has no shards
+    /// To be called once all chunks of the level are written: merges the files of a shard's chunks into the shard's
+    /// file, and removes them. Does nothing if that is done already. Writes no file if no chunk of the shard has one.
+    /// Any thread may pack any shard.
     void pack(int level, int64_t shard);
-    /// Once all are packed.
+    /// To be called once all shards are packed.
     void remove_loose() const;
 
     int levels() const { return int(levels_.size()); }
@@ -39,7 +40,7 @@ public:
     int64_t stored() const;                   ///< chunks that have a file
     int64_t bytes() const { return bytes_; }  ///< total size of the files
 
-    /// Only while nothing is being written.
+    /// To be called only while nothing is being written.
     void save(StateWriter& state) const;
     void load(StateReader& state);
 

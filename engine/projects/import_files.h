@@ -8,12 +8,12 @@
 
 namespace shvr {
 
-/// The array of a level, as it will be written. Only OME-Zarr 0.5 `has_shards`, and of it levels of several chunks: up
-/// to 8 x 8 x 8 of them in a file, with an index of where each is at the end.
+/// The array of a level, as it will be written. Only OME-Zarr 0.5 `has_shards`, and only for levels of several chunks:
+/// up to 8 x 8 x 8 chunks in a file, with an index of their positions at the end.
 ZarrVolume import_level(const std::filesystem::path& project, const VolumeInfo& info, int level, OmeZarrVersion version,
                         const ZarrCompressor& compressor, bool has_shards);
 
-/// The attributes of the image, as JSON: all that .zattrs holds, or "attributes" of zarr.json. `labels`: additional
+/// The attributes of the image, as JSON: the content of .zattrs, or "attributes" of zarr.json. `labels`: additional
 /// attributes of a label image, or null.
 std::string import_attributes(OmeZarrVersion version, const std::string& name, const VolumeInfo& info, int levels,
                               Halving how, const LabelImage* labels);
@@ -27,10 +27,10 @@ std::string import_session();
 std::filesystem::path label_image_target(const std::filesystem::path& folder);
 /// Whether it is IMAGE/labels/NAME of an OME-Zarr image.
 bool belongs_to_image(const std::filesystem::path& target);
-/// The version of the image that `target` belongs to, which a hierarchy has in common; else `wanted`; else that of the
-/// label image that is there; else 0.4. Fails if `wanted` is not that of the image.
+/// The version of the image that `target` belongs to, which must be the same in a hierarchy; else `wanted`; else that
+/// of the existing label image; else 0.4. Fails if `wanted` is not that of the image.
 OmeZarrVersion label_image_version(const std::filesystem::path& target, std::optional<OmeZarrVersion> wanted);
-/// Adds it to the list in IMAGE/labels, a group that is created if it is missing.
+/// Adds the label image to the list in IMAGE/labels, a group that is created if it is missing.
 void list_label_image(const std::filesystem::path& target, OmeZarrVersion version);
 
 /// Equal for imports that give equal projects: covers the source (including the names, sizes and times of its files)

@@ -2,16 +2,16 @@
 // Processing of a volume's voxels before they are stored, slab by slab, in this order: crop to a box, reverse
 // intensities, blur, shrink.
 //
-// A reversed voxel is the smallest plus the largest finite value of the whole volume, before it is cut, minus the
-// voxel; so the range of values stays as it is, whatever their type, and parts of one volume stay comparable.
+// A reversed voxel is the smallest plus the largest finite value of the whole volume, before cropping, minus the voxel;
+// so the range of values stays the same, whatever their type, and parts of one volume stay comparable.
 //
 // The blur is a Gaussian sampled at voxel centres, to int(4 sigma + 0.5) voxels on each side, normalised in double,
 // along x, then y, then z. The outermost voxels of the cropped box are repeated outwards. Intermediate sums are float
 // for types of 8 and 16 bits and double for all others; integers are rounded to nearest, ties to even. NaN and infinite
 // voxels stay as they are and do not spread: their neighbours are the weighted mean of the finite ones.
 //
-// A voxel of a volume made N times smaller is the mean of N^3 voxels, or of those that exist at the volume's end;
-// rounding and NaN as above. So the size is rounded up.
+// A voxel of a volume downscaled by N is the mean of N^3 voxels, or of those that exist at the volume's end; rounding
+// and NaN as above. So the size is rounded up.
 
 #include <memory>
 #include <optional>
@@ -35,7 +35,7 @@ inline constexpr int LARGEST_DOWNSCALE = 64;
 /// "cropped to ..., reversed": describes `options`; empty if they change nothing.
 std::string to_text(const PreparationOptions& options);
 
-/// The weights of a Gaussian from its middle outwards; both sides together sum to 1. {1} for a sigma of 0.
+/// The weights of a Gaussian from its centre outwards; both sides together sum to 1. {1} for a sigma of 0.
 std::vector<double> gaussian_weights(double sigma_voxels);
 
 class Preparation {
@@ -61,8 +61,8 @@ private:
     VolumeInfo info_;
 };
 
-/// Fails if the box does not lie inside the volume. `source` must outlive the result. Voxels to be reversed
-/// are gone through once before.
+/// Fails if the box does not lie inside the volume. `source` must outlive the result. Reversing needs an additional
+/// pass over the voxels first.
 std::unique_ptr<Preparation> make_preparation(const VolumeSource& source, const PreparationOptions& options);
 
 }  // namespace shvr

@@ -48,11 +48,11 @@ public:
     /// Whether a layer of chunks of `level` (1 ... 5) is complete as soon as `slices` slices of level 0 have been
     /// added. Higher levels are complete at the end.
     bool completes_layer(int level, int64_t slices) const;
-    /// Makes what needs the whole volume: levels above the sixth. Call after the last chunk.
+    /// Computes everything that needs the whole volume: levels above the sixth. Call after the last chunk.
     virtual void finish() = 0;
     /// The voxels of a chunk of a complete layer, as `add` returns them.
     virtual std::span<const std::byte> gather(int level, const Size3& chunk, int worker) = 0;
-    /// The layer of `level` was written; its memory is reused for the next one.
+    /// Call once the layer of `level` has been written; its memory is reused for the next one.
     virtual void clear_layer(int level) = 0;
 
     /// The elements of PROJECT/shvr/ranges-LEVEL.

@@ -1,7 +1,7 @@
 #pragma once
-// The levels of a label image, made only where something is stored: of 2^20 voxels a side, with one chunk, 16 chunks
-// are written. The files are those that an import which goes through everything writes, byte for byte.
-// For import_volume.cpp. One thread.
+// Makes the levels of a label image only where something is stored: for 2^20
+// voxels a side and one stored chunk, it writes 16 chunks. The files equal
+// those of a dense import, byte for byte. For import_volume.cpp. One thread.
 
 #include <filesystem>
 #include <optional>
@@ -13,9 +13,9 @@
 
 namespace shvr {
 
-/// The chunks of IMPORT_CHUNK^3 voxels that stored blocks reach, in an order in which those below one chunk of a
-/// coarser level are neighbours. Nothing where the source does not know what it stores, where the rest is not 0, or
-/// where going through everything takes less: where they are more than an eighth of all.
+/// The chunks of IMPORT_CHUNK^3 voxels that stored blocks touch, in an order in which those below one chunk of a
+/// coarser level are adjacent. Null if the source does not know what it stores, if the fill value is not 0, or if a
+/// dense import is cheaper: if they are more than an eighth of all.
 std::optional<std::vector<Size3>> sparse_chunks(const VolumeSource& source);
 
 struct SparseLevelFiles {
@@ -25,7 +25,7 @@ struct SparseLevelFiles {
     int64_t bytes = 0;   ///< of these files
 };
 /// Writes chunks and metadata of all levels into a folder; a voxel of a coarser level is the most frequent label of
-/// those below it. `info`: as the files state it; `progress` is told how many of `chunks` are done.
+/// those below it. `info`: as stated in the files; `progress` reports the completed fraction of `chunks`.
 SparseLevelFiles write_sparse_levels(const VolumeSource& source, const VolumeInfo& info,
                                      const std::vector<Size3>& chunks, const std::filesystem::path& folder,
                                      OmeZarrVersion version, const ZarrCompressor& compressor,

@@ -1,6 +1,6 @@
 #pragma once
-// What an import needs to resume after an interruption, in one file with one checksum: pieces of bytes in a fixed
-// order, each with its length, in a zstd frame, behind a header with a checksum. One thread.
+// The state that an import needs to resume after an interruption, in one file with one checksum: byte strings in a
+// fixed order, each with its length, in a zstd frame, behind a header with a checksum. One thread.
 
 #include <cstring>
 #include <filesystem>

@@ -1,6 +1,6 @@
 #pragma once
-// What an import gathers about level 0 while it streams through: the hash of every slice and, for types of 8 and 16
-// bits, how often each value occurs.
+// Data that an import gathers about level 0 while it streams through: the hash of every slice and, for types of 8 and
+// 16 bits, how often each value occurs.
 
 #include <cstdint>
 #include <optional>
@@ -26,7 +26,7 @@ public:
 
     /// The hash of the whole volume, once all slices are finished.
     std::string content_hash() const;
-    /// Nothing if the type has too many values to count each.
+    /// Null if the type has too many values to count each.
     std::optional<VolumeStatistics> statistics() const;
 
     /// Only while no slice is partly added.

@@ -35,7 +35,7 @@ struct ImportProgress {
     double seconds_left = 0.0;
 };
 
-/// Labels beside an image, for other programs and for readers of labels; not a project.
+/// Labels stored with an image, for other programs and for readers of labels; not a project.
 struct LabelImage {
     struct Color {
         int64_t value;
@@ -47,15 +47,16 @@ struct LabelImage {
     /// The hash of that image's voxels (content_hash.h), which distinguishes a mask from masks of other images of the
     /// same size; empty: not stated.
     std::string painted_on{};
-    /// Of a person's work that it was saved with: the file's name, and number and checksum of the last record then.
+    /// The journal of the work with which it was saved: the file's name, and number and checksum of the last record
+    /// then.
     struct Journal {
         std::string name;
         uint64_t record = 0, checksum = 0;
         bool operator==(const Journal&) const = default;
-        /// 16 hexadecimal digits, for JSON, whose readers may know no whole numbers of 64 bits.
+        /// 16 hexadecimal digits, for JSON, as some readers do not support 64-bit integers.
         std::string checksum_digits() const;
     };
-    std::optional<Journal> journal{};  ///< stated where `painted_on` is
+    std::optional<Journal> journal{};  ///< stated if `painted_on` is
 };
 
 struct ImportOptions {
@@ -66,7 +67,7 @@ struct ImportOptions {
     std::optional<LabelImage> label_image{};  ///< with Halving::label; see export_label_image
     int threads = 0;                          ///< 0: one per core
     ZarrCompressor compressor{.kind = ZarrCompressor::Kind::blosc};
-    /// Nothing: 0.4; for label images, that of the image they belong to, or else of the label image they replace.
+    /// Null: 0.4; for label images, the version of their image, or else of the label image they replace.
     std::optional<OmeZarrVersion> version{};
     bool has_shards = false;  ///< OME-Zarr 0.5 only: up to 512 chunks in a file (import_files.h)
     std::function<void(const ImportProgress&)> progress{};  ///< about every 100 ms, on the calling thread

@@ -1,5 +1,5 @@
 #pragma once
-// A folder that appears complete or not at all: it is built beside its final place, as NAME.part, and renamed at the
+// A folder that appears complete or not at all: it is built next to its final place, as NAME.part, and renamed at the
 // end. Unfinished work stays there, so that it can be resumed. One process at a time works on it: the folder is locked,
 // and the lock is released if the process dies.
 
@@ -14,10 +14,10 @@ namespace shvr {
 
 class PartFolder {
 public:
-    /// Creates NAME.part if it does not exist yet, and locks it. Fails if `target` exists and is not an empty folder;
-    /// with `overwrites`, only if it is neither a project nor another Zarr folder, or holds what no such folder does,
-    /// which would be lost. Fails if NAME.part was not left by
-    /// an import, or if another process works on it.
+    /// Creates NAME.part if it does not exist yet, and locks it. Fails if `target` exists
+    /// and is not an empty folder; with `overwrites`, only if it is neither a project nor
+    /// another Zarr folder, or holds files foreign to such a folder, which would be lost.
+    /// Fails if NAME.part was not left by an import, or if another process works on it.
     PartFolder(const std::filesystem::path& target, bool overwrites);
 
     const std::filesystem::path& path() const { return part_; }
@@ -32,7 +32,7 @@ public:
     void clear_temporary() const;
     /// Returns once everything written so far is on the disk (including any other pending writes to this file system).
     void sync() const;
-    /// Moves the folder to the target's place, replacing what was there, and deletes the state. The folder then is the
+    /// Moves the folder to the target's place, replacing what was there, and deletes the state. Then the folder is the
     /// target.
     void finish();
     /// Deletes unfinished work, as far as possible.
