@@ -1,5 +1,5 @@
 #pragma once
-// A file that holds several volumes, of which none was chosen: what there is to choose from, for those who can ask.
+// The available choices in a file that holds several volumes, if none was chosen, for callers that can ask the user.
 
 #include <string>
 #include <utility>
@@ -14,9 +14,9 @@ struct Choice {
 
     std::string key;                    ///< "channel" or "frame", as in OpenOptions
     std::vector<std::string> values;    ///< each chooses one
-    std::vector<std::string> titles{};  ///< of the same, for people
+    std::vector<std::string> titles{};  ///< display titles of the values
 
-    /// 1, 2, ...; names stand beside their numbers.
+    /// Choices 1, 2, ...; titles show names next to the numbers.
     static Choice numbered(std::string key, int64_t count, const std::vector<std::string>& names = {})
     {
         Choice choice{std::move(key), {}};
@@ -29,7 +29,7 @@ struct Choice {
     }
 };
 
-/// What it says names the choices, too.
+/// Its message lists the choices, too.
 class ChoiceNeeded : public Error {
 public:
     ChoiceNeeded(const std::string& what, std::vector<Choice> choices) : Error(what), choices_(std::move(choices)) {}

@@ -1,5 +1,5 @@
 #pragma once
-// Voxels in several files, as NRRD and MetaImage name them: a pattern with numbers, or a list of names after the
+// Voxels in several files, as referenced by NRRD and MetaImage: a numbered pattern, or a list of names after the
 // header. Also the user's choice in files that hold several volumes. Any thread may call these.
 
 #include <filesystem>
@@ -12,8 +12,8 @@
 
 namespace shvr {
 
-/// These recognise values of a data file field: "LIST" or "LIST 2"; and the pattern "name%03d.raw 1 93 1", which may
-/// have one more number at its end.
+/// Recognise values of a data file field: "LIST" or "LIST 2"; and the pattern "name%03d.raw 1 93 1", which may have one
+/// more number at its end.
 bool is_list(std::string_view data_file);
 bool is_pattern(std::string_view data_file);
 

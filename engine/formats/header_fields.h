@@ -42,7 +42,7 @@ public:
     bool flag(const char* name, bool fallback) const;
     glm::dvec3 spacing(const char* name) const;  ///< three numbers, finite and above 0
 
-    /// Where the header says its voxels are: relative to the header's folder, or absolute.
+    /// The voxel file that the header names: relative to the header's folder, or absolute.
     std::filesystem::path data_file(const char* name) const;
 
 private:

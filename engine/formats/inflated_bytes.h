@@ -1,8 +1,8 @@
 #pragma once
 // Bytes compressed with deflate, wrapped as gzip or zlib (zlib detects which): compressed NRRD, MetaImage and NIfTI.
 //
-// Deflate can only be read forwards, and any byte may need the 32 KiB before it. While reading forwards, copies of the
-// decoder's state are saved every few MiB, so that a box is decoded from the nearest state before it, and recently
+// Deflate can only be read forwards, and any byte may depend on the preceding 32 KiB. While reading forwards, copies of
+// the decoder's state are saved every few MiB, so that a box is decoded from the nearest state before it, and recently
 // decoded chunks are cached. A pass from front to back decodes every byte once. Memory: at most 512 states of 40 KiB,
 // and the cached chunks (`kept_bytes`, by default 32 MiB). One thread decodes at a time.
 
@@ -15,7 +15,7 @@ namespace shvr {
 
 struct Inflation {
     InputFile file;
-    int64_t offset_bytes = 0;  ///< where in the file the compressed bytes begin
+    int64_t offset_bytes = 0;  ///< file offset at which the compressed bytes begin
     int64_t skip_bytes = 0;    ///< decoded bytes before the requested ones
     int64_t wanted_bytes = 0;
     int64_t kept_bytes = int64_t{32} << 20;

@@ -11,7 +11,7 @@ namespace shvr {
 struct RawLayout {
     Size3 size{0};
     VoxelType type = VoxelType::uint8;
-    std::optional<bool> big_endian{};  ///< nothing: little-endian is assumed, with a warning
+    std::optional<bool> big_endian{};  ///< null: little-endian is assumed, with a warning
     int64_t offset_bytes = 0;
     glm::dvec3 spacing{1.0};
     std::string unit = "voxel";
@@ -27,14 +27,14 @@ inline constexpr const char* NO_ADDRESS =
     "the path of a file or folder on this machine, since nothing is read over a network: copy it here, or mount it";
 
 /// Whether it is the path of a zipped OME-Zarr, by its name (.ozx, .zip), or leads into one, as in scan.ozx/0, which is
-/// no path of the file system. Reads nothing.
+/// not a path of the file system. Reads nothing.
 bool leads_into_archive(const std::filesystem::path& path);
-/// A sentence for a project that was zipped whole, from which only its image is read; else empty. Reads the archive's
-/// directory.
+/// A message for a project that was zipped as a whole, of which only the image is read; empty otherwise. Reads the
+/// archive's directory.
 std::string archived_project(const std::filesystem::path& path);
 
-/// Name of the format that readers take a file of that name for, such as "NIfTI" for scan.nii.gz; empty: none does by
-/// its name. Files may be of another format, or of one without an ending of its own. Reads nothing.
+/// Name of the format implied by a file name, such as "NIfTI" for scan.nii.gz; empty: none. Files may be of another
+/// format, or of one without an extension of its own. Reads nothing.
 std::string_view format_of_name(std::string_view name);
 inline bool is_volume_name(std::string_view name)
 {

@@ -1,5 +1,5 @@
 #pragma once
-// Intensities that a file stores as numbers with a slope and an intercept (NIfTI, DICOM). Any thread may call these.
+// Intensities stored in a file as numbers with a slope and an intercept (NIfTI, DICOM). Any thread may call these.
 
 #include <memory>
 #include <span>
@@ -26,8 +26,8 @@ VoxelType rescaled_type(VoxelType stored, const Rescale& rescale);
 void rescale_voxels(VoxelType from, std::span<const std::byte> stored, const Rescale& rescale, VoxelType to,
                     std::span<std::byte> intensities);
 
-/// `source`, which must have one level, as intensities; `source` itself if nothing changes. A warning says if integers
-/// become floats.
+/// Returns `source`, which must have one level, with its voxels converted to intensities; `source` itself if nothing
+/// changes. A warning is added if integers become floats.
 std::unique_ptr<VolumeSource> rescaled(std::unique_ptr<VolumeSource> source, const Rescale& rescale);
 
 }  // namespace shvr

@@ -1,5 +1,5 @@
 #pragma once
-// Spacing and unit as the user states them, given where a file states none, or corrected. Any thread may call these.
+// Spacing and unit stated by the user, where a file states none or wrong ones. Any thread may call these.
 
 #include <filesystem>
 #include <memory>
@@ -8,10 +8,10 @@
 
 namespace shvr {
 
-/// `source` with the spacing and the unit of `options`; `source` itself if they state neither. Warnings about what the
-/// file lacks are dropped where the options supply it; one that names both is added where the file says otherwise. An
-/// origin is converted if the file and the options state units of length. Fails if that leaves a spacing without a
-/// unit, or a unit without a spacing. Voxels, levels and what is known about them stay.
+/// Returns `source` with the spacing and the unit of `options`; `source` itself if they state neither. Warnings about
+/// missing values are dropped if the options supply them; a warning with both values is added if the file states
+/// another. An origin is converted if the file and the options state units of length. Fails if that leaves a spacing
+/// without a unit, or a unit without a spacing. Voxels, levels and what is known about them are unchanged.
 std::unique_ptr<VolumeSource> restated(std::unique_ptr<VolumeSource> source, const std::filesystem::path& path,
                                        const OpenOptions& options);
 

@@ -1,6 +1,6 @@
 #pragma once
-// The bytes in which a file stores its voxels, one after the other: raw in a file, deflated, or spread over several
-// files. source_raw.cpp turns them into voxels.
+// The bytes in which a file stores its voxels, in order: raw in a file, deflated, or spread over several files.
+// source_raw.cpp turns them into voxels.
 
 #include <filesystem>
 #include <functional>
@@ -15,7 +15,7 @@ namespace shvr {
 class VoxelBytes {
 public:
     virtual ~VoxelBytes() = default;
-    /// Fills `bytes` from `offset` on. Throws `Error` if the data ends before. Any thread may call it.
+    /// Fills `bytes` from `offset` on. Throws `Error` if the data ends too early. Any thread may call it.
     virtual void read(int64_t offset, std::span<std::byte> bytes) const = 0;
 };
 

@@ -25,8 +25,8 @@ struct DicomFrame {
 /// How its pixels are stored.
 struct DicomStored {
     DicomLayout layout{};
-    int bits = 0;      ///< of a pixel, at most those of its type
-    int high_bit = 0;  ///< the highest of them
+    int bits = 0;      ///< per pixel, at most those of its type
+    int high_bit = 0;  ///< index of the highest bit
     bool is_signed = false;
 };
 
@@ -45,16 +45,17 @@ struct DicomFile {
     bool is_inverted = false;             ///< MONOCHROME1: low values are bright
     bool spacing_is_at_detector = false;  ///< not corrected for the distance to the source
     std::optional<double> distance{};     ///< mm between slices, as stated; slice thickness if nothing else is
-    double tilt_degrees = 0.0;            ///< of the gantry
+    double tilt_degrees = 0.0;            ///< tilt of the gantry
     std::vector<DicomFrame> frames{};
 };
 
-/// Nothing if the file is not a DICOM file, or has no pixels (a directory of others, a report). Fails if it is broken,
-/// or of a kind that forms no volume.
+/// Null if the file is not a DICOM file, or has no pixels (a DICOMDIR, a report). Fails if it is broken, or of a kind
+/// that forms no volume.
 std::optional<DicomFile> read_dicom_file(const std::filesystem::path& path);
 
-/// The pixels of one frame, x fastest, in native byte order; `bytes` is their expected size. Plain ones are read as
-/// they lie in the file; coded ones are decoded by GDCM or OpenJPEG, which see them alone and nothing else of the file.
+/// The pixels of one frame, x fastest, in native byte order; `bytes` is their expected size. Uncompressed ones are
+/// copied from the file; compressed ones are decoded by GDCM or OpenJPEG, which get only them and nothing else of the
+/// file.
 std::vector<std::byte> read_dicom_pixels(const DicomFile& file, size_t frame, size_t bytes);
 
 }  // namespace shvr

@@ -14,18 +14,18 @@ namespace shvr {
 
 struct DicomLayout {
     std::string transfer_syntax;  ///< its UID
-    int64_t pixel_bytes = 0;      ///< of Pixel Data, as stored; 0 if there is none
-    int64_t pixels_at = 0;        ///< where they begin, if not encapsulated
+    int64_t pixel_bytes = 0;      ///< size of Pixel Data, as stored; 0 if there is none
+    int64_t pixels_at = 0;        ///< offset of the pixels, if not encapsulated
     bool is_big_endian = false;
-    bool pixels_are_words = false;  ///< of type OW: two bytes in the file's order, though a pixel may be one byte
+    bool pixels_are_words = false;  ///< of type OW: 16-bit words in the file's byte order, even if a pixel is one byte
     bool is_encapsulated = false;
     struct Fragment {
         int64_t at = 0, bytes = 0;
     };
-    std::vector<Fragment> fragments;  ///< of encapsulated Pixel Data, without the table of offsets before them
+    std::vector<Fragment> fragments;  ///< of encapsulated Pixel Data, without the offset table before them
 };
 
-/// Nothing if `file` is not a DICOM file. Fails if lengths do not fit into each other or into the file.
+/// Null if `file` is not a DICOM file. Fails if lengths contradict each other or the size of the file.
 std::optional<DicomLayout> check_dicom_layout(const InputFile& file);
 
 }  // namespace shvr

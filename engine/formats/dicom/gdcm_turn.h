@@ -1,5 +1,5 @@
 #pragma once
-// A turn at GDCM, which keeps state of the whole process. For the files of this folder that call it.
+// A lock for GDCM, which keeps process-wide state. For the files of this folder that call it.
 
 #include <gdcmTrace.h>
 
@@ -9,9 +9,9 @@
 
 namespace shvr {
 
-/// Held while GDCM runs, which it silences: GDCM would write to standard error, and its decoders to C's `stderr`, which
-/// therefore points to /dev/null meanwhile (the GNU C library allows assigning it; file descriptor 2, which sanitizers
-/// and C++ use, is left alone).
+/// Held while GDCM runs, and silences it: GDCM would write to standard error, and its decoders to C's `stderr`, which
+/// is therefore redirected to /dev/null meanwhile (the GNU C library allows assigning it; file descriptor 2, which
+/// sanitizers and C++ use, is left alone).
 class GdcmTurn {
 public:
     GdcmTurn() : lock_(mutex())

@@ -1,10 +1,10 @@
 #pragma once
 // Exports a volume as one file that other programs read. Voxels are read and written strip by strip.
 //
-//   .nrrd        raw voxels behind a header with spacing, unit, and where the axes lie; little-endian
-//   .tif .tiff   one page per slice, deflated; spacing and unit as ImageJ writes them; BigTIFF if needed. No program
-//                agrees with another on where a TIFF lies: origin, directions and the exact spacing are in lines of
-//                ImageJ's description that only SHVR reads ("shvr_origin=1 2 3")
+//  .nrrd        raw voxels after a header with spacing, unit and orientation; little-endian
+//  .tif .tiff   one page per slice, deflated; spacing and unit as ImageJ writes them; BigTIFF if needed. Programs do
+//               not agree on where a TIFF states its position: origin, directions and the exact spacing are in lines of
+//               ImageJ's description that only SHVR reads ("shvr_origin=1 2 3")
 //
 // Any thread may call these.
 
@@ -19,7 +19,7 @@ bool is_volume_export(const std::filesystem::path& path);
 /// Replaces an existing file atomically. Fails for any other extension.
 void export_volume(const std::filesystem::path& path, const VolumeSource& source, const Progress& progress = {});
 
-/// One format each; for volume_export.cpp.
+/// Writers of one format each; for volume_export.cpp.
 void export_nrrd(const std::filesystem::path& path, const VolumeSource& source);
 void export_tiff(const std::filesystem::path& path, const VolumeSource& source);
 

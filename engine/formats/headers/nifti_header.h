@@ -16,7 +16,7 @@ struct NiftiHeader {
     static constexpr size_t BYTES_OF_2 = 540;
 
     int version = 1;
-    bool is_pair = false;          ///< the voxels are in an .img file beside the .hdr
+    bool is_pair = false;          ///< the voxels are in an .img file next to the .hdr
     bool big_endian = false;       ///< applies to header and voxels
     std::array<int64_t, 8> dim{};  ///< number of dimensions, then their lengths
     int datatype = 0;
@@ -33,7 +33,7 @@ struct NiftiHeader {
     glm::dvec3 sform_origin{0.0};
 };
 
-/// Nothing if `head`, the first bytes of a file, is not a NIfTI header.
+/// Null if `head`, the first bytes of a file, is not a NIfTI header.
 std::optional<NiftiHeader> parse_nifti_header(std::string_view head);
 
 /// Whether it is a header of Analyze 7.5, the predecessor of NIfTI-1.

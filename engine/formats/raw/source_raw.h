@@ -1,6 +1,6 @@
 #pragma once
-// Voxels stored one after the other: the content of RAW files, and what the headers of NRRD, MetaImage and NIfTI
-// describe, in one file or many, raw or deflated.
+// Voxels stored one after the other: the content of RAW files, and the data described by the headers of NRRD, MetaImage
+// and NIfTI, in one file or many, raw or deflated.
 
 #include "engine/volume/source.h"
 
@@ -16,13 +16,13 @@ struct RawVoxels {
 
     std::filesystem::path file{};
     int64_t offset_bytes = 0;  ///< AT_END: the voxels are the last bytes of the file
-    /// Nothing: not stated. Little-endian is assumed, with a warning, which says so if neighbours are more alike in the
+    /// Null: not stated. Little-endian is assumed, with a warning, which says so if neighbours are more similar in the
     /// other order.
     std::optional<bool> big_endian = false;
     bool is_deflated = false;   ///< gzip or zlib, from `offset_bytes` of the file on
     int64_t skip_bytes = 0;     ///< if deflated: decoded bytes before the voxels
     int64_t bytes_after = 0;    ///< bytes that the header describes after the voxels: other time points
-    std::vector<Part> parts{};  ///< instead of `file`: equal shares of the voxels, in this order
+    std::vector<Part> parts{};  ///< replaces `file`: equal shares of the voxels, in this order
     int64_t channels = 1;       ///< values of each voxel, one after the other
     int64_t channel = 0;        ///< the one to read
 };

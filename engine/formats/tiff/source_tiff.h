@@ -10,7 +10,7 @@ namespace shvr {
 /// Everything needed to read the voxels.
 struct TiffVolume {
     VolumeInfo info{};
-    TiffLayout layout{};  ///< of every slice
+    TiffLayout layout{};  ///< layout of every slice
     TiffRecipe recipe{};
     std::vector<std::filesystem::path> files{};
     std::vector<TiffSlice> slices{};  ///< one for each z

@@ -1,6 +1,6 @@
 #pragma once
-// Reads a rectangle of one page. Uncompressed samples are read straight to their destination. A block that is needed
-// whole is decoded there; a block that is needed in part is decoded once and cached for neighbouring reads.
+// Reads a rectangle of one page. Uncompressed samples are read straight to their destination. A block that is needed as
+// a whole is decoded there; a block that is needed in part is decoded once and cached for neighbouring reads.
 
 #include <map>
 #include <mutex>
@@ -15,7 +15,7 @@ struct TiffSlice {
     uint32_t file = 0;       ///< index into the volume's files
     uint32_t page = 1;       ///< in that file, for messages
     uint64_t directory = 0;  ///< in that file
-    /// ImageJ's long stacks have one directory; the voxels of later slices lie this far after those it names.
+    /// ImageJ's long stacks have one directory; the voxels of later slices lie this far after those that it names.
     int64_t shift_bytes = 0;
 };
 
@@ -51,7 +51,7 @@ private:
 
     std::mutex mutex_;
     std::map<Key, std::shared_ptr<Entry>> entries_;
-    std::vector<std::pair<Key, size_t>> kept_;  ///< with their bytes
+    std::vector<std::pair<Key, size_t>> kept_;  ///< with their sizes in bytes
     size_t kept_bytes_ = 0;
     uint32_t random_ = 1;
 };

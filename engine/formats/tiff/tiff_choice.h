@@ -12,7 +12,7 @@ struct TiffPixelChannel {
     std::string name{};  ///< "" if it has only a number
     int sample = 0;
     int palette_color = -1;
-    bool is_usual = false;  ///< taken where none is chosen
+    bool is_usual = false;  ///< the default if none is chosen
 };
 
 /// At least one. May add to `warnings`: a palette whose numbers are the intensities themselves offers no choice.

@@ -24,10 +24,10 @@ struct TiffDescription {
     std::vector<uint32_t> pages{};
     std::vector<std::string> channel_names{};  ///< may be fewer than channels; names may be ""
 
-    std::optional<double> spacing[3]{};  ///< ImageJ: z alone
+    std::optional<double> spacing[3]{};  ///< ImageJ: only z
     std::string unit[3]{};               ///< as written; "" if not stated
 
-    /// Where the volume lies, and its exact spacing, as our own files state it (engine/formats/export).
+    /// Position, orientation and exact spacing, as stated in our own files (engine/formats/export).
     struct Place {
         std::optional<glm::dvec3> spacing{}, origin{};
         std::optional<glm::dmat3> directions{};

@@ -53,24 +53,24 @@ struct TiffDirectory {
     uint32_t kind = 0;    ///< index into TiffDirectories::kinds
 };
 
-/// Pages with equal fields of size, layout and meaning, as far as the fields lie in the directory itself.
+/// Pages with equal fields for size, layout and meaning, as far as the fields are stored in the directory itself.
 struct TiffKind {
     size_t first_page = 0;
     bool is_reduced = false;  ///< marked as a smaller copy of another page, or as a mask
-    std::string fields{};     ///< pages of two files are alike if this is equal
+    std::string fields{};     ///< pages of two files are equivalent if this is equal
 };
 
 struct TiffDirectories {
     std::vector<TiffDirectory> pages;
     std::vector<TiffKind> kinds;
-    std::vector<std::string> warnings{};  ///< of slips that leave the pixels whole
+    std::vector<std::string> warnings{};  ///< about errors that do not affect the pixels
 };
 
 /// Fails, naming page and field, if the chain leaves the file, contains a cycle or is longer than `MAX_TIFF_PAGES`, or
 /// if the strips that a page states do not fit into the file.
 TiffDirectories read_directories(const TiffFile& file);
 
-/// The quotient of a rational field of the directory at `offset`, which libtiff would round to a float; nothing if the
+/// The quotient of a rational field of the directory at `offset`, which libtiff would round to a float; null if the
 /// field is missing, or not finite and above 0.
 std::optional<double> rational_field(const TiffFile& file, uint64_t offset, uint16_t tag);
 /// Whether the directory at `offset` has the field.

@@ -11,9 +11,9 @@ namespace shvr {
 struct TiffLayout {
     // The picture
     int64_t width = 0, height = 0;
-    int bits = 1;                      ///< of one sample
+    int bits = 1;                      ///< per sample
     int sample_format = 1;             ///< SAMPLEFORMAT_...
-    int samples = 1;                   ///< of one pixel
+    int samples = 1;                   ///< per pixel
     int photometric = 1;               ///< PHOTOMETRIC_...
     int orientation = 1;               ///< ORIENTATION_...
     std::vector<int> extra_samples{};  ///< EXTRASAMPLE_..., one for each sample beyond the colour
@@ -30,12 +30,12 @@ struct TiffLayout {
     int64_t blocks() const { return blocks_across() * blocks_down() * (is_planar ? samples : 1); }
     int block_samples() const { return is_planar ? 1 : samples; }
     int64_t block_row_bytes() const { return (block_width * block_samples() * bits + 7) / 8; }
-    /// Rows of a block: strips end with the page, tiles do not.
+    /// Number of rows in a block: strips end with the page, tiles do not.
     int64_t rows_of_block(int64_t row_of_blocks) const;
     /// Uncompressed size.
     int64_t page_bytes() const;
 
-    /// Whether the file's bytes are samples as they are, except for their byte order.
+    /// Whether the file's bytes are the samples, except for their byte order.
     bool is_bare() const { return compression == 1 && !is_lsb_first; }
 };
 
@@ -46,7 +46,7 @@ bool show_the_same(const TiffLayout& a, const TiffLayout& b);
 /// "512x512 pixels of uint16", "512x512 pixels of 3 samples of 8 bits".
 std::string in_words(const TiffLayout& layout);
 
-/// The type that holds the samples exactly; nothing if there is none.
+/// The type that holds the samples exactly; null if there is none.
 std::optional<VoxelType> voxel_type_of(const TiffLayout& layout);
 
 /// Fails, stating what is expected instead, if the page's kind of picture or its compression is not supported.
@@ -62,7 +62,7 @@ TiffExtent extent_of_block(const TiffFile& file, const TiffPage& page, const Tif
 void check_blocks(const TiffFile& file, const TiffPage& page, const TiffLayout& layout);
 /// Fails if a file of that size cannot contain `pages` such pages.
 void check_amount(const TiffFile& file, const TiffLayout& layout, int64_t pages);
-/// What libtiff may allocate at once to decode blocks of such a page.
+/// Maximum memory that libtiff may allocate at once to decode blocks of such a page.
 int64_t decoding_memory(const TiffFile& file, const TiffLayout& layout);
 
 }  // namespace shvr

@@ -12,7 +12,7 @@ struct tiff;  // libtiff's TIFF
 
 namespace shvr {
 
-/// What libtiff may allocate at once to read a directory. Decoding needs more (`decoding_memory`).
+/// Maximum memory that libtiff may allocate at once to read a directory. Decoding needs more (`decoding_memory`).
 inline constexpr int64_t DIRECTORY_MEMORY = int64_t{64} << 20;
 
 class TiffPage {

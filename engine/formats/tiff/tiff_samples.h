@@ -7,13 +7,13 @@
 
 namespace shvr {
 
-/// What a volume takes from its pages, and how it is converted.
+/// Which part of the pages a volume uses, and how it is converted.
 struct TiffRecipe {
     VoxelType type = VoxelType::uint8;
     int sample = 0;          ///< index within the pixel
     int palette_color = -1;  ///< 0 to 2: red, green or blue of the palette, -1: the samples themselves
     bool palette_has_8_bits = false;
-    uint64_t exchanged_bits = 0;  ///< XORed into each voxel; turns white into black, and subtracts ImageJ's 32768
+    uint64_t exchanged_bits = 0;  ///< XORed into each voxel; inverts white and black, and subtracts ImageJ's 32768
     bool mirrors_x = false;       ///< the page's first column is the right side of the picture
     bool mirrors_y = false;
 };

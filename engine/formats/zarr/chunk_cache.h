@@ -1,5 +1,5 @@
 #pragma once
-// Recently used decoded chunks, up to a number of bytes. Two threads that want the same chunk decode it once: the
+// A cache of recently used decoded chunks, limited in bytes. Two threads that want the same chunk decode it once: the
 // second one waits for the first. Any thread may call it.
 
 #include <condition_variable>
@@ -26,8 +26,8 @@ public:
         auto operator<=>(const Key&) const = default;
     };
 
-    /// The cached block, or else the result of `make`. An exception from `make` is rethrown and not cached: waiting
-    /// threads then try themselves.
+    /// Returns the cached block, or else the result of `make`. An exception from `make` is rethrown and not cached:
+    /// waiting threads then try themselves.
     std::shared_ptr<const Block> get(const Key& key, const std::function<Block()>& make);
 
     int64_t bytes() const;  ///< currently held; exceeds the budget only if the latest block alone does

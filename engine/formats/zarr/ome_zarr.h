@@ -27,12 +27,12 @@ constexpr std::span<const Spelling<OmeZarrVersion>> spellings_of(OmeZarrVersion)
 struct OmeImage {
     /// One resolution level; the finest comes first.
     struct Level {
-        std::string path;                         ///< of its array, relative to the image's folder
+        std::string path;                         ///< path of its array, relative to the image's folder
         std::optional<glm::dvec3> scale{};        ///< x, y, z: unit per voxel
         std::optional<glm::dvec3> translation{};  ///< x, y, z: the centre of voxel 0, if stated
     };
     size_t axes = 0;                    ///< the number of axes that every array must have
-    std::vector<std::string> names{};   ///< of the axes
+    std::vector<std::string> names{};   ///< names of the axes
     std::array<size_t, 3> xyz{};        ///< the array's axis along x, y and z
     std::optional<size_t> channel{};    ///< the array's axis of channels
     std::optional<size_t> time{};       ///< the array's axis of time points
@@ -48,8 +48,8 @@ OmeImage read_ome_image(const ZarrNode& node);
 /// Fails if a node of Zarr version 3 has attributes of OME-Zarr of another version than 0.5, or none where they belong.
 void check_ome_version(const ZarrNode& node);
 
-/// The path of a group or an array below the one whose attributes have this node. Fails for one that leaves it: that is
-/// an attack or a mistake.
+/// Reads the path of a group or an array relative to the node with these attributes. Fails if the path leaves that
+/// node: an attack or a mistake.
 std::string read_zarr_path(const JsonNode& node);
 
 /// The specification's name of a unit ("um": "micrometer"); other units unchanged.

@@ -1,10 +1,10 @@
 #pragma once
-// What a project folder holds about its volume besides the image, which is an OME-Zarr that other programs can read.
-// All of it can be recomputed from the image, which still opens if one of these files is damaged.
+// The files of a project folder that describe its volume, in addition to the image, which is an OME-Zarr that other
+// programs can read. All of them can be recomputed from the image, which still opens if one of these files is damaged.
 //
 //   PROJECT/shvr/volume.json      where the volume came from, how it lies in space, statistics, a hash of its content
 //   PROJECT/shvr/ranges-LEVEL     smallest and largest value under every brick
-//   PROJECT/shvr/checksums-LEVEL  of every chunk as it is stored
+//  PROJECT/shvr/checksums-LEVEL  checksum of every chunk as stored
 //   PROJECT/shvr/session.json     engine/session/session.h
 //
 // Files with a level are tables with one element per brick or chunk, x fastest; 64 bytes of header, then the elements
@@ -28,7 +28,7 @@ struct ProjectRecord {
     VolumeStatistics statistics{};  ///< of level 0
     std::string content_hash{};     ///< of level 0; content_hash.h
     std::string source{};           ///< path of the file it was imported from
-    std::string preparation{};      ///< how the voxels were processed, in words; empty: not at all
+    std::string preparation{};      ///< description of the processing applied to the voxels; empty: none
 };
 inline constexpr const char* PROJECT_RECORD = "shvr/volume.json";
 inline constexpr const char* PROJECT_SESSION = "shvr/session.json";

@@ -1,6 +1,6 @@
 #pragma once
-// What a project folder tells about its volume besides the voxels, as far as it can be read; all of it is optional. For
-// source_ome_zarr.cpp.
+// What a project folder states about its volume in addition to the voxels, as far as it can be read; all of it is
+// optional. For source_ome_zarr.cpp.
 
 #include <filesystem>
 #include <optional>
@@ -21,7 +21,7 @@ struct ProjectKnowledge {
 ProjectKnowledge read_project_knowledge(const std::filesystem::path& folder, VolumeInfo& info,
                                         std::vector<ZarrVolume>& volumes);
 
-/// The range of a brick of a level, which must lie inside it; nothing if unknown.
+/// The range of a brick of a level, which must lie inside it; null if unknown.
 std::optional<ValueRange> range_of(const ProjectKnowledge& knowledge, const VolumeInfo& info, int level,
                                    const Size3& brick);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the metadata of both versions of Zarr have in common. For zarr_metadata.cpp and v3/. Any thread.
+// Metadata fields common to both versions of Zarr. For zarr_metadata.cpp and v3/. Any thread.
 
 #include <vector>
 
@@ -10,12 +10,12 @@
 
 namespace shvr {
 
-/// Of an array or a chunk: 1 to 16 whole numbers above 0.
+/// The shape of an array or a chunk: 1 to 16 whole numbers above 0.
 std::vector<int64_t> read_zarr_sides(const JsonNode& node);
 /// As `read_zarr_sides`, one for each axis of the array.
 std::vector<int64_t> read_zarr_chunk(const JsonNode& node, size_t axes);
 
-/// Sets `fill` from "fill_value", for the type that is set already. Version 3 may give floats by their bits, as in
+/// Sets `fill` from "fill_value", for the type that is already set. Version 3 may give floats by their bits, as in
 /// "0x7fc00000".
 void read_zarr_fill(const JsonNode& node, ZarrMetadata& metadata);
 nlohmann::json zarr_fill(const ZarrMetadata& metadata);

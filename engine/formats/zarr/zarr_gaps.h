@@ -4,10 +4,10 @@
 // In such files levels need not be means of each other, so a part of a coarse level is a gap only if everything below
 // it, down to level 0, is one.
 //
-// The chunks of a level are listed once, when they are first asked for (ZarrChunks::list), and kept as 8 bytes each. A
-// few chunks are looked up one by one instead, as long as that is quicker, so that in dense images, where the answer is
-// found in a coarse level, no level is listed. Levels with more than MAX_LISTED chunks are not listed unasked; there a
-// question that would take more than MAX_FILES looks is not answered. Any thread may call it.
+// The chunks of a level are listed once, on the first query (ZarrChunks::list), and kept as 8 bytes each. A few chunks
+// are probed one by one instead, as long as that is faster, so that in dense images, where a coarse level already gives
+// the answer, no level is listed. Levels with more than MAX_LISTED chunks are listed only on request; there, a query
+// that would need more than MAX_FILES probes is not answered. Any thread may call it.
 
 #include <memory>
 #include <mutex>
@@ -29,11 +29,11 @@ public:
     ~ZarrGaps();
 
     /// The range of the values of `box`, a part of `level`, and of everything below it in finer levels, if none of
-    /// their chunks is stored: the range of the fill values, lower > upper if none is finite. Nothing if a chunk is
+    /// their chunks is stored: the range of the fill values, lower > upper if none is finite. Null if a chunk is
     /// stored, or cannot be looked up.
     std::optional<ValueRange> range(int level, const VoxelBox& box) const;
-    /// The stored chunks of a level by z, then y, then x; nothing if there are more than `most`. Fails if they cannot
-    /// be listed.
+    /// The stored chunks of a level, sorted by z, then y, then x; null if there are more than `most`. Fails if they
+    /// cannot be listed.
     std::optional<std::vector<glm::ivec3>> stored(int level, int64_t most) const;
 
 private:
@@ -43,7 +43,7 @@ private:
         Size3 begin{0}, end{0};
     };
     Chunks chunks_below(int level, const VoxelBox& box, int below) const;
-    /// Nothing if it is unknown.
+    /// Null if it is unknown.
     std::optional<bool> are_missing(int level, const Chunks& chunks) const;
 
     const std::vector<ZarrVolume>& volumes_;

@@ -6,7 +6,7 @@
 
 namespace shvr {
 
-/// Metadata files are small; attributes may hold data of other programs.
+/// Size limits: metadata files are small; attributes may hold data of other programs.
 inline constexpr int64_t LARGEST_ZARR_METADATA = int64_t{1} << 20;
 inline constexpr int64_t LARGEST_ZARR_ATTRIBUTES = int64_t{4} << 20;
 

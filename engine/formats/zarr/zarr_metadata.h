@@ -16,7 +16,7 @@ namespace shvr {
 /// A chunk is decoded as a whole, so its size is bounded.
 inline constexpr int64_t LARGEST_CHUNK_BYTES = int64_t{256} << 20;
 
-/// One step from the bytes of a chunk to what is stored: a compressor or a checksum.
+/// One step from the bytes of a chunk to the stored bytes: a compressor or a checksum.
 struct ZarrCompressor {
     enum class Kind { none, blosc, zstd, zlib, gzip, crc32c };
     Kind kind = Kind::none;
@@ -26,31 +26,31 @@ struct ZarrCompressor {
     int shuffle = 1;  ///< blosc's: 0 none, 1 bytes, 2 bits
 };
 
-/// Version 3: chunks that lie together in a shard, behind one key, with an index of where each is
+/// Version 3: chunks stored together in a shard, under one key, with an index of their positions
 /// (https://zarr-specs.readthedocs.io/en/latest/v3/codecs/sharding-indexed/).
 struct ZarrSharding {
     std::vector<int64_t> shape{};  ///< voxels of a shard along each axis, a multiple of those of a chunk
     std::vector<size_t> order{};   ///< the axes of the index, the slowest first
     bool is_index_first = false;   ///< at the start of a shard, not at its end
     bool is_big_endian = false;    ///< the index
-    int checksums = 0;             ///< CRC-32C that follow the index, each over all before it
+    int checksums = 0;             ///< number of CRC-32C that follow the index, each over everything before it
 
-    int64_t chunks(const std::vector<int64_t>& chunk) const;  ///< of a shard
+    int64_t chunks(const std::vector<int64_t>& chunk) const;  ///< chunks per shard
     int64_t index_bytes(const std::vector<int64_t>& chunk) const { return 16 * chunks(chunk) + 4 * checksums; }
 };
 
 struct ZarrMetadata {
-    int version = 2;                ///< of Zarr
+    int version = 2;                ///< version of Zarr
     std::vector<int64_t> shape{};   ///< voxels along each axis of the array, slowest first
     std::vector<int64_t> chunks{};  ///< the same for a chunk; chunks at the end of an axis have the full size too
     VoxelType type = VoxelType::uint8;
     bool big_endian = false;
-    /// Inside a chunk, the array's axes, the slowest first; empty: in the array's order.
+    /// The array's axes as stored inside a chunk, slowest first; empty: in the array's order.
     std::vector<size_t> order{};
-    std::array<std::byte, 8> fill{};  ///< a voxel of missing chunks: its first bytes_of(type) bytes
+    std::array<std::byte, 8> fill{};  ///< value of the voxels of missing chunks: the first bytes_of(type) bytes
     bool has_prefix = false;          ///< chunks' names begin with "c"
     char separator = '.';             ///< between the numbers in a chunk's name
-    /// In the order in which a chunk is encoded: at most one compressor, and checksums before and after it.
+    /// In encoding order: at most one compressor, and checksums before and after it.
     std::vector<ZarrCompressor> codecs{};
     std::optional<ZarrSharding> sharding{};
     std::vector<std::string> axes{};  ///< names of the axes, as far as there are any
@@ -58,9 +58,9 @@ struct ZarrMetadata {
     size_t chunk_bytes() const;
     /// Bytes from one voxel of a chunk to the next along each axis.
     std::vector<size_t> strides() const;
-    /// The name of a chunk or a shard with this number along each axis, within the array.
+    /// The name of the chunk or shard with this index along each axis, within the array.
     std::string key_of(std::span<const int64_t> numbers) const;
-    /// Of the metadata themselves, within the array.
+    /// The name of the metadata themselves, within the array.
     const char* key() const { return version == 2 ? ".zarray" : "zarr.json"; }
 };
 

@@ -45,10 +45,11 @@ public:
     /// The voxels of a chunk, x fastest, in native byte order; empty if all are the fill value.
     Block load(const Size3& chunk) const;
 
-    /// True if the chunk is not stored, and should not be: it holds the fill value. Reads at most the index of a shard.
+    /// True if the chunk is not stored, and is expected to be missing: it holds the fill value. Reads at most the index
+    /// of a shard.
     bool is_missing(const Size3& chunk) const;
-    /// Calls `take` for each chunk that is stored, or should be, in no order; false, and stops, if there are more than
-    /// `most`. Reads names and the indices of shards at most, and never looks for what is missing.
+    /// Calls `take` for each chunk that is stored, or should be, in no particular order; stops and returns false if
+    /// there are more than `most`. Reads names and the indices of shards at most, and never probes for missing chunks.
     bool list_stored(int64_t most, const std::function<void(const Size3& chunk)>& take) const;
     /// As ZarrChunks::stray.
     std::string stray_chunk() const { return chunks_->stray(); }

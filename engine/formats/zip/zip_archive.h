@@ -1,6 +1,7 @@
 #pragma once
-// A zip archive that is read at random: its directory once, when it is opened; entries, stored or deflated, by name.
-// Archives are untrusted (zip_directory.h). Nothing is ever unpacked into files. Any thread may call it, all at once.
+// A zip archive with random access: its directory is read once, on opening; entries, stored or deflated, are read by
+// name. Archives are untrusted (zip_directory.h). Nothing is ever unpacked into files. Any thread may call it
+// concurrently.
 
 #include <filesystem>
 #include <memory>
@@ -19,7 +20,7 @@ public:
     explicit ZipArchive(std::filesystem::path path);
 
     const std::filesystem::path& path() const { return path_; }
-    /// All entries, by name. Their sizes are claims until they are read.
+    /// All entries, sorted by name. Their sizes are unverified until they are read.
     const std::vector<ZipEntry>& entries() const { return directory_.entries; }
     /// Null if there is none.
     const ZipEntry* find(std::string_view name) const;
@@ -27,9 +28,9 @@ public:
     /// The decoded bytes, whose size and CRC-32 are as the directory says. Fails if there are more than `max_bytes`, or
     /// the entry is encrypted, compressed in another way, damaged, or not in the file.
     std::vector<std::byte> read(const ZipEntry& entry, int64_t max_bytes) const;
-    /// Whether parts of it can be read: it is stored as it is.
+    /// Whether parts of it can be read: it is stored uncompressed.
     static bool is_plain(const ZipEntry& entry);
-    /// Bytes of a plain entry from `offset` on, of which the entry has enough. Its CRC-32 is not checked.
+    /// Reads bytes of a plain entry from `offset` on; the entry must have enough. Its CRC-32 is not checked.
     void read_part(const ZipEntry& entry, int64_t offset, std::span<std::byte> part) const;
 
 private:

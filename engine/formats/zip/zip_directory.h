@@ -14,7 +14,7 @@
 
 namespace shvr {
 
-/// As the directory describes it; nothing but the directory's own form is checked.
+/// An entry as the directory describes it; only the directory's own structure is checked.
 struct ZipEntry {
     std::string_view name{};  ///< as stored: with slashes, without a leading one
     uint64_t header = 0;      ///< offset of its local header in the archive
@@ -28,9 +28,9 @@ inline constexpr uint16_t ZIP_STORED = 0, ZIP_DEFLATED = 8;
 inline constexpr uint16_t ZIP_ENCRYPTED = 1;  ///< a flag
 
 struct ZipDirectory {
-    uint64_t offset = 0;              ///< of the directory in the archive; entries lie before it
+    uint64_t offset = 0;              ///< offset of the directory in the archive; entries lie before it
     std::vector<char> bytes{};        ///< the directory; names refer to it
-    std::vector<ZipEntry> entries{};  ///< by name, each once: where a name occurs twice, the later entry counts
+    std::vector<ZipEntry> entries{};  ///< sorted by name, each once: if a name occurs twice, the later entry counts
 };
 
 /// Reads `bytes` at `offset` of the archive; fails if that is not possible.
@@ -39,7 +39,7 @@ using ReadAt = std::function<void(uint64_t offset, std::span<std::byte> bytes)>;
 /// `path` is for messages. Fails if the archive has several parts, or its end or directory is damaged.
 ZipDirectory read_zip_directory(const std::string& path, uint64_t file_bytes, const ReadAt& read_at);
 
-/// Whole numbers of zip files.
+/// Decodes the integers of zip files.
 template <class T>
 T little_endian(const char* at)
 {
