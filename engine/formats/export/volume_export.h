@@ -1,10 +1,10 @@
 #pragma once
 // Exports a volume as one file that other programs read. Voxels are read and written strip by strip.
 //
-//  .nrrd        raw voxels after a header with spacing, unit and orientation; little-endian
-//  .tif .tiff   one page per slice, deflated; spacing and unit as ImageJ writes them; BigTIFF if needed. Programs do
-//               not agree on where a TIFF states its position: origin, directions and the exact spacing are in lines of
-//               ImageJ's description that only SHVR reads ("shvr_origin=1 2 3")
+//   .nrrd        raw voxels after a header with spacing, unit and orientation; little-endian
+//   .tif .tiff   one page per slice, deflated; spacing and unit as ImageJ writes them; BigTIFF if needed. Programs do
+//                not agree on where a TIFF states its position: origin, directions and exact spacing are in lines of
+//                ImageJ's description that only SHVR reads ("shvr_origin=1 2 3")
 //
 // Any thread may call these.
 

@@ -4,7 +4,7 @@
 //
 //   PROJECT/shvr/volume.json      where the volume came from, how it lies in space, statistics, a hash of its content
 //   PROJECT/shvr/ranges-LEVEL     smallest and largest value under every brick
-//  PROJECT/shvr/checksums-LEVEL  checksum of every chunk as stored
+//   PROJECT/shvr/checksums-LEVEL  checksum of every chunk as stored
 //   PROJECT/shvr/session.json     engine/session/session.h
 //
 // Files with a level are tables with one element per brick or chunk, x fastest; 64 bytes of header, then the elements
