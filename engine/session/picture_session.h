@@ -3,9 +3,9 @@
 //
 //   "SHVR session"   the session as in its file (README.md), with the picture's size and camera; paths are relative to
 //                    the picture's folder
-//  "SHVR project"   the session file from which the picture was made, relative to the same folder; none for a bare
-//                   volume. The journal next to it holds the annotation
-//  "SHVR outline"   "none" if the probe has no outline
+//   "SHVR project"   the session file from which the picture was made, relative to the same folder; none for a bare
+//                    volume. The journal next to it holds the annotation
+//   "SHVR outline"   "none" if the probe has no outline
 //
 // Annotation is not stored in the picture: if it has changed since, the new picture shows its current state. Programs
 // that re-encode pictures drop the texts. Any thread may call these.

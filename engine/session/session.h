@@ -32,7 +32,7 @@ constexpr std::span<const Spelling<Pivot>> spellings_of(Pivot)
 
 /// Settings of the interactive window.
 struct InteractionSettings {
-    double resolution = 0.7;  ///< fraction of the screen's along each axis during motion; less if that is slow
+    double resolution = 0.7;          ///< fraction of the screen's along each axis during motion; less if that is slow
     double frames_per_second = 30.0;  ///< upper limit
     uint32_t screenshot_scale = 4;    ///< pixels of large screenshots per pixel of the window, along each axis
     double workspace_scale = 1.0;     ///< how far the probe moves for a motion of a haptic device's hand
@@ -52,10 +52,10 @@ inline constexpr double MIN_WORKSPACE_SCALE = 0.01, MAX_WORKSPACE_SCALE = 100.0;
 ///
 ///   turn      turns the volume
 ///   paint     paints with the active group while held
-///  erase     removes paint while held, whatever the active group is
-///  trace     a click away from all nodes adds one, linked to the selected one; on a node it selects, a drag moves it
+///   erase     removes paint while held, whatever the active group is
+///   trace     a click away from all nodes adds one, linked to the selected one; on a node it selects, a drag moves it
 ///   select    selects the node or internode that is clicked
-///  measure   clicks set the two ends of a distance in turn
+///   measure   clicks set the two ends of a distance in turn
 ///
 /// F, the stylus, and in the turn tool the right button, paint; they erase in the erase tool, and add a node in the
 /// trace tool. Alt + left rotates with every tool, and so do the middle and the right button outside the turn tool;
