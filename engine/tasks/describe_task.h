@@ -9,9 +9,9 @@ struct DescribeTask {
     static constexpr const char* TITLE = "Describe volume";
 
     std::filesystem::path input;
-    bool exact = false;                 ///< all voxels, even if a sample or a coarser level would suffice
-    bool allows_incomplete = false;     ///< voxels that cannot be read are left out
-    std::vector<std::string> settings;  ///< "key=value" settings of a session
+    bool exact = false;                     ///< all voxels, even if a sample or a coarser level would suffice
+    bool allows_incomplete = false;         ///< voxels that cannot be read are left out
+    std::vector<std::string> settings;      ///< "key=value" settings of a session
     OptionNames names = OptionNames::keys;  ///< in messages; not an option
 };
 void fields(Fields& f, DescribeTask& task);
