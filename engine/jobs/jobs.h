@@ -7,7 +7,7 @@
 //       return [&window, result] { window.say(result); };
 //   });
 //   ...
-//    for (const Jobs::Finished& job : jobs.finish()) window.say(job);    // once per frame
+//   for (const Jobs::Finished& job : jobs.finish()) window.say(job);    // once per frame
 //
 // Everything but a job's function and `wake` is called on the main thread, and nothing here waits for the worker except
 // `wait` and the destructor. Functions and completions are destroyed on the main thread, so they may own main-thread
