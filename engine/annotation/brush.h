@@ -13,7 +13,7 @@ namespace shvr {
 
 enum class Brush { fill, flood, speckle };
 
-/// Everything that is written about a brush.
+/// The properties and texts of a brush.
 struct BrushRow {
     Brush brush;
     const char* key;    ///< in scripts and sessions
@@ -23,7 +23,7 @@ struct BrushRow {
     bool is_connected;  ///< it selects connected voxels, so connectivity matters
 };
 
-/// In the order of menus, which is that of the enumeration.
+/// Ordered as in menus, which is the order of the enumeration.
 inline constexpr std::array BRUSHES{
     BrushRow{Brush::fill, "fill", "fill", "Fill",
              "Paints every voxel in the probe that is at or above the paint threshold.", false},
@@ -68,12 +68,12 @@ struct BrushSettings {
     RegionShape region = RegionShape::ball;
     uint8_t group = 1;                  ///< 0 erases
     std::optional<double> threshold{};  ///< intensity; default: from the transfer function
-    double radius_voxels = 6.0;         ///< along x; of the probe, too
+    double radius_voxels = 6.0;         ///< along x; also the probe's radius
     int connectivity = 6;               ///< 6 or 26
-    /// Density painting: the brush raises intensities, beside painting its group or instead of it.
+    /// Density painting: the brush raises intensities, in addition to painting its group or instead of it.
     std::optional<DensityBrush> density{};
     bool paints_group = true;     ///< false, with `density` set: offsets only
-    bool only_unpainted = false;  ///< it gives unpainted voxels its group, and takes none from another
+    bool only_unpainted = false;  ///< paints only unpainted voxels, and takes none from another group
     bool operator==(const BrushSettings&) const = default;
 };
 
@@ -90,7 +90,8 @@ struct PaintOp {
     std::optional<DensityBrush> density{};
     bool paints_group = true;     ///< false: offsets only
     bool only_unpainted = false;  ///< as in BrushSettings
-    GroupSet locked{};            ///< these lose and gain no voxel; [0] is not set. Neither bears on offsets
+    GroupSet locked{};            ///< these groups lose and gain no voxel; [0] is not set. Neither restriction applies
+                                  ///< to offsets
     bool operator==(const PaintOp&) const = default;
 
     /// Removes voxels from their group; also their offsets, if it paints offsets.
@@ -100,7 +101,7 @@ struct PaintOp {
 /// `threshold` is the default if the settings have none.
 inline PaintOp stroke_of(const BrushSettings& settings, double threshold, std::vector<glm::dvec3> path = {})
 {
-    // A new member does not compile until it is here.
+    // Structured binding: a new member does not compile until it is handled here.
     const auto& [brush, region, group, own_threshold, radius_voxels, connectivity, density, paints_group,
                  only_unpainted] = settings;
     return {brush,         region,        group,           own_threshold.value_or(threshold),

@@ -1,11 +1,11 @@
 #pragma once
-// Density painting: offsets that raise (or lower) single voxels, kept beside the volume in sparse bricks
+// Density painting: offsets that raise (or lower) single voxels, stored separately from the volume in sparse bricks
 // (sparse_bricks.h).
 //
 // With P the painted offset and p(v) that of voxel v, which falls off from P to 0 (density_brush.h):
 //
 //     new = max(p, min(old, P))        P >= 0
-//     new = min(p, max(old, P))        P <  0, the same with signs turned
+//     new = min(p, max(old, P))        P <  0, the same with opposite signs
 //
 // So painting over higher offsets lowers them to P, painting over lower ones keeps the higher of both, painting twice
 // changes nothing more, and the order of positions within a stroke does not matter. P = 0 resets.
@@ -17,23 +17,23 @@
 
 namespace shvr {
 
-/// Voxels that go from one offset (bits of offset_brick.h) to another, and those of one brick.
+/// Voxels that change from one offset (bits of offset_brick.h) to another, and the changes of one brick.
 using DensityRun = BrickRun<uint32_t>;
 using DensityBrickChange = BrickChange<uint32_t>;
 
 class DensityField : public SparseBricks<uint32_t> {
 public:
-    /// Of a volume without voxels.
+    /// The field of a volume without voxels.
     DensityField() = default;
     DensityField(const Size3& size, VoxelType type) : SparseBricks(size), type_(type) {}
 
     VoxelType type() const { return type_; }
     /// In intensity units.
     double at(const Size3& voxel) const { return offset_of(type_, value_at(voxel)); }
-    /// How many voxels have an offset.
+    /// Number of voxels that have an offset.
     int64_t voxels() const { return voxels_; }
 
-    /// Why a record cannot be applied; empty if it fits. Offsets must be numbers within the limit (offset_limit).
+    /// Why a record cannot be applied; empty if it fits. Offsets must be finite and within the limit (offset_limit).
     std::string why_it_does_not_fit(const DensityBrickChange& change, Direction direction) const;
     /// Applies a record that fits (SHVR_CHECK).
     void apply(const DensityBrickChange& change, Direction direction);

@@ -5,7 +5,7 @@
 //     p(v) = P max(0, 1 - d / r)                distance: d from the voxel's centre to the position, in physical units;
 //                                               r the brush's radius (along x, times the spacing)
 //
-// Offsets are rounded as engine/volume/offset_brick.h says, P as well as p. Main thread.
+// P and p are both rounded as in engine/volume/offset_brick.h. Main thread.
 
 #include <memory>
 
@@ -24,7 +24,7 @@ constexpr std::span<const Spelling<Falloff>> spellings_of(Falloff)
 
 /// The density part of a brush: painted together with a group or instead of one.
 struct DensityBrush {
-    /// P, in intensity units. Nothing: automatic, which makes the paint threshold as bright as the lowest point of the
+    /// P, in intensity units. Null: automatic, which makes the paint threshold as bright as the lowest point of the
     /// transfer function; callers replace it by `automatic_offset` before painting.
     std::optional<double> offset{};
     Falloff falloff = Falloff::flat;
@@ -43,7 +43,7 @@ class DensityStroke {
 public:
     /// Fails if the offset is not a finite number. Offsets beyond `offset_limit` are clamped to it.
     DensityStroke(Size3 size, const glm::dvec3& spacing, VoxelType type, double offset, Falloff falloff);
-    /// Adds the voxels of `region`, which lies around `centre_voxel`, whose bit is set (VoxelSelection::add).
+    /// Adds the voxels of `region`, which surrounds `centre_voxel`, whose bit is set (VoxelSelection::add).
     void add(const BrushRegion& region, std::span<const uint32_t> words, const glm::dvec3& centre_voxel,
              double radius_voxels);
     /// The records that paint everything added so far, without voxels that keep their offset.
@@ -57,7 +57,8 @@ private:
     double offset_;
     Falloff falloff_;
     VoxelSelection selection_;
-    std::map<int64_t, std::unique_ptr<OffsetBrick>> strongest_;  ///< p of selected voxels, over all positions
+    std::map<int64_t, std::unique_ptr<OffsetBrick>> strongest_;  ///< p of selected voxels, the strongest over all
+                                                                 ///< positions
 };
 
 }  // namespace shvr

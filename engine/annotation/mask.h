@@ -7,7 +7,7 @@
 namespace shvr {
 
 using MaskBrick = SparseBricks<uint8_t>::Brick;
-/// Voxels that go from one group to another, and those of one brick.
+/// Voxels that change from one group to another, and the changes of one brick.
 using MaskRun = BrickRun<uint8_t>;
 using MaskBrickChange = BrickChange<uint8_t>;
 

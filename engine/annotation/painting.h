@@ -1,8 +1,8 @@
 #pragma once
-// To which of the voxels that a brush selects it gives its group, and the records that do so.
+// Decides which of a brush's selected voxels change their group, and makes the records for that.
 //
-// The one place that knows of locks: painting, preview and counts all ask it. A brush's kernels find voxels by density,
-// shape and connectivity alone; who may have them is decided where the mask is, on the host. Pure; any thread.
+// The only code that knows of locks: painting, preview and counts all use it. A brush's kernels find voxels by density,
+// shape and connectivity alone; permissions are checked next to the mask, on the host. Pure; any thread.
 
 #include <vector>
 
@@ -10,25 +10,25 @@
 
 namespace shvr {
 
-/// What becomes of a selected voxel.
+/// The effect of painting on a selected voxel.
 enum class Fate {
-    has_group,  ///< it is in the painted group already
+    has_group,  ///< already in the painted group
     changes,
-    locked,      ///< stays, since the group that it is in is locked
-    locked_out,  ///< stays, since the painted group is locked
-    painted,     ///< stays, since the brush is held to unpainted voxels
+    locked,      ///< unchanged, because its present group is locked
+    locked_out,  ///< unchanged, because the painted group is locked
+    painted,     ///< unchanged, because the brush is limited to unpainted voxels
 };
 
 struct PaintRule {
     uint8_t group = 1;  ///< 0 erases
     bool only_unpainted = false;
     GroupSet locked{};
-    /// Of a selected voxel that is in group `held`, 0 if it is unpainted.
+    /// The fate of a selected voxel in group `held`, 0 if it is unpainted.
     Fate fate_of(uint8_t held) const;
 };
 PaintRule rule_of(const PaintOp& op);
 
-/// The records that give `rule.group` to the voxels of `selection` that it changes.
+/// The records that assign `rule.group` to those voxels of `selection` that it changes.
 std::vector<MaskBrickChange> paint_changes(const Mask& mask, const VoxelSelection& selection, const PaintRule& rule);
 
 }  // namespace shvr

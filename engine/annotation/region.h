@@ -19,16 +19,16 @@ namespace shvr {
 enum class RegionShape { ball, box };
 
 struct BrushRegion {
-    VoxelBox box;                    ///< cut at the volume's border; may be empty
+    VoxelBox box;                    ///< clipped to the volume; may be empty
     std::vector<gpu::RowSpan> rows;  ///< box.size().y * box.size().z spans, y fastest, x relative to box.lower.x
     bool contains(const Size3& voxel) const;
     /// 32-bit words per row: bit b of word w is voxel x = box.lower.x + 32 w + b.
     int64_t words_per_row() const { return (box.size().x + 31) / 32; }
 };
 
-/// A voxel belongs to the ball when its centre lies within `radius_voxels` (measured along x: radius_voxels *
-/// spacing.x) of `centre_voxel`, in physical units. The box takes each axis on its own with the same radius.
-/// Fails if the region's box, each row filled up to whole words, holds more than 256^3 voxels.
+/// A voxel belongs to the ball if its centre is within `radius_voxels` (measured along x: radius_voxels * spacing.x) of
+/// `centre_voxel`, in physical units. The box uses the same radius along each axis independently. Fails if the region's
+/// box, with rows padded to whole words, holds more than 256^3 voxels.
 BrushRegion make_region(RegionShape shape, const glm::dvec3& centre_voxel, double radius_voxels,
                         const glm::dvec3& spacing, const Size3& volume_size);
 
@@ -36,10 +36,10 @@ BrushRegion make_region(RegionShape shape, const glm::dvec3& centre_voxel, doubl
 void check_radius(double radius_voxels, const glm::dvec3& spacing, const Size3& volume_size);
 
 /// The probe's positions along a stroke: the points of `path`, and between two of them as many equally spaced ones as
-/// keep neighbours at most one voxel apart along every axis. A path of one point is a dab.
-/// Fails if there are more than MAX_STROKE_POSITIONS.
+/// are needed to keep neighbours at most one voxel apart along every axis. A path of one point is a dab. Fails if there
+/// are more than MAX_STROKE_POSITIONS.
 std::vector<glm::dvec3> stroke_positions(std::span<const glm::dvec3> path);
-/// How many positions that is, without making them; infinite where coordinates are too far apart for a double.
+/// Number of these positions, without computing them; infinite if coordinates are too far apart for a double.
 double stroke_position_count(std::span<const glm::dvec3> path);
 inline constexpr int64_t MAX_STROKE_POSITIONS = 1'000'000;
 
@@ -47,7 +47,7 @@ inline constexpr int64_t MAX_STROKE_POSITIONS = 1'000'000;
 class VoxelSelection {
 public:
     explicit VoxelSelection(Size3 size);
-    /// Adds the voxels of `region` whose bit is set; `words` is laid out as `BrushRegion::words_per_row` says.
+    /// Adds the voxels of `region` whose bit is set; `words` has rows of `BrushRegion::words_per_row`.
     void add(const BrushRegion& region, std::span<const uint32_t> words);
     bool contains(const Size3& voxel) const;
     int64_t count() const;

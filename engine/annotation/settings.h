@@ -1,7 +1,7 @@
 #pragma once
-// Settings that are part of a person's work, as paint is: the transfer function, the colours of groups, the light. Each
-// is the text of one section of the session and is compared and kept byte for byte; what it says is known to the
-// session alone (engine/session/lasting_settings.h).
+// Settings that are part of the user's work, like paint: the transfer function, the colours of groups, the light. Each
+// is the text of one section of the session and is compared and stored byte for byte; only the session interprets it
+// (engine/session/lasting_settings.h).
 //
 // Not thread safe: the main thread owns them.
 
@@ -15,7 +15,7 @@ namespace shvr {
 /// Texts by the names of their sections.
 using SettingValues = std::map<std::string, std::string>;
 
-/// A section before and after. Empty: not known yet.
+/// The text of a section before and after. Empty: not known yet.
 struct SettingChange {
     std::string name;
     std::string before, after;
@@ -28,8 +28,8 @@ public:
     explicit Settings(SettingValues values) : values_(std::move(values)) {}
     const SettingValues& values() const { return values_; }
 
-    /// Empty if the change can be applied. What a section is set to does not depend on what it was, which another
-    /// version of the program may have spelled otherwise.
+    /// Empty if the change can be applied. The new value of a section does not depend on the old one, which another
+    /// version of the program may have spelled differently.
     std::string why_it_does_not_fit(const SettingChange& change, Direction direction) const;
     void apply(const SettingChange& change, Direction direction);
 

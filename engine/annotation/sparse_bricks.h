@@ -1,11 +1,11 @@
 #pragma once
-// One value per voxel of a volume, most of them 0, in sparse bricks of 32^3 voxels: what the mask (mask.h) and density
-// offsets (density.h) are made of. A brick whose values are all 0 does not exist. Values change through records of
-// exact before and after and through nothing else; undo is the same record applied backwards.
+// One value per voxel of a volume, most of them 0, in sparse bricks of 32^3 voxels: the base of the mask (mask.h) and
+// density offsets (density.h). A brick whose values are all 0 does not exist. Values change only through records of the
+// exact states before and after; undo is the same record applied backwards.
 //
-// A brick never changes once it is there: changing its voxels replaces it. So a copy of all bricks costs their table
-// and shares them, and callers may keep a brick for as long as they like. One thread owns the bricks and lends them as
-// const; a copy may go to another thread.
+// Bricks are immutable: changing a brick's voxels replaces it. So a copy of all bricks costs only their table, and
+// callers may keep a brick for as long as they like. One thread owns the bricks and lends them as const; a copy may go
+// to another thread.
 
 #include <algorithm>
 #include <array>
@@ -26,7 +26,7 @@ namespace shvr {
 
 inline constexpr size_t VOXELS_PER_BRICK = size_t(BRICK_SIDE * BRICK_SIDE * BRICK_SIDE);
 
-/// Consecutive voxels of one brick (x fastest) that go from one value to another; `before != after`.
+/// Consecutive voxels of one brick (x fastest) that change from one value to another; `before != after`.
 template <class Value>
 struct BrickRun {
     uint16_t first = 0;
@@ -45,8 +45,8 @@ struct BrickChange {
     int64_t voxels() const;
 };
 
-/// Appends voxels `first` to `last` (inclusive), which follow those of `runs`; extends the last run where possible and
-/// leaves out voxels that keep their value.
+/// Appends voxels `first` to `last` (inclusive), which follow those of `runs`; extends the last run if possible and
+/// omits voxels that keep their value.
 template <class Value>
 void append_run(std::vector<BrickRun<Value>>& runs, size_t first, size_t last, Value before, Value after)
 {
@@ -58,7 +58,7 @@ void append_run(std::vector<BrickRun<Value>>& runs, size_t first, size_t last, V
         runs.push_back({uint16_t(first), uint16_t(last), before, after});
 }
 
-/// Appends the runs that give voxels of an empty brick, from voxel `first` on, the values of `row`.
+/// Appends the runs that set the voxels of an empty brick, from voxel `first` on, to the values of `row`.
 template <class Value>
 void append_painted_runs(std::vector<BrickRun<Value>>& runs, std::span<const std::type_identity_t<Value>> row,
                          size_t first)
@@ -82,21 +82,21 @@ class SparseBricks {
 public:
     using Brick = std::array<Value, VOXELS_PER_BRICK>;  ///< x fastest
 
-    /// Of a volume without voxels.
+    /// The bricks of a volume without voxels.
     SparseBricks() = default;
     explicit SparseBricks(const Size3& size) : size_(size), counts_(brick_grid(size)) {}
 
     Size3 size() const { return size_; }
     Size3 brick_counts() const { return counts_; }
     glm::ivec3 position_of(int64_t brick) const { return shvr::position_of(brick, counts_); }
-    /// The voxels of a brick, cut at the volume's border.
+    /// The voxels of a brick, clipped to the volume.
     VoxelBox box_of(int64_t brick) const;
 
-    /// Null where all of the brick's values are 0.
+    /// Null if all of the brick's values are 0.
     const std::shared_ptr<const Brick>& brick(int64_t index) const;
     /// Bricks with a value other than 0, ascending.
     std::vector<int64_t> painted_bricks() const;
-    /// The voxels of a change lie in this box of the volume.
+    /// A box of the volume that contains the voxels of a change.
     VoxelBox reach_of(const BrickChange<Value>& change) const;
 
 protected:
@@ -105,17 +105,17 @@ protected:
 
     /// Name of a value in error messages: "group 3".
     using Named = std::function<std::string(Value)>;
-    /// Whether voxels may come to hold a value; empty: any.
+    /// Whether voxels may be set to a value; empty: any.
     using Allowed = std::function<bool(Value)>;
-    /// Why a change cannot be applied: its runs must ascend inside the volume, and their voxels must hold what the
-    /// record says they hold before the change. Empty if it fits.
+    /// Why a change cannot be applied: its runs must ascend inside the volume, and their voxels must have the record's
+    /// values before the change. Empty if it fits.
     std::string why_it_does_not_fit(const BrickChange<Value>& change, Direction direction, const Named& named,
                                     const Allowed& allowed = {}) const;
     /// Applies a change that fits; `replaced(from, to, voxels)` is called for each run. Frees bricks that return to 0.
     template <class Replaced>
     void replace(const BrickChange<Value>& change, Direction direction, const Replaced& replaced);
     /// Adds a missing brick (SHVR_CHECK) and returns how many of its voxels are not 0; those beyond the volume's border
-    /// become 0.
+    /// are set to 0.
     int64_t put(int64_t index, Brick values);
 
 private:

@@ -13,12 +13,12 @@
 
 namespace shvr {
 
-/// Whether what is written there is a folder, of a label image.
+/// Whether the output at this path is a folder that holds a label image.
 bool is_label_image(const std::filesystem::path& path);
 bool is_mask_export(const std::filesystem::path& path);
 
 /// Replaces an old file (or label image) atomically. `volume`, of the mask's size, gives the voxels' positions; `image`
-/// holds the further metadata of a label image; `version` as in `ImportOptions`.
+/// holds the additional metadata of a label image; `version` as in `ImportOptions`.
 void export_mask(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
                  const LabelImage& image = {}, std::optional<OmeZarrVersion> version = {},
                  const Progress& progress = {});

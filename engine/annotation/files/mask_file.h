@@ -7,7 +7,7 @@
 
 namespace shvr {
 
-/// Written to a temporary file beside `path`, synced and renamed, row by row: a failed save leaves the old file.
+/// Writes row by row to a temporary file next to `path`, syncs and renames it: a failed save leaves the old file.
 void save_mask(const std::filesystem::path& path, const Mask& mask);
 
 /// Fails, naming both sizes, if the file does not hold exactly one byte per voxel of `size`.

@@ -1,10 +1,10 @@
 #pragma once
-// Masks in any supported form. Forms that state their size must match the volume; raw bytes are checked by their number
-// alone. Any thread may call these.
+// Masks in any supported format. Formats that state their size must match the volume; for raw bytes only their number
+// is checked. Any thread may call these.
 //
 //   a folder                       an OME-Zarr label image, or another OME-Zarr image of uint8
 //   .ozx .zip, and paths inside    the same, in an archive
-//   .nrrd .nhdr .mhd .mha .nii     volumes of uint8 in these forms, as the readers of engine/volume know them
+//   .nrrd .nhdr .mhd .mha .nii     volumes of uint8 in these formats, as read by engine/formats
 //   .tif .tiff
 //   anything else                  the thesis's raw bytes (mask_file.h)
 
@@ -15,10 +15,10 @@
 namespace shvr {
 
 /// The records that turn an unpainted mask into this one. Fails if its size or stated spacing or place differs (naming
-/// both), and where its voxels are not unsigned bytes.
+/// both), or if its voxels are not unsigned bytes.
 std::vector<MaskBrickChange> import_mask(const std::filesystem::path& path, const TraceSpace& space);
-/// Saves in the form that the path names: raw bytes where `export_mask` does not know it. Fails for forms that can only
-/// be read. `image`: as for `export_mask`.
+/// Saves in the format that the path names, or as raw bytes if `export_mask` does not support it. Fails for formats
+/// that can only be read. `image`: as for `export_mask`.
 void save_mask_as(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
                   const LabelImage& image = {});
 

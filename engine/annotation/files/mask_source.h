@@ -1,6 +1,6 @@
 #pragma once
-// A mask as a volume of groups, and a volume of groups as a mask: masks are exported and imported through these.
-// Any thread may call these.
+// Presents a mask as a volume of groups, and converts such a volume to a mask, for export and import of masks. Any
+// thread may call these.
 
 #include "engine/annotation/mask.h"
 #include "engine/volume/source.h"
@@ -9,7 +9,7 @@ namespace shvr {
 
 class MaskSource final : public VolumeSource {
 public:
-    /// `volume`, of the mask's size, gives the voxels' positions. The mask must outlive this, unchanged.
+    /// `volume`, of the mask's size, gives the voxels' positions. The mask must outlive this object, unchanged.
     MaskSource(const Mask& mask, const VolumeInfo& volume);
 
     void read(const VoxelBox& box, std::span<std::byte> voxels) const override;
@@ -18,7 +18,7 @@ private:
     const Mask& mask_;
 };
 
-/// The records that turn an unpainted mask of the volume's size into the volume. Fails, naming `file`, where its voxels
+/// The records that turn an unpainted mask of the volume's size into the volume. Fails, naming `file`, if its voxels
 /// are not uint8.
 std::vector<MaskBrickChange> mask_changes(const VolumeSource& groups, const std::string& file);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Density offsets in forms that other programs read. Any thread may call these.
+// Density offsets in formats that other programs read. Any thread may call these.
 //
 //   .offset      the thesis's raw numbers (offset_file.h)
 //   .nrrd .tif   engine/formats/export/volume_export.h: 32-bit floats, which hold every offset of 8-bit, 16-bit and

@@ -1,6 +1,6 @@
 #pragma once
-// The thesis's file of density offsets: one signed little-endian number for each voxel, x fastest, no header. 16 bits
-// where the volume has 8, 32 bits where it has 16 or 32; for volumes of floats, a float of 32 bits.
+// The thesis's file of density offsets: one signed little-endian number per voxel, x fastest, no header. 16 bits for
+// volumes of 8 bits, 32 bits for volumes of 16 or 32; for float volumes, a float of 32 bits.
 
 #include <filesystem>
 
@@ -8,7 +8,7 @@
 
 namespace shvr {
 
-/// Written to a temporary file beside `path`, synced and renamed, row by row: a failed save leaves the old file.
+/// Writes row by row to a temporary file next to `path`, syncs and renames it: a failed save leaves the old file.
 void save_offsets(const std::filesystem::path& path, const DensityField& field);
 
 /// Fails if the file's size is not that of such a volume's offsets (naming both), or if an offset is not finite or

@@ -1,8 +1,8 @@
 #pragma once
-// Density offsets in any supported form. Forms that state their size must match the volume; raw numbers are checked by
-// their count alone. Any thread may call these.
+// Density offsets in any supported format. Formats that state their size must match the volume; for raw numbers only
+// their count is checked. Any thread may call these.
 //
-//   .nrrd .tif and the others    volumes of one offset a voxel, of any type, as the readers of engine/volume know them
+//   .nrrd .tif and the others    volumes of one offset per voxel, of any type, as read by engine/formats
 //   anything else                the thesis's raw numbers (offset_file.h)
 
 #include "engine/annotation/files/offset_export.h"
@@ -11,12 +11,12 @@
 namespace shvr {
 
 /// The offsets for a volume of `type`; files of `export_offsets` are restored bit for bit. Fails if the size or stated
-/// spacing differs (naming both), if an offset is not finite or beyond `offset_limit`, or if an offset for a volume of
-/// integers is not a whole number.
+/// spacing differs (naming both), if an offset is not finite or beyond `offset_limit`, or if an offset for an integer
+/// volume is not a whole number.
 DensityField import_offsets(const std::filesystem::path& path, const TraceSpace& space, VoxelType type);
 
-/// Saves in the form that the path names: raw numbers where `export_offsets` does not know it. Fails for forms that can
-/// only be read.
+/// Saves in the format that the path names, or as raw numbers if `export_offsets` does not support it. Fails for
+/// formats that can only be read.
 void save_offsets_as(const std::filesystem::path& path, const DensityField& field, const VolumeInfo& volume);
 
 }  // namespace shvr

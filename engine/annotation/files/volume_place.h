@@ -1,5 +1,5 @@
 #pragma once
-// Whether a file of masks or offsets belongs to the annotated volume. Any thread may call these.
+// Checks whether a file of masks or offsets belongs to the annotated volume. Any thread may call these.
 
 #include <filesystem>
 
@@ -7,13 +7,13 @@
 
 namespace shvr {
 
-/// Whether the file or folder is in a form that states its size: OME-Zarr folders and archives, NRRD, MHD, NIfTI and
+/// Whether the file or folder has a format that states its size: OME-Zarr folders and archives, NRRD, MHD, NIfTI and
 /// TIFF. Raw bytes do not.
 bool states_its_size(const std::filesystem::path& path);
-/// Whether it is an archive of OME-Zarr, or leads into one: masks there are read, never written.
+/// Whether it is an OME-Zarr archive, or leads into one: masks there are read, never written.
 bool is_in_archive(const std::filesystem::path& path);
 
-/// Fails, naming both, if the size of `found` differs, or its spacing or place where both state them. `what`: "a mask".
+/// Fails, naming both, if the size of `found` differs, or its spacing or place if both state them. `what`: "a mask".
 void check_place(const std::filesystem::path& path, const char* what, const VolumeInfo& found, const TraceSpace& space);
 
 /// Describes a volume of annotation, "mask" or "offsets", in the same place as the annotated one.

@@ -1,6 +1,6 @@
 #pragma once
 // Files of one value per voxel, x fastest, without a header, read and written in strips: the rows of one slice that
-// cross one row of bricks. A strip is consecutive in the file and holds at most 2^25 voxels.
+// cross one row of bricks. A strip is contiguous in the file and holds at most 2^25 voxels.
 
 #include <algorithm>
 #include <cstdint>
@@ -18,7 +18,7 @@ namespace shvr {
 inline constexpr int64_t LAYER_BYTES = int64_t{64} << 20;
 
 struct VoxelStrip {
-    Size3 size;  ///< of the volume
+    Size3 size;  ///< size of the volume
     int64_t z, brick_y;
     int64_t height() const { return std::min<int64_t>(gpu::BRICK_SIZE, size.y - brick_y * gpu::BRICK_SIZE); }
     size_t voxels() const { return size_t(size.x * height()); }
@@ -50,7 +50,7 @@ void for_each_row(const VoxelStrip& strip, int64_t brick_x, const Visit& visit)
 /// Opens a file that must hold exactly that many bytes per voxel. `kind`: the expected suffix, for messages.
 FileDescriptor open_voxels(const std::filesystem::path& path, const Size3& size, int64_t bytes_per_voxel,
                            const char* kind);
-/// Fills `bytes` from where the last read ended.
+/// Fills `bytes`, starting where the last read ended.
 void read_next(const FileDescriptor& file, const std::filesystem::path& path, std::span<std::byte> bytes);
 
 }  // namespace shvr

@@ -15,21 +15,21 @@
 namespace shvr {
 
 struct SegmentMeasures {
-    uint32_t internode = 0;  ///< its name: the smallest number of its internodes
-    uint8_t group = 0;       ///< of most of its length; the smallest of several
+    uint32_t internode = 0;  ///< its name: the smallest number among its internodes
+    uint8_t group = 0;       ///< the group of most of its length; the smallest in case of a tie
     uint32_t from = 0, to = 0;
     size_t internodes = 0;
     double length = 0.0;
     double chord = 0.0;                ///< distance of its two ends; 0 for a loop
-    std::optional<double> tortuosity;  ///< length / chord, 1 where straight; nothing if the chord is 0
-    double radius_mean = 0.0;          ///< along its length
+    std::optional<double> tortuosity;  ///< length / chord, 1 if straight; null if the chord is 0
+    double radius_mean = 0.0;          ///< averaged along its length
     double radius_least = 0.0, radius_most = 0.0;
 };
 
 struct BranchMeasures {
     uint32_t node = 0;
     uint8_t group = 0;
-    std::vector<double> angles_degrees;  ///< between each two of its internodes, in the order of their numbers
+    std::vector<double> angles_degrees;  ///< between each pair of its internodes, in the order of their numbers
 };
 
 /// Betti numbers. A trace has no cavities.
@@ -41,7 +41,7 @@ struct Topology {
 };
 
 struct TraceMeasures {
-    std::vector<SegmentMeasures> segments;  ///< by name
+    std::vector<SegmentMeasures> segments;  ///< sorted by name
     std::vector<BranchMeasures> branches;   ///< nodes with three or more internodes, ascending
     std::map<uint8_t, int64_t> nodes_by_group, internodes_by_group;
     std::map<uint8_t, double> length_by_group;
@@ -53,10 +53,11 @@ TraceMeasures measure(const TraceGraph& trace);
 /// b0 = number of connected parts, b1 = internodes - nodes + b0.
 Topology topology_of(const TraceGraph& trace);
 
-/// Of all painted voxels, or of one group's: painted voxels are connected over faces, edges and corners (26), unpainted
-/// ones over faces (6); voxels outside the volume are unpainted. b1 comes from the Euler characteristic of the union of
-/// the voxels as closed cubes, vertices - edges + faces - cubes = b0 - b1 + b2 (Kong and Rosenfeld 1989). Takes time
-/// and memory in proportion to the box of bricks that the voxels lie in; fails if that has more than 2^36 voxels.
+/// The topology of all painted voxels, or of one group's: painted voxels are connected over faces, edges and corners
+/// (26), unpainted ones over faces (6); voxels outside the volume are unpainted. b1 follows from the Euler
+/// characteristic of the union of the voxels as closed cubes, vertices - edges + faces - cubes = b0 - b1 + b2 (Kong and
+/// Rosenfeld 1989). Takes time and memory proportional to the box of bricks around the voxels; fails if that has more
+/// than 2^36 voxels.
 Topology topology_of(const Mask& mask, std::optional<uint8_t> group = {});
 
 /// A table, one measure per row: item, number, group, measure, value, unit (RFC 4180).

@@ -32,17 +32,17 @@ public:
         double distance;
         double along;  ///< distance from the start of the segment
     };
-    /// The segments within `slack` of touching a ball (or of touching it but for rounding), each at its nearest
+    /// The segments within `slack` of touching a ball (or touching it up to rounding errors), each at its nearest
     /// position; ascending.
     std::vector<Near> near(const TraceSample& sample, double slack) const;
     struct Nearest {
         size_t piece;  ///< a straight part of a segment
         double distance;
     };
-    /// The nearest position of any segment; nothing if there is none.
+    /// The nearest position on any segment; null if there are none.
     std::optional<Nearest> nearest_to(const glm::dvec3& position) const;
     double distance_to_piece(size_t piece, const glm::dvec3& position) const;
-    /// How far rounding may take a distance from the true one.
+    /// Upper bound of the rounding error of a distance.
     double rounding() const { return rounding_; }
 
 private:
@@ -50,7 +50,7 @@ private:
         glm::dvec3 a, b;
         double radius_a, radius_b;
         size_t segment;
-        double along;  ///< at a
+        double along;  ///< position of `a` along the segment
     };
     struct Foot {
         double distance, t;
@@ -60,7 +60,7 @@ private:
     std::vector<TraceSegment> segments_;
     std::vector<double> lengths_;
     std::vector<Piece> pieces_;
-    TraceIndex middles_;  ///< numbers are places in `pieces_`
+    TraceIndex middles_;  ///< the numbers are indices into `pieces_`
     double longest_half_ = 0.0, largest_radius_ = 0.0;
     double rounding_ = 0.0;
 };

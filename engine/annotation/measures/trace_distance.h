@@ -1,5 +1,5 @@
 #pragma once
-// How far a trace lies from the truth, along its length. Any thread may call this.
+// Measures how far a trace is from the truth, along its length. Any thread may call this.
 
 #include <optional>
 
@@ -7,13 +7,13 @@
 
 namespace shvr {
 
-/// Of the distance from the trace's positions to the nearest position of the truth.
+/// Statistics of the distance from the trace's positions to the nearest position of the truth.
 struct TraceDistance {
-    /// From 16 samples of each internode; exact where the nearest internode of the truth does not change between them.
+    /// From 16 samples per internode; exact if the nearest internode of the truth does not change between them.
     double root_mean_square = 0.0;
-    double greatest = 0.0;  ///< at most one part in 10^9 too small, and rounding
+    double greatest = 0.0;  ///< at most one part in 10^9 too small, apart from rounding
 };
-/// Nothing if the trace has no length or the truth no internodes.
+/// Null if the trace has no length or the truth no internodes.
 std::optional<TraceDistance> distance_from(const TraceGraph& trace, const TraceCourse& truth);
 
 }  // namespace shvr

@@ -1,7 +1,7 @@
 #pragma once
-// Which parts of a trace stand for which parts of the truth: nodes for branches and ends, segments for segments. A
-// trace is a multigraph, in which several segments may join the same two nodes: which of them is which, their courses
-// decide. Any thread may query.
+// Matches parts of a trace to parts of the truth: nodes to branches and ends, segments to segments. A trace is a
+// multigraph, in which several segments may join the same two nodes; their courses then decide which is which. Any
+// thread may query.
 
 #include <map>
 #include <optional>
@@ -14,25 +14,25 @@ namespace shvr {
 
 class TraceMatch {
 public:
-    /// Keeps references to all three; `course` is that of the truth.
+    /// Keeps references to all three; `course` is the truth's.
     TraceMatch(const TraceGraph& trace, const TraceGraph& truth, const TraceCourse& course, double slack);
 
-    /// Of each branch or end of the truth: the node of the trace that stands for it, each its own.
+    /// For each branch or end of the truth, the node of the trace that stands for it; one to one.
     const std::map<uint32_t, uint32_t>& paired() const { return paired_; }
     /// Those nodes of the trace.
     const std::set<uint32_t>& stops() const { return stops_; }
 
     /// The segments of the trace, which also end at `stops()`.
     const std::vector<TraceSegment>& segments() const { return segments_; }
-    /// The segment of the truth that a segment of the trace stands for, each its own: their ends are paired, and each
-    /// of the two is near the other for all of its length. Of several that join the same two nodes, those with the
-    /// smallest mean squared distance first.
+    /// The segment of the truth that a segment of the trace stands for, one to one: their ends are paired, and each of
+    /// the two is near the other for all of its length. If several join the same two nodes, those with the smallest
+    /// mean squared distance come first.
     std::optional<size_t> partner_of(size_t segment) const { return partners_[segment]; }
 
     /// Whether a segment of the truth is found (trace_score.h).
     bool is_found(size_t truth_segment) const;
 
-    /// Samples along a segment of the trace, in its order, about half of what still counts as near apart.
+    /// Samples along a segment of the trace, in its order, spaced by about half of the distance that counts as near.
     std::vector<TraceSample> samples_along(const TraceSegment& segment) const;
 
 private:
@@ -54,8 +54,8 @@ private:
     std::set<uint32_t> stops_;
     std::map<uint32_t, std::vector<size_t>> near_;  ///< internode of the trace -> segments of the truth, ascending
     std::vector<TraceSegment> segments_;
-    std::vector<std::optional<size_t>> partners_;        ///< of segments of the trace
-    std::vector<std::optional<size_t>> truth_partners_;  ///< of segments of the truth
+    std::vector<std::optional<size_t>> partners_;        ///< per segment of the trace
+    std::vector<std::optional<size_t>> truth_partners_;  ///< per segment of the truth
     std::map<uint32_t, size_t> segment_of_;              ///< internode of the trace -> its segment
 };
 

@@ -1,7 +1,7 @@
 #pragma once
-// How well an annotation agrees with the truth. Masks: Dice (1945). Traces: the share of each node's ball that lies in
-// the true mask, for internodes a ball at the middle (after Acciai et al. 2016); and a comparison of graphs. Any thread
-// may call these.
+// Scores how well an annotation agrees with the truth. Masks: Dice (1945). Traces: the share of each node's ball that
+// lies in the true mask, for internodes a ball at the middle (after Acciai et al. 2016); and a comparison of graphs.
+// Any thread may call these.
 
 #include <array>
 #include <cstdint>
@@ -15,9 +15,9 @@
 namespace shvr {
 
 struct Dice {
-    std::optional<double> painted;       ///< 2 |A and B| / (|A| + |B|) of all that is painted; nothing where nothing is
-    std::map<uint8_t, double> by_group;  ///< groups that are in either
-    std::map<uint8_t, int64_t> voxels_in_a, voxels_in_b;  ///< of each group that is there
+    std::optional<double> painted;       ///< 2 |A and B| / (|A| + |B|) over all painted voxels; null if there are none
+    std::map<uint8_t, double> by_group;  ///< groups present in either mask
+    std::map<uint8_t, int64_t> voxels_in_a, voxels_in_b;  ///< for each group that is present
 };
 /// Counts pairs of voxels, a batch at a time.
 class DiceCounter {
@@ -33,37 +33,37 @@ private:
 Dice dice_of(const Mask& a, const Mask& b);
 
 struct BallScores {
-    std::optional<double> mean;  ///< of the shares; nothing if there is no ball
+    std::optional<double> mean;  ///< mean share; null if there is no ball
     int64_t out = 0;             ///< balls with less than half of their voxels in the mask
     int64_t total = 0;
 };
-/// The share of a ball's voxels that are painted. As for a brush, a voxel belongs to the ball where its centre is at
-/// most the radius away; a ball too small to hold any centre has the voxel it lies in. Voxels outside the volume count
-/// as unpainted. Fails for balls whose box has more than 2^31 voxels. `radius` and `position` in the volume's unit.
+/// The share of a ball's voxels that are painted. As for a brush, a voxel belongs to the ball if its centre is at most
+/// the radius away; a ball too small to contain any centre has the voxel it lies in. Voxels outside the volume count as
+/// unpainted. Fails for balls whose box has more than 2^31 voxels. `radius` and `position` in the volume's unit.
 double share_in_mask(const Mask& mask, const glm::dvec3& spacing, const glm::dvec3& position, double radius);
 BallScores score_nodes(const TraceGraph& trace, const Mask& truth, const glm::dvec3& spacing);
-/// A ball at the middle of each, with its radius there.
+/// Scores a ball at the middle of each internode, with its radius there.
 BallScores score_internodes(const TraceGraph& trace, const Mask& truth, const glm::dvec3& spacing);
 
-/// A position of a trace is *near* one of the truth where their balls are within `slack` of touching. Branches and ends
-/// of the truth are paired with nodes of the trace near them (each with its own, branches with branches first, the
-/// nearest first), and the trace is cut there into segments. Both are multigraphs: a segment of the trace *stands for*
-/// one of the truth if their ends are paired and each of them is near the other for all of its length; each stands for
-/// at most one, and if several join the same two nodes, those with the smallest mean squared distance come first.
+/// A position of a trace is *near* one of the truth if their balls are within `slack` of touching. Branches and ends of
+/// the truth are paired one to one with nodes of the trace near them (branches with branches first, nearest first), and
+/// the trace is cut there into segments. Both are multigraphs: a segment of the trace *stands for* one of the truth if
+/// their ends are paired and each of them is near the other for all of its length; each stands for at most one, and if
+/// several join the same two nodes, those with the smallest mean squared distance come first.
 struct TraceComparison {
-    /// Of the truth's segments. Found: one stands for it; or both ends are paired, and those paths between the two
-    /// nodes that stay near the segment, pass no other such node and stand for nothing else pass all of it. A segment
-    /// that is traced in part is not found.
+    /// Counts of the truth's segments. Found: one segment stands for it; or both ends are paired, and those paths
+    /// between the two nodes that stay near the segment, pass no other such node and stand for nothing else together
+    /// cover all of it. A segment that is traced in part is not found.
     int64_t segments_found = 0, segments_total = 0;
-    /// Segments of the trace that leave the truth or go over to a segment that does not begin there.
+    /// Segments of the trace that leave the truth, or switch to a segment that does not begin there.
     int64_t wrong = 0;
     /// Segments that stand for none of the truth and follow a part of it that another one follows, too: for longer than
-    /// the surroundings of their ends or, where both join the same two nodes, for half of what one of them follows.
+    /// the surroundings of their ends or, if both join the same two nodes, for half of what one of them follows.
     int64_t doubled = 0;
-    /// Ends of the trace near a branch of the truth that is traced, but not joined to it.
+    /// Ends of the trace near a traced branch of the truth that are not joined to it.
     int64_t gaps = 0;
     int64_t topological_errors() const { return wrong + doubled + gaps; }
-    /// From the trace, along its length, to the nearest place of the truth; nothing where either has no internodes.
+    /// Along the trace, the distance to the nearest position of the truth; null if either has no internodes.
     std::optional<double> centreline_rms, centreline_most;
 };
 TraceComparison compare(const TraceGraph& trace, const TraceGraph& truth, double slack);

@@ -1,6 +1,6 @@
 #pragma once
-// Scripts of `shvr annotate`: one JSON object a line; blank lines and lines that start with // are skipped. The window
-// sends the same structs, so keys, menus, scripts and a stylus share one language.
+// Scripts of `shvr annotate`: one JSON object per line; blank lines and lines that start with // are skipped. The
+// window sends the same structs, so keys, menus, scripts and a stylus share one language.
 
 #include <filesystem>
 #include <functional>
@@ -23,7 +23,7 @@ struct RedoOp {
     int count = 1;
 };
 struct SaveOp {};
-/// To what was last saved.
+/// Reverts to the last saved state.
 struct RevertOp {};
 struct ExpectOp {
     std::map<uint8_t, int64_t> voxels_in_group;
@@ -43,13 +43,13 @@ class JsonNode;
 
 /// The names of operations, the more common ones first.
 std::vector<std::string_view> script_op_names();
-/// A line, whose key "op" must be one of those names. Fails as read_script does.
+/// Parses a line whose key "op" must be one of those names. Fails as read_script does.
 ScriptOp read_script_op(const JsonNode& line);
-/// The line that reads as the same operation.
+/// The line that parses as this operation.
 std::string line_of(const ScriptOp& op);
 
-/// Calls `take` with each line that holds an operation, whatever it is, and its number from 1; both are valid during
-/// the call. "-" is standard input; that and pipes are read to their end. Fails where a line is no JSON object.
+/// Calls `take` with each non-empty line, whatever its operation, and its number from 1; both are valid during the
+/// call. "-" is standard input; that and pipes are read to their end. Fails if a line is not a JSON object.
 void for_each_line(const std::filesystem::path& path,
                    const std::function<void(const JsonNode& line, int number)>& take);
 

@@ -1,9 +1,9 @@
 #pragma once
-// An ordered map of numbers whose copies share what they hold, in pages of 256 consecutive numbers: copying costs the
-// table of pages, and whoever changes a page that another copy may see makes its own first.
+// An ordered map of numbers with copy-on-write pages of 256 consecutive numbers: copying costs only the table of pages,
+// and changing a page that another copy may see duplicates it first.
 //
-// Which pages may be changed in place is told by a mark, not by a count of owners: every copy gets a new mark, on both
-// sides, so that a page that was ever shared stays as it is. One thread changes a map; copies may be read, copied and
+// Whether a page may be changed in place is decided by a mark, not by a reference count: copying gives both sides a new
+// mark, so that a page that was ever shared stays as it is. One thread changes a map; copies may be read, copied and
 // destroyed on others.
 
 #include <algorithm>
@@ -26,7 +26,7 @@ public:
 private:
     static constexpr uint32_t PAGE_NUMBERS = 256;
     struct Page {
-        uint64_t mark = 0;           ///< of the map that may change it
+        uint64_t mark = 0;           ///< mark of the map that may change it
         std::vector<Entry> entries;  ///< ascending, never empty
     };
     using Pages = std::map<uint32_t, std::shared_ptr<const Page>>;  ///< by number / PAGE_NUMBERS
@@ -116,7 +116,7 @@ public:
     }
     bool contains(uint32_t number) const { return find(number) != end(); }
 
-    /// The value of a number, to be changed; made where it is missing. Valid until the map changes or is copied.
+    /// Mutable access to the value of a number; created if missing. Valid until the map changes or is copied.
     Value& operator[](uint32_t number)
     {
         Page& page = own(number / PAGE_NUMBERS);
@@ -152,7 +152,7 @@ private:
                                             [](const Entry& entry, uint32_t wanted) { return entry.first < wanted; });
         return size_t(found - entries.begin());
     }
-    /// A page that nobody else sees; empty where there was none.
+    /// Returns a page that no other copy sees, creating it if necessary.
     Page& own(uint32_t index)
     {
         std::shared_ptr<const Page>& held = pages_[index];
@@ -162,7 +162,7 @@ private:
             if (held) page->entries = held->entries;
             held = std::move(page);
         }
-        return const_cast<Page&>(*held);  // made above, and seen by nobody else since
+        return const_cast<Page&>(*held);  // safe: created above, and not shared since
     }
 
     Pages pages_;

@@ -1,7 +1,7 @@
 #pragma once
-// Turns an operation of a script or the window into records for the history, or into another selection, which is not a
-// step of it. Operations have positions in voxels and radii in voxels along x; records have the volume's unit. Pure;
-// any thread.
+// Converts an operation of a script or the window into records for the history, or into a new selection, which is not a
+// step of the history. Operations have positions in voxels and radii in voxels along x; records use the volume's unit.
+// Pure; any thread.
 
 #include <string>
 
@@ -13,20 +13,20 @@ namespace shvr {
 
 /// Defaults for values that an operation does not state.
 struct TraceDefaults {
-    glm::dvec3 spacing{1.0};     ///< of the volume
+    glm::dvec3 spacing{1.0};     ///< the volume's
     double radius_voxels = 6.0;  ///< the probe's
-    uint8_t group = 1;           ///< that the probe paints
-    Size3 size{0};               ///< of the volume, in voxels; 0: unknown, and nodes may lie anywhere
+    uint8_t group = 1;           ///< the group that the probe paints
+    Size3 size{0};               ///< the volume's, in voxels; 0: unknown, and nodes may lie anywhere
 };
 
 struct TraceEffect {
-    std::string label;                        ///< of the command: "node, group 2"
-    std::vector<TraceChange> changes;         ///< empty where nothing would change
+    std::string label;                        ///< label of the command: "node, group 2"
+    std::vector<TraceChange> changes;         ///< empty if nothing would change
     std::optional<TraceSelection> selection;  ///< the new selection
 };
 
 /// Fails if the operation cannot be carried out, if its target is farther away than it allows, or if it would put a
-/// node farther outside the volume than its radius and the longest side of a voxel.
+/// node farther outside the volume than its radius plus the longest side of a voxel.
 TraceEffect effect_of(const TraceOp& op, const TraceGraph& trace, const TraceDefaults& defaults);
 
 }  // namespace shvr

@@ -1,7 +1,7 @@
 #pragma once
-// Edits of a trace, as records that `History::perform` applies: each function reads the trace and its selection,
-// changes nothing, and returns the records of the edit (none where nothing would change). Edits that add select what
-// they added, so that tracing continues from there; undoing restores the earlier selection.
+// Edits of a trace, as records for `History::perform`: each function reads the trace and its selection, changes
+// nothing, and returns the records of the edit (none if nothing would change). Edits that add objects select them, so
+// that tracing continues from there; undoing restores the earlier selection.
 //
 // An edit that is not possible fails with a sentence ("nothing is selected; expected a node"). Any thread may call
 // these.
@@ -15,7 +15,7 @@ namespace shvr {
 /// Joins the new node to the selected one, if any, by an internode of the new node's group.
 std::vector<TraceChange> add_node(const TraceGraph& trace, const TraceNode& node);
 /// Replaces an internode by two of its group that meet in the new node, and joins that to the selected node, if any and
-/// if it is no end of the internode, by an internode of the selected node's group.
+/// if it is not an end of the internode, by an internode of the selected node's group.
 std::vector<TraceChange> divide_internode(const TraceGraph& trace, uint32_t internode, const TraceNode& node);
 /// Joins the selected node to another by an internode of the selected node's group. The node stays selected.
 std::vector<TraceChange> link_selected(const TraceGraph& trace, uint32_t to);
@@ -24,17 +24,17 @@ std::vector<TraceChange> move_selected(const TraceGraph& trace, const glm::dvec3
 /// that are not branches.
 std::vector<TraceChange> delete_selected(const TraceGraph& trace);
 std::vector<TraceChange> set_group_of_selected(const TraceGraph& trace, uint8_t group);
-/// Of the selected node, or of the nodes of the segment. A single internode does not have its own radius.
+/// Sets the radius of the selected node, or of the nodes of the segment. A single internode has no radius of its own.
 std::vector<TraceChange> set_radius_of_selected(const TraceGraph& trace, double radius);
 
-/// Of all nodes of a group.
+/// Sets the radius of all nodes of a group.
 std::vector<TraceChange> set_node_radii(const TraceGraph& trace, uint8_t group, double radius);
-/// Of all internodes of a group; without a radius they taper from node to node.
+/// Sets the radius of all internodes of a group; without a radius they taper from node to node.
 std::vector<TraceChange> set_internode_radius(const TraceGraph& trace, uint8_t group, std::optional<double> radius);
 
 /// The argument of `TraceGraph::select`.
 TraceSelection nearest_node_selection(const TraceGraph& trace, const glm::dvec3& position);
-/// The nearest of the selected node's internodes, since among many close ones the user means one of this node.
+/// Selects the nearest of the selected node's internodes, since among many close ones the user means one of this node.
 TraceSelection nearest_internode_selection(const TraceGraph& trace, const glm::dvec3& position);
 /// The segment of the selected internode, or of the selected node if it lies on only one.
 TraceSelection segment_selection(const TraceGraph& trace);

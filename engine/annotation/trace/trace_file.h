@@ -1,20 +1,20 @@
 #pragma once
-// Traces in files. The extension says which form:
+// Traces in files. The extension determines the format:
 //
 //   .graphml  everything, numbers included, with the volume's size, spacing and unit; networkx, igraph and yEd read it
 //   .txt      the thesis's lines "-v x, y, z, group, radius" and "-l node, node, group"; nodes count from 0
 //   .swc      trees (Cannon et al. 1998; one sample a node, its type is the group); size, spacing and unit as comments
 //   .rsml     trees (Lobet et al. 2015): plants, roots, polylines, diameters, unit and resolution
 //
-// Each file says which space its positions are in (trace_space.h): volume space, in which traces are saved, and which
-// is kept to the last bit; or physical space, for other programs, where only GraphML keeps the last bits, since it
-// holds both. A file that says nothing is in volume space. In the thesis's text, as in SWC, this is in lines that begin
-// with "#". All is in the volume's unit, except in RSML, which counts in pixels: written as voxels along x, and
-// converted from other units of length on reading; a round trip costs the last bit or two. An internode has no group of
-// its own in SWC and RSML, and only GraphML keeps numbers and the radii of groups.
+// Each file states the space of its positions (trace_space.h): volume space, in which traces are saved, and which
+// preserves them to the last bit; or physical space, for other programs, where only GraphML preserves the last bits,
+// since it holds both. A file without that statement is in volume space. In the thesis's text, as in SWC, the statement
+// is in lines that begin with "#". Everything is in the volume's unit, except in RSML, which counts in pixels: written
+// as voxels along x, and converted from other units of length on reading; a round trip costs the last bit or two. An
+// internode has no group of its own in SWC and RSML, and only GraphML preserves numbers and the radii of groups.
 //
-// Files come from strangers: every refusal is one sentence with file, line or element, value and what was expected.
-// Any thread may call these.
+// Files are untrusted: every refusal is one sentence with file, line or element, value and what was expected. Any
+// thread may call these.
 
 #include <filesystem>
 #include <optional>
@@ -26,7 +26,7 @@
 
 namespace shvr {
 
-/// What to do with loops in a form that holds trees. Broken: the internode with the largest number, the last one drawn,
+/// How to handle loops in a format that holds trees. Broken: the internode with the largest number, the last one drawn,
 /// is left out of each loop; those left out are listed in a comment of the file and returned.
 enum class Loops { refuse, break_open };
 
@@ -34,18 +34,18 @@ enum class Loops { refuse, break_open };
 std::vector<std::string> save_trace(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space,
                                     Loops loops = Loops::refuse, Positions positions = Positions::volume);
 
-/// What `save_trace` would write; fails where it would.
+/// The text that `save_trace` would write; fails if it would.
 std::string trace_text(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space);
 
 struct TraceFile {
     TraceGraph trace;
-    std::optional<TraceSpace> space;  ///< where the file states all of this
+    std::optional<TraceSpace> space;  ///< if the file states all of it
 };
-/// In volume space. At most 256 MiB and 4 million nodes. Fails if a stated size, spacing, unit (RSML: no length) or
-/// place is not `expected`'s.
+/// Returns the trace in volume space. At most 256 MiB and 4 million nodes. Fails if a stated size, spacing, unit (RSML:
+/// no length) or place differs from `expected`.
 TraceFile load_trace(const std::filesystem::path& path, const std::optional<TraceSpace>& expected);
 
-/// Whether `load_trace` knows the extension.
+/// Whether `load_trace` supports the extension.
 bool is_trace_file(const std::filesystem::path& path);
 
 }  // namespace shvr

@@ -11,12 +11,12 @@
 
 namespace shvr {
 
-/// What is written: a trace whose positions are in the space that the file will state.
+/// The input of a writer: a trace whose positions are in the space that the file will state.
 struct TraceWriting {
     const TraceGraph& trace;
     const TraceSpace& space;
     Positions positions = Positions::volume;
-    const TraceGraph* exact = nullptr;  ///< the same trace in volume space, where `positions` are physical
+    const TraceGraph* exact = nullptr;  ///< the same trace in volume space, if `positions` are physical
 };
 
 std::string write_trace_text(const TraceWriting& writing);
@@ -24,7 +24,7 @@ std::string write_trace_swc(const TraceWriting& writing, Loops loops, std::vecto
 std::string write_trace_graphml(const TraceWriting& writing);
 std::string write_trace_rsml(const TraceWriting& writing, Loops loops, std::vector<std::string>& notes);
 
-/// A file's statements on its volume; each may be missing.
+/// A file's statements about its volume; each may be missing.
 struct StatedSpace {
     std::optional<Size3> size;
     std::optional<glm::dvec3> spacing;
@@ -36,14 +36,14 @@ struct StatedSpace {
 };
 
 class TraceReader;
-/// Lines that begin with "#": which space the positions are in, in words and for `read_space_comment`, then unit,
-/// spacing and size.
+/// Lines that begin with "#": the space of the positions, in words and for `read_space_comment`, then unit, spacing and
+/// size.
 std::string comments_of(const TraceWriting& writing);
 /// `comment` begins with "#". Files of other programs have comments of their own: a space counts only if it is one of
-/// the two, and a place only behind it.
+/// the two, and a place only after it.
 void read_space_comment(TraceReader& reader, const std::string& where, std::string_view comment);
 
-/// Collects nodes and internodes from a file and refuses what is not a trace. `where` begins every message.
+/// Collects nodes and internodes from a file and refuses malformed traces. `where` begins every message.
 class TraceReader {
 public:
     explicit TraceReader(std::string file) : file_(std::move(file)) {}
@@ -59,15 +59,15 @@ public:
     Size3 size(const std::string& where, std::string_view text) const;
     glm::dvec3 spacing(const std::string& where, std::string_view text) const;
 
-    /// Takes a statement of `statements_of`; ignores other names. "space" must be one of the two.
+    /// Handles a statement of `statements_of`; ignores other names. "space" must be one of the two.
     void state(const std::string& where, std::string_view name, std::string_view value);
-    /// Turns physical positions into those of volume space, of a file that states them. `expected` stands in for a
-    /// spacing that the file does not state.
+    /// Converts physical positions, of a file that states them, to volume space. `expected` supplies the spacing if the
+    /// file does not state it.
     void to_volume_space(const std::optional<TraceSpace>& expected);
 
     StatedSpace stated{};
     TraceGraph trace{};
-    std::map<uint32_t, glm::dvec3> exact{};  ///< volume space, of nodes whose file holds both; used if they agree
+    std::map<uint32_t, glm::dvec3> exact{};  ///< in volume space, for nodes whose file holds both; used if they agree
 
 private:
     std::string file_;
@@ -76,7 +76,7 @@ private:
 void read_trace_text(TraceReader& reader, std::string_view text);
 void read_trace_swc(TraceReader& reader, std::string_view text);
 void read_trace_graphml(TraceReader& reader, std::string_view text);
-/// `volume`: whose unit lengths are converted to, where both are units of length.
+/// `volume`: lengths are converted to its unit, if both are units of length.
 void read_trace_rsml(TraceReader& reader, std::string_view text, const std::optional<TraceSpace>& volume);
 
 /// A trace as trees: every node once, parents before children.

@@ -1,5 +1,5 @@
 #pragma once
-// The nearest of many moving points, exactly: a balanced k-d tree (Bentley 1975) of the points at the time it was
+// Finds the nearest of many moving points, exactly: a balanced k-d tree (Bentley 1975) of the points at the time it was
 // built, and a list of those changed since, which is searched linearly and stays below a 32nd of the tree. So queries
 // between edits take microseconds, and rebuilding costs little per edit.
 //
@@ -44,7 +44,7 @@ private:
     size_t tree_size() const { return tree_ ? tree_->points.size() : 0; }
 
     std::shared_ptr<const Tree> tree_;                       ///< shared with copies; null: empty
-    std::map<uint32_t, std::optional<glm::dvec3>> changed_;  ///< since the tree was built; nothing: removed
+    std::map<uint32_t, std::optional<glm::dvec3>> changed_;  ///< changes since the tree was built; null: removed
 };
 
 }  // namespace shvr

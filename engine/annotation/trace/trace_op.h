@@ -12,24 +12,24 @@ namespace shvr {
 
 struct NodeOp {
     glm::dvec3 at{0.0};
-    std::optional<double> radius_voxels;  ///< the probe's
-    std::optional<uint8_t> group;         ///< the probe's
-    /// An internode that becomes two, which meet in the node; size and group are the internode's where they are not
-    /// given.
+    std::optional<double> radius_voxels;  ///< default: the probe's
+    std::optional<uint8_t> group;         ///< default: the probe's
+    /// An internode to split into two that meet in the node;
+    /// size and group default to the internode's.
     std::optional<uint32_t> divides{};
 };
 struct SelectOp {
     std::optional<glm::dvec3> near;  ///< the nearest node, or internode of the selected node
-    std::optional<uint32_t> number;  ///< where `near` is not given
+    std::optional<uint32_t> number;  ///< used without `near`
     bool is_internode = false;
-    std::optional<double> within_voxels;  ///< how far the nearest may be; any distance
+    std::optional<double> within_voxels;  ///< maximum distance of the nearest; default: any
 };
 struct SelectSegmentOp {};
 struct DeselectOp {};
 struct LinkOp {
     std::optional<glm::dvec3> near;         ///< the nearest other node
-    std::optional<uint32_t> node;           ///< where `near` is not given
-    std::optional<double> within_voxels{};  ///< how far the nearest may be; any distance
+    std::optional<uint32_t> node;           ///< used without `near`
+    std::optional<double> within_voxels{};  ///< maximum distance of the nearest; default: any
 };
 struct MoveOp {
     glm::dvec3 to{0.0};
@@ -40,8 +40,8 @@ struct GroupOp {
 };
 struct RadiusOp {
     enum class Of { selected, nodes, internodes };
-    Of of = Of::selected;                 ///< the others: all of `group`
-    std::optional<double> radius_voxels;  ///< nothing, of internodes only: they taper
+    Of of = Of::selected;                 ///< `nodes` and `internodes`: all of `group`
+    std::optional<double> radius_voxels;  ///< null, for internodes only: they taper
     uint8_t group = 0;
 };
 

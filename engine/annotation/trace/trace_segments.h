@@ -1,7 +1,7 @@
 #pragma once
-// Segments of a trace: chains of internodes between two nodes that are a branch (three or more internodes) or an end
-// (one), and loops that no such node lies on. Every internode belongs to exactly one segment. Any thread may call
-// these.
+// Segments of a trace: chains of internodes between two nodes that are branches
+// (three or more internodes) or ends (one), and loops without such nodes. Every
+// internode belongs to exactly one segment. Any thread may call these.
 
 #include <set>
 #include <vector>
@@ -11,30 +11,30 @@
 namespace shvr {
 
 struct TraceSegment {
-    std::vector<uint32_t> nodes;       ///< along the segment, one more than internodes; of a loop the last is the first
+    std::vector<uint32_t> nodes;       ///< along the segment, one more than internodes; in a loop the last is the first
     std::vector<uint32_t> internodes;  ///< in that order
     bool is_loop() const { return nodes.front() == nodes.back(); }
 };
 
 /// The segment that an internode belongs to. It also ends at `stops`.
 TraceSegment segment_through(const TraceGraph& trace, uint32_t internode, const std::set<uint32_t>& stops = {});
-/// All of them, by their smallest internode. Nodes without internodes belong to none.
+/// All segments, sorted by their smallest internode. Nodes without internodes belong to none.
 std::vector<TraceSegment> segments_of(const TraceGraph& trace, const std::set<uint32_t>& stops = {});
 
 /// The targets of edits of the segment: its internodes, and its nodes except branches, which other segments share.
 TraceSelection selection_of(const TraceGraph& trace, const TraceSegment& segment);
 
-/// Where on an internode what is nearest to a point lies: 0 at its first node, 1 at its second.
+/// The position on an internode nearest to a point: 0 at its first node, 1 at its second.
 double share_along(const TraceGraph& trace, const TraceInternode& internode, const glm::dvec3& position);
 
 struct PlaceOnTrace {
     uint32_t internode = 0;
-    double share = 0.0;        ///< along it
+    double share = 0.0;        ///< fraction along it
     glm::dvec3 position{0.0};  ///< volume space
 };
-/// The place of all internodes, but for those of a node, that is nearest to a point, where one lies within `reach`; of
-/// several the smallest number's. Looks at the internodes of nodes within `reach` and half the longest internode, for
-/// no other can be near.
+/// The position nearest to a point, within `reach`, on any internode except those of the node `except_of`; the smallest
+/// number in case of a tie. Only checks internodes of nodes within `reach` plus half the longest internode, since no
+/// other can be near.
 std::optional<PlaceOnTrace> nearest_place(const TraceGraph& trace, const glm::dvec3& position, double reach,
                                           std::optional<uint32_t> except_of = {});
 

@@ -1,10 +1,10 @@
 #pragma once
-// The volume that annotation belongs to, and where that lies. Any thread may call these.
+// The volume that annotation belongs to, and its position in space. Any thread may call these.
 //
-// Volume space, in which traces are kept: voxel * spacing, from the outer corner of voxel 0. Physical space, in which
-// other programs show volumes and what belongs to them: the centre of voxel 0 is at `origin`, and the axes run along
-// the columns of `directions`. So physical = origin + directions * (position - spacing / 2). Where nothing states a
-// place, that is what other programs assume, too: origin 0, axes along those of space.
+// Volume space, in which traces are stored: voxel * spacing, from the outer corner of voxel 0. Physical space, in which
+// other programs show volumes and annotation: the centre of voxel 0 is at `origin`, and the axes run along the columns
+// of `directions`. So physical = origin + directions * (position - spacing / 2). If no place is stated, the defaults
+// are those of other programs: origin 0, axes along those of space.
 
 #include <string>
 #include <utility>
@@ -29,16 +29,16 @@ TraceSpace space_of(const VolumeInfo& volume);
 enum class Positions { volume, physical };
 
 glm::dvec3 physical_of(const TraceSpace& space, const glm::dvec3& position);
-/// The inverse; differs from what `physical_of` was given by the rounding of both.
+/// The inverse of `physical_of`, except for the rounding of both.
 glm::dvec3 position_of(const TraceSpace& space, const glm::dvec3& physical);
 
-/// "origin 1 2 3, axes ..., of LPS; expected origin ...": empty if both lie in the same place up to a twentieth of a
+/// "origin 1 2 3, axes ..., of LPS; expected origin ...": empty if both have the same place up to a twentieth of a
 /// voxel, or if one of them does not state any.
 std::string why_elsewhere(const TraceSpace& found, const TraceSpace& expected);
 
-/// For comments of files: which space their positions are in, in words, without a line end.
+/// For comments of files: describes the space of their positions, without a line end.
 std::string in_words(const TraceSpace& space, Positions positions);
-/// "space physical", "frame LPS", ...: what a reader needs, a name and its value each.
+/// "space physical", "frame LPS", ...: the statements that a reader needs, as pairs of name and value.
 std::vector<std::pair<const char*, std::string>> statements_of(const TraceSpace& space, Positions positions);
 
 }  // namespace shvr

@@ -1,6 +1,7 @@
 #pragma once
 // Running totals of a trace, updated as it changes: lengths by group, and the number of segments. A change costs as
-// much as the internodes of its nodes; one that splits or joins segments, about as much as the shorter of the two.
+// much as visiting the internodes of its nodes; a change that splits or joins segments, about as much as the shorter of
+// the two.
 //
 // Not thread safe: part of a TraceGraph.
 
@@ -17,8 +18,8 @@ class TraceGraph;
 /// Summary of a trace for a panel.
 struct TraceSummary {
     size_t nodes = 0, internodes = 0;
-    size_t segments = 0;                     ///< as many as segments_of finds
-    double length = 0.0;                     ///< of all internodes, in the volume's unit
+    size_t segments = 0;                     ///< equals the number found by segments_of
+    double length = 0.0;                     ///< total of all internodes, in the volume's unit
     std::map<uint8_t, double> group_length;  ///< by the internodes' groups
 };
 
@@ -27,13 +28,13 @@ public:
     /// Called before and after a change of the position of `node`.
     void before_move(const TraceGraph& trace, uint32_t node);
     void after_move(const TraceGraph& trace, uint32_t node);
-    /// Called before and after an internode is added or removed. `is_there`: the trace has it then.
+    /// Called before and after an internode is added or removed. `is_there`: the trace contains it at that time.
     void before_link(const TraceGraph& trace, const TraceInternode& internode, bool is_there);
     void after_link(const TraceGraph& trace, const TraceInternode& internode, bool is_there);
     void change_group(const TraceGraph& trace, const TraceInternode& from, const TraceInternode& to);
 
     TraceSummary summary_of(const TraceGraph& trace) const;
-    /// A power of two that no internode is as long as, and one is at least half as long as; 0 without any.
+    /// A power of two that is an upper bound of all internode lengths, and at most twice the longest; 0 without any.
     double longest_at_most() const;
 
 private:
@@ -50,10 +51,10 @@ private:
     void add_length(const TraceGraph& trace, const TraceInternode& internode);
     void remove_length(const TraceGraph& trace, const TraceInternode& internode);
 
-    std::map<uint8_t, Group> groups_;  ///< those that have internodes
+    std::map<uint8_t, Group> groups_;  ///< groups that have internodes
     std::map<int, size_t> lengths_;    ///< internodes by the binary exponent of their length
-    size_t inner_nodes_ = 0;           ///< with exactly two internodes: a segment goes through them
-    size_t closed_segments_ = 0;       ///< loops of such nodes only
+    size_t inner_nodes_ = 0;           ///< nodes with exactly two internodes: a segment continues through them
+    size_t closed_segments_ = 0;       ///< loops made of such nodes only
 };
 
 }  // namespace shvr

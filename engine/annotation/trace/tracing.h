@@ -1,13 +1,13 @@
 #pragma once
 // The trace: a graph of nodes along the centre lines of tubes and of internodes that join two of them. Loops are
 // allowed; a node joined to itself, or two nodes joined twice, are not. Positions and radii are in volume space
-// (physical, the volume's unit). Like the mask, the trace changes through records of exact before and after values and
-// through nothing else. The selection is not annotation and needs no record, but commands may carry it.
+// (physical, the volume's unit). Like the mask, the trace changes only through records of exact before and after
+// values. The selection is not annotation and needs no record, but commands may carry it.
 //
 // Numbers of nodes and internodes are never reused, not even after an undo.
 //
-// One thread owns a trace (the main one) and lends it as const. A copy shares what it holds with the original
-// (shared_map.h), so it costs little, and may go to another thread.
+// One thread owns a trace (the main one) and lends it as const. A copy shares storage with the original (shared_map.h),
+// so it is cheap, and may go to another thread.
 
 #include <cstdint>
 #include <map>
@@ -45,18 +45,18 @@ struct TraceSelection {
     std::vector<uint32_t> nodes, internodes;
     bool operator==(const TraceSelection&) const = default;
     bool empty() const { return nodes.empty() && internodes.empty(); }
-    /// The node, where exactly one node and nothing else is selected.
+    /// The node, if exactly one node and nothing else is selected.
     std::optional<uint32_t> node() const;
     std::optional<uint32_t> internode() const;
 };
 
-/// Added where there is no `before`, removed where there is no `after`.
+/// The node is added if `before` is null, removed if `after` is null.
 struct TraceNodeChange {
     uint32_t node = 0;
     std::optional<TraceNode> before, after;
     bool operator==(const TraceNodeChange&) const = default;
 };
-/// The same; an internode that is only changed keeps its nodes.
+/// The same for an internode; one that is only changed keeps its nodes.
 struct TraceInternodeChange {
     uint32_t internode = 0;
     std::optional<TraceInternode> before, after;
@@ -68,8 +68,8 @@ struct TraceSizeChange {
     std::optional<double> before, after;
     bool operator==(const TraceSizeChange&) const = default;
 };
-/// Replaces the selection, whatever it is. A command that changes the selection begins with one whose `after` is empty
-/// and ends with one whose `before` is, so that in both directions nothing is selected that does not exist.
+/// Replaces the selection, whatever it is. A command that changes the selection begins with a record whose `after` is
+/// empty and ends with one whose `before` is, so that in both directions the selection never refers to missing objects.
 struct TraceSelectionChange {
     TraceSelection before, after;
     bool operator==(const TraceSelectionChange&) const = default;
@@ -87,38 +87,38 @@ public:
     std::span<const uint32_t> internodes_of(uint32_t node) const;
     std::optional<uint32_t> internode_between(uint32_t a, uint32_t b) const;
     double length_of(const TraceInternode& internode) const;
-    /// At the fraction `t` (0 ... 1) of the way from a to b.
+    /// The radius at the fraction `t` (0 ... 1) of the way from a to b.
     double radius_of(const TraceInternode& internode, double t) const;
 
     /// The next numbers: larger than any ever applied.
     uint64_t next_node() const { return next_node_; }
     uint64_t next_internode() const { return next_internode_; }
-    /// Never uses numbers below these, which a file states because of nodes that were deleted.
+    /// Never uses numbers below these, which a file states because deleted nodes used them.
     void reserve_numbers(uint64_t next_node, uint64_t next_internode);
 
-    /// The node nearest to a position, the smallest number of several; nothing if there are no nodes.
+    /// The node nearest to a position, the smallest number in case of a tie; null if there are no nodes.
     std::optional<uint32_t> nearest_node(const glm::dvec3& position, std::optional<uint32_t> except = {}) const;
 
-    /// All nodes that near, ascending.
+    /// All nodes within `distance`, ascending.
     std::vector<uint32_t> nodes_within(const glm::dvec3& position, double distance) const;
-    /// No internode is longer, and one is at least half as long; 0 without any.
+    /// An upper bound of internode lengths, at most twice the longest; 0 without internodes.
     double longest_at_most() const { return tally_.longest_at_most(); }
 
-    /// Numbers, lengths and segments; kept up to date, so it costs little at any size.
+    /// Numbers, lengths and segments; kept up to date, so it is cheap at any size.
     TraceSummary summary() const { return tally_.summary_of(*this); }
 
-    /// Another number after each record that was applied, also in copies; equal numbers mean equal traces.
+    /// Changes with each record that is applied, also in copies; equal numbers mean equal traces.
     uint64_t revision() const { return revision_; }
 
     const TraceSelection& selection() const { return selection_; }
-    /// What is selected must exist (SHVR_CHECK).
+    /// The selected objects must exist (SHVR_CHECK).
     void select(TraceSelection selection);
 
     /// Why a record cannot be applied: the trace must match its before values, a removed node must have no internodes,
-    /// an internode must join two existing nodes that are not joined yet, and what is selected must exist. Empty where
-    /// it fits.
+    /// an internode must join two existing nodes that are not joined yet, and selected objects must exist. Empty if it
+    /// fits.
     std::string why_it_does_not_fit(const TraceChange& change, Direction direction) const;
-    /// Applies a record that fits (SHVR_CHECK). Deselects what it removes.
+    /// Applies a record that fits (SHVR_CHECK). Deselects removed objects.
     void apply(const TraceChange& change, Direction direction);
 
     /// Compares nodes, internodes and radii, but neither the selection nor the next numbers.
@@ -135,9 +135,9 @@ private:
 
     SharedMap<TraceNode> nodes_;
     SharedMap<TraceInternode> internodes_;
-    SharedMap<std::vector<uint32_t>> internodes_of_;  ///< of nodes that have any
+    SharedMap<std::vector<uint32_t>> internodes_of_;  ///< for nodes that have any
     std::map<uint8_t, double> internode_radii_;
-    uint64_t next_node_ = 0, next_internode_ = 0;  ///< 2^32: none is left
+    uint64_t next_node_ = 0, next_internode_ = 0;  ///< 2^32: none left
     uint64_t revision_ = 0;                        ///< 0: empty
     TraceSelection selection_;
     TraceIndex index_;

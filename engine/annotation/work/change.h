@@ -1,7 +1,7 @@
 #pragma once
-// Everything that is annotated, and the records through which it changes: exact before and after, so that undo is the
-// same record backwards. A new kind of annotation is one more alternative of `Change`; the compiler then names every
-// place that does not handle it yet.
+// Everything that is annotated, and the records through which it changes: exact states before and after, so that undo
+// is the same record backwards. A new kind of annotation is one more alternative of `Change`; the compiler then reports
+// every place that does not handle it yet.
 //
 // Not thread safe: the main thread owns a document.
 
@@ -29,8 +29,8 @@ struct Document {
 
 using Change = std::variant<MaskBrickChange, TraceChange, DensityBrickChange, SettingChange>;
 
-/// A visitor of changes, made of one function for each kind: std::visit(ByKind{...}, change). It does not compile where
-/// a kind is left out.
+/// A visitor of changes, made of one function for each kind: std::visit(ByKind{...}, change). Does not compile if a
+/// kind is missing.
 template <class... Cases>
 struct ByKind : Cases... {
     using Cases::operator()...;
@@ -38,7 +38,7 @@ struct ByKind : Cases... {
 template <class... Cases>
 ByKind(Cases...) -> ByKind<Cases...>;  // clang 16 does not deduce aggregates by itself
 
-/// Records of one kind, as a command takes them.
+/// Converts records of one kind to the changes of a command.
 template <class Record>
 std::vector<Change> as_changes(std::vector<Record> records)
 {
@@ -50,19 +50,19 @@ struct Command {
     std::vector<Change> changes;
 };
 
-/// A record that does not fit is our mistake (SHVR_CHECK).
+/// A record that does not fit is a bug of ours (SHVR_CHECK).
 void apply(Document& document, const Change& change, Direction direction);
-/// All of them in order, or in reverse order backwards. For records from files: fails with the reason if one does
-/// not fit, and then the document is as it was.
+/// Applies all of them in order, or in reverse order backwards. For records from files: fails with the reason if one
+/// does not fit, and then the document is as it was.
 void apply_if_it_fits(Document& document, std::span<const Change> changes, Direction direction);
-/// About how much memory they take.
+/// Their approximate memory use.
 uint64_t memory_of(std::span<const Change> changes);
 
-/// Which parts of a document some changes are about.
+/// The parts of a document that some changes affect.
 struct Touched {
-    int64_t voxels = 0;                  ///< that change their group, plus those that change their offset
-    std::vector<int64_t> mask_bricks{};  ///< with voxels that change their group
-    std::vector<VoxelBox> raised{};      ///< around voxels that change their offset
+    int64_t voxels = 0;                  ///< number that change their group, plus number that change their offset
+    std::vector<int64_t> mask_bricks{};  ///< bricks with voxels that change their group
+    std::vector<VoxelBox> raised{};      ///< boxes around voxels that change their offset
     bool trace = false;
     bool settings = false;
 };

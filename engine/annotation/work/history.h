@@ -1,8 +1,8 @@
 #pragma once
-// One history for everything the user does. Undo and redo are one loop over the records of a command and know nothing
-// of tools: a new tool makes new command contents, never new undo code.
+// One history for everything the user does. Undo and redo are one loop over the records of a command and independent of
+// tools: a new tool makes new command contents, never new undo code.
 //
-// Commands that the journal holds can be dropped from memory, the oldest first; undoing one fetches it again.
+// Commands that the journal contains can be dropped from memory, oldest first; undoing one fetches it again.
 //
 // Not thread safe: the main thread owns it.
 
@@ -17,20 +17,21 @@ using RecordNumber = uint64_t;
 
 class History {
 public:
-    /// The journal's content of a record; fails if it cannot be read.
+    /// Reads a record's content from the journal; fails if it cannot be read.
     using Fetch = std::function<std::vector<Change>(RecordNumber)>;
 
     /// Applies the command and records it; commands that were undone are dropped. Returns the command, valid until the
-    /// history changes; null if it has no changes and is not recorded. `record`: where the journal has it.
+    /// history changes; null if it has no changes and is not recorded. `record`: its number in the journal.
     const Command* perform(Document& document, Command command, RecordNumber record = 0);
-    /// Applies `changes` and adds them to the last command, after which nothing was undone: a stroke continues.
+    /// Applies `changes` and adds them to the last command, since which nothing may have been undone: a stroke
+    /// continues.
     void extend(Document& document, std::vector<Change> changes, RecordNumber record = 0);
-    /// The command undone or redone, or null if there is none. Fails, changing nothing, if it was dropped and
+    /// Return the command undone or redone, or null if there is none. Fail, changing nothing, if it was dropped and
     /// cannot be fetched or does not fit.
     const Command* undo(Document& document);
     const Command* redo(Document& document);
 
-    /// Replays the same four for a document whose final state is known, without document and changes.
+    /// Replay these four operations for a document whose final state is known, without document and changes.
     void note(std::string label, RecordNumber record);
     void note_extension(RecordNumber record);
     void note_undo();
@@ -39,16 +40,16 @@ public:
     size_t undoable() const { return done_; }
     size_t redoable() const { return commands_.size() - done_; }
 
-    /// Of the step with that number, from 0, the oldest, to undoable() + redoable() - 1. Always in memory.
+    /// The label of a step, from 0, the oldest, to undoable() + redoable() - 1. Always in memory.
     const std::string& label_of(size_t step) const { return commands_[step].command.label; }
-    /// What it changes; fetched where it was dropped, which fails if it cannot be read. `visit` gets a span that is
-    /// valid during the call.
+    /// Passes the changes of a step to `visit`; fetches them if they were dropped, and fails if that is not possible.
+    /// The span is valid during the call.
     void look_at(size_t step, const std::function<void(std::span<const Change>)>& visit) const;
 
     void fetch_from(Fetch fetch) { fetch_ = std::move(fetch); }
     uint64_t memory_bytes() const { return memory_; }
-    /// Drops changes of the oldest commands until at most `max_bytes` are left; only of commands whose records, at
-    /// most `durable`, the journal has on disk.
+    /// Drops changes of the oldest commands until at most `max_bytes` are left; only of commands whose records, up to
+    /// `durable`, the journal has on disk.
     void shrink(uint64_t max_bytes, RecordNumber durable);
 
 private:

@@ -1,7 +1,7 @@
 #pragma once
-// Who writes a journal: from opening for writing until closing, one process holds JOURNAL.lock, which says who that is.
-// The hold is a lock of the system (open file description), so it ends with the process however that ends; a file that
-// a dead process left holds nothing. Those who only look take no lock and can ask who holds it.
+// The single writer of a journal: from opening for writing until closing, one process holds JOURNAL.lock, which
+// describes it. The hold is a lock of the system (open file description), so it ends with the process, even in a crash;
+// a file left by a dead process holds nothing. Readers take no lock and can query the holder.
 //
 // One thread at a time.
 
@@ -16,16 +16,16 @@
 
 namespace shvr {
 
-/// Another process writes the journal, or has written it since it was read.
+/// Another process is writing the journal, or has written it since it was read.
 class JournalTaken : public Error {
 public:
     using Error::Error;
 };
 
-/// As JOURNAL.lock says; a part that it does not say is empty.
+/// The content of JOURNAL.lock; missing parts are empty.
 struct Holder {
     std::string program;  ///< "shvr annotate"
-    std::string process;  ///< its number
+    std::string process;  ///< process id
     std::string host, user;
     std::string since;  ///< local time, "2026-11-22 13:20:05"
 };
@@ -34,11 +34,11 @@ std::string in_words(const Holder& holder);
 
 class Hold {
 public:
-    /// Fails with JournalTaken, naming the holder, where another one (also of this process) holds the journal. Null
-    /// where no lock can be kept: there is no journal, its folder may not be written to, or its file system has no
-    /// locks. `program`: as in Holder.
+    /// Fails with JournalTaken, naming the holder, if another hold (also in this process) exists on the journal. Null
+    /// if no lock can be taken: there is no journal, its folder is not writable, or its file system has no locks.
+    /// `program`: as in Holder.
     static std::shared_ptr<Hold> take(const std::filesystem::path& journal, std::string_view program);
-    /// Lets go, and removes the file.
+    /// Releases the lock, and removes the file.
     ~Hold();
     Hold(const Hold&) = delete;
 
@@ -50,7 +50,7 @@ private:
     FileDescriptor file_;
 };
 
-/// Who holds a journal; nothing where nobody does, or that cannot be known.
+/// The process that holds a journal; null if there is none, or it cannot be determined.
 std::optional<Holder> holder_of(const std::filesystem::path& journal);
 
 /// "scan.journal.lock" for "scan.journal".

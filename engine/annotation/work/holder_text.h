@@ -1,13 +1,13 @@
 #pragma once
-// What JOURNAL.lock says of who holds it: a line for each part. Any thread.
+// The content of JOURNAL.lock, which describes its holder: a line for each part. Any thread.
 
 #include "engine/annotation/work/hold.h"
 
 namespace shvr {
 
 std::string to_text(const Holder& holder);
-/// Anything may stand there: lines that are unknown are passed over, long parts are cut, and what a terminal cannot
-/// show is replaced.
+/// The file is untrusted: unknown lines are skipped, long parts
+/// are truncated, and unprintable characters are replaced.
 Holder parse_holder(std::string_view text);
 
 }  // namespace shvr

@@ -1,13 +1,13 @@
 #pragma once
 // The journal: every command of the user, appended to a file as it happens. The journal's thread writes at once (a
 // killed program loses the last milliseconds) and syncs at most every 100 ms (a power cut loses no more than that and
-// the time the disk takes).
+// the duration of a disk write).
 //
 //   append (main thread, never waits) -> queue -> frame, write, sync (the journal's thread) -> durable
 //
-// While the disk refuses, nothing is lost and no caller waits: records stay in memory, `failure` says why, and writing
-// is retried every second. Only one process writes a journal: it holds it (hold.h) and, where that is not possible or
-// an older program does not know of it, a lock on the file itself; both end with the process.
+// While writing fails, nothing is lost and no caller waits: records stay in memory, `failure` states the reason, and
+// writing is retried every second. Only one process writes a journal: it holds it (hold.h) and, if that is not possible
+// or an older program does not know of it, a lock on the file itself; both end with the process.
 //
 // One thread appends; any thread may query.
 
@@ -27,10 +27,10 @@ class AtomicWriter;
 
 class Journal {
 public:
-    /// Continues after the prefix that `before` found; what follows it is kept as JOURNAL.rest1, .rest2 and so on.
-    /// Fails if the file cannot be created or written, with JournalTaken if another process holds it.
+    /// Continues after the valid prefix in `before`; data after it is kept as JOURNAL.rest1, .rest2 and so on. Fails if
+    /// the file cannot be created or written, with JournalTaken if another process holds it.
     Journal(const std::filesystem::path& path, JournalScan before);
-    /// Tries to write the queue.
+    /// Tries to write the queue first.
     ~Journal();
     Journal(const Journal&) = delete;
 
@@ -40,16 +40,16 @@ public:
     RecordNumber last() const;
     /// Waits until everything appended is on disk; fails with the reason if that is not possible.
     void flush();
-    /// All records up to this one are on disk.
+    /// The number of the last record that is on disk, with all before it.
     RecordNumber durable() const;
     /// Number and checksum of that record; 0, 0 for none.
     std::pair<RecordNumber, uint64_t> last_durable() const;
-    /// False where the file was removed, or another one put in its place, since it was opened: what is written to it
-    /// will be gone.
+    /// False if the file was removed or replaced since it was
+    /// opened: data written to it will be lost.
     bool is_in_place() const;
-    /// Writes all that is on disk to another file, atomically.
+    /// Writes everything that is on disk to another file, atomically.
     void copy_to(const std::filesystem::path& path) const;
-    /// Why nothing can be written at present; empty if it can.
+    /// Why writing fails at present; empty if it does not.
     std::string failure() const;
     /// Size of the file, including the queue (uncompressed).
     uint64_t bytes() const;
@@ -66,7 +66,7 @@ private:
     void write();
     /// Frames the queued records that have no frame yet.
     void frame_all(std::deque<Waiting>& waiting);
-    /// Returns why it failed; empty if it did not.
+    /// Returns the reason of a failure; empty on success.
     std::string write_from(uint64_t at, const std::deque<Waiting>& waiting, size_t first) const;
     void begin(const std::filesystem::path& rest);
     std::string sync_beginning() const;
@@ -80,16 +80,16 @@ private:
     std::condition_variable appended_, tried_;
     std::deque<Waiting> queue_;
     std::vector<JournalRecord> records_;  ///< the durable ones
-    RecordNumber last_ = 0;               ///< appended
-    uint64_t end_ = 0;                    ///< of what is durable
+    RecordNumber last_ = 0;               ///< last number appended
+    uint64_t end_ = 0;                    ///< end of the durable part
     uint64_t waiting_bytes_ = 0;
     uint64_t tries_ = 0;
     int flushing_ = 0;
     bool is_ending_ = false;
     std::string failure_;
 
-    uint64_t checksum_ = 0;     ///< of the last framed record; the thread's
-    bool is_to_begin_ = false;  ///< header or length are not known to be on disk; the thread's
+    uint64_t checksum_ = 0;     ///< of the last framed record; used by the journal's thread
+    bool is_to_begin_ = false;  ///< header or length may not be on disk yet; used by the journal's thread
     std::thread thread_;
 };
 

@@ -1,8 +1,8 @@
 #pragma once
-// The journal's contents as bytes: numbers little-endian, whole ones in groups of 7 bits with the lowest first
-// (LEB128), doubles as their bits. Any thread may call these.
+// The journal's contents as bytes: little-endian; integers in groups of 7 bits, lowest first (LEB128), doubles as their
+// bits. Any thread may call these.
 //
-// Reading trusts nothing: lengths are checked against the bytes present before memory is allocated, and the result may
+// Readers trust nothing: lengths are checked against the bytes present before memory is allocated, and the result may
 // still not fit a document (Mask::why_it_does_not_fit and the same of other kinds).
 
 #include <cstddef>
@@ -19,7 +19,7 @@
 
 namespace shvr {
 
-/// Which volume is annotated. Two scans of the same size differ in `image`.
+/// Identifies the annotated volume. Two scans of the same size differ in `image`.
 struct JournalSubject {
     Size3 size{0};
     VoxelType type = VoxelType::uint8;
@@ -27,14 +27,14 @@ struct JournalSubject {
     bool operator==(const JournalSubject&) const = default;
 };
 
-/// The label of the first `saved` record of work that was begun empty beside the files of earlier work, so that they
-/// are no save of it.
+/// The label of the first `saved` record of work that was started empty next to the files of earlier work, so that
+/// those do not count as saves of it.
 inline constexpr char AFRESH[] = "afresh";
 
-/// The files that hold the annotation between sessions, as they were when the journal last saw them; nothing: no file.
+/// The files that hold the annotation between sessions, as last seen by the journal; null: no file.
 struct SavedFiles {
     std::optional<uint64_t> mask, trace, density;  ///< file_digest
-    std::optional<SettingValues> settings{};       ///< as the session's file was written; unknown in old journals
+    std::optional<SettingValues> settings{};       ///< as written to the session's file; unknown in old journals
     bool operator==(const SavedFiles&) const = default;
 };
 
@@ -43,10 +43,10 @@ std::vector<std::byte> bytes_of(const JournalSpace& space);
 std::vector<std::byte> bytes_of(const SavedFiles& files);
 std::vector<std::byte> bytes_of(const SettingValues& values);
 std::vector<std::byte> bytes_of(std::span<const Change> changes);
-/// The whole document, as the changes that make it from nothing, and the next numbers of the trace.
+/// The whole document, as the changes that create it from an empty one, and the trace's next numbers.
 std::vector<std::byte> bytes_of(const Document& document);
 
-/// Fail with what is wrong, without the file's name.
+/// These fail with the reason, without the file's name.
 JournalSubject subject_of(std::span<const std::byte> bytes);
 JournalSpace space_of(std::span<const std::byte> bytes);
 SavedFiles saved_files_of(std::span<const std::byte> bytes);

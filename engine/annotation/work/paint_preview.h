@@ -11,10 +11,10 @@
 namespace shvr {
 
 struct PaintPreview {
-    VoxelBox box;  ///< the smallest around the voxels; empty if there are none
+    VoxelBox box;  ///< the smallest box around the voxels; empty if there are none
     std::vector<uint32_t>
-        words;           ///< rows of words_per_row(), y next, z last; bit b of word w is x = lower.x + 32 w + b
-    int64_t voxels = 0;  ///< how many there are; at most 256^3, as in a brush's region
+        words;           ///< rows of words_per_row(), then y, z slowest; bit b of word w is x = lower.x + 32 w + b
+    int64_t voxels = 0;  ///< number of voxels; at most 256^3, as in a brush's region
     enum class Kind { group, density, erase };
     Kind kind = Kind::group;  ///< erase: voxels lose their group, or their offset
 
@@ -22,7 +22,7 @@ struct PaintPreview {
     int64_t words_per_row() const { return (box.size().x + 31) / 32; }
 };
 
-/// The voxels that `changes` of a volume of that size give another group or another offset.
+/// The voxels whose group or offset is changed by `changes`, in a volume of that size.
 PaintPreview preview_of(std::span<const Change> changes, const Size3& volume_size, PaintPreview::Kind kind);
 
 }  // namespace shvr

@@ -1,5 +1,5 @@
 #pragma once
-// The files an annotation is saved in, one for each part: what they hold, and how that differs from a document.
+// The files in which an annotation is saved, one for each part: their contents, and their differences from a document.
 //
 // Any thread may call these.
 
@@ -21,11 +21,11 @@ struct WorkFiles {
     std::filesystem::path mask{}, trace{}, density{};  ///< empty: not saved
     std::string volume_hash{};                         ///< Session::volume_hash
     VolumeInfo volume{};                               ///< the annotated volume
-    SettingValues settings{};                          ///< of the session, as it was read from its file
-    /// Settings as this version writes them, so that files and journals of different versions can be compared. Fails
-    /// where it cannot read them.
+    SettingValues settings{};                          ///< the session's, as read from its file
+    /// Settings as this version writes them, so that files and journals of different versions can be compared. Fails if
+    /// it cannot read them.
     std::function<SettingValues(const SettingValues&)> normalized{};
-    /// The same for kept settings (Work::keep_settings); empty where the caller keeps none.
+    /// The same for kept settings (Work::keep_settings); empty if the caller keeps none.
     SettingValues kept{};
     std::function<SettingValues(const SettingValues&)> normalized_kept{};
 };
@@ -42,34 +42,34 @@ inline const std::optional<uint64_t>& digest_of(const SavedFiles& digests, Part 
     return digest_of(const_cast<SavedFiles&>(digests), part);
 }
 
-/// Whether there is anything of a part to be saved.
+/// Whether a part has anything to be saved.
 bool holds_any(const Document& document, Part part);
 
 bool is_there(const std::filesystem::path& path);
 
-/// Reads the file of a part into a document whose part is empty. Fails where the file is malformed, or of another
-/// volume or image.
+/// Reads the file of a part into a document whose part is empty. Fails if the file is malformed, or of another volume
+/// or image.
 void load(Part part, const WorkFiles& files, Document& into);
 
-/// The changes that turn a part of one document into that of the other, both of one volume; none where they are equal.
-/// What is selected does not count.
+/// The changes that turn a part of one document into that of the other, both of one volume; none if they are equal. The
+/// selection is ignored.
 std::vector<Change> changes_between(Part part, const Document& from, const Document& to);
 
-/// The digest of the file that a trace would be saved to; nothing where it cannot be saved in that form.
+/// The digest of the file to which a trace would be saved; null if it cannot be saved in that format.
 std::optional<uint64_t> trace_digest(const WorkFiles& files, const TraceGraph& trace);
 
-/// When a file was written, as far as the system tells: a file with the same stamp is not read again.
+/// When a file was written, according to the system: a file with the same stamp is not read again.
 struct FileStamp {
     int64_t written_ns = 0, changed_ns = 0;
     uint64_t bytes = 0, inode = 0;
     bool operator==(const FileStamp&) const = default;
 };
-/// Nothing for folders and for what is not there.
+/// Null for folders and missing files.
 std::optional<FileStamp> stamp_of(const std::filesystem::path& path);
 
-/// "paint.mask.old", or "paint.mask.old2" and so on where that is there already.
+/// "paint.mask.old", or "paint.mask.old2" and so on if that already exists.
 std::filesystem::path old_of(const std::filesystem::path& path);
-/// Renames a file or folder to `old_of` it, and returns that; fails if it cannot.
+/// Renames a file or folder to its `old_of`, and returns that; fails if it cannot.
 std::filesystem::path set_aside(const std::filesystem::path& path);
 
 }  // namespace shvr

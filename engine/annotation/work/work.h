@@ -1,14 +1,14 @@
 #pragma once
-// The user's work: the document, its history, the journal that keeps both, and the files it is saved to.
+// The user's work: the document, its history, the journal that stores both, and the files to which it is saved.
 //
-// The journal is the truth between sessions. Opening replays it from its last complete state, so the history continues
-// where it ended, and unsaved work is there, too. Saved files (mask, trace, offsets) are for other programs. They are
-// loaded where there is no journal; one that is missing comes back from the journal; one that others changed is a
-// question for the user. Nothing is ever overwritten that the journal does not hold (README.md has the table). The
-// journal begins with the first command: only looking leaves no file.
+// The journal is authoritative between sessions. Opening replays it from its last complete state, so the history
+// continues where it ended, including unsaved work. Saved files (mask, trace, offsets) are for other programs. They are
+// loaded if there is no journal; a missing file is restored from the journal; a file changed by another program
+// requires a decision of the user. Nothing is ever overwritten that the journal does not hold (README.md has the
+// table). The journal begins with the first command: only viewing leaves no file.
 //
-// One thread at a time: the one that opens it, then the main one. Writing happens elsewhere: of the journal (journal.h)
-// and of a save (Work::Saving).
+// One thread at a time: the one that opens it, then the main one. Other threads write the journal (journal.h) and saves
+// (Work::Saving).
 
 #include <filesystem>
 #include <functional>
@@ -24,28 +24,28 @@
 
 namespace shvr {
 
-/// A sentence for the user.
+/// A message for the user.
 struct Notice {
     std::string text;
-    bool is_loss = false;  ///< something is not as it was left, so it is told even to those who want no messages
+    bool is_loss = false;  ///< something has been lost, so it is shown even to callers that suppress messages
 };
 
-/// Which is right where another program has changed a saved file.
+/// Which version counts if another program has changed a saved file.
 enum class Belief {
-    ask,      ///< the user, by `Work::disputes`; until `choose` the journal is shown, and nothing can be changed
+    ask,      ///< asks the user, by `Work::disputes`; until `choose` the journal is shown, and nothing can be changed
     journal,  ///< the next save keeps the file under another name
-    files,    ///< what changed comes into the work as a command, which undo takes back
+    files,    ///< the differences are applied to the work as a command, which can be undone
 };
 
-/// A saved file that another program has changed since the journal last knew it.
+/// A saved file that another program has changed since the journal last recorded it.
 struct Dispute {
     Part part = Part::mask;
     std::filesystem::path file;
     std::string text;                 ///< file, what was found, what was expected
-    std::vector<Change> differences;  ///< from what the journal holds to what the file holds
+    std::vector<Change> differences;  ///< from the journal's content to the file's content
 };
 
-/// Saved files were changed by others, and nobody has said yet what is to be believed.
+/// Saved files were changed by other programs, and the user has not decided yet which version counts.
 class Disputed : public Error {
 public:
     using Error::Error;
@@ -65,65 +65,66 @@ public:
     struct Opening {
         Start start = Start::as_left;
         Belief belief = Belief::ask;
-        bool only_look = false;        ///< takes no hold, and no command
-        std::shared_ptr<Hold> hold{};  ///< of this journal; null: it is taken now
-        std::string program = "shvr";  ///< as in Holder, where it is taken now
-        Progress progress{};           ///< of replaying the journal; what it throws ends the opening
+        bool only_look = false;        ///< read-only: takes no hold, and accepts no command
+        std::shared_ptr<Hold> hold{};  ///< a hold of this journal; null: it is taken now
+        std::string program = "shvr";  ///< as in Holder, if the hold is taken now
+        Progress progress{};           ///< of replaying the journal; an exception from it cancels the opening
     };
-    /// For a Work without commands. Returns what there is to say: unsaved work, files that are missing or unreadable, a
+    /// To be called on a Work without commands. Returns messages: unsaved work, files that are missing or unreadable, a
     /// journal that is missing or damaged. Fails, loading nothing, if a file is of another volume or malformed and no
-    /// journal holds what it held, and with JournalTaken where another process writes the journal.
+    /// journal holds its content, and with JournalTaken if another process is writing the journal.
     std::vector<Notice> open(const WorkFiles& files, const Opening& opening);
     std::vector<Notice> open(const WorkFiles& files) { return open(files, Opening{}); }
 
-    /// What is to be chosen; empty: nothing.
+    /// Decisions to be made; empty: none.
     const std::vector<Dispute>& disputes() const { return disputes_; }
-    /// Ends all disputes: by the files in one command, or with the journal as it is. Returns what was done, and the
-    /// command, valid until the history changes.
+    /// Resolves all disputes: with the files, applied as one command, or with the journal as it is. Returns messages
+    /// about what was done, and the command, valid until the history changes.
     struct Choice {
         std::vector<Notice> notices;
         const Command* command = nullptr;
     };
     Choice choose(Belief belief);
-    /// Fails with Disputed if there is something to be chosen.
+    /// Fails with Disputed if there are unresolved disputes.
     void expect_choice() const;
 
-    /// True where commands and saves are refused.
+    /// True if commands and saves are refused.
     bool only_looks() const { return only_looks_; }
-    /// Null where there is none.
+    /// Null if there is none.
     std::shared_ptr<Hold> hold() const { return hold_; }
 
     const Document& document() const { return document_; }
-    /// The session's lasting settings: the journal's or, where the session's file was changed since it was saved, the
+    /// The session's lasting settings: the journal's or, if the session's file was changed since it was saved, the
     /// file's. The first command then records that change as a step of its own.
     SettingValues settings() const;
-    /// The settings that come back as they were left, but are no work: as they were last kept.
+    /// The settings that are restored on opening but are not part of the work, as last kept.
     const SettingValues& kept_settings() const { return kept_; }
     const History& history() const { return history_; }
 
-    /// As History's, but written to the journal first. Fail, with nothing done, if the journal cannot be started, is
+    /// As in History, but written to the journal first. Fail without any effect if the journal cannot be started, is
     /// locked by another process, or does not accept the command.
     const Command* perform(Command command);
     void extend(std::vector<Change> changes);
-    /// Sets the sections that differ, as one command; null where none does.
+    /// Sets the sections that differ, as one command; null if none does.
     const Command* change_settings(std::string label, const SettingValues& values);
     const Command* undo();
     const Command* redo();
-    /// Goes back to what was last saved, or taken from a saved file, as one command; null where nothing differs. That
-    /// is read from the journal, so it does not matter what has become of the files since. Fails if nothing was ever
-    /// saved, or the journal cannot be read; then nothing has changed.
+    /// Reverts to the last saved state, or to the last state taken from a saved file, as one command; null if nothing
+    /// differs. The state is read from the journal, so later changes of the files do not matter. Fails if nothing was
+    /// ever saved, or the journal cannot be read; then nothing has changed.
     const Command* revert();
-    /// Keeps those sections that differ: no command and no reason to save. Written where there is a journal, which the
-    /// first command begins; until then, and where it cannot be written, they are in memory and go with the next
-    /// record. Never fails. Sections that are set for this time only ("key=value") are not to be given.
+    /// Keeps the sections that differ; this is neither a command nor a reason to save. They are written to the journal,
+    /// if there is one, which the first command starts; until then, and if it cannot be written, they stay in memory
+    /// and are written with the next record. Never fails. Sections set for this run only ("key=value") must not be
+    /// passed.
     void keep_settings(const SettingValues& values);
-    /// Not a step of the history. What is selected must exist.
+    /// Not a step of the history. The selected objects must exist.
     void select_trace(TraceSelection selection) { document_.trace.select(std::move(selection)); }
 
-    /// Writes the files, each atomically, and records it in the journal; a label image gets the groups' `looks`. Trace
-    /// and offsets are written only if they have changed or are missing. A file that holds what the journal does not is
-    /// kept under another name first. Fails if one cannot be written (a retry may succeed), or if there is something to
-    /// save and no file named for it. `save_session` writes the session's file, which then holds `settings()` and
+    /// Writes the files, each atomically, and records that in the journal; a label image gets the groups' `looks`.
+    /// Trace and offsets are written only if they have changed or are missing. A file with content that the journal
+    /// lacks is renamed first and kept. Fails if one cannot be written (a retry may succeed), or if there is something
+    /// to save and no file named for it. `save_session` writes the session's file, which then holds `settings()` and
     /// `kept_settings()`.
     struct Saved {
         std::vector<std::filesystem::path> files;
@@ -131,61 +132,61 @@ public:
     };
     Saved save(std::vector<LabelImage::Color> looks = {}, const std::function<void()>& save_session = {});
 
-    /// A save beside the work: what is to be written, as it was when the save began. What is done meanwhile is not in
-    /// it and stays unsaved. Until `write` has come to its end the journal does not say that anything was saved.
+    /// A save in the background: writes the state at the time when the save began. Later commands are not included and
+    /// stay unsaved. Until `write` has completed, the journal does not record the save.
     class Saving;
-    /// Takes what is to be written, at the cost of a copy of the document; fails as `save` does before it writes. One
-    /// at a time; `end_save` must follow.
+    /// Copies the state to be written, at the cost of a copy of the document; fails as `save` does before it writes.
+    /// One at a time; `end_save` must follow.
     std::unique_ptr<Saving> begin_save(std::vector<LabelImage::Color> looks);
-    /// Whether it was written or not.
+    /// To be called whether or not it was written.
     Saved end_save(Saving& saving);
     bool is_saving() const { return is_saving_; }
 
-    /// Going on under other names, none of which may exist yet, with the whole history; what was written before stays
-    /// as it is and is let go. In this order, each on disk before the next: a copy of the journal, the mark that a save
-    /// begins, the files, what they are, and `save_session`, which writes `session`: what is killed before that leaves
-    /// files that nothing names, and after it a whole project. Fails with nothing changed, and removes what it has
-    /// made. Where there is no history yet, the new journal begins with the first command.
+    /// Continues the work under other names, none of which may exist yet, with the whole history; the files written
+    /// before stay as they are and are released. In this order, each on disk before the next: a copy of the journal,
+    /// the mark that a save begins, the files, their digests, and `save_session`, which writes `session`: a crash
+    /// before that leaves files that nothing refers to, and after it a whole project. On failure nothing has changed,
+    /// and new files are removed. If there is no history yet, the new journal begins with the first command.
     Saved save_as(const WorkFiles& to, std::vector<LabelImage::Color> looks, const std::filesystem::path& session = {},
                   const std::function<void()>& save_session = {});
-    /// The same beside the work, as `begin_save`. Until `end_save_as` commands are refused: they would be in one of the
-    /// journals only.
+    /// The same in the background, as `begin_save`. Until `end_save_as`, commands are refused, since they would be in
+    /// only one of the journals.
     class SavingAs;
     std::unique_ptr<SavingAs> begin_save_as(const WorkFiles& to, std::vector<LabelImage::Color> looks,
                                             const std::filesystem::path& session = {});
     Saved end_save_as(SavingAs& saving);
     bool is_saving_as() const { return is_saving_as_; }
-    /// Writes the document as it is now into other files, which must not exist yet; on any thread, also when the work
-    /// has ended.
+    /// Writes the document as it is now into other files, which must not exist yet; callable on any thread, even after
+    /// the work has ended.
     std::function<void(const WorkFiles& to)> copier(std::vector<LabelImage::Color> looks) const;
     void name_files(const std::filesystem::path& mask, const std::filesystem::path& trace,
                     const std::filesystem::path& density);
-    /// Commands, undos and redos since the last save.
+    /// Number of commands, undos and redos since the last save.
     size_t unsaved() const { return unsaved_; }
-    /// Nothing is to be saved: no command, and no file that is missing or cannot be read.
+    /// Whether nothing needs saving: no command, and no file that is missing or unreadable.
     bool is_saved() const { return unsaved_ == 0 && !misses_files_; }
-    /// All commands are on disk, in the journal: closing without a save loses none.
+    /// Whether all commands are on disk, in the journal: closing without a save loses none.
     bool is_kept() const;
-    /// Ends what is under way beside the work, so that another Work can open the same files before this one is gone.
+    /// Completes background tasks, so that another Work can open the same files before this one is destroyed.
     void settle();
-    /// Waits until the journal is on disk, on another thread; empty where there is none. It may outlive the work.
+    /// Waits until the journal is on disk, on another thread; empty if there is none. It may outlive the work.
     std::function<void()> flusher() const;
-    /// No command since has changed the trace.
+    /// Whether no command since the last save has changed the trace.
     bool trace_is_saved() const { return !touched_[size_t(Part::trace)]; }
     /// Waits until the journal is on disk; fails with the reason if that is not possible.
     void flush();
 
     struct JournalState {
         uint64_t bytes = 0;
-        std::string failure;  ///< why nothing can be written now; work waits in memory
+        std::string failure;  ///< why writing fails now; work stays in memory
     };
     JournalState journal() const;
 
     struct Limits {
-        /// Of commands kept in memory; older ones are fetched from the journal.
+        /// Budget of commands kept in memory; older ones are fetched from the journal.
         uint64_t history_bytes = uint64_t{256} << 20;
-        /// After this much (or twice the last state's size), or this many steps, the journal gets a state: opening then
-        /// takes as long as reading one, and states are at most half of a journal.
+        /// After this many bytes (or twice the last state's size), or this many steps, the journal gets a state:
+        /// opening then takes as long as reading one, and states are at most half of a journal.
         uint64_t bytes_between_states = uint64_t{16} << 20;
         size_t steps_between_states = 20000;
     };
@@ -201,7 +202,7 @@ private:
     void open_fresh();
     std::vector<Notice> open_from_files(const std::string& damage);
     void check_subject() const;
-    /// Returns why it stopped early, and then drops the remaining records from the scan; empty if it took all.
+    /// Returns why it stopped early, and then drops the remaining records from the scan; empty if it replayed all.
     std::string replay();
     struct Replayed {
         Document document;
@@ -241,13 +242,13 @@ private:
     void write_kept();
     void touch(std::span<const Change> changes);
     const Command* go(const Command* (History::*way)(Document&), RecordKind kind);
-    /// 0: the last step goes on.
+    /// 0: the last step continues.
     void note_unsaved(size_t steps);
     void note_step();
     void keep_state();
 
     // Saving
-    /// The record of the last save that each part is of; 0: it was never saved.
+    /// The record of the last save of each part; 0: it was never saved.
     struct LastSave {
         std::array<RecordNumber, 3> of{};
     };
@@ -264,52 +265,52 @@ private:
     WorkFiles files_;
     Document document_;
     History history_;
-    JournalScan scan_;                       ///< as it was read; the journal continues from it
+    JournalScan scan_;                       ///< as read from the file; the journal continues from it
     std::optional<FileDescriptor> scanned_;  ///< its file
     bool is_to_set_aside_ = false;           ///< the journal that was read does not belong to this work
     bool only_looks_ = false;
-    bool is_fresh_ = false;  ///< begun empty beside files of earlier work
+    bool is_fresh_ = false;  ///< started empty next to files of earlier work
     std::string program_;    ///< as in Holder
     std::shared_ptr<Hold> hold_;
     std::vector<Dispute> disputes_;
-    std::vector<Change> settings_from_outside_;  ///< differences of the session's file, to be recorded
-    SettingValues kept_;                         ///< as it is now
-    SettingValues journaled_kept_;               ///< as the journal holds it
-    RecordNumber last_kept_ = 0;                 ///< its last record of them
-    RecordNumber known_kept_ = 0;                ///< its record as of which the session's file holds them; 0: not known
-    size_t kept_since_whole_ = 0;                ///< records since the last with all sections
-    bool keeps_settings_ = false;                ///< the caller keeps some
-    bool kept_from_outside_ = false;             ///< the session's file is to be noted as what is known
-    bool cannot_keep_ = false;                   ///< the journal could not be opened; the first command says why
+    std::vector<Change> settings_from_outside_;  ///< differences in the session's file, to be recorded
+    SettingValues kept_;                         ///< the present values
+    SettingValues journaled_kept_;               ///< the values in the journal
+    RecordNumber last_kept_ = 0;                 ///< the journal's last record of them
+    RecordNumber known_kept_ = 0;                ///< the record up to which the session's file holds them; 0: not known
+    size_t kept_since_whole_ = 0;                ///< records since the last one with all sections
+    bool keeps_settings_ = false;                ///< the caller keeps some settings
+    bool kept_from_outside_ = false;             ///< the session's file is to be recorded as the known state
+    bool cannot_keep_ = false;                   ///< the journal could not be opened; the first command reports why
     /// From record `since` on positions are in this space; those before the first are, too.
     struct SpaceSince {
         RecordNumber since = 0;
         JournalSpace space;
     };
-    std::vector<SpaceSince> spaces_;           ///< up to the volume's own
-    std::optional<RecordKind> space_to_note_;  ///< how its own goes into the journal
+    std::vector<SpaceSince> spaces_;           ///< up to the volume's own space
+    std::optional<RecordKind> space_to_note_;  ///< the kind of record that will add the volume's own
     SavedFiles known_;                         ///< the files as the journal last knew them
-    /// A file as this process last saw it.
+    /// The state of a file as this process last saw it.
     struct Seen {
         std::optional<uint64_t> digest{};
         std::optional<FileStamp> stamp{};
-        bool is_foreign = false;  ///< the journal does not hold what it holds
+        bool is_foreign = false;  ///< its content is not in the journal
     };
     static Seen seen_at(const std::filesystem::path& file);
     static void note_file(const std::filesystem::path& file, Seen& seen);
     std::array<Seen, 3> seen_;
-    std::shared_ptr<Journal> journal_;  ///< a save under way holds it, too
+    std::shared_ptr<Journal> journal_;  ///< shared with a save in progress
     size_t unsaved_ = 0;
-    bool misses_files_ = false;      ///< that the journal holds and the next save writes
+    bool misses_files_ = false;      ///< missing files that the journal holds and the next save writes
     std::array<bool, 3> touched_{};  ///< since the last save
     bool is_saving_ = false;
-    bool is_saving_as_ = false;  ///< then both
+    bool is_saving_as_ = false;  ///< then both are true
     size_t unsaved_since_saving_ = 0;
     std::array<bool, 3> touched_since_saving_{};
-    Progress opening_progress_;  ///< null unless it is being opened
+    Progress opening_progress_;  ///< null except while opening
     uint64_t since_state_bytes_ = 0, state_bytes_ = 0;
     size_t since_state_steps_ = 0;
-    std::future<std::vector<std::byte>> state_;  ///< being made of a copy of the document
+    std::future<std::vector<std::byte>> state_;  ///< being encoded from a copy of the document
     RecordNumber state_about_ = 0;
     Limits limits_;
 };
@@ -317,8 +318,8 @@ private:
 class Work::Saving {
 public:
     Saving(const Saving&) = delete;
-    /// Writes the files and what they are, as `Work::save` says, on any thread; only once. What `progress` throws ends
-    /// it: then some files may be new and the rest old, as where it fails.
+    /// Writes the files and their digests, as `Work::save` does, on any thread; only once. An exception from `progress`
+    /// ends it: then some files may be new and the rest old, as after a failure.
     void write(const std::function<void()>& save_session = {}, const Progress& progress = {});
 
 private:
@@ -344,7 +345,7 @@ private:
 class Work::SavingAs {
 public:
     SavingAs(const SavingAs&) = delete;
-    /// As Saving::write. What was made is removed where it does not come to its end.
+    /// As Saving::write. Removes the new files if it does not complete.
     void write(const std::function<void()>& save_session = {}, const Progress& progress = {});
 
 private:
@@ -356,7 +357,7 @@ private:
     std::vector<LabelImage::Color> looks_;
     std::filesystem::path session_;
     std::string program_;
-    std::shared_ptr<Journal> before_;  ///< of the work as it is; null where it has no history yet
+    std::shared_ptr<Journal> before_;  ///< the present work's; null if it has no history yet
     SettingValues kept_;
     RecordNumber last_kept_ = 0, known_kept_ = 0;
 
@@ -369,7 +370,7 @@ private:
     bool has_session_ = false, is_written_ = false;
 };
 
-/// That the journal is missing although the mask was saved with it; nothing where that is not so, or not known.
+/// A notice that the journal is missing although the mask was saved with it; null if that is not so, or not known.
 std::optional<Notice> note_missing_journal(const WorkFiles& files);
 
 }  // namespace shvr

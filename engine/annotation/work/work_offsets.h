@@ -10,13 +10,13 @@ namespace shvr {
 /// The bricks with offsets, as OffsetSource takes them.
 std::vector<OffsetSource::Brick> offset_bricks(const DensityField& field);
 
-/// `base` with the field's offsets; `base` itself where there are none. The field, of the volume's size and type, may
+/// `base` with the field's offsets; `base` itself if there are none. The field, of the volume's size and type, may
 /// change afterwards.
 std::shared_ptr<const VolumeSource> with_offsets(std::shared_ptr<const VolumeSource> base, const DensityField& field);
 
-/// Only the offsets that `Work::open` would load, looked at: without a journal, mask and trace are not read. Fails as
-/// Work::open does, and with Disputed where another program has changed their file and `belief` does not say which is
-/// right; appends what there is to say to `notices`. One thread.
+/// Reads only the offsets that `Work::open` would load: without a journal, mask and trace are not read. Fails as
+/// Work::open does, and with Disputed if another program has changed their file and `belief` does not decide; appends
+/// messages to `notices`. One thread.
 DensityField offsets_of(const WorkFiles& files, Belief belief, std::vector<Notice>& notices);
 
 }  // namespace shvr
