@@ -17,24 +17,24 @@ namespace shvr {
 inline constexpr uint32_t PAINT_BUTTON = 1u << 0;
 inline constexpr uint32_t MOVE_BUTTON = 1u << 1;  ///< moves the volume
 
-inline constexpr double MAX_REACH_M = 10.0;  ///< no device reaches farther from its origin along an axis
+inline constexpr double MAX_REACH_M = 10.0;  ///< no device reaches farther from its origin along any axis
 
 struct DeviceState {
-    uint64_t time_ns = 0;         ///< time of the position, by the device's own steady clock: only differences count
-    uint32_t sequence = 0;        ///< of this state, counting up; a gap means lost states
-    uint32_t force_sequence = 0;  ///< of the force in effect at that time
+    uint64_t time_ns = 0;         ///< time of the position on the device's own steady clock: only differences matter
+    uint32_t sequence = 0;        ///< counts states; a gap means lost states
+    uint32_t force_sequence = 0;  ///< number of the force in effect at that time
     glm::dvec3 position_m{0.0};
     glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
     uint32_t buttons = 0;  ///< a set of PAINT_BUTTON and MOVE_BUTTON
-    uint32_t jump = 0;     ///< changes when a simulated device was moved there at once: no glitch
+    uint32_t jump = 0;     ///< changes when a simulated device was placed there: not a glitch
     bool calibrated = true;
-    /// Of a device that states speeds (`DeviceCaps::rate_control`): shares of its full deflection, -1 ... 1, along and
-    /// about our axes. The view may be moved by them; position and rotation are their sums over time.
+    /// For devices that report speeds (`DeviceCaps::rate_control`): fractions of full deflection, -1 ... 1, along and
+    /// about our axes. They may move the view; position and rotation are their integrals over time.
     glm::dvec3 rate{0.0}, turn_rate{0.0};
 };
 
 struct DeviceCaps {
-    glm::dvec3 usable_lower_m{-0.08, -0.06, -0.035};  ///< where its forces are right
+    glm::dvec3 usable_lower_m{-0.08, -0.06, -0.035};  ///< the box in which its forces are accurate
     glm::dvec3 usable_upper_m{0.08, 0.06, 0.035};
     double peak_force_n = 3.3;
     double continuous_force_n = 0.88;
@@ -42,8 +42,8 @@ struct DeviceCaps {
     double latency_s = 0.002;
     bool senses_rotation = false;
     bool outputs_force = false;
-    bool tells_force_sequence = false;  ///< its states tell which force is in effect; otherwise `latency_s` must do
-    bool rate_control = false;          ///< it states speeds, not places; it rests where it is silent
+    bool tells_force_sequence = false;  ///< its states report which force is in effect; otherwise `latency_s` is used
+    bool rate_control = false;          ///< it reports speeds, not positions; silence means rest
     bool operator==(const DeviceCaps&) const = default;
 };
 
@@ -59,9 +59,9 @@ public:
     virtual ~HapticDevice() = default;
     virtual DeviceCaps caps() const noexcept = 0;
     virtual ReadResult read(DeviceState& state) noexcept = 0;
-    /// Sets the force on the hand from now on. False if the device is gone.
+    /// Sets the force on the hand until the next call. False if the device is gone.
     virtual bool write(const glm::dvec3& force_n, uint32_t sequence) noexcept = 0;
-    /// Why it is lost or gives no force, a sentence that is never freed; "" if nothing is wrong. Any thread.
+    /// Why it is lost or gives no force, as a sentence that is never freed; "" if nothing is wrong. Any thread.
     virtual const char* trouble() const noexcept { return ""; }
 };
 

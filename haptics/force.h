@@ -2,16 +2,16 @@
 // Computes the force on the hand, one tick at a time: proxy, spring, damping, limits. Its only state is the caller's
 // `ForceMemory` and `GrowthMemory`: the same inputs give the same forces, bit for bit.
 //
-//   F = k_hand * offset - b * v - taken, |F| <= peak and what the motors can hold, |dF| <= slew per tick,
+//   F = k_hand * offset - b * v - taken, |F| <= peak and the motors' continuous limit, |dF| <= slew per tick,
 //   all scaled by the fades;    k_hand = k * (PROBE_M / probe radius in the hand) / movement scale
 //
 // The scaling is eq. 3.7 of the thesis: a probe that is large in the hand, or moves far, pulls as little as a small
-// one. What is bounded is the stiffness at the hand, after scaling.
+// one. The limit applies to the stiffness at the hand, after scaling.
 //
-// Stability (delay of two ticks, haptic literature: Colgate and Schenkel; Abbott and Okamura): k <= 300 N/m and
-// b = 1.0 N s/m; velocities come from time stamps and are smoothed at about 100 Hz, so damping does not depend on the
-// rate. Both apply at the hand, without the scale from device to volume. `ProxyLaw::thesis` alone damps as eq. 3.5
-// does, by the difference of two positions, at 1 kHz as strong.
+// Stability (delay of two ticks, haptic literature: Colgate and Schenkel; Abbott and Okamura): k <= 300 N/m and b = 1.0
+// N s/m; velocities are computed from time stamps and smoothed at about 100 Hz, so damping does not depend on the rate.
+// Both apply at the hand, without the scale from device to volume. Only `ProxyLaw::thesis` damps as eq. 3.5 does, by
+// the difference of two positions, which is equally strong at 1 kHz.
 
 #include <cstdint>
 
@@ -30,27 +30,27 @@ enum ForceFlag : uint32_t {
     FORCE_FAULT = 4,         ///< a non-finite position or force; latched until ForceSettings::reset changes
     FORCE_CLAMPED = 8,       ///< at the device's peak
     FORCE_ENGAGING = 16,     ///< fading in
-    FORCE_WARM = 32,         ///< limited to what the motors can hold for long
-    FORCE_SLOW = 64,         ///< the device's states come too rarely: half the stiffness, or none
-    FORCE_OUTSIDE = 128,     ///< outside the box in which the device's forces are right
-    FORCE_LET_GO = 256,      ///< as asked
+    FORCE_WARM = 32,         ///< limited to the motors' continuous force
+    FORCE_SLOW = 64,         ///< the device's states arrive too rarely: half the stiffness, or none
+    FORCE_OUTSIDE = 128,     ///< outside the box in which the device's forces are accurate
+    FORCE_LET_GO = 256,      ///< on request
     FORCE_OFF_OBJECT = 512,  ///< object following: the probe is off its object and touches another after a moment
 };
 
-/// A push against the way of the hand as it touches something, half a sine wave: what tells a hand where things begin
-/// is the first milliseconds of contact, not its stiffness (Kuchenbecker, Fiene, Niemeyer: Improving contact realism
-/// through event-based haptic feedback, 2006). In proportion to the hand's speed, so that it slows the lightest one, a
-/// Touch's arm of 45 g that nobody holds, by 0.6 of that and never turns it round, and makes no energy. A hand that
-/// hardly moves gets none, nor one that has been off for less than CLICK_PAUSE_NS: one that trembles on a surface feels
-/// no buzz.
+/// A pulse against the hand's motion as it touches something, half a sine wave: a hand perceives the onset of contact
+/// by its first milliseconds, not by its stiffness (Kuchenbecker, Fiene, Niemeyer: Improving contact realism through
+/// event-based haptic feedback, 2006). It is proportional to the hand's speed, so that it slows even the lightest one,
+/// the free arm of a Touch (45 g), by only 0.6 of that speed, never reverses it, and adds no energy. There is no pulse
+/// if the hand hardly moves, or has been off for less than CLICK_PAUSE_NS: a hand that trembles on a surface feels no
+/// buzz.
 struct ClickMemory {
-    glm::dvec3 peak_n{0.0};  ///< of the present one
-    uint64_t left_ns = 0;    ///< of the present one; 0: there is none
-    uint64_t off_ns = 0;     ///< for how long nothing has been touched
+    glm::dvec3 peak_n{0.0};  ///< of the pulse in progress
+    uint64_t left_ns = 0;    ///< remaining time of the pulse; 0: there is none
+    uint64_t off_ns = 0;     ///< how long nothing has been touched
 };
 inline constexpr double CLICK_N = 0.25;
 inline constexpr double CLICK_FULL_SPEED = 0.1, CLICK_LEAST_SPEED = 0.01;  ///< m/s
-inline constexpr uint64_t CLICK_NS = 16'000'000;  ///< steepest 0.049 N per tick, as gentle as forces are
+inline constexpr uint64_t CLICK_NS = 16'000'000;  ///< steepest slope 0.049 N per tick, as gentle as other forces
 inline constexpr uint64_t CLICK_PAUSE_NS = 100'000'000;
 
 struct ForceMemory {
@@ -59,25 +59,25 @@ struct ForceMemory {
     DeviceState candidate;        ///< the last rejected state
     int glitches = 0;             ///< rejected states in a row, all near `candidate`
     glm::dvec3 velocity{0.0};     ///< m/s, smoothed
-    glm::dvec3 moved_m{0.0};      ///< of the last state from the one before: the thesis's damping
+    glm::dvec3 moved_m{0.0};      ///< motion between the last two states: for the thesis's damping
     glm::dvec3 force_n{0.0};      ///< the last force
     bool has_begun = false;       ///< the engagement is rising
     double engagement = 0.0;      ///< 0 ... 1: fades in after the device appeared or jumped
     double relevance_fade = 0.0;  ///< 0 ... 1: falls while the relevance is unusable
-    double contact_fade = 0.0;    ///< 0 ... 1: of the damping
+    double contact_fade = 0.0;    ///< 0 ... 1: for the damping
     double strength = 0.0;        ///< follows ForceSettings::strength
     uint64_t last_tick_ns = 0;
     uint64_t last_fresh_ns = 0;  ///< when the last fresh state arrived
     uint32_t flags = 0;          ///< FORCE_FAULT is latched
     uint32_t reset = 0;          ///< ForceSettings::reset, last seen
 
-    // Cross-fade between two pulls: another mode, law or object
+    // Cross-fade between two pulls: after a change of mode, law or object
     HapticMode mode = HapticMode::proximity;
     ProxyLaw law = ProxyLaw::potential;
     uint32_t object = 0;
-    double cross = 1.0;         ///< 0 ... 1: of the present pull
-    glm::dvec3 spring_n{0.0};   ///< the last one
-    glm::dvec3 crossed_n{0.0};  ///< the one that fades out
+    double cross = 1.0;         ///< 0 ... 1: weight of the present pull
+    glm::dvec3 spring_n{0.0};   ///< last value
+    glm::dvec3 crossed_n{0.0};  ///< the pull that fades out
 
     ClickMemory click;
     SurfaceMemory surface;
@@ -90,14 +90,14 @@ struct ForceMemory {
 struct ForceStep {
     glm::dvec3 force_n{0.0};  ///< device frame
     glm::dvec3 probe{0.0};    ///< physical
-    glm::dvec3 proxy{0.0};    ///< physical; the probe where there is no contact
+    glm::dvec3 proxy{0.0};    ///< physical; the probe's position if there is no contact
     bool in_contact = false;
     double relevant_share = 0.0;
     uint32_t flags = 0;
-    uint32_t sequence = 0;   ///< to write the force with
-    double made_j = 0.0;     ///< energy that the observer saw made and has not taken back
-    uint32_t objects = 0;    ///< touched so far, in object following
-    double latency_s = 0.0;  ///< measured; 0 where the device does not tell
+    uint32_t sequence = 0;   ///< number to write with the force
+    double made_j = 0.0;     ///< generated energy according to the observer, not yet dissipated
+    uint32_t objects = 0;    ///< number touched so far, in object following
+    double latency_s = 0.0;  ///< measured; 0 if the device does not report it
 };
 
 inline constexpr uint64_t RELEVANCE_FADE_NS = 100'000'000;    ///< duration of the fade of unusable relevance
@@ -106,13 +106,15 @@ inline constexpr uint64_t MODE_FADE_NS = 100'000'000;         ///< from one pull
 inline constexpr uint64_t STRENGTH_FADE_NS = 200'000'000;     ///< from no strength to all of it
 inline constexpr uint64_t ENGAGE_NS = 1'000'000'000;          ///< for devices with motors
 inline constexpr uint64_t ENGAGE_SIMULATED_NS = 100'000'000;  ///< for the mouse
-inline constexpr double ENGAGE_BELOW_N = 0.2;                 ///< as in chai3d: a device never starts with a pull
+inline constexpr double ENGAGE_BELOW_N = 0.2;                 ///< as in chai3d: a device never starts with a jerk
 inline constexpr uint64_t SILENCE_NS = 20'000'000;            ///< a device silent for that long counts as absent
 inline constexpr double GLITCH_M = 0.005;                     ///< no hand moves that far in one tick
-inline constexpr int GLITCHES_TO_ACCEPT = 3;                  ///< in a row at the new position: the device was moved
+inline constexpr int GLITCHES_TO_ACCEPT = 3;                  ///< in a row at the new position: the device really was
+                                                              ///< moved
 inline constexpr double MAX_DAMPING = 1.2;                    ///< N s/m; more is unstable with jitter and no friction
-inline constexpr double SLEW_N = 0.1;                         ///< per tick, at most
-inline constexpr double GENTLE_SLEW_N = 0.05;  ///< per tick of a hand of at most GENTLE_SPEED; more in proportion
+inline constexpr double SLEW_N = 0.1;                         ///< maximum per tick
+inline constexpr double GENTLE_SLEW_N = 0.05;  ///< per tick for a hand of at most GENTLE_SPEED; proportionally more
+                                               ///< above
 inline constexpr double GENTLE_SPEED = 0.05;   ///< m/s
 
 /// The stiffness at the hand, after scaling and clamping.

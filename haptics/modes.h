@@ -1,5 +1,5 @@
 #pragma once
-// Where each mode pulls the probe. Pure, but for the memory handed in; never allocates.
+// The pull of each mode on the probe. Pure, except for the memory passed in; never allocates.
 
 #include "haptics/growth.h"
 #include "haptics/settings.h"
@@ -8,28 +8,30 @@ namespace shvr {
 
 struct SurfaceMemory {
     bool is_pinned = false;
-    bool is_armed = true;   ///< after a release a surface holds again only once less of the ball was relevant
+    bool is_armed = true;   ///< after a release a surface holds again only once a smaller share of the ball was
+                            ///< relevant
     glm::dvec3 pin{0.0};    ///< physical
-    double farthest = 0.0;  ///< towards the camera of the pin, the least since it was set; physical units
+    double farthest = 0.0;  ///< minimum since the pin was set of the probe's position relative to it along the
+                            ///< direction to the camera; physical units
 };
 
-/// A surface lets go once the probe moves that share of its radius towards the camera: a hand at rest trembles.
+/// A surface releases once the probe moves that share of its radius towards the camera: a hand at rest trembles.
 inline constexpr double RELEASE_SHARE = 0.05;
-/// It also lets go, and is ready to hold again, below that part of `surface_share`.
+/// It also releases, and is re-armed, below this fraction of `surface_share`.
 inline constexpr double SURFACE_HYSTERESIS = 0.75;
 
 struct ModePull {
     glm::dvec3 offset{0.0};  ///< proxy - probe, physical units
     bool in_contact = false;
     double relevant_share = 0.0;
-    bool is_usable = false;  ///< the relevance covers the ball, is young enough and of the present settings
+    bool is_usable = false;  ///< the relevance covers the ball, is recent enough and has the present settings
     bool has_lost = false;   ///< object following: off the object it followed
-    uint32_t object = 0;     ///< counts objects touched and pins set: a change is another pull
+    uint32_t object = 0;     ///< counts touched objects and set pins: a change means another pull
 };
 
 ModePull pull_of(const ForceSettings& settings, const RelevancePatch& patch, const glm::dvec3& probe, uint64_t now_ns,
                  SurfaceMemory& surface, GrowthMemory& growth) noexcept;
 
-inline constexpr uint64_t RELEVANCE_FRESH_NS = 50'000'000;  ///< with older relevance the force fades
+inline constexpr uint64_t RELEVANCE_FRESH_NS = 50'000'000;  ///< with older relevance the force fades out
 
 }  // namespace shvr

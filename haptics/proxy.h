@@ -8,10 +8,10 @@
 //   mean      proxy = mean of the relevant points in the ball: as in the thesis (eq. 3.3 - 3.5), without sampling noise
 //   potential offset = sum(a - p) / (sum(1 - |a - p|^2 / r^2) + eps N): the gradient of log(S + eps N), so no loop of
 //             the hand gains energy, and the force grows from 0 when the first voxel enters. N is the ball's volume.
-//   thesis    mean over 3000 points drawn once at random, as the thesis has it: noisy and not continuous (1.7 to 2.5 %
-//             of the radius where `mean` has 0.1 %). For comparing
+//   thesis    mean over 3000 points drawn once at random, as in the thesis: noisy and not continuous (1.7 to 2.5 %
+//             of the radius where `mean` has 0.1 %). For comparison
 //
-// Pure; any thread. Cost: 10 to 20 ns a line.
+// Pure; any thread. Cost: 10 to 20 ns per line.
 
 #include <span>
 #include <vector>
@@ -24,31 +24,31 @@ namespace shvr {
 
 /// Integrals over the relevant part of the ball, in physical units.
 struct BallIntegrals {
-    double volume = 0.0;    ///< of 1
-    glm::dvec3 first{0.0};  ///< of a - p
-    double second = 0.0;    ///< of |a - p|^2
+    double volume = 0.0;    ///< integral of 1
+    glm::dvec3 first{0.0};  ///< integral of a - p
+    double second = 0.0;    ///< integral of |a - p|^2
 };
 BallIntegrals integrate(const RelevancePatch& patch, const glm::dvec3& centre, double radius) noexcept;
 
 enum class ProxyLaw : uint8_t { potential, mean, thesis };
-inline constexpr int SAMPLE_POINTS = 3000;  ///< of the thesis
+inline constexpr int SAMPLE_POINTS = 3000;  ///< as in the thesis
 
 struct Proxy {
     bool in_contact = false;      ///< the ball contains relevant voxels
     glm::dvec3 offset{0.0};       ///< proxy - probe, physical units; 0 without contact
-    double relevant_share = 0.0;  ///< of the ball's volume
+    double relevant_share = 0.0;  ///< share of the ball's volume
 };
 inline constexpr double POTENTIAL_FLOOR = 0.05;  ///< eps above
 Proxy find_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius, ProxyLaw law) noexcept;
 
-// ---- By sample points, for comparing (`shvr haptics bench --sweep`)
+// ---- By sample points, for comparison (`shvr haptics bench --sweep`)
 // --------------------------------------------------
 
-/// Points in a ball of radius 1: at random, evenly distributed (algorithm 2 of the thesis); the same everywhere.
+/// Random points in a ball of radius 1, uniformly distributed (algorithm 2 of the thesis); the same on every machine.
 std::vector<glm::dvec3> random_points(int count);
-/// The same of low discrepancy: additive recurrence with the plastic number (Roberts 2018) over equal volumes.
+/// The same with low discrepancy: additive recurrence with the plastic number (Roberts 2018) over equal volumes.
 std::vector<glm::dvec3> even_points(int count);
-/// The mean of the relevant points among these.
+/// The proxy at the mean of the relevant points among these.
 Proxy find_sampled_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
                          std::span<const glm::dvec3> points) noexcept;
 

@@ -1,6 +1,6 @@
 #pragma once
 // Which voxels around the probe are relevant (at or above the haptic threshold), as the servo sees them: a grid of
-// bits, held by value, with its position, its level, its age and the settings it was made with. A compute pass makes it
+// bits, held by value, with its position, its level, its age and the settings used for it. A compute pass produces it
 // (or the host, engine/live/relevance_host.h); the host publishes it through `Latest`. Plain data that never allocates.
 
 #include <array>
@@ -12,18 +12,19 @@
 namespace shvr {
 
 struct RelevancePatch {
-    static constexpr int32_t MAX_VOXELS = 128;  ///< a side
+    static constexpr int32_t MAX_VOXELS = 128;  ///< per side
     static constexpr size_t MAX_WORDS = size_t(MAX_VOXELS) * MAX_VOXELS * MAX_VOXELS / 32;
 
     uint64_t sequence = 0;  ///< 0: nothing is known yet
-    uint64_t time_ns = 0;   ///< time of the request, CLOCK_MONOTONIC: later changes are not in it
+    uint64_t time_ns = 0;   ///< time of the request, CLOCK_MONOTONIC: later changes are not included
     glm::ivec3 origin{0};   ///< voxel of its lower corner
     glm::ivec3 size{0};  ///< voxels, each at most MAX_VOXELS; clipped to the volume, outside which nothing is relevant
     int32_t words_per_row = 0;  ///< 32-bit words along x: bit b of word w is voxel x = origin.x + 32 w + b
     glm::dvec3 spacing{1.0};    ///< physical units per voxel of its level
     glm::ivec3 volume_size{0};  ///< voxels of its level
-    int32_t level = 0;          ///< voxels of level l cover 2^l of the volume's along each axis; for large probes
-    uint32_t settings = 0;      ///< ForceSettings::relevance_settings it was made with: others make it unusable
+    int32_t level = 0;          ///< level l voxels cover 2^l of the volume's along each axis; coarse levels are for
+                                ///< large probes
+    uint32_t settings = 0;      ///< the ForceSettings::relevance_settings used for it: if they differ it is unusable
     std::array<uint32_t, MAX_WORDS> words{};  ///< word + words_per_row * (y + size.y * z)
 
     uint32_t row_word(int32_t word, int32_t y, int32_t z) const
@@ -31,9 +32,9 @@ struct RelevancePatch {
         return words[size_t(word) + size_t(words_per_row) * (size_t(y) + size_t(size.y) * size_t(z))];
     }
     size_t word_count() const { return size_t(words_per_row) * size_t(size.y) * size_t(size.z); }
-    /// Whether its numbers fit each other and the array.
+    /// Whether its dimensions are consistent with each other and with the array.
     bool is_well_formed() const;
-    /// Everything but the words.
+    /// Copies everything except the words.
     void take_place_of(const RelevancePatch& other);
     /// Whether the patch covers the part of the ball that lies in the volume. Physical units; the corner of voxel (0,
     /// 0, 0) is the origin and voxel i has its centre at (i + 0.5) * spacing. False while nothing is known yet.

@@ -3,10 +3,10 @@
 // shares only latest values with the rest of the program, and never locks, allocates, logs or throws.
 //
 //   application --Latest<ForceSettings>--> servo --Latest<ServoState>--> application
-//   mirror of relevance --Latest<RelevancePatch>--> servo --Latest<ProbePlace>--> mirror of relevance
+//   relevance mirror --Latest<RelevancePatch>--> servo --Latest<ProbePlace>--> relevance mirror
 //
-// The application's thread calls everything here, but that one other thread may have relevance() and place(). The servo
-// owns the device.
+// The application's thread calls everything here, except that one other thread may use relevance() and place(). The
+// servo owns the device.
 
 #include <array>
 #include <atomic>
@@ -42,10 +42,10 @@ struct TimeHistogram {
     double quantile_us(double share) const noexcept;
 };
 
-/// Where the probe is, for whoever mirrors relevance around it.
+/// The probe's position, for the code that mirrors relevance around it.
 struct ProbePlace {
     glm::dvec3 point{0.0};  ///< physical
-    bool is_known = false;  ///< the device is there, and the servo has settings
+    bool is_known = false;  ///< the device is present, and the servo has settings
 };
 
 /// The servo's state, as published to the application.
@@ -57,9 +57,9 @@ struct ServoState {
     ForceStep step;
     DeviceCaps caps;
     TimeHistogram lateness;          ///< how late ticks started
-    TimeHistogram duration;          ///< of each tick's own work
-    TimeHistogram relevance_age;     ///< of the patch used, on ticks with assistance
-    uint64_t relevance_time_ns = 0;  ///< of that patch; 0: none yet
+    TimeHistogram duration;          ///< of the work in each tick
+    TimeHistogram relevance_age;     ///< age of the patch used, on ticks with assistance
+    uint64_t relevance_time_ns = 0;  ///< time of that patch; 0: none yet
 };
 
 class Servo {
@@ -77,12 +77,12 @@ public:
     Latest<ForceSettings>& settings() { return settings_; }
     Latest<RelevancePatch>& relevance() { return relevance_; }
     Latest<ServoState>& state() { return state_; }
-    /// One reading thread, which need not be that of state().
+    /// For one reading thread, which may differ from that of state().
     Latest<ProbePlace>& place() { return place_; }
     /// Whether the system granted SCHED_FIFO; if not, only the timer slack is reduced.
     bool is_realtime() const { return is_realtime_; }
-    /// Whether the system lets it keep all memory of a tick where it is (kept_memory.h), which is known once it ticks;
-    /// if not, that is there at the first tick, and may be missing after hours.
+    /// Whether the system lets it lock all memory needed in a tick (kept_memory.h), which is known once it ticks; if
+    /// not, that memory is present at the first tick, and may be evicted after hours.
     bool keeps_memory() const { return keeps_memory_; }
 
 private:

@@ -1,5 +1,5 @@
 #pragma once
-// What a person chooses of the sense of touch, as the servo gets it: by value, through `Latest`.
+// The user's settings of the sense of touch, as passed to the servo: by value, through `Latest`.
 
 #include <cstdint>
 
@@ -10,7 +10,7 @@
 
 namespace shvr {
 
-/// How the device's workspace lies in the volume: point = origin + to_volume * position_m, a rotation times a scale.
+/// Maps the device's workspace into the volume: point = origin + to_volume * position_m, a rotation times a scale.
 struct Workspace {
     glm::dmat3 to_volume{1.0};  ///< physical units per metre
     glm::dvec3 origin{0.0};     ///< physical
@@ -19,9 +19,9 @@ struct Workspace {
 };
 
 enum class HapticMode : uint8_t {
-    proximity,  ///< towards the mean of all that is relevant in the ball
+    proximity,  ///< towards the mean of the relevant voxels in the ball
     surface,    ///< held where enough of the ball is relevant, until the probe moves towards the camera
-    object,     ///< as proximity, but of the object first touched alone
+    object,     ///< as proximity, but only for the object touched first
 };
 
 inline constexpr Spelling<HapticMode> HAPTIC_MODES[] = {
@@ -41,21 +41,22 @@ struct ForceSettings {
     bool assistance = false;  ///< off: no force
     ProxyLaw law = ProxyLaw::potential;
     double probe_radius = 1.0;  ///< physical units
-    double stiffness = 300.0;   ///< N/m of a probe of PROBE_M in the hand; at the hand never above the device's limit
+    double stiffness = 300.0;   ///< N/m for a probe of PROBE_M in the hand; at the hand never above the device's limit
     double damping = 1.0;       ///< N s/m, at most 1.2
     Workspace workspace;
     uint32_t reset = 0;  ///< a change clears a latched fault
     HapticMode mode = HapticMode::proximity;
-    glm::dvec3 to_camera{0.0, 0.0, 1.0};  ///< unit vector in the volume: what releases a surface
-    double surface_share = 0.4;           ///< of the ball: a surface holds above it and lets go below 3/4 of it
-    double movement_scale = 1.0;          ///< of the hand's moves, as a person set it: divides the force
-    double strength = 1.0;                ///< 0 ... 1 of the force
-    bool clicks = false;                  ///< a short push where contact begins; of devices with motors alone
-    bool let_go = false;                  ///< no force from the next tick on; afterwards it engages anew
-    uint32_t relevance_settings = 0;      ///< counts changes of threshold and groups: what was made before fades out
+    glm::dvec3 to_camera{0.0, 0.0, 1.0};  ///< unit vector in the volume; motion along it releases a surface
+    double surface_share = 0.4;           ///< fraction of the ball: a surface holds above it and lets go below 3/4 of
+                                          ///< it
+    double movement_scale = 1.0;          ///< user's scale of the hand's motion: divides the force
+    double strength = 1.0;                ///< factor of the force, 0 ... 1
+    bool clicks = false;                  ///< a short pulse when contact begins; only for devices with motors
+    bool let_go = false;                  ///< no force from the next tick on; afterwards it engages again
+    uint32_t relevance_settings = 0;      ///< counts changes of threshold and groups: relevance made before fades out
 };
 
-/// Radius of a probe in the hand at which `stiffness` acts as it is: ten voxels of 0.25 mm.
+/// Radius of a probe in the hand at which `stiffness` applies unscaled: ten voxels of 0.25 mm.
 inline constexpr double PROBE_M = 0.0025;
 
 }  // namespace shvr

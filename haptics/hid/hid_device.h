@@ -13,8 +13,8 @@
 
 namespace shvr {
 
-/// Null if no device is plugged in that a profile matches. Fails if one is plugged in but cannot be opened (the udev
-/// rule is missing) or is only recognised (its profile has no input report). An unplugged device is found again when it
+/// Null if no plugged-in device matches a profile. Fails if one is plugged in but cannot be opened (the udev rule is
+/// missing) or is only recognised (its profile has no input report). An unplugged device is found again when it
 /// returns. `path` is that of a listing; empty: the first device of the first profile that matches. Forces reach it
 /// only if its profile is verified and `allow_force` is set.
 std::unique_ptr<HapticDevice> open_hid_device(const std::vector<HidProfile>& profiles, bool allow_force,

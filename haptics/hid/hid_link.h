@@ -4,12 +4,12 @@
 //
 //   port -> reader thread --Latest--> read()      write() --Latest--> writer thread -> port
 //
-// A device that states speeds has its place here: read() moves it on, at every call, as long as the device is there; a
-// force moves its wish as it moves a mouse's. Silence is rest.
+// For a device that reports speeds, the link integrates the position: read() advances it, at every call, while the
+// device is present; a force moves its wish as it moves a mouse's. Silence means rest.
 //
 // The reader drains the queue (kernels keep the OLDEST reports after a stall) and keeps the newest report. When the
-// port is gone, read() returns `lost` and the reader tries to reopen it every 15 ms, and asks for its limits anew. The
-// writer's last report switches the force off.
+// port is gone, read() returns `lost` and the reader tries to reopen it every 15 ms, and then reads its limits again.
+// The writer's last report switches the force off.
 
 #include <cstdint>
 #include <functional>
@@ -41,7 +41,7 @@ using HidOpener = std::function<std::unique_ptr<HidPort>()>;
 struct HidLinkOptions {
     bool allow_force = false;        ///< takes effect only if the profile is verified
     bool realtime = false;           ///< SCHED_FIFO for both threads, if the system allows it
-    uint64_t (*now_ns)() = nullptr;  ///< moves rate control; null: the steady clock
+    uint64_t (*now_ns)() = nullptr;  ///< drives rate control; null: the steady clock
 };
 
 /// `port` is open and its profile has an input report. `reopen` is called on the reader's thread. Force reports have

@@ -1,9 +1,9 @@
 #pragma once
-// The layout of a HID device's reports, read from a file (assets/devices/*.json): supporting a new device takes a file,
-// not a recompilation. assets/devices/README.md describes the format.
+// The layout of a HID device's reports, read from a file (assets/devices/*.json): supporting a new device requires a
+// file, not a recompilation. assets/devices/README.md describes the format.
 //
-// Schema 1 knows one input report, with places. Schema 2 knows several, told apart by id and length, and devices that
-// state speeds: rate control, whose silence is rest.
+// Schema 1 supports one input report, with positions. Schema 2 supports several, distinguished by id and length, and
+// devices that report speeds: rate control, for which silence means rest.
 //
 // Loading is strict: unknown keys, fields that exceed their report and layouts without a source are refused with a
 // one-sentence message. Any thread.
@@ -20,8 +20,8 @@
 
 namespace shvr {
 
-/// Everything a field can mean. Values are raw * scale + offset: metres, seconds, newtons; rotations are a quaternion;
-/// rates are shares of the full deflection, -1 ... 1.
+/// All quantities that a field can represent. Values are raw * scale + offset: metres, seconds, newtons; rotations are
+/// a quaternion; rates are fractions of full deflection, -1 ... 1.
 enum class HidQuantity : uint8_t {
     // input
     buttons,
@@ -39,7 +39,7 @@ enum class HidQuantity : uint8_t {
     rate_x,  ///< along the device's axes
     rate_y,
     rate_z,
-    turn_x,  ///< about them
+    turn_x,  ///< about the same axes
     turn_y,
     turn_z,
     battery,
@@ -70,7 +70,7 @@ struct HidField {
 };
 
 struct HidReport {
-    uint8_t id = 0;       ///< 0: the device does not number its reports
+    uint8_t id = 0;       ///< 0: the device's reports have no id
     uint32_t length = 0;  ///< bytes after the id
     std::vector<HidField> fields;
     const HidField* find(HidQuantity quantity) const;
@@ -81,26 +81,25 @@ struct HidMatch {
     uint16_t usage_page = 0, usage = 0;  ///< 0: any
 };
 
-/// How deflection becomes speed: gain * ((share - dead_zone) / (1 - dead_zone))^gamma, along the deflection.
+/// Maps deflection to speed: gain * ((share - dead_zone) / (1 - dead_zone))^gamma, along the deflection.
 struct HidRate {
     double speed = 0.1;       ///< m/s in the device's workspace at full deflection
     double turn_speed = 1.5;  ///< rad/s at full deflection
-    double gamma = 1.5;       ///< above 1: finer in the middle
-    double dead_zone = 0.05;  ///< share of the deflection that counts as none
-    uint32_t rest_ms = 200;   ///< a device that was silent for so long rests, even if it never said so
+    double gamma = 1.5;       ///< above 1: finer near the centre
+    double dead_zone = 0.05;  ///< fraction of the deflection that counts as none
+    uint32_t rest_ms = 200;   ///< a device that was silent for that long is at rest, even if it never reported so
 };
 
 struct HidProfile {
     std::string name;
     std::vector<HidMatch> matches;
     std::vector<HidReport> inputs;     ///< none: the device is only recognised
-    std::vector<uint8_t> ignored_ids;  ///< of reports that say nothing of interest
+    std::vector<uint8_t> ignored_ids;  ///< reports without relevant data
     std::optional<HidReport> output, feature;
-    std::optional<HidRate> rate;  ///< it states speeds, not places
-    /// Of all input reports; null if none has it.
+    std::optional<HidRate> rate;  ///< set: it reports speeds, not positions
+    /// The field in any input report; null if none has it.
     const HidField* find_input(HidQuantity quantity) const;
-    glm::dmat3 axes{
-        1.0};  ///< from the device's axes to +x right, +y up, +z towards the user; each one turned or flipped
+    glm::dmat3 axes{1.0};  ///< from the device's axes to +x right, +y up, +z towards the user; a signed permutation
     DeviceCaps limits;
     uint32_t watchdog_ms = 0;  ///< the device drops its force after that long without a report; 0: no watchdog
     std::string provenance;    ///< source of the layout
@@ -110,10 +109,10 @@ struct HidProfile {
 
 inline constexpr uint32_t MAX_REPORT_BYTES = 64;
 
-/// `origin` names the text in errors.
+/// `origin` names the text in error messages.
 HidProfile parse_hid_profile(const std::string& text, const std::string& origin);
 HidProfile load_hid_profile(const std::filesystem::path& file);
-/// All *.json of a folder, by name.
+/// All *.json of a folder, sorted by name.
 std::vector<HidProfile> load_hid_profiles(const std::filesystem::path& folder);
 
 }  // namespace shvr

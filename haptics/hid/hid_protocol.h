@@ -14,7 +14,7 @@
 
 namespace shvr {
 
-/// The contents of an input report, in our axes; what it does not state is absent. Counters are raw: `Unwrapped`
+/// The contents of an input report, in our axes; values it does not contain are null. Counters are raw: `Unwrapped`
 /// extends them.
 struct HidInput {
     std::optional<glm::dvec3> position_m;
@@ -24,11 +24,11 @@ struct HidInput {
     std::optional<bool> calibrated;
     std::optional<uint32_t> sequence, force_sequence, time;
 };
-/// Nothing if the report is none of the profile's input reports: its id or length differs.
+/// Null if the report is not one of the profile's input reports: its id or length differs.
 std::optional<HidInput> decode(const HidProfile& profile, std::span<const uint8_t> report);
-/// Whether the profile says to pass over such a report.
+/// Whether the profile tells us to ignore such a report.
 bool is_ignored(const HidProfile& profile, std::span<const uint8_t> report);
-/// The share of the full speed for a deflection; finite, at most 1 long.
+/// Converts a deflection to a fraction of full speed; finite, length at most 1.
 glm::dvec3 shaped(const HidRate& rate, const glm::dvec3& deflection);
 
 struct HidBytes {
@@ -40,7 +40,7 @@ struct HidBytes {
 /// with the enable flag off. Empty if the profile has no output report.
 HidBytes encode(const HidProfile& profile, const glm::dvec3& force_n, uint32_t sequence, bool enabled);
 
-/// The profile's limits, replaced by those of the device's feature report where it states a weaker force, a smaller
+/// The profile's limits, replaced by those of the device's feature report if it states a weaker force, a smaller
 /// workspace or a longer latency. The profile's own if `report` is not its feature report.
 DeviceCaps decode_feature(const HidProfile& profile, std::span<const uint8_t> report);
 

@@ -1,14 +1,14 @@
 #pragma once
-// Raw reports with the times at which they came, so that the owner of a device whose layout is not public can
-// contribute one. Nothing is written to the device. The file is lines of JSON, first about the device, then one for
-// each report:
+// Raw reports with their arrival times, so that the owner of a device whose
+// layout is not public can contribute one. Nothing is written to the device.
+// The file is lines of JSON, first about the device, then one for each report:
 //
 //     {"format":"shvr_hid_reports","version":1,"vendor":"0x2988","product":"0x0304","name":"Touch","descriptor":"06"}
 //     {"t_us":1042,"bytes":"01a3ff"}
 //
-// Times are microseconds since the recording began, and never go back; bytes begin with the report's id if the device
-// numbers its reports. The descriptor is the device's own description of its reports, where the system shows it. No
-// serial number is kept.
+// Times are microseconds since the recording began, and never decrease; bytes begin with the report's id if the device
+// numbers its reports. The descriptor is the device's own description of its reports, if the system exposes it. No
+// serial number is stored.
 
 #include <cstdint>
 #include <filesystem>
@@ -35,8 +35,8 @@ struct HidRecording {
 inline constexpr size_t MAX_RECORDED_REPORT_BYTES = 1024;
 inline constexpr size_t MAX_RECORDED_REPORTS = 1'000'000;  ///< a quarter of an hour at 1 kHz
 
-/// Adds reports to `recording` until `most_s` seconds have passed, the device is gone or `goes_on` says no; `goes_on`
-/// is asked every 20 ms, with the number of reports so far. False if the device went away.
+/// Adds reports to `recording` until `most_s` seconds have passed, the device is gone or `goes_on` returns false;
+/// `goes_on` is called every 20 ms, with the number of reports so far. False if the device was removed.
 bool record_reports(HidPort& port, double most_s, const std::function<bool(size_t)>& goes_on, HidRecording& recording);
 
 /// Records the first device whose ids match ("2988:0304"), or whose path is `device` ("/dev/hidraw3"), into `file`,
@@ -46,7 +46,7 @@ size_t record_hid_device(const std::string& device, const std::filesystem::path&
                          const std::function<bool(size_t)>& goes_on);
 
 std::string text_of(const HidRecording& recording);
-/// `origin` names the text in errors.
+/// `origin` names the text in error messages.
 HidRecording parse_hid_recording(const std::string& text, const std::string& origin);
 HidRecording load_hid_recording(const std::filesystem::path& file);
 

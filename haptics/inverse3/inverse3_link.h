@@ -1,16 +1,16 @@
 #pragma once
-// Haply's Inverse3, by the service of its maker on the own machine: states and forces on one WebSocket, events of
-// safety on another.
+// Haply's Inverse3, through its maker's service on the local machine: states and forces on one WebSocket, safety events
+// on another.
 //
 //   servo --Latest--> link thread <--socket--> service          servo <--Latest-- link thread
 //
 // The service answers each message with one state: the link sends when the servo has written, and at most one message
-// is on its way. The servo never waits: its side exchanges latest values and wakes the link.
+// is in flight. The servo never waits: its side exchanges latest values and wakes the link.
 //
-// No force is sent unless all of this holds: it is allowed; the channel of events is there; the servo wrote within
-// `write_timeout`; the last message was answered within `answer_timeout`; neither e-brake, stall nor ceiling was told
-// of within `hold`. Otherwise a zero force goes out at once. A message that is not as documented ends the connection;
-// `trouble()` says why. A lost connection is tried again every 20 ms.
+// No force is sent unless all of this holds: it is allowed; the event channel is connected; the servo wrote within
+// `write_timeout`; the last message was answered within `answer_timeout`; no e-brake, stall or ceiling event was
+// received within `hold`. Otherwise a zero force is sent at once. A message that violates the documentation ends the
+// connection; `trouble()` says why. A lost connection is retried every 20 ms.
 
 #include <atomic>
 #include <chrono>
@@ -28,14 +28,14 @@ struct Inverse3Options {
     bool allow_force = false;
     bool realtime = true;                            ///< SCHED_FIFO for the link's thread, if the system allows it
     std::chrono::milliseconds connect_timeout{300};  ///< for each connection and the first inventory
-    std::chrono::milliseconds write_timeout{12};     ///< with what follows, zero force within 20 ms
+    std::chrono::milliseconds write_timeout{12};     ///< together with the remaining delays, zero force within 20 ms
     std::chrono::milliseconds answer_timeout{12};
-    std::chrono::milliseconds keep_alive{10};  ///< between messages while the servo does not write
-    std::chrono::milliseconds hold{1000};      ///< after a stall, and after a message that was refused
-    uint64_t (*now_ns)() = nullptr;            ///< stamps states; null: the steady clock
+    std::chrono::milliseconds keep_alive{10};  ///< interval of messages while the servo does not write
+    std::chrono::milliseconds hold{1000};      ///< after a stall, and after a refused message
+    uint64_t (*now_ns)() = nullptr;            ///< time stamps of states; null: the steady clock
 };
 
-/// What the link did since it was opened; any thread.
+/// Message counts since the link was opened; any thread.
 struct Inverse3Counts {
     uint64_t sent = 0, answered = 0, refused = 0, connections = 0;
 };
@@ -46,7 +46,7 @@ public:
     virtual Inverse3Counts counts() const noexcept = 0;
 };
 
-/// Null if nobody listens on the port. Fails if what listens there is no such service or has no such device. Waits for
+/// Null if nothing listens on the port. Fails if the listener is not this service or has no such device. Waits for
 /// `connect_timeout` at most three times.
 std::unique_ptr<Inverse3> open_inverse3(const Inverse3Options& options);
 

@@ -1,10 +1,10 @@
 #pragma once
-// What the Inverse service says and is told, as JSON texts (Inverse SDK 3.5, by its public documentation). A thousand
-// messages a second are read without building a tree: a strict scan that keeps the few numbers needed. Pure; any
-// thread.
+// Messages to and from the Inverse service, as JSON texts (Inverse SDK 3.5, according to its public documentation). A
+// thousand messages a second are parsed without building a tree: a strict scan that keeps the few numbers needed. Pure;
+// any thread.
 //
-// Places, velocities and forces are in the service's frame (+x right, +y forward, +z up), metres and newtons;
-// `from_inverse3` and `to_inverse3` turn them.
+// Positions, velocities and forces are in the service's frame (+x right, +y forward, +z up), metres and newtons;
+// `from_inverse3` and `to_inverse3` convert them.
 
 #include <cstdint>
 #include <string>
@@ -25,23 +25,23 @@ inline glm::dvec3 to_inverse3(const glm::dvec3& v)
 }
 
 struct Inverse3State {
-    std::string device_id;  ///< letters, digits, - and _; empty: there is no device (of the id asked for)
+    std::string device_id;  ///< letters, digits, - and _; empty: there is no device (with the requested id)
     bool has_position = false;
     glm::dvec3 position_m{0.0};
-    bool has_rotation = false;  ///< of the grip
+    bool has_rotation = false;  ///< rotation of the grip
     glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
-    uint32_t buttons = 0;  ///< of the grip: bit 0 is a, bit 1 is b
+    uint32_t buttons = 0;  ///< buttons of the grip: bit 0 is a, bit 1 is b
 };
 /// Reads an inventory or a state into `state`: the device of that id, or the first one if `device_id` is empty. Returns
-/// null, or what is wrong with the message; `state` is then unspecified.
+/// null, or the message's defect; `state` is then unspecified.
 const char* read_inverse3_state(std::string_view text, std::string_view device_id, Inverse3State& state);
 
 enum class Inverse3Event : uint8_t {
     other,
     ebrake_on,
     ebrake_off,
-    stall,    ///< of a motor
-    ceiling,  ///< of the stability of its control
+    stall,    ///< a motor stalled
+    ceiling,  ///< the stability limit of its controller was reached
     connected,
     disconnected,
 };
@@ -49,11 +49,11 @@ struct Inverse3Notice {
     Inverse3Event event = Inverse3Event::other;
     std::string device_id;  ///< empty: not stated
 };
-/// Reads a message of the channel of events; returns null, or what is wrong with it.
+/// Reads a message of the event channel; returns null, or the message's defect.
 const char* read_inverse3_notice(std::string_view text, Inverse3Notice& notice);
 
-/// The message that sets a force, written so that it is read back bit for bit. The first one of a connection also names
-/// the program. `force_n` must be finite.
+/// Appends the message that sets a force, in digits that parse back bit for bit. The first one of a connection also
+/// names the program. `force_n` must be finite.
 void append_inverse3_command(std::string& text, std::string_view device_id, const glm::dvec3& force_n, bool is_first);
 
 }  // namespace shvr

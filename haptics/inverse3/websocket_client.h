@@ -1,6 +1,6 @@
 #pragma once
-// A WebSocket to a port of the own machine. Connecting waits, at most as long as it is told; afterwards nothing waits:
-// a poll on `descriptor()` says when there is something to receive. One thread at a time.
+// A WebSocket to a port of the local machine. Connecting waits, at most as long as specified; afterwards nothing waits:
+// a poll on `descriptor()` shows when there is something to receive. One thread at a time.
 
 #include <chrono>
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace shvr {
 
 class WebSocketClient {
 public:
-    /// Null if nobody listens there, or `trouble` says why what listens there is of no use.
+    /// Null if nothing listens there, or if the listener is unusable; `trouble` then says why.
     static std::unique_ptr<WebSocketClient> connect(uint16_t port, std::chrono::milliseconds most,
                                                     std::string& trouble);
     ~WebSocketClient();
@@ -22,17 +22,18 @@ public:
     WebSocketClient& operator=(const WebSocketClient&) = delete;
 
     int descriptor() const { return descriptor_; }
-    /// False if the other side is gone or does not read what it is sent.
+    /// False if the other side is gone or does not read what was sent.
     bool send_text(std::string_view text);
-    /// Takes what has arrived; false if the connection has ended. What was whole is still in `next()`.
+    /// Receives pending data; false if the connection has ended. Complete messages are still available through
+    /// `next()`.
     bool receive();
     /// The next message; pings are answered here.
     WebSocketReader::Event next();
     std::string_view payload() const { return reader_.payload(); }
     const char* trouble() const { return reader_.trouble(); }
-    /// Waits until there is something to receive; false if nothing came.
+    /// Waits until there is something to receive; false on a timeout.
     bool wait(std::chrono::steady_clock::time_point until) const;
-    /// Says that no more will be sent.
+    /// Announces that no more will be sent.
     void close();
 
 private:
@@ -42,7 +43,7 @@ private:
     bool send_frame(WebSocketOpcode opcode, std::string_view payload);
 
     int descriptor_;
-    uint32_t mask_ = 0x9e3779b9;  ///< changes with each frame; masks protect proxies, of which there is none here
+    uint32_t mask_ = 0x9e3779b9;  ///< changes with each frame; masks protect proxies, of which there are none here
     std::string frame_;
     WebSocketReader reader_;
 };

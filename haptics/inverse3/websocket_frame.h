@@ -1,6 +1,6 @@
 #pragma once
-// The part of WebSockets (RFC 6455) that a client on the own machine needs: the handshake's texts, and frames as bytes.
-// Pure; any thread.
+// The part of WebSockets (RFC 6455) needed by a client on the local machine: the handshake's texts, and frames as
+// bytes. Pure; any thread.
 
 #include <array>
 #include <cstddef>
@@ -17,14 +17,14 @@ enum class WebSocketOpcode : uint8_t { continuation = 0, text = 1, binary = 2, c
 
 /// The key of a handshake: 16 random bytes in base64.
 std::string websocket_key(const std::array<uint8_t, 16>& random);
-/// What a server must answer to that key.
+/// The answer that a server must give to that key.
 std::string websocket_accept(std::string_view key);
 std::string websocket_request(uint16_t port, std::string_view key);
 
 struct WebSocketAnswer {
     bool is_complete = false;       ///< the header has ended
-    size_t size = 0;                ///< of the header, bytes; frames follow it
-    const char* trouble = nullptr;  ///< why it is no WebSocket; null: it is one
+    size_t size = 0;                ///< size of the header in bytes; frames follow it
+    const char* trouble = nullptr;  ///< why it is not a WebSocket; null: it is one
 };
 WebSocketAnswer check_websocket_answer(std::string_view received, std::string_view key);
 
@@ -32,12 +32,12 @@ WebSocketAnswer check_websocket_answer(std::string_view received, std::string_vi
 
 inline constexpr size_t MAX_WEBSOCKET_MESSAGE = 256 << 10;  ///< an inventory of several devices is about 10 KiB
 
-/// Appends one whole frame, masked as RFC 6455 asks of clients.
+/// Appends one whole frame, masked as RFC 6455 requires of clients.
 void append_websocket_frame(std::string& bytes, WebSocketOpcode opcode, std::string_view payload, uint32_t mask);
 /// The same without a mask, as servers send it.
 void append_unmasked_websocket_frame(std::string& bytes, WebSocketOpcode opcode, std::string_view payload);
 
-/// Cuts what was received into messages.
+/// Splits received bytes into messages.
 ///
 ///     reader.add(bytes);
 ///     for (auto event = reader.next(); event != Event::none; event = reader.next()) ... reader.payload() ...
@@ -48,13 +48,13 @@ public:
         text,     ///< a whole message
         ping,     ///< to be answered with a pong of the same payload
         close,    ///< the other side ends the connection
-        refused,  ///< against the protocol: `trouble()` says why; nothing is read from then on
+        refused,  ///< protocol violation: `trouble()` says why; nothing is read from then on
     };
     /// Servers receive masked frames, clients unmasked ones.
     explicit WebSocketReader(bool is_server = false) : is_server_(is_server) {}
     void add(std::string_view bytes) { received_.append(bytes); }
     Event next();
-    /// Of the last event; valid until the next call of anything here.
+    /// The payload of the last event; valid until the next call of any method.
     std::string_view payload() const { return payload_; }
     const char* trouble() const { return trouble_; }
 
@@ -64,7 +64,7 @@ private:
 
     bool is_server_;
     std::string received_, message_;
-    size_t used_ = 0;  ///< bytes of `received_` that were read
+    size_t used_ = 0;  ///< number of bytes of `received_` already parsed
     bool is_within_message_ = false;
     std::string payload_;
     const char* trouble_ = nullptr;

@@ -28,7 +28,7 @@ inline constexpr uint32_t USABLE_WORKSPACE = 0x2551;       ///< mm: x y z from, 
 inline constexpr uint32_t NOMINAL_MAX_STIFFNESS = 0x2602;  ///< 0 ... 1
 inline constexpr uint32_t NOMINAL_MAX_FORCE = 0x2603;      ///< N
 inline constexpr uint32_t NOMINAL_MAX_CONTINUOUS_FORCE = 0x2604;
-inline constexpr uint32_t MOTOR_TEMPERATURE = 0x2605;  ///< a share for each motor, 1 is too hot
+inline constexpr uint32_t MOTOR_TEMPERATURE = 0x2605;  ///< a fraction per motor, 1 is too hot
 inline constexpr uint32_t CURRENT_FORCE = 0x2700;      ///< N
 inline constexpr uint32_t FORCE_OUTPUT = 0x4000;
 
@@ -72,8 +72,8 @@ struct HdLibrary {
     void (*update_calibration)(uint32_t style) = nullptr;
 };
 
-/// Null if there is no such library. Fails if it lacks a function. What was loaded stays loaded until the program ends:
-/// the driver does not survive being loaded twice.
+/// Null if there is no such library. Fails if it lacks a function. A loaded library stays loaded until the program
+/// ends: the driver does not survive being loaded twice.
 const HdLibrary* load_hd_library(const std::string& name);
 
 }  // namespace shvr

@@ -1,6 +1,6 @@
 #pragma once
-// 3D Systems' Touch and its kin through their maker's driver. The driver's own scheduler calls us a thousand times a
-// second in a thread of its own; the servo exchanges latest values with it and never waits:
+// 3D Systems' Touch and related devices through their maker's driver. The driver's own scheduler calls us a thousand
+// times a second in its own thread; the servo exchanges latest values with it and never waits:
 //
 //   servo --Latest--> the driver's thread --Latest--> servo
 //
@@ -20,14 +20,14 @@ struct OpenHapticsOptions {
     std::string library = "libHD.so";
     std::string device;  ///< name given in the driver's configuration; empty: the default one
     bool allow_force = false;
-    bool may_calibrate = true;  ///< as far as it needs no hand
+    bool may_calibrate = true;  ///< only calibration that needs no user action
 };
 
 class OpenHaptics : public HapticDevice {
 public:
     virtual std::string model() const = 0;
     virtual std::string serial() const = 0;
-    /// The warmest motor's share of the temperature at which it must rest; any thread.
+    /// The warmest motor's temperature as a fraction of the one at which it must rest; any thread.
     virtual double motor_temperature() const noexcept = 0;
 };
 

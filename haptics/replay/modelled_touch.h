@@ -1,14 +1,15 @@
 #pragma once
-// A Touch in a hand, for tests and replay: an arm with mass and friction, held by a hand that is drawn towards a wish.
+// A model of a Touch in a hand, for tests and replay: an arm with mass and friction, held by a hand that is drawn
+// towards a target position (the wish).
 //
 //   (m_arm + m_hand) x'' = k_hand (wish - x) - (b_hand + b_arm) x' + F - friction
 //
-// What a servo sees of it is rounded to counts, late, and read at times that jitter. Figures:
-//   arm      45 g, 0.26 N friction when moved by hand, 0.055 mm a count, 3.3 N peak, 0.88 N held: data sheet of
-//            the Touch by its maker, not measured by us. 0.05 N s/m viscous is a guess that changes little.
+// The servo sees its position quantized to counts, delayed, and at jittered times. Figures:
+//   arm      45 g, 0.26 N friction when moved by hand, 0.055 mm per count, 3.3 N peak, 0.88 N continuous: from the
+//            maker's data sheet of the Touch, not measured by us. 0.05 N s/m viscous is a guess that changes little.
 //   delay    2 ticks: a report in and a report out over USB, each up to 1 ms; jitter 0.5 ms either way
 //   hand     100 g, 150 N/m, 3 N s/m: a hand that holds a pen loosely
-// Between two reads it moves in steps of 0.05 ms; friction holds still what it can hold. The same seed and writes give
+// Between two reads it moves in steps of 0.05 ms; friction blocks motion up to its limit. The same seed and writes give
 // the same positions, bit for bit.
 //
 // read() and write(): one thread. Another one may write `wish()`. Never allocates.
@@ -33,7 +34,7 @@ struct TouchModel {
     double jitter_s = 0.0005;  ///< at most half a tick, either way
     double tick_s = 0.001;
     double hand_kg = 0.1;
-    double hand_stiffness = 150.0;  ///< N/m; 0: nobody holds it
+    double hand_stiffness = 150.0;  ///< N/m; 0: not held
     double hand_damping = 3.0;      ///< N s/m
     uint32_t seed = 1;
 };
@@ -42,15 +43,15 @@ class ModelledTouch : public HapticDevice {
 public:
     explicit ModelledTouch(const TouchModel& model = {});
     Latest<HandWish>& wish() { return wish_; }
-    /// For throwing it at things.
+    /// Gives it a velocity, to throw it at objects.
     void set_velocity(const glm::dvec3& velocity) { velocity_ = velocity; }
     const glm::dvec3& true_position_m() const { return position_m_; }
     const glm::dvec3& true_velocity() const { return velocity_; }
-    /// Work that the device's force has done on hand and arm, J: what they gained from it.
+    /// Work done by the device's force on hand and arm, in J: the energy they gained from it.
     double work_j() const { return work_j_; }
 
     DeviceCaps caps() const noexcept override;
-    /// Moves on by one tick. Always fresh.
+    /// Advances by one tick. Always fresh.
     ReadResult read(DeviceState& state) noexcept override;
     bool write(const glm::dvec3& force_n, uint32_t sequence) noexcept override;
 
@@ -64,7 +65,7 @@ private:
     double work_j_ = 0.0;
     uint32_t jump_ = 0;
     uint64_t ticks_ = 0;
-    double time_s_ = 0.0;  ///< of the last read
+    double time_s_ = 0.0;  ///< time of the last read
     std::mt19937 random_;
     struct Written {
         glm::dvec3 force_n{0.0};

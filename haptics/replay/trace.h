@@ -1,7 +1,7 @@
 #pragma once
-// A stylus trace: what a device answered and what a person chose, tick by tick, as a file (README.md has the format).
-// What is read is what was written, bit for bit. Version 3, which ends with a hash of itself; versions 1 and 2, which
-// do not, are read as well. Any thread.
+// A stylus trace: the device's answers and the user's settings, tick by tick, as a file (README.md has the format).
+// Reading returns exactly what was written, bit for bit. Version 3, which ends with a hash of itself; versions 1 and 2,
+// which do not, are read as well. Any thread.
 
 #include <filesystem>
 #include <iosfwd>
@@ -15,7 +15,7 @@
 
 namespace shvr {
 
-/// What a person chose, from a tick on. The threshold is for whoever makes the relevance.
+/// The user's settings from a tick on. The threshold is for the code that computes the relevance.
 struct TraceSettings {
     ForceSettings force;
     double threshold = 0.0;  ///< intensity
@@ -27,10 +27,11 @@ struct TraceTick {
     ReadResult read = ReadResult::fresh;
     DeviceState state;
     std::optional<glm::dvec3> force_n;  ///< what the servo wrote
-    uint64_t relevance_time_ns = 0;     ///< up to which the relevance in use was known to be true; 0: there was none
+    uint64_t relevance_time_ns = 0;     ///< time up to which the relevance in use was known to be valid; 0: there was
+                                        ///< none
 };
 
-/// Limits of the device from a tick on, where they changed.
+/// Limits of the device from a tick on, after a change.
 struct TraceCaps {
     DeviceCaps caps;
     size_t from_tick = 0;
@@ -40,13 +41,13 @@ struct Trace {
     std::string unit;  ///< of physical lengths; empty: not known
     uint32_t rate_hz = 1000;
     DeviceCaps caps;
-    std::vector<TraceCaps> later_caps;  ///< by tick
-    /// Ticks from which another device, or the same one opened anew, answers a servo that starts anew: it has no force,
-    /// no object, and feels nothing before the next relevance.
+    std::vector<TraceCaps> later_caps;  ///< sorted by tick
+    /// Ticks from which another device, or the same one after being reopened, answers a restarted servo: it has no
+    /// force, no object, and feels nothing before the next relevance.
     std::vector<size_t> swaps;
-    std::vector<TraceSettings> settings;  ///< by tick; the first one holds from the start
-    /// The ticks tell what the servo felt: `relevance`, by tick, and nothing before the first. Otherwise whoever
-    /// replays them makes it.
+    std::vector<TraceSettings> settings;  ///< sorted by tick; the first one applies from the start
+    /// Whether the trace contains the relevance that the servo used: `relevance`, by tick, and none before the first
+    /// entry. Otherwise the replaying code computes it.
     bool holds_relevance = false;
     std::vector<TraceRelevance> relevance;
     std::vector<TraceTick> ticks;
@@ -56,11 +57,11 @@ inline constexpr std::string_view TRACE_READS[] = {"fresh", "stale", "lost", "ma
 inline constexpr int64_t MAX_TRACE_BYTES = int64_t{1} << 30;
 inline constexpr size_t MAX_TRACE_TICKS = 4'000'000;  ///< more than an hour
 
-/// `origin` names the text in errors: one sentence with line, key, value and what was expected.
+/// `origin` names the text in error messages: one sentence with line, key, value and what was expected.
 Trace parse_trace(const std::string& text, const std::string& origin);
 Trace read_trace(const std::filesystem::path& file);
 std::string text_of(const Trace& trace);
-/// Whole or not at all.
+/// Writes the file atomically.
 void write_trace(const std::filesystem::path& file, const Trace& trace);
 
 }  // namespace shvr

@@ -1,11 +1,11 @@
 #pragma once
-// The relevance that a servo had, as a trace holds it: its place, and its bits as runs of what differs from those
-// before it, which a hand that moves on mostly shares. Read back, all words are the same, bit for bit.
+// The relevance that a servo had, as stored in a trace: its place, and its bits as runs of differences from the
+// previous one, with which a moving hand shares most bits. Decoding restores all words, bit for bit.
 //
-// Runs are lengths of equal and different bits in turn, beginning with equal ones, along all words of a patch. The bits
-// that they are compared with are those of the same voxels in the patch before, or 0 outside it and after another
-// level. A length is written five bits at a time, the lowest first, each as a character of A-Z, a-z, 0-9, '-' and '_';
-// 32 is added to all but the last.
+// Runs are alternating lengths of equal and different bits, beginning with equal ones, along all words of a patch. They
+// are relative to the bits of the same voxels in the previous patch, or 0 outside it and after a change of level. A
+// length is written five bits at a time, lowest first, each as a character of A-Z, a-z, 0-9, '-' and '_'; 32 is added
+// to all but the last.
 //
 // Any thread.
 
@@ -27,9 +27,9 @@ struct TraceRelevance {
     std::string runs;
 };
 
-/// `before`: the one noted last; its sequence is 0 where there is none.
+/// `before`: the patch encoded last; its sequence is 0 if there is none.
 TraceRelevance note_relevance(const RelevancePatch& patch, const RelevancePatch& before);
-/// All of `patch` but its time. False where place or runs do not fit, and `patch` is of no use.
+/// Decodes all of `patch` except its time. False if place or runs are inconsistent; `patch` is then unusable.
 bool read_relevance(const TraceRelevance& noted, const RelevancePatch& before, RelevancePatch& patch);
 
 }  // namespace shvr
