@@ -41,7 +41,7 @@ void write_codes(const BrickTexels& texels, const glm::ivec3& begin, const glm::
 
 void BrickUploads::stage(const Target& target, const BrickTexels& texels)
 {
-    if (targets_.size() == batch_) flush();  // which failed when the last one came
+    if (targets_.size() == batch_) flush();  // this failed when the last brick was staged
     Staging& staging = staging_[filling_];
     if (staging.copy) static_cast<void>(staging.copy.finish());
     std::byte* bytes = staging.bytes.mapped().data();
@@ -69,7 +69,7 @@ void BrickUploads::flush()
 
 namespace {
 
-/// Groups of bricks that go to the same image.
+/// Groups the bricks by destination image.
 template <class Image, class Add>
 void for_each_image(const std::vector<BrickUploads::Target>& targets, const Image& image, const Add& add)
 {
@@ -109,7 +109,7 @@ void BrickUploads::add_copies(FrameGraph& graph, Resource staged) const
         });
 }
 
-/// A dispatch for each image of codes that bricks go to.
+/// One dispatch per image of codes that bricks go to.
 void BrickUploads::add_kernels(FrameGraph& graph, Resource staged) const
 {
     Resource cells = graph.import("cell ranges", targets_.front().cells->import());

@@ -20,13 +20,13 @@ constexpr uint64_t MASK_BRICK_BYTES = uint64_t{gpu::BRICK_SIZE} * gpu::BRICK_SIZ
 
 uint64_t DeviceMask::bytes_for(uint64_t painted_bricks)
 {
-    // The slot that stays unused, rows of the atlas that are not full, and a table with three numbers an entry.
+    // The unused slot, partly filled rows of the atlas, and a table with three numbers per entry.
     constexpr uint64_t ROW = 16;
     const uint64_t bricks = painted_bricks + painted_bricks / MASK_SPARE_SHARE + MASK_FEWEST_BRICKS + ROW;
     return bricks * MASK_BRICK_BYTES + 4 * std::bit_ceil(2 * painted_bricks + 16) * gpu::MASK_ENTRY;
 }
 
-/// The atlas for so many bricks; null where no image of the device holds them.
+/// The atlas for this many bricks; null if no image of the device holds them.
 std::optional<ResourceDesc> DeviceMask::desc_for(uint64_t bricks) const
 {
     const gpu::DeviceTraits& traits = memory_.device().traits();
@@ -38,8 +38,8 @@ std::optional<ResourceDesc> DeviceMask::desc_for(uint64_t bricks) const
     return memory_.can_create(desc) ? std::optional(desc) : std::nullopt;
 }
 
-/// Room for `bricks`, and for half as many more where that leaves half of the memory, a sixteenth otherwise, and none
-/// where the device's images hold no more.
+/// Allocates room for `bricks`, plus half as many more if that leaves half of the memory, else a sixteenth more, or
+/// none if the device's images hold no more.
 void DeviceMask::grow(uint64_t bricks)
 {
     atlas_.reset();
@@ -105,8 +105,8 @@ void DeviceMask::send(const Mask& mask, std::span<const int64_t> bricks)
     is_table_stale_ = false;
 }
 
-/// Gives slots to painted bricks without one, and takes them from bricks that are no longer painted. Returns true if
-/// the atlas had to grow, which moves all bricks to other slots.
+/// Assigns slots to painted bricks without one, and releases those of bricks that are no longer painted. Returns true
+/// if the atlas had to grow, which moves all bricks to other slots.
 bool DeviceMask::give_slots(const Mask& mask, std::span<const int64_t> bricks)
 {
     std::vector<int64_t> added;
@@ -127,7 +127,7 @@ bool DeviceMask::give_slots(const Mask& mask, std::span<const int64_t> bricks)
     }
     is_table_stale_ |= !added.empty();
     for (const int64_t brick : added) {
-        if (!slots_.try_emplace(brick, free_slots_.back()).second) continue;  // it was listed twice
+        if (!slots_.try_emplace(brick, free_slots_.back()).second) continue;  // listed twice
         free_slots_.pop_back();
     }
     return grows;
@@ -191,7 +191,7 @@ std::vector<uint32_t> DeviceMask::hashed_table(const Mask& mask) const
 
 void DeviceMask::submit(FrameGraph graph)
 {
-    constexpr size_t MOST_IN_FLIGHT = 4;  // each holds an upload
+    constexpr size_t MOST_IN_FLIGHT = 4;  // each holds an upload buffer
     if (in_flight_.size() >= MOST_IN_FLIGHT) in_flight_.front().wait();
     std::erase_if(in_flight_, [](const gpu::Submission& submission) { return submission.done(); });
     in_flight_.push_back(executor_.submit(std::move(graph), {.timestamps = false}));

@@ -13,7 +13,7 @@ namespace shvr {
 namespace {
 
 constexpr double LAST_CODE = 65535.0;
-/// Largest opacity at the end of a slope of which few entries are enough.
+/// Largest opacity at the end of a slope for which few entries suffice.
 constexpr double MAX_SLOPED = 0.999;
 
 uint32_t whole_rows(uint32_t texels)
@@ -26,7 +26,7 @@ void fill_row(std::vector<glm::vec4>& texels)
     texels.resize(whole_rows(uint32_t(texels.size())), glm::vec4(0.0f));
 }
 
-/// Four entries a texel.
+/// Four entries per texel.
 void append_depths(std::vector<glm::vec4>& texels, std::span<const float> depths)
 {
     for (size_t entry = 0; entry < depths.size(); ++entry) {
@@ -35,7 +35,7 @@ void append_depths(std::vector<glm::vec4>& texels, std::span<const float> depths
     }
 }
 
-/// A texel an entry, with those of its neighbours.
+/// One texel per entry, with the depths of its neighbours.
 void append_depths_of_steps(std::vector<glm::vec4>& texels, std::span<const float> depths)
 {
     const uint32_t side = STEP_TABLE_SIDE;
@@ -47,13 +47,14 @@ void append_depths_of_steps(std::vector<glm::vec4>& texels, std::span<const floa
         }
 }
 
-/// The fewest parts that divide each of `parts` equally, and leave as many entries as there are at least.
+/// The smallest number of parts that divide each of `parts` equally and give at least the minimum number of entries.
 uint32_t parts_of_at_least(uint32_t parts)
 {
     return parts * ((MIN_TABLE_ENTRIES - 2) / parts + 1);
 }
 
-/// Whether lines between the entries of a fine table are the function, as far as control points are at entries.
+/// Whether interpolation between the entries of a fine table reproduces the function, provided control points are at
+/// entries.
 bool has_smooth_lines(const TransferFunction& function)
 {
     const std::span<const ControlPoint> points = function.points();
@@ -61,18 +62,18 @@ bool has_smooth_lines(const TransferFunction& function)
         const ControlPoint &p = points[i], &q = points[i + 1];
         if (p == q) continue;
         if (p.intensity == q.intensity) return false;
-        // Where opacity rises up to 1, that of a step does so too steeply.
+        // Where opacity rises up to 1, the opacity of a step rises too steeply as well.
         if (std::max(p.opacity, q.opacity) >= MAX_SLOPED && p.opacity != q.opacity) return false;
     }
     return true;
 }
 
-/// A number of entries, small enough for fast memory, with which every control point is at one.
+/// A number of entries, small enough for fast memory, that puts every control point at an entry.
 std::optional<uint32_t> entries_at_points(const TransferFunction& function, const IntensityWindow& window,
                                           const TableRange& range)
 {
     if (!has_smooth_lines(function) || !(range.lower < range.upper)) return std::nullopt;
-    int64_t between = 0;  // codes: the largest number that all distances between points are multiples of
+    int64_t between = 0;  // codes: the largest number that divides all distances between points
     bool are_whole = true;
     bool are_inside = false;
     for (const ControlPoint& point : function.points()) {
@@ -96,7 +97,7 @@ float opaque_scale(const TableRange& range)
     return float((gpu::OPAQUE_ENTRIES - 1) / std::max(range.upper - range.lower, 1e-6));
 }
 
-/// The map and its intervals, or nothing where there are none.
+/// The map of opaque intervals and the intervals, or nothing if there are none.
 void append_opaque(std::vector<glm::vec4>& texels, const std::vector<OpaqueInterval>& intervals,
                    const TableRange& range, const IntensityWindow& window)
 {
@@ -108,7 +109,7 @@ void append_opaque(std::vector<glm::vec4>& texels, const std::vector<OpaqueInter
     for (const OpaqueInterval& interval : intervals)
         codes.push_back({window.code_of(interval.lower), window.code_of(interval.upper)});
     codes.push_back({gpu::OUT_OF_REACH, gpu::OUT_OF_REACH});
-    // A margin of half a texel on both sides: which texel a density falls in is decided in float.
+    // A margin of half a texel on both sides: the texel of a density is determined in float.
     const double width = (range.upper - range.lower) / (gpu::OPAQUE_ENTRIES - 1);
     size_t first = 0, last = 0;
     for (uint32_t k = 0; k < gpu::OPAQUE_ENTRIES; ++k) {
@@ -142,7 +143,7 @@ TableRange table_range(const TransferFunction& function, const IntensityWindow& 
     const double first = window.code_of(function.lower()), last = window.code_of(function.upper());
     TableRange range{
         .lower = std::clamp(first, 0.0, LAST_CODE), .upper = std::clamp(last, 0.0, LAST_CODE), .samples = {}};
-    // Where nothing is cut off, the function's own numbers: codes are rounded.
+    // If nothing is cut off, use the function's own numbers: codes are rounded.
     range.samples.lower = range.lower == first ? function.lower() : window.intensity_of(range.lower);
     range.samples.upper = range.upper == last ? function.upper() : window.intensity_of(range.upper);
     const auto codes = std::max(uint32_t(std::ceil(range.upper - range.lower)), 1u);

@@ -17,7 +17,7 @@ namespace {
 /// In addition to the radius: the lift of rays off surfaces, half the largest cell, and the voxel itself.
 constexpr double MARGIN_VOXELS = 8.0;
 
-/// Of paged bricks, which take more.
+/// For paged bricks, which take more.
 uint64_t slice_bytes(uint32_t bricks)
 {
     uint64_t bytes = occlusion_near_desc(bricks, true).bytes;
@@ -25,8 +25,8 @@ uint64_t slice_bytes(uint32_t bricks)
     return bytes;
 }
 
-/// How many bricks are renewed at once: what they take meanwhile is at most a sixteenth of the budget. A few keep a CPU
-/// busy, and stay in its caches.
+/// How many bricks are renewed at once: their scratch memory is at most a sixteenth of the budget. A few suffice to
+/// keep a CPU busy, and stay in its caches.
 uint32_t slice_for(const gpu::DeviceTraits& traits, uint64_t device_budget)
 {
     const uint64_t most = traits.is_cpu ? gpu::OCCLUSION_COLUMN : gpu::OCCLUSION_SLICE;
@@ -124,7 +124,7 @@ OcclusionBinding Occlusion::bring_up_to_date(FrameGraph& graph)
     return binding;
 }
 
-/// Those that are still there.
+/// Applies `set` to the entries that still exist.
 template <class Set>
 void Occlusion::mark(const std::vector<BrickKey>& keys, const Set& set)
 {
@@ -188,19 +188,19 @@ void Occlusion::changed(const VoxelBox& changed, int64_t apron)
     if (!look_) return;
     ++changes_;
     for (auto& [key, entry] : entries_) {
-        // A coarse voxel has the paint of its centre, which may lie in a neighbour of the finer brick.
+        // A coarse voxel has the paint at its centre, which may be in a neighbour of the finer brick.
         const VoxelBox brick = voxels_of(key, volume_->info().size);
         const VoxelBox voxels{changed.lower - (apron << key.level), changed.upper + (apron << key.level)};
         entry.needs_cells = entry.needs_cells || meet(brick, voxels);
         const auto reach = int64_t(std::ceil(look_->radius + std::ldexp(MARGIN_VOXELS, key.level)));
         entry.needs_values = entry.needs_values || meet(brick, {voxels.lower - reach, voxels.upper + reach});
-        // Coarse bricks are seen wherever there is paint, others where their neighbours have some.
+        // Coarse bricks are visible wherever there is paint, others if their neighbours have some.
         const int64_t beside = int64_t{gpu::BRICK_SIZE} << key.level;
         if (key.level > 0 || meet(brick, {voxels.lower - beside, voxels.upper + beside})) entry.is_seen.reset();
     }
 }
 
-/// Updates the entries to the volume's present slots.
+/// Synchronizes the entries with the volume's present slots.
 void Occlusion::sync()
 {
     if (revision_ == volume_->places_revision()) return;
@@ -263,7 +263,7 @@ bool Occlusion::shows(const BrickKey& key, const Entry& entry) const
     return look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 0);
 }
 
-/// Whether every brick that its values need is there, or will never be.
+/// Whether every brick that its values need is on the device, or will never be.
 bool Occlusion::has_all_around(const BrickKey& key) const
 {
     const glm::ivec3 counts = brick_counts(size_of_level(volume_->info().size, key.level));
@@ -278,7 +278,7 @@ bool Occlusion::has_all_around(const BrickKey& key) const
     return !is_missing;
 }
 
-/// Asked of every brick where something has changed: what costs least is asked first.
+/// Called for every brick after a change: the cheapest checks come first.
 bool Occlusion::is_candidate(const BrickKey& key, Entry& entry)
 {
     ++counts_.walks;
@@ -306,7 +306,7 @@ bool Occlusion::is_seen(const BrickKey& key, Entry& entry)
     return *entry.is_seen;
 }
 
-/// A brick with nothing visible may still contain voxels beside painted ones, or beside what a step's ends show.
+/// A brick with nothing visible may still contain voxels next to painted ones, or next to the visible ends of a step.
 bool Occlusion::look_whether_seen(const BrickKey& key, const Entry& entry) const
 {
     if (look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 1)) return true;
@@ -329,10 +329,10 @@ bool Occlusion::is_due()
     return false;
 }
 
-/// All of one level: that of the nearest.
+/// Queues bricks of one level: that of the nearest.
 void Occlusion::fill_queue(const glm::dvec3& eye)
 {
-    /// The next slices need no walk over all bricks.
+    /// Enough for the next slices, which then need no pass over all bricks.
     constexpr size_t MOST = size_t{4} * gpu::OCCLUSION_SLICE;
     queued_ = cause();
     queued_eye_ = eye;
@@ -384,7 +384,7 @@ std::vector<BrickKey> Occlusion::nearest(const glm::dvec3& eye, size_t most)
 uint32_t Occlusion::around(const BrickKey& key, std::vector<BrickKey>* keys) const
 {
     const glm::ivec3 counts = brick_counts(size_of_level(volume_->info().size, key.level));
-    // Empty bricks have no cells, and nobody reads their apron.
+    // Empty bricks have no cells, and their apron is never read.
     if (glm::any(glm::lessThan(key.brick, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(key.brick, counts)))
         return 0;
     if (volume_->presence_of(key) == DeviceVolume::Presence::empty) return 0;
@@ -497,7 +497,7 @@ void Occlusion::add_values(FrameGraph& graph, const VolumeBinding& volume, Occlu
     input.params.table_entries = look_->visibility.params.table_entries;
     input.params.guard = look_->visibility.params.guard;
     input.params.rays = look_->rays;
-    // For radii below a voxel there are no near taps; the tables need some stretch all the same.
+    // For radii below a voxel there are no near taps, but the tables still need some stretch.
     const double near_stretch = input.taps.taps.empty() ? 1.0 : input.taps.near_stretch;
     input.near = cells_input(level, std::ldexp(near_stretch, level), mask);
     input.params.inverse_spacing = std::min({spacing.x, spacing.y, spacing.z}) / spacing;

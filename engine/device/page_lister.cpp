@@ -40,7 +40,7 @@ bool KnownBricks::is_painted(const PageSight& sight, const BrickKey& key) const
     return is;
 }
 
-/// Whatever the transfer function hides.
+/// Whether it is shown even if the transfer function hides it.
 bool KnownBricks::is_always_shown(const PageView& view, const BrickKey& key) const
 {
     if (view.shows_all || !view.shown) return view.shows_all;
@@ -138,7 +138,7 @@ std::optional<std::span<const BrickEvent>> PageLister::changes_since(uint64_t ch
     return std::span(log_).subspan(size_t(changes - first_));
 }
 
-/// The other thread is told all changes.
+/// Passes all changes to the lister's thread.
 void PageLister::hand_over()
 {
     const std::scoped_lock lock(mutex_);
@@ -165,7 +165,7 @@ void PageLister::forget()
     lists_.clear();
 }
 
-/// Takes the list that has been made, if there is one.
+/// Takes the finished list, if there is one.
 void PageLister::collect()
 {
     std::optional<Made> made;

@@ -20,7 +20,7 @@ int64_t brick_total(const Size3& size, int level)
     return counts.x * counts.y * counts.z;
 }
 
-/// For all bricks of all levels, and the empty one.
+/// Slots for all bricks of all levels, plus the empty one.
 uint64_t useful_slots(const VolumeInfo& info, int levels)
 {
     uint64_t useful = 1;
@@ -29,13 +29,13 @@ uint64_t useful_slots(const VolumeInfo& info, int levels)
     return useful;
 }
 
-/// As many as fit, in as many images as that takes.
+/// As many slots as fit, in as many images as they require.
 StackedLayout layout_for(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, AtlasCodes codes,
                          uint64_t bytes)
 {
     const uint64_t useful = useful_slots(info, levels), most = bytes / BrickAtlas::slot_bytes(codes);
     const uint64_t least = std::min(useful, PagedVolume::MIN_SLOTS);
-    // Layouts round up. One that takes fewer slots may be of more, or be there where one of more is not.
+    // Layouts round up. A layout for fewer slots may have more of them, or exist where one for more does not.
     for (uint64_t slots = std::min(useful, most); slots >= least; --slots)
         if (const std::optional<StackedLayout> layout = stacked_layout(slots, codes, traits))
             if (layout->count() <= most) return *layout;
@@ -50,7 +50,7 @@ int kept_levels(int levels)
     return std::min(levels, int(gpu::PAGE_MISSING));
 }
 
-/// Half of the room is for finer bricks, unless there is room for all that there are.
+/// Half of the slots are for finer bricks, unless there are slots for all bricks.
 void check_coarsest(const VolumeInfo& info, int levels, AtlasCodes codes, uint64_t slots)
 {
     const int64_t bricks = brick_total(info.size, levels - 1);
@@ -89,7 +89,7 @@ PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shar
     pin_coarse_levels();
 }
 
-/// Loads the coarsest level now, or begins to, so that there is something to show at once, and requests the next ones.
+/// Loads the coarsest level now, or starts to, so that there is something to show at once, and requests the next ones.
 void PagedVolume::pin_coarse_levels()
 {
     check_coarsest(info(), levels_, options_.codes, slots_.count());
@@ -99,7 +99,7 @@ void PagedVolume::pin_coarse_levels()
         for (int z = 0; z < counts.z; ++z)
             for (int y = 0; y < counts.y; ++y)
                 for (int x = 0; x < counts.x; ++x) {
-                    // At most a quarter of the room, but always the whole coarsest level.
+                    // At most a quarter of the slots, but always the whole coarsest level.
                     if (level < levels_ - 1 && coarse_.size() >= slots_.count() / 4) return;
                     coarse_.push_back({level, {x, y, z}});
                 }
@@ -134,7 +134,7 @@ double PagedVolume::loaded() const
 
 // ---- The view -------------------------------------------------------------------------------------------------------
 
-/// With `shown` as far as the bricks that it meets reach, so that few views differ in it.
+/// Rounds `shown` outwards to whole bricks, so that few views differ in it.
 PageView PagedVolume::rounded(PageView view) const
 {
     constexpr int64_t SIZE = gpu::BRICK_SIZE;
@@ -161,7 +161,7 @@ int PagedVolume::look(const PageView& exact, const Visibility& visibility)
     return finest_level();
 }
 
-/// Looks at what was listed. What was listed before is kept, as far as it is as changes have made it.
+/// Makes a list current. The previous list goes back to the cache, with the changes applied to it so far.
 void PagedVolume::install(std::shared_ptr<PageList> list)
 {
     const std::shared_ptr<PageList> before = std::exchange(list_, std::move(list));

@@ -10,7 +10,7 @@ namespace shvr {
 
 namespace {
 
-/// At most so many bricks are re-read after a change of voxels while the caller waits.
+/// Maximum number of bricks that are re-read after a change of voxels while the caller waits.
 constexpr size_t MAX_RENEWED_NOW = 256;
 
 }  // namespace
@@ -21,7 +21,7 @@ bool PagedVolume::leaf_is_reached(const BrickKey& key) const
     return leaf && is_visited(*leaf);
 }
 
-/// `is_before`: by rays of the view before.
+/// `is_before`: by rays of the previous view.
 void PagedVolume::visit(uint32_t leaf, bool is_before)
 {
     if (!is_visited(leaf)) {
@@ -31,14 +31,14 @@ void PagedVolume::visit(uint32_t leaf, bool is_before)
     (is_before ? was_reached_ : is_reached_)[leaf] = true;
 }
 
-/// Of the list of visited leaves.
+/// Removes unvisited leaves from the list of visited ones.
 void PagedVolume::forget_unvisited()
 {
     std::erase_if(visited_, [this](uint32_t leaf) { return !is_visited(leaf); });
     std::erase_if(awaited_, [this](uint32_t leaf) { return !is_visited(leaf); });
 }
 
-/// The bricks of its level at most `reach` away, itself included.
+/// Adds the bricks of its level that are at most `reach` away, including the brick itself.
 void PagedVolume::add_around(const BrickKey& key, int reach, std::unordered_set<BrickKey, BrickKeyHash>& keys) const
 {
     const glm::ivec3 counts = brick_counts(size_of_level(info().size, key.level));
@@ -187,8 +187,8 @@ void PagedVolume::renew(std::span<const VoxelBox> changed)
     rebuild_tree();
 }
 
-/// Rebuilds the tree after the source's data has changed; keeps which bricks rays visited. It is waited for, as the
-/// bricks on the device were.
+/// Rebuilds the tree after the source's data has changed; keeps which bricks rays visited. The caller waits for it, as
+/// it does for the bricks on the device.
 void PagedVolume::rebuild_tree()
 {
     lister_.forget();
@@ -197,10 +197,10 @@ void PagedVolume::rebuild_tree()
     install(lister_.take(list_->sight.view, list_->sight.visibility));
 }
 
-/// Adds the bricks that the picture misses, nearest first. False where there is no room for all.
+/// Adds the bricks that the picture lacks, nearest first. False if there are not enough slots for all.
 bool PagedVolume::list_wants(std::vector<BrickKey>& keys)
 {
-    // Bricks that are on the device, or will be. Where slots are free for all, it does not matter how many are.
+    // Bricks that are on the device, or will be. If there are free slots for all, their number does not matter.
     const bool is_roomy = keys.size() + awaited_.size() + around_.size() <= slots_.free_count();
     size_t room = is_roomy ? slots_.free_count() : slots_.room();
     room -= std::min(room, keys.size());
@@ -258,7 +258,7 @@ std::vector<VoxelBox> PagedVolume::advance(bool wait, const Progress& progress)
         } while (wait && store_.wait());
         atlas_.flush();
     } catch (...) {
-        needs_changed();  // what was taken and not placed is requested again
+        needs_changed();  // bricks that were taken but not placed are requested again
         throw;
     }
     return changed;
@@ -349,9 +349,9 @@ std::optional<RegionBricks> PagedVolume::region(const VoxelBox& voxels, bool wai
     return region;
 }
 
-/// A brick of any level has got paint of a brick below it, or lost it. What the view shows in its place, and of those
-/// beside it that its paint reaches, is looked up again. True: the view needs other bricks now; `asks`: whether that is
-/// to be found out.
+/// Records that a brick of any level has gained or lost paint of a brick below it. Updates what the view shows for it
+/// and for the neighbours that its paint reaches. Returns true if the view now needs other bricks; `asks`: whether to
+/// determine that.
 bool PagedVolume::note_painted_in(const BrickKey& key, bool is, bool asks)
 {
     std::vector<BrickKey> reached;
@@ -369,7 +369,7 @@ bool PagedVolume::note_painted_in(const BrickKey& key, bool is, bool asks)
         needs_others = needs_others || (asks && known_.may_show(sight(), reached[i]) != were_shown[i]);
         if (i > 0) note_changed(reached[i]);
         const std::optional<uint32_t> leaf = leaf_of(reached[i]);
-        if (leaf && is_visited(*leaf)) awaited_.insert(*leaf);  // what was empty may be missing now
+        if (leaf && is_visited(*leaf)) awaited_.insert(*leaf);  // an empty brick may now be a missing one
     }
     return needs_others;
 }
@@ -393,12 +393,12 @@ void PagedVolume::note_painted(const Mask& mask, std::span<const int64_t> bricks
         }
     }
     if (!has_changed) return;
-    lister_.forget();  // what other views need
+    lister_.forget();  // lists of other views
     ++reached_revision_;
     needs_changed();
     if (!needs_others || !list_) return;
-    // Painted voxels are shown, whatever the file says of their densities. What is there is drawn until the bricks are
-    // listed, so that a stroke does not wait for a list in each brick that it comes to.
+    // Painted voxels are shown, whatever the file states about their densities. The present list is drawn until the new
+    // one is ready, so that a stroke does not wait for a list in each brick that it enters.
     list_is_outdated_ = true;
     static_cast<void>(lister_.get_ready(sight().view, sight().visibility));
 }

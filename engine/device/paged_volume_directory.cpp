@@ -1,4 +1,4 @@
-// Paged bricks (paged_volume.h): the directory that rays read (shaders/pages.h), and how it follows what comes.
+// Paged bricks (paged_volume.h): the directory that rays read (shaders/pages.h), and its updates as bricks arrive.
 
 #include <algorithm>
 #include <bit>
@@ -8,7 +8,7 @@
 
 namespace shvr {
 
-/// What the directory shows in the place of a leaf; where rays wait, perhaps that they do.
+/// The directory's entry for a leaf; if rays wait, possibly the instruction to wait.
 uint32_t PagedVolume::entry_of(const BrickKey& leaf) const
 {
     if (rays_wait_) {
@@ -67,7 +67,7 @@ void PagedVolume::note(const BrickEvent& change)
     known_.apply(change);
     lister_.note(change);
     directory_is_stale_ = true;
-    // What waits for a brick's light waits for its neighbours as well.
+    // A ray that waits for a brick's light waits for its neighbours as well.
     if (is_ready_) all_leaves_are_stale_ = true;
     const bool may_be_missing = change.kind == BrickEvent::Kind::gone || change.kind == BrickEvent::Kind::unread;
     if (const std::optional<uint32_t> leaf = may_be_missing ? leaf_of(change.key) : std::nullopt)
@@ -101,11 +101,11 @@ Resource PagedVolume::upload_directory(FrameGraph& graph)
                       "upload page directory");
 }
 
-/// Copies that bring these entries to the device; `values` are what is copied.
+/// Copies that upload these entries; `values` receives the data to copy.
 std::vector<BufferRegion> PagedVolume::changed_regions(std::vector<uint32_t> entries,
                                                        std::vector<uint32_t>& values) const
 {
-    constexpr uint32_t GAP = 16;  // entries: some more bytes cost less than one more region
+    constexpr uint32_t GAP = 16;  // entries: a few extra bytes cost less than an extra region
     std::ranges::sort(entries);
     std::vector<BufferRegion> regions;
     for (size_t first = 0, end = 0; first < entries.size(); first = end) {

@@ -15,7 +15,7 @@
 
 namespace shvr {
 
-/// Encodes bricks in the order of their index, beside the thread that uploads them: batches go through a short queue.
+/// Encodes bricks in index order, in the background of the uploading thread: batches go through a short queue.
 class ResidentVolume::Builder {
 public:
     struct Brick {
@@ -39,7 +39,7 @@ public:
     }
     Builder(const Builder&) = delete;
 
-    /// The next batch; empty where none is ready. Throws what reading threw.
+    /// The next batch; empty if none is ready. Rethrows exceptions from reading.
     Batch take()
     {
         const std::scoped_lock lock(mutex_);
@@ -86,7 +86,7 @@ private:
     std::deque<Batch> ready_;
     std::exception_ptr failure_;
     bool is_stopped_ = false;
-    std::jthread thread_;  ///< last: it ends before what it uses
+    std::jthread thread_;  ///< last: it ends before the members it uses
 };
 
 ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
@@ -125,7 +125,7 @@ ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std
 
 ResidentVolume::~ResidentVolume() = default;
 
-/// Null where no atlas has so many slots.
+/// Null if no atlas has enough slots.
 std::optional<ResidentVolume::Shape> ResidentVolume::shape_of(const gpu::Memory& memory, const glm::uvec3& brick_counts,
                                                               AtlasCodes codes)
 {
@@ -171,7 +171,7 @@ void ResidentVolume::create_images()
     for (gpu::Storage& scratch : leap_scratch_) scratch = create("leap scratch", shape->cells);
 }
 
-/// A brick at a face of the volume brings the border there.
+/// A brick at a face of the volume also supplies the border there.
 void ResidentVolume::upload(const BrickTexels& texels, const glm::uvec3& brick)
 {
     const glm::uvec3 border = gpu::code_border(), none(0);
@@ -186,7 +186,7 @@ void ResidentVolume::upload(const BrickTexels& texels, const glm::uvec3& brick)
                     texels);
 }
 
-/// Once all bricks are staged.
+/// To be called once all bricks are staged.
 void ResidentVolume::upload_page_table()
 {
     uploads_->flush();
@@ -234,7 +234,7 @@ double ResidentVolume::loaded() const
 uint64_t ResidentVolume::bytes_for(const VolumeInfo& info, AtlasCodes codes)
 {
     const glm::u64vec3 counts(brick_counts(info.size)), of_codes(codes_side_by_side(glm::uvec3(counts)));
-    constexpr uint64_t LEAP_IMAGES = 5;  // the grid, its two scratch images, and sample bits, which take two
+    constexpr uint64_t LEAP_IMAGES = 5;  // the grid, its two scratch images, and sample bits, which count twice
     return of_codes.x * of_codes.y * of_codes.z * code_bytes(codes) +
            counts.x * counts.y * counts.z * (BrickTexels::RANGE_BYTES * (1 + LEAP_IMAGES) + sizeof(uint32_t));
 }

@@ -15,16 +15,17 @@ namespace shvr {
 namespace {
 
 // Shares of the device memory that is free when a volume is loaded.
-/// A resident volume may take all but what pictures in parts and tables need.
+/// A resident volume may take all of it except what pictures drawn in parts and tables need.
 constexpr uint64_t PICTURE_SIXTEENTHS = 1;
-/// The least that is kept for these: tables of one or two megabytes, the directory of bricks, parts of 64 pixels a
-/// side.
+/// The minimum reserved for these: tables of one or two
+/// megabytes, the directory of bricks, parts of 64 pixels a side.
 constexpr uint64_t MIN_PICTURE_BYTES = uint64_t{4} << 20;
 /// Paged bricks may take three fifths: the rest is for pictures, mask and surfaces, which may grow.
 constexpr uint64_t PAGED_FIFTHS = 3;
-/// With ambient occlusion, which then takes half as much as the bricks.
+/// The same with ambient occlusion, which then takes half as much as the bricks.
 constexpr uint64_t PAGED_FIFTHS_WITH_OCCLUSION = 2;
-/// On a CPU, whose memory files and programs share: 27 000 bricks, more than a view on a common screen needs.
+/// Limit on a CPU, whose memory is shared with files and programs: 27 000 bricks, more than a view on a common screen
+/// needs.
 constexpr uint64_t MAX_ATLAS_BYTES_OF_CPU = uint64_t{2} << 30;
 /// Of the host's budget, a quarter is for paged bricks; half is for mapped memory, a quarter for coarser levels.
 constexpr uint64_t HOST_SHARES = 4;
@@ -33,7 +34,7 @@ constexpr int64_t MAX_FINEST_BRICKS = int64_t{1} << 17;
 
 /// How far, in voxels, an offset affects the picture through interpolation and gradients.
 constexpr int64_t RAISED_REACH = 2;
-/// Beyond this many boxes, only one that holds them all is kept for each cause, in case nobody collects them.
+/// Beyond this many boxes, they are merged into one per cause, in case nothing collects them.
 constexpr size_t MAX_CHANGED = 4096;
 
 bool filters(const gpu::DeviceTraits& traits, Sampling sampling)
@@ -55,13 +56,13 @@ uint64_t bytes_for_pictures(const gpu::Memory& memory)
     return std::max(MIN_PICTURE_BYTES, memory.device_bytes_left() / 16 * PICTURE_SIXTEENTHS);
 }
 
-/// Device memory that ambient occlusion takes besides what it takes for each brick.
+/// Device memory for ambient occlusion, apart from that per brick.
 uint64_t scratch_bytes(const gpu::Memory& memory, const Scene::Options& options)
 {
     return options.with_occlusion ? Occlusion::scratch_bytes(memory.traits(), memory.device_budget()) : 0;
 }
 
-/// Device memory for the ambient light of so many bricks: layouts of slots round up, and devices align rows.
+/// Device memory for the ambient light of this many bricks: layouts of slots round up, and devices align rows.
 uint64_t light_bytes(uint64_t bricks)
 {
     return bricks * (Occlusion::slot_bytes() / 4 * 5);
@@ -90,7 +91,7 @@ int64_t finest_bricks(const VolumeInfo& info)
     return counts.x * counts.y * counts.z;
 }
 
-/// A budget under which `bytes` are left beside what pictures need, in MiB.
+/// The budget in MiB that leaves `bytes` in addition to what pictures need.
 uint64_t budget_for(uint64_t bytes)
 {
     return (std::max(bytes + MIN_PICTURE_BYTES, bytes / (16 - PICTURE_SIXTEENTHS) * 16) >> 20) + 1;
@@ -147,10 +148,10 @@ Scene::Scene(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const
       tables_(memory)
 {
     load(options_.reserved_bytes);
-    options_.in_slices = false;  // where it is loaded once more, for want of room, that is done at once
+    options_.in_slices = false;  // if it is loaded again, for lack of memory, that is done at once
 }
 
-/// `reserved_bytes`: of device memory, for what is shown beside the volume.
+/// `reserved_bytes`: device memory for what is shown in addition to the volume.
 void Scene::load(uint64_t reserved_bytes)
 {
     memory_.free_idle();
@@ -172,7 +173,7 @@ void Scene::load(uint64_t reserved_bytes)
             volume_ = std::make_unique<PagedVolume>(executor_, memory_, offsets_, window, paged);
         } catch (const gpu::BudgetError&) {
             throw;
-        } catch (const gpu::MemoryError&) {  // the driver has less than it says, or less in one piece
+        } catch (const gpu::MemoryError&) {  // the driver has less than it reports, or less in one piece
             constexpr uint64_t LEAST = uint64_t{16} << 20;
             if (paged.device_bytes / 2 < LEAST) throw;
             paged.device_bytes /= 2;
@@ -181,7 +182,7 @@ void Scene::load(uint64_t reserved_bytes)
     }
 }
 
-/// False: the driver has less memory than it says, or other programs have it, and bricks can be paged instead.
+/// False: the driver has less memory than it reports, or other programs use it, and bricks can be paged instead.
 bool Scene::load_resident(const IntensityWindow& window)
 {
     const AtlasCodes codes = codes_of(memory_, *source_, options_);
@@ -200,7 +201,7 @@ bool Scene::load_resident(const IntensityWindow& window)
     }
 }
 
-/// Keeps `bytes` of device memory free, beside what pictures need, by loading the volume with fewer bricks.
+/// Keeps `bytes` of device memory free, in addition to what pictures need, by loading the volume with fewer bricks.
 void Scene::make_room(uint64_t bytes)
 {
     memory_.free_idle();
@@ -214,7 +215,7 @@ void Scene::make_room(uint64_t bytes)
     try {
         load(bytes);
     } catch (const gpu::MemoryError&) {
-        load(0);  // the scene stays, without what it has no room for
+        load(0);  // the scene stays, without the features that do not fit
         throw;
     }
 }
@@ -238,11 +239,11 @@ uint64_t Scene::resident_bytes(const VolumeInfo& info, AtlasCodes codes, bool wi
 AtlasCodes Scene::codes_for(const gpu::DeviceTraits& traits, VoxelType type, Sampling sampling)
 {
     if (filters(traits, sampling)) return AtlasCodes::filtered;
-    // Their window is that of the type, whatever its values (window_for).
+    // Their window is that of the type, whatever their values (window_for).
     return type == VoxelType::uint8 || type == VoxelType::int8 ? AtlasCodes::exact8 : AtlasCodes::exact16;
 }
 
-/// In several images, but for ambient light, whose values are in one that is half as large.
+/// Uses several images, except with ambient light, whose values are in a single image half as large.
 uint64_t Scene::most_atlas_bytes(const gpu::DeviceTraits& traits, AtlasCodes codes, bool with_occlusion)
 {
     const uint64_t of_image = std::min(traits.max_volume_bytes / slot_code_bytes(codes),
@@ -251,7 +252,7 @@ uint64_t Scene::most_atlas_bytes(const gpu::DeviceTraits& traits, AtlasCodes cod
     return std::min(traits.is_cpu ? MAX_ATLAS_BYTES_OF_CPU : UINT64_MAX, slots * BrickAtlas::slot_bytes(codes));
 }
 
-/// Some devices have images of 256 texels a side, or allocations of 2 GiB.
+/// Some devices limit images to 256 texels a side, or allocations to 2 GiB.
 bool Scene::can_be_resident(const gpu::Memory& memory, const VolumeSource& source, const Options& options)
 {
     return ResidentVolume::is_possible(memory, source.info(), codes_of(memory, source, options));
@@ -313,7 +314,7 @@ bool Scene::show(const Document& document, std::span<const Change> changes)
 
 void Scene::show(const Document& document, const Touched& touched, const std::optional<VoxelBox>& within)
 {
-    // What may fail comes last, so that nothing is forgotten for it.
+    // Steps that may fail come last, so that no change is lost.
     if (!touched.raised.empty()) note_density(document.density, touched.raised);
     if (!touched.mask_bricks.empty()) update_mask(document.mask, touched.mask_bricks, within);
     renew_density();
@@ -328,7 +329,7 @@ void Scene::catch_up(const Document& document)
 void Scene::update_mask(const Mask& mask, std::span<const int64_t> bricks, const std::optional<VoxelBox>& within)
 {
     note_mask(mask, bricks, within);
-    if (mask_->is_stale()) note_mask(mask, mask.painted_bricks());  // nothing of it is there
+    if (mask_->is_stale()) note_mask(mask, mask.painted_bricks());  // the device holds none of it
     mask_->update(mask, bricks);
 }
 

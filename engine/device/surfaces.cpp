@@ -10,9 +10,9 @@ namespace {
 
 /// Points of rays and boxes are off by a few ulps of the largest number involved; this allows 16.
 constexpr double ROUNDING = 0x1p-20;
-/// In place of infinity, since zero times infinity is not a number.
+/// Replaces infinity, since zero times infinity is NaN.
 constexpr double FAR = 1e20;
-/// So many values that have not changed are sent again rather than left out.
+/// Up to this many unchanged values are sent again rather than split off.
 constexpr uint32_t SHORT_GAP = 16;
 
 template <class Value>
@@ -29,7 +29,7 @@ ResourceDesc desc_of(uint64_t values)
                         {TEXELS<Value> * uint32_t(std::min<uint64_t>(values, gpu::SURFACES_IN_ROW)), uint32_t(rows)});
 }
 
-/// Adds the places of values begin ... end, which lie side by side in a buffer from `offset` on: whole rows at once.
+/// Adds the positions of values begin ... end, contiguous in a buffer from `offset` on: whole rows at once.
 template <class Value>
 void add_regions(uint32_t begin, uint32_t end, uint64_t offset, std::vector<ImageRegion>& regions)
 {
@@ -60,7 +60,7 @@ Resource send(FrameGraph& graph, const std::string& name, const std::vector<Valu
 {
     std::ranges::sort(places);
     places.erase(std::unique(places.begin(), places.end()), places.end());
-    while (!places.empty() && places.back() >= values.size()) places.pop_back();  // removed since
+    while (!places.empty() && places.back() >= values.size()) places.pop_back();  // removed since then
     if (places.empty()) return target;
     std::vector<Value> written;
     std::vector<ImageRegion> regions;
@@ -123,7 +123,7 @@ std::optional<SurfaceList> SurfaceScene::upload(FrameGraph& graph)
                        send(graph, "surface list", forest_.list(), std::move(written.list), list)};
 }
 
-/// The largest of the coordinates, in reference lengths.
+/// The largest absolute coordinate, in reference lengths.
 double SurfaceScene::largest() const
 {
     double most = 0.0;

@@ -106,7 +106,7 @@ std::optional<ChangedSurfaces> changed_surfaces(const TraceGraph& trace, const G
 
 namespace {
 
-/// The box around balls.
+/// Accumulates the box around balls.
 class Reach {
 public:
     void add(const TraceNode& node) { add(node.position, node.radius); }
@@ -135,7 +135,7 @@ VoxelBox trace_reach(const TraceGraph& trace, std::span<const Change> changes, c
     for (const auto& [group, radius] : trace.internode_radii()) thickest = std::max(thickest, radius);
     const auto add_node = [&](uint32_t number) {
         const auto found = trace.nodes().find(number);
-        if (found == trace.nodes().end()) return;  // its own change gives its old position
+        if (found == trace.nodes().end()) return;  // its own change has its old position
         reach.add(found->second);
         reach.add(found->second.position, thickest);
     };
