@@ -18,7 +18,7 @@ struct Range {
     int64_t begin, end;
 };
 
-/// The voxels of `within` from the first to the last for which `holds`. The test decides; the estimate, `reach` to both
+/// The voxels of `within` from the first to the last for which `holds`. The test decides; the estimate, `reach` on both
 /// sides of `centre`, only gives the starting point.
 template <class Test>
 Range range_where(double centre, double reach, const Range& within, const Test& holds)
@@ -34,7 +34,7 @@ Range range_where(double centre, double reach, const Range& within, const Test& 
     return range;
 }
 
-/// Bits `begin` ... `end` - 1 of a row, as they lie in its word `word`.
+/// Bits `begin` ... `end` - 1 of a row, as positioned in its word `word`.
 uint32_t span_bits(const gpu::RowSpan& span, int64_t word)
 {
     const int64_t begin = std::max<int64_t>(span.begin - 32 * word, 0);
@@ -42,7 +42,7 @@ uint32_t span_bits(const gpu::RowSpan& span, int64_t word)
     return begin < end ? ~uint32_t{0} >> (32 - (end - begin)) << begin : 0;
 }
 
-/// At least 1: a point given twice stays two positions of the stroke.
+/// At least 1: two equal points remain two positions of the stroke.
 double steps_between(const glm::dvec3& a, const glm::dvec3& b)
 {
     const glm::dvec3 way = glm::abs(b - a);
@@ -166,7 +166,7 @@ void VoxelSelection::add(const BrushRegion& region, std::span<const uint32_t> wo
             if (y == region.box.lower.y || y % BRICK_SIDE == 0)
                 std::fill(row_of_bricks.begin(), row_of_bricks.end(), nullptr);
             for (int64_t w = 0; w < per_row; ++w) {
-                // Kernels should keep to the spans; whatever they return, nothing outside is selected.
+                // Kernels should respect the spans; whatever they return, nothing outside is selected.
                 const uint32_t word = words[row * size_t(per_row) + size_t(w)] & span_bits(region.rows[row], w);
                 merge(w, y, z, word << shift);
                 if (shift > 0) merge(w + 1, y, z, word >> (BRICK_SIDE - shift));

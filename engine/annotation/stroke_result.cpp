@@ -50,7 +50,7 @@ std::string listed(const std::vector<std::string>& items)
     return list;
 }
 
-/// The groups with most voxels first, each as `item(voxels, name)`; more than four are counted together.
+/// Lists the groups with most voxels first, each as `item(voxels, name)`; those beyond four are summed up.
 template <class Item>
 std::string listed(const StrokeResult::ByGroup& voxels, const GroupNames& name_of, const Item& item)
 {
@@ -70,7 +70,7 @@ std::string listed(const StrokeResult::ByGroup& voxels, const GroupNames& name_o
     return listed(items);
 }
 
-/// Where painted voxels were before, behind "Painted N voxels in group G".
+/// Previous groups of the painted voxels, following "Painted N voxels in group G".
 std::string taken_in_words(const StrokeResult& result, const GroupNames& name_of)
 {
     const int64_t taken = sum_of(result.taken_from);
@@ -107,7 +107,7 @@ std::string raised_in_words(const StrokeResult& result, bool is_first)
     return (is_first ? "Changed" : "changed") + sentence(voxels, " (", offset > 0.0 ? "+" : "", offset, ")");
 }
 
-/// What was selected and stayed, and why; empty where nothing did.
+/// The selected voxels that did not change, and why; empty if there are none.
 std::string kept_in_words(const StrokeResult& result, const GroupNames& name_of)
 {
     std::string words;

@@ -47,7 +47,7 @@ void save_mask_image(const std::filesystem::path& mask, const std::string& conte
     if (journal)
         record["journal"] = {
             {"name", journal->name}, {"record", journal->record}, {"checksum", journal->checksum_digits()}};
-    // A name need not be UTF-8.
+    // A name need not be valid UTF-8.
     const std::string text = record.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     write_file_atomically(mask_image_path(mask), std::as_bytes(std::span(text)));
 }
@@ -83,7 +83,7 @@ std::optional<MaskJournal> journal_of_mask(const std::filesystem::path& mask)
 void check_mask_image(const std::filesystem::path& mask, const std::string& content_hash)
 {
     if (content_hash.empty()) return;
-    std::optional<JsonDocument> document;  // of a file beside the mask
+    std::optional<JsonDocument> document;  // of a file next to the mask
     const std::optional<ZarrNode> node = read_zarr_node(mask);
     const bool is_label_image = node.has_value();
     if (!is_label_image) {

@@ -12,7 +12,7 @@ namespace shvr {
 
 namespace {
 
-/// TIFFs hold spacings as fractions of 32 bits.
+/// TIFFs store spacings as fractions of 32 bits.
 constexpr double SPACING_TOLERANCE = 1e-5;
 
 }  // namespace
@@ -41,7 +41,7 @@ void check_place(const std::filesystem::path& path, const char* what, const Volu
     if (!elsewhere.empty())
         fail(path.string(), ": is ", what, " of a volume with ", elsewhere, ", where this volume lies");
     const std::string unit = plain_unit(found.unit);
-    // A unit that is not stated cannot disagree.
+    // An unstated unit cannot disagree.
     if (unit == "voxel" || space.unit == "voxel") return;
     const std::optional<double> from = micrometres_in(unit), to = micrometres_in(space.unit);
     const double factor = from && to ? *from / *to : 1.0;

@@ -39,7 +39,7 @@ SegmentMeasures measures_of(const TraceGraph& trace, const TraceSegment& segment
     return measures;
 }
 
-/// By atan2, which is accurate near 0 and 180 degrees, unlike the arc cosine.
+/// Uses atan2, which is accurate near 0 and 180 degrees, unlike the arc cosine.
 double angle_degrees(const glm::dvec3& a, const glm::dvec3& b)
 {
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * 180.0 / std::numbers::pi;
@@ -56,8 +56,8 @@ BranchMeasures branch_of(const TraceGraph& trace, uint32_t node)
     return branch;
 }
 
-/// A field, quoted as in RFC 4180. Spreadsheets execute text that begins like a formula, so such text gets an
-/// apostrophe.
+/// A field, quoted as in RFC 4180. Spreadsheets execute text that begins like a formula, so such text is prefixed with
+/// an apostrophe.
 std::string csv_field(std::string text)
 {
     if (!text.empty() && std::string_view("=+-@").find(text[0]) != std::string_view::npos) text = "'" + text;

@@ -50,7 +50,7 @@ private:
     int64_t count_ = 0;
 };
 
-/// Bits [first, last] of a row, and their set.
+/// Bits [first, last] of a row, and the set that the run belongs to.
 struct Run {
     int64_t first, last;
     uint32_t set;
@@ -152,8 +152,8 @@ private:
         return slice;
     }
 
-    /// Cells between `last` and `next`, and those of `next` that lie within the slice. A cell counts if any cube that
-    /// it bounds does. Bit x of a shifted word stands for the plane between x - 1 and x.
+    /// Counts cells between `last` and `next`, and those of `next` within the slice. A cell counts if any cube that it
+    /// bounds does. Bit x of a shifted word stands for the plane between x - 1 and x.
     void count_cells(const Slice& last, const Slice& next)
     {
         for (int64_t y = 1; y < size_.y; ++y) {
@@ -181,7 +181,7 @@ private:
     const Mask& mask_;
     std::optional<uint8_t> group_;
     Size3 lower_, upper_;  ///< the bounding box of the painted voxels
-    Size3 size_;           ///< of that box, with one layer around it
+    Size3 size_;           ///< size of that box, with one layer around it
     Sets parts_, gaps_;
     int64_t euler_ = 0;
 };

@@ -16,12 +16,12 @@ namespace shvr {
 
 namespace {
 
-/// What a segment of the trace follows of one segment of the truth.
+/// The parts of one segment of the truth that a segment of the trace follows.
 struct Follower {
-    size_t segment;  ///< of the trace
+    size_t segment;  ///< index in the trace
     bool is_partner;
     std::vector<glm::dvec2> runs;  ///< from ... to along the truth's segment, ascending and disjoint
-    double tolerance;              ///< what two of them may share at their ends
+    double tolerance;              ///< length that two of them may share at their ends
 };
 
 double length_of(const std::vector<glm::dvec2>& runs)
@@ -117,14 +117,14 @@ private:
         for (const uint32_t end : {from.nodes.front(), from.nodes.back()}) {
             if (end != to.nodes.front() && end != to.nodes.back()) continue;
             const TraceNode& node = truth_.node(end);
-            // A step on either side belongs to the meeting point.
+            // A step on either side counts as part of the meeting point.
             const double reach = sample.radius + node.radius + slack_ + (sample.radius + slack_) / 2.0;
             if (glm::length(node.position - sample.position) <= reach) return true;
         }
         return false;
     }
 
-    /// Adds what a segment of the trace follows; false if it cannot follow the truth.
+    /// Records what a segment of the trace follows; false if it cannot follow the truth.
     bool add_follower(size_t index, std::map<size_t, std::vector<Follower>>& followers)
     {
         const std::vector<TraceSample> samples = match_.samples_along(match_.segments()[index]);
@@ -162,8 +162,8 @@ private:
         result.doubled = int64_t(doubled.size());
     }
 
-    /// Notes segments of the trace that go along what one before them goes along. One that stands for the segment of
-    /// the truth comes first, and doubles none.
+    /// Marks segments of the trace that follow the same part as an earlier one. The one that stands for the segment of
+    /// the truth comes first, and is never marked.
     void note_doubled(std::vector<Follower>& followers, std::set<size_t>& doubled) const
     {
         std::ranges::sort(followers, [](const Follower& a, const Follower& b) {
@@ -218,9 +218,9 @@ private:
 
     const TraceGraph &trace_, &truth_;
     double slack_;
-    TraceCourse course_;  ///< of the truth
+    TraceCourse course_;  ///< course of the truth
     TraceMatch match_;
-    std::vector<double> followed_;  ///< by segments of the trace: the length of all that each follows
+    std::vector<double> followed_;  ///< per segment of the trace: the total length that it follows
 };
 
 }  // namespace

@@ -24,8 +24,8 @@ TraceCourse::TraceCourse(const TraceGraph& trace) : segments_(segments_of(trace)
 {
     double whole_length = 0.0;
     for (const auto& [number, internode] : trace.internodes()) whole_length += trace.length_of(internode);
-    // The few internodes much longer than most are split, so that the search radius, half a piece's length, stays
-    // small.
+    // Splits the few internodes much longer than most, so that
+    // the search radius, half a piece's length, stays small.
     const double longest = 2.0 * whole_length / double(std::max<size_t>(1, trace.internodes().size()));
     for (size_t s = 0; s < segments_.size(); ++s) {
         const TraceSegment& segment = segments_[s];
@@ -50,7 +50,7 @@ TraceCourse::TraceCourse(const TraceGraph& trace) : segments_(segments_of(trace)
         }
         lengths_.push_back(along);
     }
-    // Positions are rounded.
+    // Margin for rounding of positions.
     longest_half_ *= 1.0 + 1e-9;
     for (const Piece& piece : pieces_)
         for (int axis = 0; axis < 3; ++axis)

@@ -21,8 +21,8 @@ struct Part {
     End a, b;
 };
 
-/// No position of the part is farther from the truth. The distance to one piece of the truth is convex along a line,
-/// so that it is greatest at an end; and no distance changes faster than the position does.
+/// An upper bound of the distance of any position of the part from the truth. The distance to one piece of the truth is
+/// convex along a line, so it is greatest at an end; and no distance changes faster than the position does.
 double upper_bound(const Part& part, const TraceCourse& truth)
 {
     const double at_a = part.a.nearest.distance, at_b = part.b.nearest.distance;
@@ -31,7 +31,7 @@ double upper_bound(const Part& part, const TraceCourse& truth)
                      0.5 * (at_a + at_b + glm::length(part.b.position - part.a.position))});
 }
 
-/// Branch and bound: halves a part while more than `greatest` may lie in it.
+/// Branch and bound: bisects a part while its bound exceeds `greatest`.
 void search(const Part& whole, const TraceCourse& truth, double& greatest)
 {
     std::vector<Part> parts{whole};
@@ -40,7 +40,7 @@ void search(const Part& whole, const TraceCourse& truth, double& greatest)
         parts.pop_back();
         if (upper_bound(part, truth) <= greatest * (1.0 + GREATEST_PRECISION) + truth.rounding()) continue;
         const glm::dvec3 middle = 0.5 * part.a.position + 0.5 * part.b.position;
-        if (middle == part.a.position || middle == part.b.position) continue;  // as fine as numbers are
+        if (middle == part.a.position || middle == part.b.position) continue;  // limit of floating-point resolution
         const Part::End between{middle, truth.nearest_to(middle).value()};
         greatest = std::max(greatest, between.nearest.distance);
         parts.push_back({part.a, between});
@@ -70,8 +70,8 @@ double greatest_distance(const TraceGraph& trace, const TraceCourse& truth)
 std::optional<TraceDistance> distance_from(const TraceGraph& trace, const TraceCourse& truth)
 {
     if (truth.segments().empty()) return std::nullopt;
-    // Gauss and Legendre's two places in each part: exact for polynomials up to the third degree, and the squared
-    // distance to a line is one of the second.
+    // Gauss and Legendre's two points in each part: exact for polynomials up to the third degree, and the squared
+    // distance to a line is of the second.
     constexpr int PARTS = 8;
     constexpr double AWAY = 0.5 * std::numbers::inv_sqrt3;
     double sum = 0.0, length_sum = 0.0;

@@ -21,7 +21,7 @@ int kind_of(const TraceGraph& trace, uint32_t node)
     return int(std::min<size_t>(degree(trace, node), 3));
 }
 
-/// Of samples along an internode: about half of what still counts as near.
+/// Spacing of samples along an internode: about half of the distance that counts as near.
 double step_along(const TraceGraph& trace, const TraceInternode& internode, double slack)
 {
     const double radius = std::min(trace.radius_of(internode, 0.0), trace.radius_of(internode, 1.0));
@@ -132,7 +132,7 @@ std::vector<TraceSample> TraceMatch::samples_along(const TraceSegment& segment) 
     return samples;
 }
 
-/// The sum of the mean squared distances from each of the two to the other; nothing if one leaves the other.
+/// The sum of the mean squared distances from each of the two to the other; null if one leaves the other.
 std::optional<double> TraceMatch::distance_between(const TraceSegment& segment, size_t truth_segment) const
 {
     std::optional<double> distance = covers(truth_segment, segment.internodes);
@@ -219,7 +219,7 @@ std::vector<uint32_t> TraceMatch::core_of(const std::vector<uint32_t>& internode
     return {core.begin(), core.end()};
 }
 
-/// If these internodes come near every point of a segment: their mean squared distance from it.
+/// The mean squared distance of these internodes from a segment, if they come near every point of it.
 std::optional<double> TraceMatch::covers(size_t truth_segment, const std::vector<uint32_t>& internodes) const
 {
     if (internodes.empty()) return std::nullopt;

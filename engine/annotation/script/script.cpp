@@ -39,7 +39,7 @@ void allow(const JsonNode& line, std::vector<std::string_view> keys)
     line.allow(keys);
 }
 
-/// The one of `keys` that is present.
+/// Returns the one of `keys` that is present.
 std::string_view one_of(const JsonNode& line, std::initializer_list<std::string_view> keys)
 {
     std::string_view found;
@@ -94,7 +94,7 @@ NodeOp read_node(const JsonNode& line)
     return op;
 }
 
-/// The search distance of a key such as "near"; `key` gives the place.
+/// The search distance of a key such as "near"; `key` holds the position.
 std::optional<double> read_within(const JsonNode& line, std::string_view key)
 {
     const JsonNode within = line["within"];
@@ -193,7 +193,7 @@ int read_count(const JsonNode& line)
     return int(line["count"].whole(1, 1, 1000000000));
 }
 
-/// The group that a key such as "3" names; nothing if it names none.
+/// The group that a key such as "3" names; null if it is not a group.
 std::optional<uint8_t> group_of(const std::string& key)
 {
     uint8_t group = 0;
@@ -268,7 +268,7 @@ constexpr OpReader OPS[] = {
     {"expect", [](const JsonNode& line) -> ScriptOp { return read_expect(line); }},
 };
 
-/// Standard input ("-") or a pipe, to its end.
+/// Reads standard input ("-") or a pipe to its end.
 std::string read_stream(const std::filesystem::path& path, const std::string& name)
 {
     const FileDescriptor pipe(path == "-" ? ::dup(STDIN_FILENO) : ::open(path.c_str(), O_RDONLY | O_CLOEXEC));

@@ -1,4 +1,4 @@
-// Operations as lines of a script: the reverse of script.cpp.
+// Writes operations as lines of a script: the inverse of script.cpp.
 
 #include "engine/annotation/script/script.h"
 #include "engine/base/text.h"
@@ -12,7 +12,7 @@ std::string text_of(const glm::dvec3& point)
     return sentence('[', digits_of(point.x), ',', digits_of(point.y), ',', digits_of(point.z), ']');
 }
 
-/// A line that grows key by key. Keys and texts are plain words, so nothing is escaped.
+/// A line built key by key. Keys and texts are plain words, so nothing is escaped.
 class Line {
 public:
     explicit Line(std::string_view op) : text_(sentence("{\"op\":\"", op, '"')) {}

@@ -10,7 +10,7 @@ namespace shvr {
 namespace {
 
 constexpr size_t DIRECTIONS = 200;  ///< about 9 degrees apart
-/// Less than a thousandth more is the noise of directions, not a larger place.
+/// An increase of less than a thousandth is directional noise, not a larger ball.
 constexpr double NOTICEABLE = 1.001;
 
 /// Evenly spread over the sphere: a Fibonacci lattice.
@@ -38,7 +38,7 @@ public:
           step_(0.5 * std::min({spacing.x, spacing.y, spacing.z}))
     {}
 
-    /// How far it is from a point to the nearest place outside; at most `most`, and 0 outside.
+    /// Distance from a point to the nearest point outside; at most `most`, and 0 outside.
     double depth_of(const glm::dvec3& point) const
     {
         if (density(point) < threshold_) return 0.0;
@@ -70,8 +70,8 @@ private:
     double most_, step_;
 };
 
-/// Climbs from `point` to where the ball is largest, as long as it contains the point and `may_be` allows its middle,
-/// in steps that become smaller. The middle in the unit of the spacing.
+/// Climbs from `point` to a local maximum of the ball's radius, as long as the ball contains the point and `may_be`
+/// allows its centre, in decreasing steps. Returns the centre in the unit of the spacing.
 template <class MayBe>
 std::optional<LocalBall> largest_ball(const Structure& structure, const glm::dvec3& point, double most,
                                       const MayBe& may_be)
@@ -134,8 +134,8 @@ std::optional<LocalBall> ball_behind(const DensityAt& density_at, double thresho
     const auto is_near_sight = [&](const glm::dvec3& point) {
         return glm::length(point - from - glm::dot(point - from, direction) * direction) <= aside;
     };
-    // What is seen is the steepest place of a wall, whose middle may lie a voxel before it. A grain of noise, thinner
-    // than a voxel, is nothing that one enters.
+    // The visible point is the steepest place of a wall, whose middle may be a voxel in front of it. A grain of noise
+    // thinner than a voxel does not count as entered.
     double begin = -2.0 * structure.finest();
     while (begin <= most) {
         while (begin <= most && !structure.contains(from + begin * direction)) begin += structure.step();

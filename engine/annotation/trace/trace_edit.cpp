@@ -29,7 +29,7 @@ const TraceSelection& selected(const TraceGraph& trace)
     return trace.selection();
 }
 
-/// The changes between a record that deselects and one that selects.
+/// Wraps the changes in a record that deselects and one that selects.
 std::vector<TraceChange> with_selection(const TraceGraph& trace, std::vector<TraceChange> changes,
                                         TraceSelection selection)
 {

@@ -173,8 +173,8 @@ void TraceReader::to_volume_space(const std::optional<TraceSpace>& expected)
     TraceSpace space{.spacing = stated.spacing ? *stated.spacing : expected->spacing,
                      .directions = *stated.directions,
                      .origin = *stated.origin};
-    // What separates a position from what was written for it: the rounding of numbers of this size, which flat axes
-    // enlarge.
+    // The difference between a position and the one written for it: the rounding of numbers of this size, amplified by
+    // nearly coplanar axes.
     const double rounding = 1e-14 / glm::determinant(space.directions);
     std::vector<TraceNodeChange> changes;
     for (const auto& [number, node] : trace.nodes()) {

@@ -57,7 +57,7 @@ public:
 private:
     using Data = std::map<std::string, std::string>;
 
-    /// By the names of the keys.
+    /// Maps the names of the keys to their values.
     Data data_of(const pugi::xml_node& node) const
     {
         Data data;
@@ -231,7 +231,7 @@ std::string write_trace_graphml(const TraceWriting& writing)
         add_data(element, "z", digits_of(node.position.z));
         add_data(element, "radius", digits_of(node.radius));
         add_data(element, "group", std::to_string(node.group));
-        // What a reader computes from the above lacks the last bits.
+        // Positions that a reader computes from the above lack the last bits.
         if (!writing.exact) continue;
         const glm::dvec3& exact = writing.exact->node(number).position;
         if (position_of(space, node.position) != exact) add_data(element, "volume_position", digits_of(exact));

@@ -65,7 +65,8 @@ void TraceIndex::Tree::split(size_t begin, size_t end)
     split(middle + 1, end);
 }
 
-/// Visits every point that is at most `most_squared` away, and maybe others. `most_squared` may shrink meanwhile.
+/// Visits every point that is at most `most_squared` away, and maybe others. `most_squared` may shrink during the
+/// search.
 template <class Visit>
 void TraceIndex::search(const glm::dvec3& position, const double& most_squared, const Visit& visit) const
 {
@@ -73,7 +74,7 @@ void TraceIndex::search(const glm::dvec3& position, const double& most_squared, 
         if (changed) visit(number, squared(*changed - position));
     struct Range {
         size_t begin, end;
-        double away_squared;  ///< at least, along one axis
+        double away_squared;  ///< lower bound, along one axis
     };
     std::vector<Range> ranges{{0, tree_size(), 0.0}};
     while (!ranges.empty()) {

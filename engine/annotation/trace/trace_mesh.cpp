@@ -22,7 +22,7 @@ namespace {
 constexpr uint32_t SIDES = 16;
 constexpr size_t CHUNK_BYTES = size_t{1} << 20;
 
-/// An icosahedron whose edges are halved once, of radius 1: 42 vertices, 80 triangles.
+/// A sphere of radius 1: an icosahedron subdivided once, with 42 vertices, 80 triangles.
 TracePart unit_ball()
 {
     const double p = (1.0 + std::sqrt(5.0)) / 2.0;
@@ -57,7 +57,7 @@ void append_bytes(std::string& bytes, Value value)
     bytes.append(raw, sizeof value);
 }
 
-/// Every part that is not empty, by group.
+/// Visits every non-empty part, by group.
 template <class Visit>
 void for_each_part(const TraceGraph& trace, const Visit& visit)
 {
@@ -95,7 +95,7 @@ private:
     AtomicWriter writer_;
 };
 
-/// Lines without line ends.
+/// Comment lines without line ends.
 std::vector<std::string> comments_of_mesh(const TraceSpace& space, Positions positions)
 {
     std::vector<std::string> lines{"SHVR trace as tubes, unit " + space.unit, in_words(space, positions)};

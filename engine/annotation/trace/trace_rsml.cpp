@@ -1,7 +1,7 @@
 // RSML, the Root System Markup Language (Lobet et al. 2015, Plant Physiology 167; https://rootsystemml.github.io):
 // every tree is a plant; its first axis follows the longest path from the root, and each side branch is a root nested
 // in the root it leaves, beginning at the branch. Geometry is in pixels: voxels along x, on all three axes, with
-// `resolution` pixels to the unit. Metadata of our own say which space that is, and, in `unit`, where the volume lies.
+// `resolution` pixels per unit. Our own metadata state the space and, in `unit`, the position of the volume.
 
 #include <algorithm>
 #include <map>
@@ -17,7 +17,7 @@ struct Branch {
     double reach;  ///< length of the longest path onwards, including the internode to here
 };
 
-/// The children of each node, the one with the longest path onwards first.
+/// The children of each node, sorted by the longest path onwards.
 std::map<uint32_t, std::vector<Branch>> branches_of(const TraceGraph& trace, const TraceTrees& trees)
 {
     std::map<uint32_t, std::vector<Branch>> branches;
@@ -100,7 +100,7 @@ std::string write_trace_rsml(const TraceWriting& writing, Loops loops, std::vect
             while (!branches.at(axis.nodes.back()).empty())
                 axis.nodes.push_back(branches.at(axis.nodes.back()).front().node);
             add_axis(root, trace, axis.nodes, space.spacing.x);
-            // The node that an axis begins at belongs to the axis it branches off from.
+            // The node at which an axis begins belongs to the axis it branches off from.
             for (size_t i = given - 1; i < axis.nodes.size(); ++i) {
                 const std::vector<Branch>& children = branches.at(axis.nodes[i]);
                 for (size_t child = 1; child < children.size(); ++child)

@@ -1,10 +1,11 @@
-// Reading RSML (trace_rsml.cpp writes it): metadata's unit and resolution, and of each root its polyline, its functions
-// "diameter" and "group" along the polyline, and its roots. Other elements and attributes are ignored, since other
-// programs write many. A nested root begins at the parent's node where its first point lies; otherwise it is joined to
-// the nearest node of the parent. All numbers are pixels (https://rootsystemml.github.io/format/metadata): `resolution`
-// of them make one `unit`. If the unit is "pixel", or neither is stated, a pixel is a voxel along x. A missing unit is
-// the volume's, and a missing resolution is 1. Lengths are converted to the volume's unit. Without a diameter the
-// radius is one pixel. Positions that metadata say are physical are taken as such until all of the file is read.
+// Reads RSML (trace_rsml.cpp writes it): the metadata's unit and resolution, and for each root its polyline, its
+// functions "diameter" and "group" along the polyline, and its child roots. Other elements and attributes are ignored,
+// since other programs write many. A nested root begins at the parent's node where its first point lies; otherwise it
+// is joined to the nearest node of the parent. All numbers are pixels (https://rootsystemml.github.io/format/metadata):
+// `resolution` pixels make one `unit`. If the unit is "pixel", or neither is stated, a pixel is a voxel along x. A
+// missing unit is the volume's, and a missing resolution is 1. Lengths are converted to the volume's unit. Without a
+// diameter the radius is one pixel. Positions declared physical by the metadata are converted once the whole file is
+// read.
 
 #include <memory>
 #include "engine/annotation/trace/trace_forms.h"
@@ -55,7 +56,7 @@ private:
     struct Axis {
         std::optional<uint32_t> last;
         bool is_parent = false;
-        TraceIndex index;  ///< of all nodes, if nested roots need it
+        TraceIndex index;  ///< index of all nodes, if nested roots need it
     };
     struct Waiting {
         pugi::xml_node root;
@@ -70,7 +71,7 @@ private:
         read_space(metadata);
         if (text.empty()) return;
         const std::optional<double> resolution = number_of(text);
-        // Far beyond any scan, and near enough to 1 that nothing overflows.
+        // Far beyond any scan, yet close enough to 1 that nothing overflows.
         if (!resolution || !(*resolution >= 1e-12) || !(*resolution <= 1e12))
             fail(reader_.file(), ": metadata: resolution is ", in_quotes(text),
                  "; expected pixels to the unit, a number from 1e-12 to 1e12");
@@ -168,7 +169,7 @@ private:
         return axis;
     }
 
-    /// The first point of a root below another one has a `parent`.
+    /// The first point of a root nested in another has a `parent`.
     void add_point(const std::string& where, const TraceNode& node, Axis* parent, Axis& axis)
     {
         std::optional<uint32_t> number;
@@ -201,7 +202,7 @@ private:
     TraceReader& reader_;
     const std::optional<TraceSpace>& volume_;
     double pixels_per_unit_ = 1.0;
-    double per_unit_ = 1.0;  ///< the volume's units to one of the file's
+    double per_unit_ = 1.0;  ///< the volume's units per unit of the file
 };
 
 }  // namespace

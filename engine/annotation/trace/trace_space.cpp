@@ -15,7 +15,7 @@ bool states_place(const TraceSpace& space)
     return !space.frame.empty() || space.origin != glm::dvec3(0.0) || space.directions != glm::dmat3(1.0);
 }
 
-/// RAS in LPS, or the other way round.
+/// Converts RAS to LPS and vice versa.
 TraceSpace turned_round(TraceSpace space)
 {
     const glm::dvec3 turn(-1.0, -1.0, 1.0);
@@ -24,7 +24,7 @@ TraceSpace turned_round(TraceSpace space)
     return space;
 }
 
-/// Tolerances for numbers that other programs keep as 32-bit floats.
+/// Tolerances for numbers that other programs store as 32-bit floats.
 bool is_in_place(const TraceSpace& found, const TraceSpace& expected)
 {
     constexpr double MAX_TURN = 1e-3, MAX_VOXELS = 0.05, ROUNDING = 1e-6;

@@ -1,6 +1,6 @@
-// SWC (Cannon et al. 1998, "An on-line archive of reconstructed hippocampal neurons"): a sample a line,
-// "n type x y z radius parent", parents before children, parent -1 for a root. Written as SWC+ and the standardised
-// form require: numbers from 1 without gaps. The type holds the colour group, since no neurite type fits plants.
+// SWC (Cannon et al. 1998, "An on-line archive of reconstructed hippocampal neurons"): one sample per line, "n type x y
+// z radius parent", parents before children, parent -1 for a root. Written as SWC+ and the standardised form require:
+// numbers from 1 without gaps. The type holds the colour group, since no neurite type fits plants.
 
 #include <map>
 

@@ -22,7 +22,7 @@ public:
     Walker(const TraceGraph& trace, uint32_t node, uint32_t internode)
         : trace_(trace), node_(node), internode_(internode)
     {}
-    /// To the next node, which may be the last.
+    /// Advances to the next node, which may be the last.
     void step()
     {
         node_ = trace_.internode(internode_).other(node_);
@@ -40,7 +40,7 @@ private:
 
 struct Closed {
     bool is_closed = false;  ///< the node lies on a loop of inner nodes only
-    bool has_other = false;  ///< and so does the other node
+    bool has_other = false;  ///< the other node does, too
 };
 
 /// Walks both ways at once, so the number of steps is the distance to the nearer end of the segment.
@@ -71,7 +71,7 @@ size_t inner_nodes_of(const TraceGraph& trace, const TraceInternode& internode)
     return size_t{is_inner(trace, internode.a)} + size_t{is_inner(trace, internode.b)};
 }
 
-/// Of 0 that of the smallest double.
+/// The binary exponent; for 0, that of the smallest double.
 int exponent_of(double length)
 {
     return std::ilogb(std::max(length, DBL_MIN));

@@ -1,7 +1,7 @@
 // The thesis's text (appendix D.0.2): "-v x-position, y-position, z-position, colour_group, node_size" for each node
-// and "-l node_1_index, node_2_index, colour_group" for each internode. The index of a node is its place among the
-// nodes of the file, from 0; nodes that were deleted have none. Lines before them begin with "#" and say which space
-// the positions are in. Blank lines and other spacing are read, too.
+// and "-l node_1_index, node_2_index, colour_group" for each internode. The index of a node is its position among the
+// nodes of the file, from 0; deleted nodes have none. Lines before them begin with "#" and state the space of the
+// positions. Blank lines and other spacing are accepted, too.
 
 #include <algorithm>
 
@@ -61,7 +61,7 @@ void read_trace_text(TraceReader& reader, std::string_view text)
         int line;
         std::string_view text;
     };
-    std::vector<Link> links;  // may come before their nodes
+    std::vector<Link> links;  // may precede their nodes
     for (int number = 1; !text.empty(); ++number) {
         const std::string_view line = trimmed(take_line(text));
         if (line.starts_with("#")) read_space_comment(reader, sentence(reader.file(), ":", number), line);

@@ -29,7 +29,7 @@ Direction opposite(Direction direction)
     return direction == Direction::forwards ? Direction::backwards : Direction::forwards;
 }
 
-/// The i-th change to be applied.
+/// The i-th change in the order of application.
 const Change& in_order(std::span<const Change> changes, size_t i, Direction direction)
 {
     return direction == Direction::forwards ? changes[i] : changes[changes.size() - 1 - i];
@@ -50,7 +50,8 @@ void apply(Document& document, const Change& change, Direction direction)
 
 void apply_if_it_fits(Document& document, std::span<const Change> changes, Direction direction)
 {
-    // Changes of these say what comes after and are not held against what was before, so they cannot be reversed.
+    // Records of these kinds state only the new value and are not compared with the old one, so they cannot be
+    // reversed.
     const TraceSelection selection = document.trace.selection();
     const Settings settings = document.settings;
     for (size_t i = 0; i < changes.size(); ++i) {

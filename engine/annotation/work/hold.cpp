@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t MAX_LOCK_BYTES = 4096;
-/// Of a part, since messages quote it.
+/// Limit of one part, since messages quote it.
 constexpr size_t MAX_PART_BYTES = 120;
 
 struct flock whole_file(short type)
@@ -52,7 +52,7 @@ bool is_locked(const FileDescriptor& file)
     return ::fcntl(file.number(), F_OFD_GETLK, &range) == 0 && range.l_type != F_UNLCK;
 }
 
-/// False where somebody removed or replaced the file since it was opened.
+/// False if the file was removed or replaced since it was opened.
 bool is_at(const FileDescriptor& file, const fs::path& path)
 {
     struct stat opened {
@@ -86,7 +86,7 @@ std::string time_now()
     return std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S", &local) > 0 ? text : "";
 }
 
-/// The lines of JOURNAL.lock and where they go.
+/// Visits the lines of JOURNAL.lock and the members that they set.
 template <class SomeHolder, class Visit>
 void each_line(SomeHolder& holder, const Visit& visit)
 {
@@ -97,7 +97,7 @@ void each_line(SomeHolder& holder, const Visit& visit)
     visit("since", holder.since);
 }
 
-/// What cannot be written is not told: the lock counts, not what it says.
+/// Write errors are not reported: the lock matters, not the content of its file.
 void describe(const FileDescriptor& file, std::string_view program)
 {
     const std::string text =
@@ -114,7 +114,7 @@ Holder described(const FileDescriptor& file)
     return parse_holder(text);
 }
 
-/// Whether what the file says is from a process of this host that is no more: the holder has not written it yet.
+/// Whether the file's content is from a dead process of this host: the present holder has not written its own yet.
 bool is_dated(const Holder& holder)
 {
     const std::optional<int64_t> process = whole_of(holder.process);
@@ -186,11 +186,11 @@ std::shared_ptr<Hold> Hold::take(const fs::path& journal, std::string_view progr
 {
     if (journal.empty()) return nullptr;
     const fs::path path = lock_path(journal);
-    constexpr int TRIES = 100;  // each further one because another process let go, or began, in between
+    constexpr int TRIES = 100;  // each retry because another process released the lock, or took it, in between
     for (int i = 0; i < TRIES; ++i) {
         FileDescriptor file = opened(path, O_RDWR | O_CREAT);
         if (!file) {
-            // Another user's file, which may only be read.
+            // Another user's file, which can only be read.
             const FileDescriptor readable = opened(path, O_RDONLY);
             if (!readable) return nullptr;
             if (is_locked(readable)) refuse(journal, readable);

@@ -22,7 +22,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds SYNC_INTERVAL{100};
 constexpr std::chrono::seconds RETRY_INTERVAL{1};
 
-/// 0, or errno.
+/// Returns 0, or errno.
 int write_all(int file, uint64_t at, std::span<const std::byte> bytes)
 {
     while (!bytes.empty()) {
@@ -121,8 +121,8 @@ void Journal::begin(const fs::path& rest)
     is_to_begin_ = true;
 }
 
-/// Before any record is written: of a journal without a header, as a power cut may leave it, nothing else is there
-/// (has_file_header in journal_file.cpp). Returns why it failed; empty if it did not.
+/// To be called before any record is written: a journal without a header, as a power cut may leave it, must contain
+/// nothing else (has_file_header in journal_file.cpp). Returns the reason of a failure; empty on success.
 std::string Journal::sync_beginning() const
 {
     try {
@@ -253,7 +253,7 @@ std::string Journal::write_from(uint64_t at, const std::deque<Waiting>& waiting,
 void Journal::write()
 {
     std::deque<Waiting> waiting;  // not yet synced
-    size_t written = 0;           // how many of these are written
+    size_t written = 0;           // how many of these have been written
     uint64_t written_bytes = 0;
     Clock::time_point next_sync = Clock::now(), next_try = next_sync;
     std::unique_lock lock(mutex_);

@@ -27,7 +27,7 @@ constexpr size_t FILE_HEADER_BYTES = 16;
 constexpr size_t HEADER_BYTES = 40;
 constexpr size_t CHECKSUM_AT = 32;
 constexpr uint16_t COMPRESSED = 1;
-/// Below this a zstd frame saves nothing.
+/// Below this size a zstd frame saves nothing.
 constexpr size_t MIN_COMPRESSED_BYTES = 64;
 
 using Header = std::array<std::byte, HEADER_BYTES>;
@@ -79,8 +79,8 @@ size_t read_at(const FileDescriptor& file, const fs::path& path, uint64_t at, st
     return done;
 }
 
-/// False where it has no header yet, as a power cut leaves a journal that has just begun: of its bytes some or none
-/// are there, and the rest is zero. Fails where it is no journal of ours.
+/// False if it has no header yet, as a power cut leaves a journal that has just begun: some or none of its bytes are
+/// present, and the rest is zero. Fails if it is not a journal.
 bool has_file_header(const FileDescriptor& file, const fs::path& path, uint64_t file_bytes)
 {
     std::array<std::byte, FILE_HEADER_BYTES> header{};

@@ -65,7 +65,7 @@ PaintPreview preview_of(std::span<const Change> changes, const Size3& volume_siz
         for (int64_t x = at.x; x < at.x + count; ++x) {
             uint32_t& word = row[x / 32];
             const uint32_t bit = 1u << (x % 32);
-            preview.voxels += (word & bit) == 0;  // a voxel may change its group and its offset
+            preview.voxels += (word & bit) == 0;  // a voxel may change both its group and its offset
             word |= bit;
         }
     });

@@ -37,7 +37,7 @@ std::vector<Change> bricks_between(const SparseBricks<Value>& from, const Sparse
     return changes;
 }
 
-/// What `from` has and `to` has otherwise or not; `made`: what `to` has beyond that or otherwise.
+/// `gone`: objects of `from` that `to` lacks; `made`: objects of `to` that are new or changed.
 template <class Record, class Map>
 void differences(const Map& from, const Map& to, std::vector<Record>& gone, std::vector<Record>& made)
 {
@@ -60,8 +60,8 @@ std::vector<Change> traces_between(const TraceGraph& from, const TraceGraph& to)
     differences(from.nodes(), to.nodes(), lost_nodes, nodes);
     differences(from.internodes(), to.internodes(), lost_links, links);
     differences(from.internode_radii(), to.internode_radii(), lost_sizes, sizes);
-    // One that joins other nodes than before is taken away first, and all of these before any is added: two nodes are
-    // joined once at most.
+    // An internode that now joins other nodes is removed first, and all of these before any is added: two nodes are
+    // joined at most once.
     std::vector<TraceInternodeChange> joins;
     for (TraceInternodeChange& link : links) {
         if (link.before && (link.before->a != link.after->a || link.before->b != link.after->b)) {
@@ -81,7 +81,7 @@ std::vector<Change> traces_between(const TraceGraph& from, const TraceGraph& to)
     add(lost_sizes);
     add(sizes);
     if (changes.empty()) return changes;
-    // In both directions nothing is selected that does not exist.
+    // In both directions the selection never refers to missing objects.
     changes.insert(changes.begin(), TraceChange(TraceSelectionChange{from.selection(), {}}));
     return changes;
 }

@@ -60,7 +60,7 @@ void Work::refuse_if_only_looking() const
 void Work::begin_journal()
 {
     refuse_if_only_looking();
-    expect_choice();  // what is disputed would fit no longer
+    expect_choice();  // disputed differences would no longer fit
     if (is_saving_as_) fail("the work is being saved under another name; expected that to have ended");
     if (journal_)
         keep_journal_in_place();
@@ -102,7 +102,7 @@ void Work::begin_records()
     record_files(RecordKind::saved, is_fresh_ ? AFRESH : "");
 }
 
-/// What opening has found goes in before anything is done.
+/// Writes the findings of opening before any other record.
 void Work::continue_records()
 {
     if (space_to_note_) {
@@ -117,8 +117,8 @@ void Work::continue_records()
     record_files(RecordKind::known);
 }
 
-/// Where somebody removed the file, or put another one in its place, what is written to it would be gone with this
-/// process: it is put back, and the other one kept.
+/// If the file was removed or replaced, data written to it would be lost with this process: the journal is restored,
+/// and the other file is kept under another name.
 void Work::keep_journal_in_place()
 {
     if (journal_->is_in_place()) return;
@@ -132,7 +132,7 @@ void Work::keep_journal_in_place()
 void Work::set_journal_aside()
 {
     {
-        // Never while another process writes it.
+        // Not while another process writes it.
         const Journal nobody_else(files_.journal, scan_);
     }
     scanned_.reset();
@@ -149,7 +149,7 @@ RecordNumber Work::record(RecordKind kind, std::string label, std::vector<std::b
     return journal_->append(kind, std::move(label), std::move(content));
 }
 
-/// What is known of the saved files.
+/// Records the known state of the saved files.
 void Work::record_files(RecordKind kind, std::string label)
 {
     if (journal_) journal_->append(kind, std::move(label), bytes_of(known_), known_kept_);
@@ -215,7 +215,7 @@ const Command* Work::go(const Command* (History::*way)(Document&), RecordKind ki
 {
     begin_journal();
     const Command* const command = (history_.*way)(document_);
-    if (!command) return nullptr;  // the step before has just been recorded
+    if (!command) return nullptr;  // the preceding step has just been recorded
     touch(command->changes);
     record(kind);
     note_unsaved(1);

@@ -1,4 +1,4 @@
-// Opening work: the journal, the saved files beside it, and which of them is believed where they differ.
+// Opens work: the journal, the saved files next to it, and which of them counts if they differ.
 
 #include <fcntl.h>
 
@@ -25,7 +25,7 @@ bool is_step(RecordKind kind)
     return kind == RecordKind::command || kind == RecordKind::undo || kind == RecordKind::redo;
 }
 
-/// A save holds what was there when it began; what was done until its end is not in it.
+/// A save contains the state at its start, so steps made before its end are not included.
 size_t steps_since_save(const JournalScan& scan)
 {
     size_t steps = 0;
@@ -56,7 +56,7 @@ fs::path plain(const fs::path& path)
     return fs::absolute(path).lexically_normal();
 }
 
-/// Whether MASK.json says that the mask was saved with this journal, or one in its place.
+/// Whether MASK.json says that the mask was saved with this journal, or one at its path.
 bool names_journal(const WorkFiles& files)
 {
     const std::optional<MaskJournal> named = journal_of_mask(files.mask);
@@ -94,7 +94,7 @@ std::vector<Notice> Work::open(const WorkFiles& files, const Opening& opening)
         return {};
     }
     std::vector<Notice> notices = open_once();
-    // Another process may be in the midst of a save.
+    // Another process may be in the middle of a save.
     for (int i = 0; i < TRIES && only_looks_ && !disputes_.empty() && holder_of(files.journal); ++i) {
         std::this_thread::sleep_for(TURN);
         notices = open_once();
@@ -126,7 +126,7 @@ std::vector<Notice> Work::open_once()
     std::vector<Notice> notices;
     const std::string name = files_.journal.string();
     if (!damage.empty()) notices.push_back({sentence(name, ": ", damage, "; what comes before is used"), true});
-    // What another process is just writing is no damage.
+    // Data that another process is just writing is not damage.
     if (scan_.end < scan_.file_bytes && !(only_looks_ && holder_of(files_.journal)))
         notices.push_back({sentence(name, ": its last ", scan_.file_bytes - scan_.end,
                                     " bytes are an incomplete or damaged record; expected complete ones; the ",
@@ -153,7 +153,7 @@ void Work::read_journal()
     if (!*scanned_) fail(files_.journal.string(), ": cannot be opened: ", reason_of(errno));
 }
 
-/// What is there belongs to earlier work, and is kept where that work's journal does not hold it.
+/// Existing files belong to earlier work, and are kept if that work's journal does not hold them.
 void Work::open_fresh()
 {
     read_journal();
@@ -176,7 +176,7 @@ void Work::open_fresh()
     }
 }
 
-/// For work without a journal, or with one that holds no state. `damage`: why it holds none, if that is known.
+/// For work without a journal, or with one that holds no state. `damage`: why it holds none, if known.
 std::vector<Notice> Work::open_from_files(const std::string& damage)
 {
     std::vector<Notice> notices;
@@ -197,7 +197,7 @@ std::vector<Notice> Work::open_from_files(const std::string& damage)
              true});
     for (const Part part : PARTS) {
         note_file(part);
-        // A mask may be a label image in an archive; what stands beside it by default cannot be.
+        // A mask may be a label image in an archive; the files next to it by default cannot be.
         const fs::path& file = file_of(files_, part);
         if (is_there(file) || (part == Part::mask && is_in_archive(file))) load(part, files_, document_);
         digest_of(known_, part) = seen_[size_t(part)].digest;
@@ -247,7 +247,7 @@ std::string Work::replay()
     }
 }
 
-/// The work after record `last`. Where it fails, `at` is the record that cannot be taken.
+/// The work after record `last`. On failure, `at` is the record that could not be replayed.
 Work::Replayed Work::replayed(const JournalScan& scan, RecordNumber last, RecordNumber& at) const
 {
     Replayed work{empty_document(), {}};
@@ -300,7 +300,7 @@ Work::Replayed Work::replayed(const JournalScan& scan, RecordNumber last, Record
     return work;
 }
 
-// ---- The saved files beside the journal -----------------------------------------------------------------------------
+// ---- The saved files next to the journal ----------------------------------------------------------------------------
 
 void Work::look_at_files(std::vector<Notice>& notices)
 {
@@ -380,10 +380,10 @@ RecordNumber Work::begin_of_save(const JournalScan& scan, RecordNumber saved)
         if (kind == RecordKind::saving) return number;
         if (kind == RecordKind::saved) break;
     }
-    return saved;  // the first, which was not saved but found
+    return saved;  // the first record, which was found rather than saved
 }
 
-/// The states that a save may have written: the last one that was finished, and all that were begun since.
+/// The states that a save may have written: the last completed one, and all that were begun since.
 std::vector<Document> Work::documents_at_saves() const
 {
     constexpr size_t MAX_SAVES = 8;
@@ -399,7 +399,7 @@ std::vector<Document> Work::documents_at_saves() const
     return documents;
 }
 
-/// Whether a file with other bytes than expected is of a save that came to no end, or holds the same all the same.
+/// Whether a file with unexpected bytes comes from an interrupted save, or has the same content nevertheless.
 bool Work::is_as_written(Part part, const Document& found) const
 {
     const auto is_equal = [&](const Document& document) {
@@ -422,7 +422,7 @@ std::string Work::what_happened_to(Part part) const
             if (digest_of(files, part) == seen_[size_t(part)].digest)
                 return sentence("is as it was saved earlier, ", saves, saves == 1 ? " save" : " saves",
                                 " before the last");
-        } catch (const Error&) {  // says nothing
+        } catch (const Error&) {  // no information
         }
         ++saves;
     }

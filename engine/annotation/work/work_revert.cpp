@@ -1,4 +1,4 @@
-// Going back to what was last saved.
+// Reverts to the last saved state.
 
 #include <utility>
 
@@ -6,7 +6,7 @@
 
 namespace shvr {
 
-/// A part that was taken from a file which others had changed is of that moment.
+/// If a part was taken from a file changed by others, its last save is that moment.
 Work::LastSave Work::last_save(const JournalScan& scan) const
 {
     LastSave last;
@@ -20,9 +20,9 @@ Work::LastSave Work::last_save(const JournalScan& scan) const
         try {
             files = saved_files_of(content_of(number));
         } catch (const Error&) {
-            continue;  // says nothing
+            continue;  // no information
         }
-        // A journal begins with the files that there were then, which may be none of this work's.
+        // A journal begins with the files that existed then, which may belong to other work.
         const bool is_of_files = record.label != AFRESH && (files.mask || files.trace || files.density);
         for (const Part part : PARTS) {
             RecordNumber& of = last.of[size_t(part)];
@@ -35,7 +35,7 @@ Work::LastSave Work::last_save(const JournalScan& scan) const
     return last;
 }
 
-/// From what is set now to what the session's file held, or, where that is not known, to what was set then.
+/// Changes from the present settings to those of the session's file or, if unknown, to those set at that time.
 std::vector<Change> Work::settings_since_save(const Document& saved) const
 {
     SettingValues then = known_.settings.value_or(saved.settings.values());

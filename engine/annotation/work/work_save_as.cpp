@@ -1,4 +1,4 @@
-// Going on under other names, with the whole history.
+// Continues the work under other names, with the whole history.
 
 #include <unistd.h>
 
@@ -23,7 +23,7 @@ void expect_free(const WorkFiles& files, const fs::path& session)
     }
 }
 
-/// What was made, in places that were free; removed again unless it is to stay.
+/// New files, in places that were free; removed again unless they are to stay.
 class Made {
 public:
     Made() = default;
@@ -38,7 +38,7 @@ public:
                 ::unlink(path.c_str());
         }
     }
-    /// Before it is made.
+    /// To be called before the file is created.
     void add(const fs::path& path) { paths_.push_back(path); }
     void keep() { paths_.clear(); }
 
@@ -76,8 +76,8 @@ std::unique_ptr<Work::SavingAs> Work::begin_save_as(const WorkFiles& to, std::ve
 void Work::SavingAs::write(const std::function<void()>& save_session, const Progress& progress)
 {
     SHVR_CHECK(!is_written_, "a save is written once");
-    std::shared_ptr<Hold> hold = Hold::take(files_.journal, program_);  // let go last
-    expect_free(files_, session_);                                      // still
+    std::shared_ptr<Hold> hold = Hold::take(files_.journal, program_);  // released last
+    expect_free(files_, session_);                                      // checked again
     Made made;
     double done = 0.0;
     const auto tell_step = [&] { tell(progress, done++ / double(PARTS.size() + 2)); };
@@ -129,7 +129,7 @@ Work::Saved Work::end_save_as(SavingAs& saving)
     SHVR_CHECK(is_saving_as_, "no save under another name has begun");
     is_saving_ = is_saving_as_ = false;
     const bool has_history = saving.before_ != nullptr;
-    saving.before_.reset();  // it may be opened again before the save is gone
+    saving.before_.reset();  // it may be opened again before the save object is destroyed
     if (!saving.is_written_) {
         if (journal_) write_kept();
         return saving.saved_;

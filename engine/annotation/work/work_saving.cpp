@@ -1,4 +1,4 @@
-// Saving: what is to be written is taken at once, on the thread of the work, and written on any.
+// Saves: the state to be written is copied at once, on the work's thread, and written on any thread.
 
 #include <utility>
 
@@ -48,11 +48,11 @@ void Work::note_file(Part part)
 
 void Work::note_file(const fs::path& file, Seen& seen)
 {
-    seen = {.stamp = stamp_of(file)};  // also where it cannot be read
+    seen = {.stamp = stamp_of(file)};  // even if it cannot be read
     seen = seen_at(file);
 }
 
-/// `journal`: the one that the mask names, beside `files`; null where there is none.
+/// `journal`: the one that the mask names, in addition to `files`; null if there is none.
 void Work::write(Part part, const Document& document, const WorkFiles& files,
                  const std::vector<LabelImage::Color>& looks, const Journal* journal)
 {
@@ -81,7 +81,7 @@ std::function<void(const WorkFiles&)> Work::copier(std::vector<LabelImage::Color
     };
 }
 
-// ---- A save on its way ----------------------------------------------------------------------------------------------
+// ---- A save in progress ---------------------------------------------------------------------------------------------
 
 std::unique_ptr<Work::Saving> Work::begin_save(std::vector<LabelImage::Color> looks)
 {
@@ -89,7 +89,7 @@ std::unique_ptr<Work::Saving> Work::begin_save(std::vector<LabelImage::Color> lo
     refuse_if_only_looking();
     expect_choice();
     expect_names(files_);
-    // Also where another process has begun a journal since this one looked: then this one is refused.
+    // Also if another process has begun a journal since this one checked: then this one is refused.
     if (scan_.inode != 0 || is_there(files_.journal) || history_.undoable() + history_.redoable() > 0) begin_journal();
     if (journal_) journal_->append(RecordKind::saving, {}, {});
     is_saving_ = true;
@@ -109,7 +109,8 @@ std::unique_ptr<Work::Saving> Work::begin_save(std::vector<LabelImage::Color> lo
     return saving;
 }
 
-/// The mask always; another part that has become empty is written as empty, but if there never was one, no file is.
+/// The mask always; another part that has become empty is written as empty, but if it never had any content, no file
+/// is.
 bool Work::Saving::is_to_write(Part part) const
 {
     const fs::path& file = file_of(files_, part);
@@ -117,7 +118,7 @@ bool Work::Saving::is_to_write(Part part) const
     return is_there(file) ? touched_[size_t(part)] : holds_any(document_, part) || digest_of(known_, part).has_value();
 }
 
-/// Whether a file holds what the journal does not: found so at opening, or written by others since.
+/// Whether a file's content is missing from the journal: detected at opening, or written by others since.
 bool Work::Saving::is_foreign(Part part) const
 {
     const fs::path& file = file_of(files_, part);
@@ -146,7 +147,7 @@ void Work::Saving::write(Part part)
     try {
         Work::write(part, document_, files_, looks_, journal_.get());
     } catch (const Error&) {
-        note_file(file, seen);  // whatever of it was done is this process's
+        note_file(file, seen);  // even a partial write is this process's
         throw;
     }
     note_file(file, seen);
@@ -181,7 +182,7 @@ Work::Saved Work::end_save(Saving& saving)
 {
     SHVR_CHECK(is_saving_, "no save has begun");
     is_saving_ = false;
-    saving.journal_.reset();  // it may be opened again before the save is gone
+    saving.journal_.reset();  // it may be opened again before the save object is destroyed
     seen_ = saving.seen_;
     for (const Part part : PARTS) digest_of(known_, part) = digest_of(saving.known_, part);
     if (!saving.is_written_) return saving.saved_;

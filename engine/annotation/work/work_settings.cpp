@@ -1,5 +1,5 @@
-// Settings as part of the work: which are believed at opening, and their changes; then kept settings, which come back
-// as they were left and are no steps: which are believed at opening, and how they are written.
+// Settings as part of the work: which version counts at opening, and their changes; then kept settings, which are
+// restored as they were and are not steps: which version counts at opening, and how they are written.
 
 #include <utility>
 
@@ -7,7 +7,7 @@
 
 namespace shvr {
 
-/// Decides for each setting whether the journal or the session's file is believed.
+/// Decides for each setting whether the journal or the session's file counts.
 void Work::compare_settings(std::vector<Notice>& notices)
 {
     const std::string name_of_journal = files_.journal.string();
@@ -58,7 +58,7 @@ void Work::record_settings_from_outside()
     const RecordNumber number = record(RecordKind::command, command.label, bytes_of(command.changes));
     history_.perform(document_, std::move(command), number);
     note_unsaved(1);
-    // Or it would be taken for a change once more after the next one.
+    // Otherwise it would be taken for another change after the next one.
     if (!known_.settings) known_.settings.emplace();
     for (const auto& [name, value] : files_.settings) (*known_.settings)[name] = value;
     record_files(RecordKind::known);
@@ -80,7 +80,7 @@ const Command* Work::change_settings(std::string label, const SettingValues& val
 
 namespace {
 
-/// After so many records with differences one with all sections is written, so that opening reads few of them.
+/// After this many records with differences, one with all sections is written, so that opening reads few of them.
 constexpr size_t MAX_DIFFERENCES = 256;
 
 SettingValues normalized_by(const std::function<SettingValues(const SettingValues&)>& normalized,
@@ -91,7 +91,7 @@ SettingValues normalized_by(const std::function<SettingValues(const SettingValue
 
 }  // namespace
 
-/// As of a `kept` record: each names the one before, down to one that holds all sections.
+/// The kept settings as of a `kept` record: each names the previous one, down to one that holds all sections.
 SettingValues Work::kept_at(RecordNumber number) const
 {
     SettingValues values;
@@ -99,7 +99,7 @@ SettingValues Work::kept_at(RecordNumber number) const
         if (number > scan_.records.size() || scan_.records[number - 1].kind != RecordKind::kept)
             fail("record ", number, " holds no kept settings");
         for (auto& [name, value] : setting_values_of(content_of(number)))
-            values.try_emplace(name, std::move(value));  // the newest comes first
+            values.try_emplace(name, std::move(value));  // newest first: existing values stay
         const RecordNumber before = scan_.records[number - 1].about;
         if (before >= number) fail("record ", number, " continues record ", before, " behind it");
         number = before;
@@ -107,7 +107,7 @@ SettingValues Work::kept_at(RecordNumber number) const
     return values;
 }
 
-/// Decides for each section whether the journal or the session's file is believed.
+/// Decides for each section whether the journal or the session's file counts.
 void Work::compare_kept_settings(std::vector<Notice>& notices)
 {
     SettingValues in_journal, saved;
@@ -150,7 +150,7 @@ void Work::append_kept(const SettingValues& values, RecordNumber about)
     for (const auto& [name, value] : values) journaled_kept_[name] = value;
 }
 
-/// What the journal does not hold yet.
+/// Writes the values that the journal lacks.
 void Work::write_kept()
 {
     SettingValues differences;
@@ -177,7 +177,7 @@ void Work::keep_settings(const SettingValues& values)
     if (!differs || only_looks_ || is_saving_as_) return;
     if (journal_) return write_kept();
     const bool is_there = !scan_.records.empty() && !is_to_set_aside_;
-    // Without a hold another program may write the journal, until a command takes it.
+    // Without a hold another program may write the journal, until a command takes the hold.
     if (!is_there || !hold_ || !disputes_.empty() || cannot_keep_) return;
     try {
         open_journal();

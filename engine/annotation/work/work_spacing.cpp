@@ -1,4 +1,4 @@
-// The spacing that a journal's positions are in: nodes stay at their voxels where another one is given.
+// The spacing of the positions in a journal: nodes stay at their voxels if another one is given.
 
 #include "engine/annotation/work/work.h"
 
@@ -11,14 +11,14 @@ std::vector<Change> Work::changes_at(RecordNumber number) const
     return changes;
 }
 
-/// From one spacing to the next, as records that followed were written.
+/// Converts a change through all spacings stated after the record.
 void Work::bring_to_spacing(Change& change, RecordNumber number) const
 {
     for (size_t i = 1; i < spaces_.size(); ++i)
         if (number < spaces_[i].since) respace(change, spaces_[i - 1].space.spacing, spaces_[i].space.spacing);
 }
 
-/// `at`: the record that cannot be read, where this fails.
+/// `at`: on failure, the record that cannot be read.
 void Work::read_spaces(RecordNumber& at)
 {
     spaces_.clear();
@@ -35,7 +35,8 @@ void Work::read_spaces(RecordNumber& at)
     spaces_.push_back({scan_.records.size() + 1, std::move(own)});
 }
 
-/// That the journal is of the same voxels in another spacing or unit. Files that state theirs are to be written anew.
+/// Reports that the journal has another spacing or unit for the same voxels, and marks files that state theirs for
+/// rewriting.
 void Work::tell_spacing(std::vector<Notice>& notices)
 {
     if (!space_to_note_ || spaces_.size() < 2) return;
