@@ -31,7 +31,7 @@ std::optional<mode_t> permissions_of_old_file(const fs::path& path)
     return status.st_mode & 07777;
 }
 
-/// Names of temporary files; a writer that finds no free place is not listed.
+/// Names of temporary files; a writer that finds no free slot is not listed.
 std::array<std::atomic<const char*>, 64> temporary_names{};
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
@@ -113,7 +113,7 @@ void AtomicWriter::read_back(int64_t offset, std::span<std::byte> content) const
 
 void AtomicWriter::commit()
 {
-    // File systems without permissions refuse this; then there is nothing to keep.
+    // File systems without permissions refuse this; then there is nothing to preserve.
     if (old_permissions_ && ::fchmod(descriptor_.number(), *old_permissions_) != 0 && errno != EPERM &&
         errno != ENOTSUP) {
         refuse(errno);

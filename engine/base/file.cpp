@@ -23,7 +23,7 @@ const char* kind_of(mode_t mode)
 template <class Container>
 Container read_whole(const std::filesystem::path& path, int64_t max_bytes)
 {
-    // Without O_NONBLOCK, opening a FIFO blocks until a writer comes, before we can see that it is one.
+    // Without O_NONBLOCK, opening a FIFO blocks until a writer appears, before we can detect that it is a FIFO.
     const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (!file) fail(path.string(), ": cannot be opened: ", reason_of(errno));
     struct stat status {};

@@ -154,7 +154,7 @@ void balance(std::vector<double>& weights)
     for (double& weight : weights) weight /= weight > 0.0 ? above : below;
 }
 
-/// Length of the vector of two filtered pictures: `derivative` along x with `smooth` along y, and the other way round.
+/// Magnitude of the gradient from two filters: `derivative` along x with `smooth` along y, and vice versa.
 Plane magnitude(const Plane& plane, const std::vector<double>& derivative, const std::vector<double>& smooth,
                 FilterProgress& progress)
 {
@@ -200,7 +200,7 @@ std::vector<double> flip_map(const Image8& a, const Image8& b, double pixels_per
     SHVR_CHECK(pixels_per_degree > 0.0, pixels_per_degree);
     constexpr size_t PIXELS_TOLD = 1 << 16;
     const Planes ycxcz_a = ycxcz_planes(a), ycxcz_b = ycxcz_planes(b);
-    // Eight filters for each picture; the rest takes about as long as these.
+    // Eight filters per picture; the rest takes about as long as these.
     FilterProgress filters(part_of(progress, 0.0, 0.5), 16.0);
     const Planes seen_a = seen(ycxcz_a, pixels_per_degree, filters), seen_b = seen(ycxcz_b, pixels_per_degree, filters);
     const Features features_a = features_of(ycxcz_a[0], pixels_per_degree, filters);

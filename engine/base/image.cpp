@@ -32,7 +32,7 @@ void encode_pixels(std::span<const float> light, std::span<uint8_t> encoded)
 {
     SHVR_CHECK(light.size() == encoded.size(), light.size(), " != ", encoded.size());
     for (size_t pixel = 0; pixel < light.size(); pixel += 4) {
-        // Backgrounds repeat, and powers are slow.
+        // Background pixels repeat, and powers are slow.
         if (pixel > 0 && std::memcmp(&light[pixel], &light[pixel - 4], 4 * sizeof(float)) == 0) {
             std::copy_n(&encoded[pixel - 4], 4, &encoded[pixel]);
             continue;

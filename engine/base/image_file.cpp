@@ -40,7 +40,7 @@ int64_t number_at(Bytes file, size_t offset)
     return number;
 }
 
-/// Bits per pixel from the depth and colour type in the header; nothing if the type does not exist.
+/// Bits per pixel from the depth and colour type in the header; null if the type does not exist.
 std::optional<int64_t> bits_of_pixel(Bytes file)
 {
     const auto depth = std::to_integer<int64_t>(file[24]);
@@ -72,7 +72,7 @@ void check_chunks(Bytes file, std::string_view name)
     fail(name, ": ends after ", file.size(), " bytes; expected an IEND chunk");
 }
 
-/// All checks made before memory is allocated for the pixels.
+/// Performs all checks before memory is allocated for the pixels.
 void check_file(Bytes file, std::string_view name)
 {
     static constexpr std::array<std::byte, SIGNATURE_BYTES> SIGNATURE{std::byte{0x89}, std::byte{'P'},  std::byte{'N'},
@@ -103,7 +103,7 @@ struct PngImage {
     ~PngImage() { png_image_free(&image); }
 };
 
-/// Calls libpng, which reports errors by longjmp: nothing with a destructor may live between here and there.
+/// Calls libpng, which reports errors by longjmp: no object with a destructor may live on the frames between.
 template <class Call>
 bool succeeds(png_structp png, const Call& call)
 {
@@ -112,7 +112,7 @@ bool succeeds(png_structp png, const Call& call)
     return true;
 }
 
-/// Encodes a picture row by row, and hands on the bytes as they are made.
+/// Encodes a picture row by row, and passes on the bytes as they are produced.
 class PngStream {
 public:
     using Take = std::function<void(Bytes)>;
@@ -145,7 +145,7 @@ public:
     PngStream(const PngStream&) = delete;
     PngStream& operator=(const PngStream&) = delete;
 
-    /// The next row, 8-bit RGBA.
+    /// Adds the next row, 8-bit RGBA.
     void add(const uint8_t* row)
     {
         check(succeeds(png_.write, [&] { png_write_row(png_.write, row); }));
@@ -321,7 +321,7 @@ public:
         png_set_read_fn(handles_.read, this, hand_out);
         png_set_user_limits(handles_.read, png_uint_32(MAX_IMAGE_SIDE), png_uint_32(MAX_IMAGE_SIDE));
         png_set_chunk_malloc_max(handles_.read, MAX_PICTURE_TEXT + 4096);
-        // A damaged text is an error, not a text that is left out.
+        // A damaged text is an error rather than a text that is skipped.
         png_set_benign_errors(handles_.read, 0);
         png_set_crc_action(handles_.read, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
         if (!succeeds(handles_.read, [&] { png_read_info(handles_.read, handles_.info); })) refuse();

@@ -35,7 +35,7 @@ Plane luma_of(const Image8& image)
     return luma;
 }
 
-/// The mean over the window around each pixel of the product of both planes.
+/// The mean of the product of both planes over the window around each pixel.
 Plane window_means(Plane a, const Plane& b, const std::vector<double>& window, FilterProgress& filters)
 {
     std::transform(a.values.begin(), a.values.end(), b.values.begin(), a.values.begin(), std::multiplies());
@@ -104,7 +104,7 @@ ImageDifference compare(const Image8& a, const Image8& b, const Progress& progre
 {
     tell(progress, 0.0);
     ImageDifference result{compare_pixels(a, b)};
-    constexpr double SSIM = 0.1;  // of the time
+    constexpr double SSIM = 0.1;  // share of the time
     result.ssim = ssim_of(luma_of(a), luma_of(b), part_of(progress, 0.0, SSIM));
     std::vector<double> flip = flip_map(a, b, FLIP_PIXELS_PER_DEGREE, part_of(progress, SSIM, 1.0));
     result.flip_mean = std::accumulate(flip.begin(), flip.end(), 0.0) / double(flip.size());

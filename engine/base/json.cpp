@@ -42,7 +42,7 @@ std::string shown_key(const std::string& key)
     return shortened(quoted.substr(1, quoted.size() - 2));
 }
 
-/// The parser's error, without what it expected there, in printable ASCII: it quotes bytes unchanged.
+/// The parser's error message, without its list of expected tokens, in printable ASCII: it quotes bytes unchanged.
 std::string reason_of(const json::exception& error)
 {
     std::string reason = error.what();
@@ -54,7 +54,7 @@ std::string reason_of(const json::exception& error)
     return reason;
 }
 
-/// Checks a text and refuses what is not JSON, and two things the parser itself accepts: deep nesting, and repeated
+/// Checks a text and refuses invalid JSON, and two things that the parser itself accepts: deep nesting, and repeated
 /// keys, of which it would silently keep the last. This is a separate pass: as the parser's callback, it would make the
 /// parser search a whole array at the end of each element.
 class Strictness : public nlohmann::json_sax<json> {
@@ -99,7 +99,7 @@ private:
 
     const std::string* origin_;
     JsonLimits limits_;
-    std::vector<std::set<std::string>> keys_;  ///< of each open level
+    std::vector<std::set<std::string>> keys_;  ///< one set per open level
 };
 
 std::string joined(const std::string& before, const std::string& name)
@@ -107,7 +107,7 @@ std::string joined(const std::string& before, const std::string& name)
     return before.empty() ? name : before + "." + name;
 }
 
-/// The key of `wanted`, searched for in and below `value`; nothing if it is not there.
+/// The key of `wanted`, searched for in and below `value`; null if it is not there.
 std::optional<std::string> key_below(const json& value, const json* wanted, const std::string& key)
 {
     if (&value == wanted) return key;

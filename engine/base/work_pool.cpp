@@ -7,9 +7,9 @@ namespace shvr {
 class WorkPool::Batch {
 public:
     Task run;
-    int64_t next = 0;     ///< the first task not yet begun
-    int64_t end = 0;      ///< later tasks do not exist or were dropped
-    int64_t running = 0;  ///< begun but not finished
+    int64_t next = 0;     ///< the first task not yet started
+    int64_t end = 0;      ///< tasks from here on do not exist or were dropped
+    int64_t running = 0;  ///< started but not finished
     std::exception_ptr failure;
 
     bool is_finished() const { return next >= end && running == 0; }
@@ -68,7 +68,7 @@ void WorkPool::wait(const std::shared_ptr<Batch>& batch)
         polled_ = std::chrono::steady_clock::now();
         lock.lock();
         if (!failure) continue;
-        // Drops the tasks not yet begun: the caller may free what they use.
+        // Drops the tasks not yet started: the caller may free what they use.
         batch->end = std::min(batch->end, batch->next);
         finished_.wait(lock, is_finished);
         std::rethrow_exception(failure);
