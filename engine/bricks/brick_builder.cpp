@@ -164,7 +164,7 @@ private:
 // ---- Scheduling -----------------------------------------------------------------------------------------------------
 
 /// The tasks in the order in which workers take them: for each layer of bricks its reads, then its rows. No task waits
-/// for a later one, so workers that take them in turn never deadlock.
+/// for a later one, so workers that take them in order never deadlock.
 ///
 /// Two slabs are kept: while the rows of one are built, the other is read. A read waits until the rows that used its
 /// slab are built; a row waits for the reads of its slab, and until `take` has freed a place in `rows_`.
@@ -224,7 +224,7 @@ public:
 
 private:
     size_t place_of(int64_t row) const { return size_t(row) % rows_.size(); }
-    /// A layer shares two slices with the one before it; they are read once and copied.
+    /// A layer shares two slices with the previous one; they are read once and copied.
     int64_t first_new_slice(int64_t layer) const { return layer == 0 ? 0 : builder_.end_slice(layer - 1); }
     int64_t read_count(int64_t layer) const
     {
@@ -248,7 +248,7 @@ private:
 
     bool do_read(std::unique_lock<std::mutex>& lock, int64_t layer, int64_t read)
     {
-        // Copying the shared slices needs the whole previous layer, which nobody may overwrite meanwhile.
+        // Copying the shared slices needs the whole previous layer, which must not be overwritten meanwhile.
         changed_.wait(lock, [&] {
             const bool slab_is_free = layer < 2 || rows_done_[size_t(layer - 2)] == rows_per_layer_;
             const bool before_is_read = layer == 0 || reads_done_[size_t(layer - 1)] == read_count(layer - 1);

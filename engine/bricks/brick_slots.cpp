@@ -46,7 +46,7 @@ void BrickSlots::list_evictable(BrickNeed below)
 
 std::optional<uint32_t> BrickSlots::next_evictable(BrickNeed below)
 {
-    // A brick may be needed since it was listed; one that was used since then is out of order in the list.
+    // A brick may have become needed since it was listed; one that was used since then is out of order in the list.
     while (!evictable_is_stale_ && !evictable_.empty()) {
         const Slot& slot = slots_[evictable_.back().slot];
         const bool is_needed = slot.key && need_(*slot.key) != BrickNeed::none;

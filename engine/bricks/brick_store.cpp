@@ -13,7 +13,7 @@ namespace shvr {
 namespace {
 
 constexpr uint64_t BRICK_BYTES = sizeof(BrickTexels);
-/// More messages than a user reads; failures are still counted.
+/// More messages than a user would read; failures are still counted.
 constexpr size_t MAX_MESSAGES = 20;
 
 /// Loader threads run at lower priority than rendering: on two cores, loaders of equal priority delay the first
@@ -31,7 +31,7 @@ BrickStore::BrickStore(const VolumeSource& source, const IntensityWindow& window
     : source_(source), window_(window), own_maker_(source, window)
 {
     const int loaders = std::max(1, threads);
-    // One brick in progress for each loader, and one that waits to be taken.
+    // One brick in progress per loader, and one that waits to be taken.
     max_bricks_ = std::max<uint64_t>(budget_bytes / BRICK_BYTES, 2 * uint64_t(loaders));
     for (int i = 0; i < loaders; ++i) {
         loaders_.emplace_back([this](std::stop_token stop) {

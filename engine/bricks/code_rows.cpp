@@ -54,7 +54,7 @@ void convert_any(std::span<const std::byte> voxels, std::span<uint16_t> codes, c
     for_each_block<T>(voxels, codes, [=](const T* __restrict in, uint16_t* __restrict out) {
         for (size_t i = 0; i < BLOCK; ++i) {
             double code = (double(in[i]) - lower) * factor;
-            code = code > 0.0 ? code : 0.0;  // NaN too
+            code = code > 0.0 ? code : 0.0;  // also for NaN
             code = (code < 65535.0 ? code : 65535.0) + 0.5;
             out[i] = uint16_t(int32_t(code));
         }

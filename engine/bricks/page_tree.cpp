@@ -30,7 +30,7 @@ double most(const glm::dvec3& normal, const Box& box)
     return -least(-normal, box);
 }
 
-/// The space that the rays of a picture can reach, in physical units, and the size of a pixel in it.
+/// The region that a picture's rays can reach, in physical units, and the size of a pixel in it.
 class Frustum {
 public:
     Frustum(const Camera& camera, const glm::uvec2& pixels) : camera_(camera), pixels_(pixels)
@@ -40,7 +40,7 @@ public:
         const glm::dvec3 up = glm::cross(right, forward_);
         const bool is_perspective = camera_.projection == Camera::Projection::perspective;
         const double half = is_perspective ? std::tan(glm::radians(0.5 * camera_.fov_y_degrees)) : 0.5 * camera_.height;
-        // One more pixel on each side: rounding must not cut off rays at the border.
+        // One extra pixel on each side: rounding must not cut off rays at the border.
         const glm::dvec2 margin = (glm::dvec2(pixels_) + 2.0) / glm::dvec2(pixels_);
         const double half_y = half * margin.y;
         const double half_x = half * margin.x * double(pixels_.x) / double(pixels_.y);
@@ -95,7 +95,7 @@ public:
         reference_ = std::min({volume.spacing.x, volume.spacing.y, volume.spacing.z});
     }
 
-    /// False if there are too many leaves.
+    /// Returns false if there are too many leaves.
     bool cut(double detail)
     {
         detail_ = detail;
@@ -122,7 +122,7 @@ private:
     bool visit(const BrickKey& key)
     {
         const VoxelBox voxels = voxels_of(key, volume_.size);
-        if (glm::any(glm::greaterThanEqual(voxels.lower, voxels.upper))) return true;  // beyond the border
+        if (glm::any(glm::greaterThanEqual(voxels.lower, voxels.upper))) return true;  // outside the volume
         const glm::dvec3 lower(voxels.lower), upper(voxels.upper);
         if (glm::any(glm::lessThan(upper, view_.cut.lower)) || glm::any(glm::greaterThan(lower, view_.cut.upper)))
             return true;

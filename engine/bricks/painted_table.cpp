@@ -9,11 +9,11 @@ namespace shvr {
 namespace {
 
 constexpr size_t FEWEST_ENTRIES = 16;
-/// A brick that finds its place taken moves the one that is there to its other place, and so on. Where half of the
-/// entries are free few bricks move more than a dozen.
+/// Cuckoo insertion: a brick whose place is taken moves the occupant to its other place, and so on. If half of the
+/// entries are free, few insertions move more than a dozen bricks.
 constexpr int MOST_MOVES = 500;
 
-/// Puts `brick` into `entries`; false where it and those it would move find no place.
+/// Inserts `brick` into `entries`; false if it and the bricks it would move find no place.
 bool insert(std::vector<PaintedBrick>& entries, PaintedBrick brick)
 {
     const uint32_t last = uint32_t(entries.size() - 1);
