@@ -14,7 +14,7 @@ constexpr int64_t STRIP_BYTES = int64_t{1} << 20;
 constexpr int64_t MAX_BIT_BYTES = int64_t{64} << 20;
 constexpr int64_t WORD = 64;
 
-/// Blocks of the row that `block` begins, which touch along x, as columns.
+/// The blocks of the row that starts with `block`, which touch along x, as column ranges.
 template <class Block>
 BitLayout::Columns touching(Block& block, Block end, const StoredBlocks& stored, int64_t width)
 {
@@ -61,7 +61,7 @@ BitSlab::BitSlab(const VolumeSource& source, const ThresholdBits& bits, const Bi
 int64_t BitSlab::thickness_of(const BitLayout::Layer& layer) const
 {
     const int64_t thickness = std::clamp<int64_t>(MAX_BIT_BYTES / (8 * layer.words), 1, block_.z);
-    // Where blocks are thin and slices small, many.
+    // If blocks are thin and slices small, a slab takes many.
     const int64_t bytes = layer.words * WORD * int64_t(bytes_of(bits_.type()));
     return thickness < block_.z ? thickness : thickness * std::max<int64_t>(STRIP_BYTES / (bytes * thickness), 1);
 }
@@ -82,7 +82,7 @@ bool BitSlab::read(int64_t z, int64_t end)
     return true;
 }
 
-/// `first_word`: of its first row, in each slice.
+/// `first_word`: word of its first row, in each slice.
 void BitSlab::read_strip(const BitLayout::Strip& strip, int64_t first_word)
 {
     const auto voxel_bytes = int64_t(bytes_of(bits_.type()));
@@ -111,11 +111,11 @@ void BitSlab::read_strip(const BitLayout::Strip& strip, int64_t first_word)
     }
 }
 
-/// The columns of the part that can hold a voxel at or above the threshold: whole words of it. Nothing: none.
+/// The columns of the part that can hold a voxel at or above the threshold, in whole words. Null: none.
 std::optional<BitLayout::Columns> BitSlab::columns_above(const VoxelBox& part) const
 {
     const int64_t begin = part.lower.x, end = part.upper.x;
-    // Infinities can be above the threshold, but ranges leave them out.
+    // Infinities can be above the threshold, but ranges exclude them.
     if (is_float(bits_.type())) return BitLayout::Columns{begin, end};
     const Size3 first = part.lower / BRICK_SIDE, last = (part.upper - int64_t{1}) / BRICK_SIDE;
     const auto is_above = [&](int64_t x) {
@@ -134,7 +134,7 @@ std::optional<BitLayout::Columns> BitSlab::columns_above(const VoxelBox& part) c
                               std::min(end, begin + words_of_row(upper * BRICK_SIDE - begin) * WORD)};
 }
 
-/// `first_word`: of the part's first row in each slice. `words_of_rows`: from one row to the next.
+/// `first_word`: word of the part's first row in each slice. `words_of_rows`: distance from one row to the next.
 void BitSlab::read_part(const VoxelBox& part, int64_t first_word, int64_t words_of_rows)
 {
     const std::optional<BitLayout::Columns> columns = columns_above(part);

@@ -22,7 +22,7 @@ namespace {
 constexpr uint32_t NO_LABEL = std::numeric_limits<uint32_t>::max();
 /// Ranges of slices per thread, since some hold more runs than others; and the minimum thickness of a range.
 constexpr int64_t RANGES_PER_THREAD = 4, THINNEST_RANGE = 16;
-/// Of the bits of a slice: 2^33 voxels.
+/// Limit of the bits of a slice: 2^33 voxels.
 constexpr int64_t MAX_SLICE_BYTES = int64_t{1} << 30;
 
 [[noreturn]] void refuse_labels()
@@ -46,7 +46,7 @@ private:
     std::atomic<int64_t> now_ = 0, peak_ = 0;
 };
 
-/// Joins the runs of two neighbouring rows that touch; `reach` 1: over an edge or a corner, too. Runs of `row` that
+/// Joins the runs of two neighbouring rows that touch; `reach` 1: also over an edge or a corner. Runs of `row` that
 /// have no label yet take that of their neighbour.
 void join_rows(std::span<LabelledRun> row, std::span<const LabelledRun> before, uint32_t reach, LabelForest& forest)
 {
@@ -62,7 +62,7 @@ void join_rows(std::span<LabelledRun> row, std::span<const LabelledRun> before, 
     }
 }
 
-/// Joins a row with those of the slice before it: the one at the same place and, over corners, the ones beside it. `at`
+/// Joins a row with those of the preceding slice: the one at the same position and, over corners, its neighbours. `at`
 /// is 0 for the first row of a slice, and kept for the next ones.
 void join_slices(std::span<LabelledRun> row, int64_t y, SliceRuns& before, size_t& at, Connectivity connectivity,
                  LabelForest& forest)
@@ -78,7 +78,7 @@ class LabelledRange {
 public:
     LabelledRange(int64_t lower_slice, int64_t upper_slice) : lower_(lower_slice), upper_(upper_slice) {}
 
-    /// `words_done` counts what BitSlab::words counts. Ends early where `is_stopped`.
+    /// `words_done` counts words as BitSlab::words does. Stops early if `is_stopped`.
     void label(BitSlab& slab, Connectivity connectivity, RunFile* file, HeldBytes& held,
                std::atomic<int64_t>& words_done, const std::atomic<bool>& is_stopped)
     {
@@ -101,7 +101,7 @@ public:
         count_held(held);
     }
 
-    SliceRuns first, last;  ///< of the first slice and the last one, with this range's own labels
+    SliceRuns first, last;  ///< first and last slice, with this range's own labels
     LabelForest forest;
     int64_t foreground_voxels = 0;
     int64_t lower_slice() const { return lower_; }
@@ -118,7 +118,7 @@ private:
         });
     }
 
-    /// The last row of `last`.
+    /// Labels the last row of `last`.
     void label_row(size_t& at, Connectivity connectivity)
     {
         const size_t index = last.rows.size() - 1;
@@ -154,9 +154,9 @@ private:
 struct LabelTable {
     LabelForest forest;                    ///< the parent of a provisional label is its final one
     std::vector<int64_t> lower;            ///< first slice of each range
-    std::vector<uint32_t> bases;           ///< of its labels
+    std::vector<uint32_t> bases;           ///< offset of each range's labels
     std::optional<RunFile> runs{};         ///< with labels of their ranges
-    std::optional<StoredBlocks> stored{};  ///< what can hold labels; nothing: all
+    std::optional<StoredBlocks> stored{};  ///< blocks that can hold labels; null: all
 };
 
 class LabelSource final : public VolumeSource {
@@ -238,7 +238,7 @@ public:
     }
 
 private:
-    /// What of a sparse volume can be at or above the threshold; nothing: all of it.
+    /// The blocks of a sparse volume that can be at or above the threshold; null: all.
     std::optional<StoredBlocks> stored_above(const VolumeSource& source) const
     {
         const Size3& size = source.info().size;
@@ -328,7 +328,7 @@ private:
         }
     }
 
-    /// Of two components of equal size the first one comes before the other.
+    /// Orders components by size; of two equal ones the first one comes first.
     struct Larger {
         bool operator()(const Component& a, const Component& b) const
         {

@@ -12,7 +12,7 @@
 namespace shvr {
 namespace {
 
-/// The smallest voxel value at or above the threshold; nothing if there is none.
+/// The smallest voxel value at or above the threshold; null if there is none.
 template <class T>
 std::optional<T> lowest_above(double threshold)
 {
