@@ -63,7 +63,7 @@ bool device_extension_is_present(VkPhysicalDevice physical, const char* name)
     });
 }
 
-/// Of the families that compute, one that can do most: show pictures, where somebody asks, and draw them.
+/// The most capable queue family that supports compute: able to present, if required, and to draw.
 struct Family {
     uint32_t index = 0;
     bool presents = false;
@@ -102,7 +102,7 @@ DeviceHas what_it_has(VkPhysicalDevice physical, const DeviceTraits& traits)
 
 namespace {
 
-/// `fault`: what the driver tells of it; may be empty.
+/// `fault`: the driver's report; may be empty.
 [[noreturn]] void fail_as_lost(const char* call, const std::string& fault)
 {
     throw DeviceLost(sentence("the graphics device stopped answering (device lost at ", call,
@@ -146,7 +146,7 @@ void Device::check(VkResult result, const char* call) const
     gpu::check(result, call);
 }
 
-/// Empty where the driver does not tell. Of many addresses and codes the first ones.
+/// Empty if the driver reports nothing. Of many addresses and codes only the first ones.
 std::string Device::fault_in_words() const
 {
     constexpr uint32_t MOST = 4;
@@ -155,7 +155,7 @@ std::string Device::fault_in_words() const
     if (get_fault_(device_, &counts, nullptr) < 0) return {};
     std::vector<VkDeviceFaultAddressInfoEXT> addresses(counts.addressInfoCount);
     std::vector<VkDeviceFaultVendorInfoEXT> codes(counts.vendorInfoCount);
-    counts.vendorBinarySize = 0;  // a dump for the driver's makers
+    counts.vendorBinarySize = 0;  // a dump for the driver's developers
     VkDeviceFaultInfoEXT info{.sType = VK_STRUCTURE_TYPE_DEVICE_FAULT_INFO_EXT,
                               .pAddressInfos = addresses.data(),
                               .pVendorInfos = codes.data()};
@@ -345,7 +345,8 @@ void Device::create_device(const DeviceOptions& options)
                                            .pNext = &has13};
     VkPhysicalDeviceFeatures2 has{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &has12};
     vkGetPhysicalDeviceFeatures2(physical_, &has);
-    // Scalar layout is optional in 1.3, but every desktop driver and lavapipe have it; the shared headers depend on it.
+    // Scalar layout is optional in 1.3, but every desktop driver and lavapipe support it; the shared headers depend on
+    // it.
     if (!has12.scalarBlockLayout)
         fail("device ", traits_.name,
              ": the Vulkan feature scalarBlockLayout is missing; expected a driver that has it");
@@ -354,9 +355,9 @@ void Device::create_device(const DeviceOptions& options)
              ": R16_UNORM storage images cannot be read; expected a driver that can read them");
     if (const auto why = why_too_limited(what_it_has(physical_, traits_))) fail("device ", traits_.name, ": ", *why);
 
-    // Every device has both. Reads beside an image are 0: word_at(-1) of density_exact.glsl at the atlas's edge, whose
-    // result is not used, would be undefined without. Nothing reads or writes beside a buffer (bounds_slow_test.cpp); a
-    // mistake there is a wrong pixel, and not a lost device, or paint that another buffer's bits are written into.
+    // Every device has both. Robust image access makes out-of-bounds reads 0: word_at(-1) of density_exact.glsl at the
+    // atlas's edge, whose result is not used, would be undefined without it. No kernel accesses buffers out of bounds
+    // (bounds_slow_test.cpp); with robust buffers a bug there is a wrong pixel, not a lost device or corrupted paint.
     VkPhysicalDeviceVulkan13Features want13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
                                             .robustImageAccess = VK_TRUE,
                                             .synchronization2 = VK_TRUE,
@@ -448,7 +449,7 @@ std::vector<std::string> Device::take_validation_messages()
 VkBool32 Device::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                             const VkDebugUtilsMessengerCallbackDataEXT* data, void* self)
 {
-    // The loader, too, speaks here: of layers that the environment adds.
+    // The loader also reports here, about layers that the environment adds.
     if (data->pMessageIdName && std::strcmp(data->pMessageIdName, "Loader Message") == 0) return VK_FALSE;
     Device& device = *static_cast<Device*>(self);
     const std::lock_guard lock(device.messages_mutex_);

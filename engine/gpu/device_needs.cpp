@@ -36,7 +36,7 @@ std::optional<std::string> why_too_limited(const DeviceHas& has)
 
 namespace {
 
-/// Hardware devices before software, discrete before integrated.
+/// Ranks hardware devices before software, discrete before integrated.
 int rank(VkPhysicalDeviceType type)
 {
     switch (type) {

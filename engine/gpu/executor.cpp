@@ -10,8 +10,8 @@ namespace shvr::gpu {
 
 namespace {
 
-/// To one of two sizes for each power of two: what a brush uploads grows and shrinks by a voxel, and is to find the
-/// buffer that the last one left.
+/// Rounds up to one of two sizes per power of two: uploads of a brush vary by a voxel in size, and should reuse the
+/// buffer of the previous one.
 uint64_t rounded(uint64_t bytes)
 {
     constexpr uint64_t LEAST = 1024;
@@ -47,13 +47,13 @@ Storage& Executor::take_transient(const std::string& name, const ResourceDesc& w
 {
     ResourceDesc desc = wanted;
     if (placement != Placement::device) desc.bytes = rounded(desc.bytes);
-    // Of equal ones that which was not used for longest: those that only the busiest moments need take turns with the
-    // others, and are not freed and made again.
+    // Among equal ones, takes the least recently used: buffers that only peaks need then alternate with the others, and
+    // are not freed and created again.
     Transient* found = nullptr;
     for (const auto& transient : transients_) {
         if (transient->taken || transient->placement != placement || !(transient->desc == desc)) continue;
-        // Kernels count where no copy has written: validation (1.3.239) does not always know that the copy's frame was
-        // waited for, and tells of a read after its write.
+        // Counters of kernels never reuse a buffer written by a copy: validation (1.3.239) does not always know that
+        // the copy's frame was waited for, and reports a read after write.
         if (transient->is_counted_in != is_counted_in) continue;
         if (!found || transient->last_run < found->last_run) found = transient.get();
     }

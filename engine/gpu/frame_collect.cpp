@@ -1,4 +1,4 @@
-// A graph on its way through the queue (frame_in_flight.h), and what it brings back.
+// Submission and completion of a graph (frame_in_flight.h), and its results.
 
 #include <algorithm>
 #include <array>
@@ -52,7 +52,7 @@ void Submission::Frame::submit()
         if (compiled.used[i] || graph.resources()[i].imported) object(i).state = compiled.final_states[i];
 }
 
-/// A part of the frame ran, and nobody knows which.
+/// Part of the frame ran, but which part is unknown.
 void Submission::Frame::note_unknown_states() const
 {
     for (uint32_t i = 0; i < compiled.used.size(); ++i)
@@ -62,7 +62,7 @@ void Submission::Frame::note_unknown_states() const
 bool Submission::Frame::done() const
 {
     if (number == 0 || number <= executor.device_.done()) return true;
-    // Says what vkGetFenceStatus says, and tells validation that the frame was waited for.
+    // Has the same result as vkGetFenceStatus, and informs validation that the frame was waited for.
     const VkFence fence = objects->fence();
     const VkResult result = vkWaitForFences(executor.device_.handle(), 1, &fence, VK_TRUE, 0);
     executor.device_.check(result, "vkWaitForFences");
@@ -132,9 +132,9 @@ FrameResult Submission::Frame::collect()
         }
         for (size_t query = 0; query < counted_steps.size() && !prepared[i].is_counted_in_part; ++query)
             if (counted_steps[query] == i) report.invocations = report.invocations.value_or(0) + invocations[query];
-        // On a device without timestamps a pass takes no longer than all of them, and those before, did on the host's
-        // clock. A frame that merely was not timed teaches nothing: it may have waited long, in the queue and after.
-        // Nor does a pass of which only the device knows how many threads it had.
+        // On a device without timestamps a pass takes at most the host time of all passes up to it. A frame that merely
+        // was not timed teaches nothing: it may have waited long, in the queue and after. Nor does a pass whose number
+        // of threads is known only to the device.
         if (prepared[i].kernel && !data.is_counted && (is_timed || traits.timestamp_bits == 0))
             executor.costs_.learn(data.kernel, threads_of(data, *prepared[i].kernel),
                                   is_timed ? report.gpu_ms : result.wall_ms);

@@ -1,4 +1,4 @@
-// Copies, fills and read-backs of a graph (frame_in_flight.h), in parts that take no submission for long.
+// Copies, fills and read-backs of a graph (frame_in_flight.h), in parts that keep submissions short.
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@ namespace shvr::gpu {
 
 namespace {
 
-/// Its share of what a part may be at most.
+/// Estimated time as a share of the maximum part.
 double copy_ms(const std::vector<BufferRegion>& part)
 {
     uint64_t bytes = 0;
@@ -19,7 +19,7 @@ double copy_ms(const std::vector<BufferRegion>& part)
 
 double copy_ms(const std::vector<ImageRegion>& part)
 {
-    constexpr double TEXEL_BYTES = 16.0;  // at most
+    constexpr double TEXEL_BYTES = 16.0;  // upper bound
     double bytes = 0.0;
     for (const ImageRegion& region : part)
         bytes += TEXEL_BYTES * double(region.texels.x) * region.texels.y * region.texels.z;
@@ -47,13 +47,13 @@ void Submission::Frame::record_fill(const PassData& data, Prepared& state)
     record_parts(
         state, data.name, copy_parts({{0, 0, buffer.desc.bytes}}), [&](VkCommandBuffer commands, const auto& part) {
             const BufferRegion& r = part[0];
-            const bool is_last = r.target_offset + r.bytes == buffer.desc.bytes;  // whose size may be no multiple of 4
+            const bool is_last = r.target_offset + r.bytes == buffer.desc.bytes;  // its size may not be a multiple of 4
             vkCmdFillBuffer(commands, buffer.buffer, r.target_offset, is_last ? VK_WHOLE_SIZE : r.bytes,
                             data.fill_value);
         });
 }
 
-/// In one command: bricks as regions of their own, ten thousands of them, would take a driver seconds to record.
+/// Clears with one command: ten thousands of bricks as separate regions would take a driver seconds to record.
 void Submission::Frame::record_clear(const PassData& data, const Memory::Object& image, Prepared& state)
 {
     const uint32_t value = data.fill_value;

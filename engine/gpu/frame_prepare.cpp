@@ -1,4 +1,4 @@
-// What a graph takes before its commands are recorded (frame_in_flight.h): memory, kernels, descriptors.
+// Acquires what a graph needs before its commands are recorded (frame_in_flight.h): memory, kernels, descriptors.
 
 #include <algorithm>
 #include <cstring>
@@ -10,7 +10,7 @@ namespace shvr::gpu {
 
 namespace {
 
-/// What the host can write of a device's own memory may be 256 MiB in all, for every program.
+/// Host-writable device memory may be limited to 256 MiB in total, for all programs.
 Placement placement_of(uint64_t bytes)
 {
     constexpr uint64_t MOST = uint64_t{4} << 20;
@@ -19,8 +19,8 @@ Placement placement_of(uint64_t bytes)
 
 }  // namespace
 
-/// Whether a kernel counts what each of its threads does, rather than what hardly ever happens. Then counters are in
-/// the device's memory, which kernels add to sooner; otherwise in the host's, which takes no pass to clear or copy.
+/// Whether any kernel counts the work of every thread, rather than rare events. Then counters are in device memory,
+/// where atomic additions are faster; otherwise in host memory, which needs no pass to clear or copy.
 bool Submission::Frame::counts_work() const
 {
     return std::ranges::any_of(compiled.steps, [this](const Step& step) {

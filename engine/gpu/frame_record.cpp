@@ -1,4 +1,4 @@
-// The commands of a graph (frame_in_flight.h): barriers, dispatches, and where one submission ends.
+// Records the commands of a graph (frame_in_flight.h): barriers, dispatches, and where one submission ends.
 
 #include <algorithm>
 #include <cmath>
@@ -67,7 +67,8 @@ uint64_t threads_of(const PassData& pass, const Kernel& kernel)
 
 namespace {
 
-/// What a pass without tiles runs at once: all of it, or slabs across its longest side that take half a submission.
+/// The size that a pass without tiles runs at once: all of it, or slabs across its longest side that take half a
+/// submission.
 glm::uvec3 slab_of(const glm::uvec3& groups, double all_ms)
 {
     glm::uvec3 slab = groups;
@@ -92,7 +93,7 @@ void Submission::Frame::end_chunk()
     SHVR_VK(vkEndCommandBuffer(chunks.back()));
 }
 
-/// A query is in one command buffer, so a pass has one in each submission.
+/// A query must be within one command buffer, so a pass has one per submission.
 void Submission::Frame::begin_statistics(Prepared& state)
 {
     if (statistics_room == 0 || is_in_query) return;
@@ -111,7 +112,7 @@ void Submission::Frame::end_statistics()
         vkCmdEndQuery(chunks.back(), objects->statistics(), uint32_t(counted_steps.size()) - 1);
 }
 
-/// What is recorded next goes into another submission, if this one would take too long with it.
+/// Starts another submission if this one would take too long with the next command.
 void Submission::Frame::make_room(double ms, Prepared& state)
 {
     const bool is_first = state.submissions == 0;
@@ -121,7 +122,7 @@ void Submission::Frame::make_room(double ms, Prepared& state)
     chunk_ms += ms;
 }
 
-/// Images are created in an undefined layout and stay in GENERAL from the first frame on that is submitted.
+/// Images are created in an undefined layout and stay in GENERAL from the first submitted frame on.
 void Submission::Frame::transition_new_images()
 {
     std::vector<VkImageMemoryBarrier2> barriers;
@@ -168,7 +169,8 @@ void Submission::Frame::record()
                                            STAGE_COMPUTE | STAGE_TRANSFER | STAGE_COUNTS, true});
         else if (step.barrier)
             record_barrier(chunks.back(), *step.barrier);
-        // Once all that was submitted before has ended: its rest would be taken for this pass's time.
+        // Written once all earlier submissions have completed: otherwise their remaining work would count as this
+        // pass's time.
         if (is_timed)
             vkCmdWriteTimestamp2(chunks.back(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries, uint32_t(2 * i));
         record_pass(step, prepared[i]);
@@ -212,7 +214,8 @@ void Submission::Frame::record_dispatches(const PassData& data, Prepared& state)
     const glm::uvec3 tile =
         tiled ? glm::max(groups_for(data.tile, local), glm::uvec3(1)) : slab_of(groups, cost_ms(groups));
     const auto& limit = executor.device_.traits().limits.maxComputeWorkGroupCount;
-    const glm::uvec3 counted = data.is_counted ? tile : groups;  // from which the device counts in one dispatch
+    const glm::uvec3 counted = data.is_counted ? tile : groups;  // for a counted dispatch, the device determines the
+                                                                 // count
     if (glm::any(glm::greaterThan(counted, glm::uvec3(limit[0], limit[1], limit[2]))))
         fail("pass '", data.name, "' dispatches ", counted.x, " x ", counted.y, " x ", counted.z,
              " groups; the device allows ", limit[0], " x ", limit[1], " x ", limit[2]);
@@ -231,8 +234,8 @@ void Submission::Frame::record_dispatches(const PassData& data, Prepared& state)
                 const VkCommandBuffer commands = chunks.back();
                 executor.device_.begin_label(commands, data.name);
                 bind(data, state);
-                // Validation of hazards takes images as a whole, though each dispatch writes texels of its own. It does
-                // not look at dispatches with a base, so that the first tile stands for all; counted ones have none.
+                // Validation of hazards treats images as a whole, though each dispatch writes texels of its own. It
+                // ignores dispatches with a base, so the first tile stands for all; counted ones have none.
                 if (data.is_counted) {
                     if (executor.device_.is_validated() && at.x > 0)
                         record_barrier(commands, {STAGE_COMPUTE, STAGE_COMPUTE, true});
@@ -250,7 +253,7 @@ void Submission::Frame::record_dispatches(const PassData& data, Prepared& state)
     in_use = VK_NULL_HANDLE;
 }
 
-/// Once in each submission; tiles share what is bound.
+/// Binds once per submission; tiles share the bindings.
 void Submission::Frame::bind(const PassData& data, const Prepared& state)
 {
     const Kernel& kernel = *state.kernel;

@@ -59,7 +59,7 @@ void check_bindings(const PassData& pass, const KernelInterface& interface,
                  "' may write; mark it readonly there");
     for (const KernelInterface::Slot& slot : interface.slots) {
         const bool bound =
-            slot.name == "counters" ||  // the executor's own
+            slot.name == "counters" ||  // owned by the executor
             std::any_of(pass.bindings.begin(), pass.bindings.end(),
                         [&](const auto& b) { return b.name == slot.name; }) ||
             std::any_of(pass.blocks.begin(), pass.blocks.end(), [&](const auto& b) { return b.first == slot.name; });
@@ -180,7 +180,7 @@ void Kernel::create_pipeline(PipelineCache& cache, std::span<const uint32_t> spi
 
 Kernels::Kernels(Device& device) : device_(device), cache_(device)
 {
-    // A processor that draws has better things to do, and its driver compiles when a kernel first runs.
+    // On a CPU device the cores are needed for drawing, and its driver compiles when a kernel first runs.
     if (device.traits().is_cpu || (cache_.likely().empty() && !device.looks_ahead())) return;
     expected_.assign(cache_.likely().begin(), cache_.likely().end());
     worker_ = std::thread([this] { work(); });
@@ -200,7 +200,7 @@ Kernels::~Kernels()
     cache_.save(used);
 }
 
-/// What fails here fails again, with words, once it is asked for.
+/// A failure here is repeated, with a message, when the kernel is requested.
 void Kernels::work() noexcept
 {
     for (;;) {

@@ -25,7 +25,7 @@ std::string sides(uint32_t x, uint32_t y, uint32_t z)
     return sentence(x, " x ", y, " x ", z);
 }
 
-/// Whether there is no memory, whatever some drivers call it.
+/// Whether the result means out of memory; drivers use several codes for it.
 bool is_shortage(VkResult result)
 {
     switch (result) {
@@ -39,7 +39,7 @@ bool is_shortage(VkResult result)
 
 }  // namespace
 
-/// Every implementation has a type with the last wish.
+/// Every implementation has a type that matches the last set of flags.
 std::vector<uint32_t> memory_types(const VkPhysicalDeviceMemoryProperties& properties, uint32_t allowed,
                                    Placement placement)
 {
@@ -48,7 +48,7 @@ std::vector<uint32_t> memory_types(const VkPhysicalDeviceMemoryProperties& prope
     if (placement == Placement::upload) wish = must = mapped;
     if (placement == Placement::values) wish = mapped | VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, must = mapped;
     if (placement == Placement::download) wish = mapped | VK_MEMORY_PROPERTY_HOST_CACHED_BIT, must = mapped;
-    // Types of these properties are for special uses, and not all may be used at all.
+    // Types with these properties are for special uses, and not all may be usable at all.
     const VkMemoryPropertyFlags never = VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT | VK_MEMORY_PROPERTY_PROTECTED_BIT |
                                         VK_MEMORY_PROPERTY_DEVICE_COHERENT_BIT_AMD |
                                         VK_MEMORY_PROPERTY_DEVICE_UNCACHED_BIT_AMD;
@@ -304,7 +304,7 @@ void Memory::allocate(Object& object, const VkMemoryRequirements& needs, const c
     if (!on_device) object.mapped = map(object.memory);
 }
 
-/// Where the device is integrated, all its heaps are the same memory, and another type will do.
+/// On an integrated device all heaps are the same memory, so another type will do.
 VkResult Memory::allocate_from_driver(uint64_t bytes, uint32_t allowed, const Object& object, VkDeviceMemory* memory,
                                       uint32_t* type)
 {
@@ -334,7 +334,7 @@ VkResult Memory::allocate_from_driver(uint64_t bytes, uint32_t allowed, const Ob
     return result;
 }
 
-/// Small objects alone. False: it gets its own.
+/// For small objects only. False: it needs its own allocation.
 bool Memory::allocate_in_block(Object& object, const VkMemoryRequirements& needs)
 {
     if (needs.size > MemoryBlock::MAX_SHARE) return false;
@@ -391,7 +391,7 @@ void Memory::destroy(Object& object) noexcept
     if (!object.block) return free_to_driver(object.memory);
     object.block->give_back(object.offset);
     if (!object.block->is_empty()) return;
-    // One empty block of a kind is kept: the next small object would bring it back.
+    // One empty block of each kind is kept: the next small object would re-create it.
     const auto is_spare = [&](const auto& other) {
         return other.get() != object.block && other->is_empty() && other->placement == object.block->placement &&
                other->holds_images == object.block->holds_images;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view MAGIC = "SHVR pipelines 1\n";
 
-/// FNV-1a. Drivers look at the head of what they are given, and trust the rest.
+/// FNV-1a. Drivers only check the header of the data, and trust the rest.
 uint64_t sum_of(std::span<const std::byte> bytes)
 {
     uint64_t sum = 0xcbf29ce484222325;
@@ -35,7 +35,7 @@ void append_part(std::vector<std::byte>& bytes, std::span<const std::byte> part)
     append(bytes, part);
 }
 
-/// The part that begins there, which is taken from `bytes`; null if there is less.
+/// Splits off the part at the start of `bytes`; null if there are too few bytes.
 std::optional<std::span<const std::byte>> take_part(std::span<const std::byte>& bytes)
 {
     uint64_t size = 0;
@@ -58,7 +58,7 @@ std::string text_of(std::span<const std::byte> bytes)
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// A line for each: "raycast PAGED 1 DEPTH 3".
+/// One line per variant: "raycast PAGED 1 DEPTH 3".
 std::string text_of(const std::vector<KernelVariant>& variants)
 {
     std::ostringstream text;
@@ -91,7 +91,7 @@ std::filesystem::path folder_from(const char* variable)
     return value && *value == '/' ? std::filesystem::path(value) : std::filesystem::path();
 }
 
-/// Empty where the environment names no place.
+/// Empty if the environment names no folder.
 std::filesystem::path cache_folder()
 {
     std::filesystem::path folder = folder_from("XDG_CACHE_HOME");
@@ -148,7 +148,7 @@ PipelineCache::PipelineCache(Device& device) : device_(device)
     try {
         if (!file_.empty() && is_file(file_))
             kept_ = decode(read_file(file_, MAX_BYTES), driver_).value_or(KeptPipelines());
-    } catch (const std::exception&) {  // unreadable, or too large: as if there were none
+    } catch (const std::exception&) {  // unreadable, or too large: treated as missing
     }
     const VkPipelineCacheCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
                                          .initialDataSize = kept_.data.size(),
@@ -162,7 +162,7 @@ PipelineCache::~PipelineCache()
     vkDestroyPipelineCache(device_.handle(), handle_, nullptr);
 }
 
-/// Empty where there is nothing beyond the head, as with drivers that keep nothing.
+/// Empty if there is nothing after the header, as with drivers that store nothing.
 std::vector<std::byte> PipelineCache::data_of_driver() const
 {
     size_t size = 0;
@@ -185,7 +185,7 @@ void PipelineCache::save(const std::set<KernelVariant>& used) noexcept
         kept.likely.resize(std::min(kept.likely.size(), MAX_LIKELY));
         std::filesystem::create_directories(file_.parent_path());
         write_file_atomically(file_, encode(kept, driver_));
-    } catch (const std::exception&) {  // a full disk, a folder that may not be written: compiled anew next time
+    } catch (const std::exception&) {  // a full disk or unwritable folder: kernels are compiled again next time
     }
 }
 
