@@ -6,7 +6,7 @@ namespace shvr {
 
 namespace {
 
-/// Adds to the last part, or to a new one where that would become too large.
+/// Adds to the last part, or to a new one if that would become too large.
 template <class Region>
 class Parts {
 public:
@@ -24,7 +24,7 @@ public:
 
 private:
     std::vector<std::vector<Region>> parts_;
-    uint64_t room_ = 0;  ///< bytes, in the last part
+    uint64_t room_ = 0;  ///< bytes left in the last part
 };
 
 }  // namespace

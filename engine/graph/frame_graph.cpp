@@ -186,7 +186,7 @@ Resource FrameGraph::create(const std::string& name, const ResourceDesc& desc)
 Resource FrameGraph::upload_bytes(const std::string& name, std::span<const std::byte> bytes)
 {
     const Resource resource = create(name, buffer_desc(bytes.size()));
-    // Needs no barrier: the whole submission sees what the host wrote before it (Vulkan 1.3, 7.9).
+    // Needs no barrier: a submission sees all earlier host writes (Vulkan 1.3, 7.9).
     resources_[resource.index].contents.assign(bytes.begin(), bytes.end());
     return resource;
 }
@@ -286,7 +286,7 @@ std::vector<bool> living_passes(const FrameGraph& graph)
 {
     const auto& passes = graph.passes();
     const auto& resources = graph.resources();
-    std::vector<bool> needed(resources.size());  // does a kept pass, later in order, use it?
+    std::vector<bool> needed(resources.size());  // whether a kept pass, later in order, uses it
     std::vector<bool> alive(passes.size());
     for (size_t r = 0; r < resources.size(); ++r) needed[r] = resources[r].kept;
     for (size_t i = passes.size(); i-- > 0;) {
@@ -347,7 +347,7 @@ void record_use(const PassData& pass, std::vector<ResourceState>& states)
     }
 }
 
-/// Memory of resources that no later pass needs, for equal ones that are first used then.
+/// Memory of resources that no later pass needs, for reuse by equal resources first used after that.
 class FreeMemory {
 public:
     FreeMemory(const FrameGraph& graph, const std::vector<bool>& alive)
@@ -357,7 +357,7 @@ public:
             if (alive[i])
                 for (const Binding& binding : graph.passes()[i].bindings) last_pass_[binding.resource] = i;
     }
-    /// The resource that `wanted` may take the place of, which is then taken.
+    /// Takes a resource whose memory `wanted` may reuse.
     std::optional<uint32_t> take(uint32_t wanted)
     {
         const auto found = std::find_if(free_.begin(), free_.end(), [&](uint32_t one) {
@@ -379,14 +379,14 @@ public:
     }
 
 private:
-    /// What the host fills is filled before the first pass.
+    /// Resources filled by the host are written before the first pass, so their memory is not shared.
     bool is_shared(uint32_t resource) const
     {
         return !resources_[resource].imported && resources_[resource].contents.empty();
     }
     static constexpr uint32_t NEVER = ~0u;
     const std::vector<FrameGraph::ResourceData>& resources_;
-    std::vector<uint32_t> last_pass_;  // that uses a resource
+    std::vector<uint32_t> last_pass_;  // the last pass that uses each resource
     std::vector<uint32_t> free_;
 };
 
@@ -409,7 +409,7 @@ CompiledGraph FrameGraph::compile() const
         const std::optional<uint32_t> before = free_memory.take(resource);
         if (!before) return;
         compiled.memory_of[resource] = compiled.memory_of[*before];
-        states[resource] = states[*before];  // its first use, a write, waits for the last ones of the other
+        states[resource] = states[*before];  // its first use, a write, waits for the last uses of the other
     };
 
     for (uint32_t i = 0; i < passes_.size(); ++i) {
