@@ -15,14 +15,14 @@ double steady_seconds()
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// From the share that was done `seconds` ago and the one that is done now; below 0: not known.
+/// Estimates the time left from the fraction done `seconds` ago and the one done now; below 0: unknown.
 double estimate_left(double first_fraction, double fraction, double seconds)
 {
     const double gone = fraction - first_fraction;
     return first_fraction >= 0.0 && gone > 0.0 ? std::max(0.0, (1.0 - fraction) / gone * seconds) : -1.0;
 }
 
-/// Of the exception that is being handled.
+/// The message of the exception being handled.
 std::string failure_in_words()
 {
     try {
@@ -158,7 +158,7 @@ void Jobs::work()
         if (is_closing_) return;
         running_ = std::move(waiting_.front());
         waiting_.pop_front();
-        Job& job = *running_;  // nobody but this thread moves or destroys it while it runs
+        Job& job = *running_;  // only this thread moves or destroys it while it runs
         job.begun = job.stretch_begun = seconds_();
         Reporter reporter(*this, job);
         lock.unlock();
