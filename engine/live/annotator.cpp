@@ -238,10 +238,11 @@ std::optional<VoxelBox> Annotator::advance_first_stroke()
         if (!strokes_.empty()) strokes_.front().failed_tries = 0;
         return changed;
     } catch (const gpu::DeviceLost&) {
-        throw;  // the stroke goes on with the device that is started again
+        throw;  // the stroke continues once the device has been restarted
     } catch (const gpu::MemoryError& error) {
         strokes_.front().query.drop();
-        const bool is_of_budget = dynamic_cast<const gpu::BudgetError*>(&error) != nullptr;  // which stays as it is
+        const bool is_of_budget = dynamic_cast<const gpu::BudgetError*>(&error) != nullptr;  // a budget does not change
+                                                                                             // by waiting
         if (!is_of_budget && ++strokes_.front().failed_tries < MOST_TRIES) throw;
         drop_first_stroke();
         fail(error.what(), CUT);
@@ -264,7 +265,7 @@ std::optional<VoxelBox> Annotator::advance_stroke()
         if (frame.regions.empty())
             stroke.next = frame.end;
         else if (stroke.query.ask(stroke.brush, std::move(frame.regions), RegionQuery::Wait::no))
-            stroke.asked_to = frame.end;  // else its bricks are being loaded
+            stroke.asked_to = frame.end;  // otherwise its bricks are being loaded
     } else if (stroke.has_ended) {
         last_stroke_ = stroke.result;
         ++strokes_done_;
@@ -307,7 +308,7 @@ void Annotator::show(const Touched& touched, const std::optional<VoxelBox>& with
     try_to_show([&] { renderer_.scene().show(document(), touched, within); });
 }
 
-/// What has been done is done, shown or not.
+/// The change itself is done, whether or not it can be shown.
 template <class Update>
 void Annotator::try_to_show(const Update& update)
 {
@@ -325,7 +326,7 @@ void Annotator::catch_up()
     try {
         renderer_.scene().catch_up(document());
     } catch (const gpu::BudgetError&) {
-        tries_to_show_ = MOST_TRIES;  // it stays as it is until something changes
+        tries_to_show_ = MOST_TRIES;  // it stays behind until something changes
         throw;
     }
     ++revision_;

@@ -48,7 +48,8 @@ RelevancePlace relevance_place(const VolumeSource& source, const glm::dvec3& poi
 
 namespace {
 
-/// Of the painted voxels in a box, and the unpainted ones where they can be felt.
+/// Whether at least half of the painted voxels in a box can be felt, and at least one; unpainted ones count only if
+/// felt.
 bool is_mostly_felt(const Mask& mask, const std::bitset<256>& groups, const VoxelBox& box)
 {
     int64_t felt = 0, others = 0;
@@ -59,7 +60,7 @@ bool is_mostly_felt(const Mask& mask, const std::bitset<256>& groups, const Voxe
         const VoxelBox of_brick = mask.box_of(index);
         const VoxelBox part{glm::max(box.lower, of_brick.lower), glm::min(box.upper, of_brick.upper)};
         const std::shared_ptr<const MaskBrick>& brick = mask.brick(index);
-        if (!brick) {  // nobody painted it
+        if (!brick) {  // unpainted
             const Size3 size = part.size();
             felt += groups[0] ? size.x * size.y * size.z : 0;
             continue;

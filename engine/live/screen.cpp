@@ -67,8 +67,8 @@ void Screen::drop()
 
 void Screen::show_probe(const ProbeLook& probe)
 {
-    // Of the probe, slices show only what its brush would change. A twentieth of a voxel is less than a pixel of any
-    // slice that shows the whole volume.
+    // In slices, the probe affects only the brush's preview. A twentieth of a voxel is less than a pixel of any slice
+    // that shows the whole volume.
     constexpr double STIR_VOXELS = 0.05;
     const glm::dvec3 voxel = probe.center / renderer_.scene().info().spacing;
     const bool follows = view_.arrangement == Arrangement::slices && !parts_.empty();
@@ -78,7 +78,7 @@ void Screen::show_probe(const ProbeLook& probe)
                                                                                     : std::optional(probe));
 }
 
-/// Arriving bricks are those that one pane needs; the other panes are drawn with theirs when their turn comes.
+/// Arriving bricks are those that one pane needs; the other panes are drawn with them when their turn comes.
 void Screen::take_changed()
 {
     renderer_.scene().advance();

@@ -6,7 +6,7 @@ namespace shvr {
 
 namespace {
 
-/// The internodes about a node, those of the fewest steps first.
+/// The internodes around a node, sorted by their number of steps from it.
 std::vector<uint32_t> links_about(const TraceGraph& trace, uint32_t node, size_t most)
 {
     std::vector<uint32_t> links, nodes{node};

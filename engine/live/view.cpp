@@ -25,7 +25,7 @@ glm::uvec2 divided(const glm::uvec2& pixels, uint32_t scale)
     return (pixels + scale - 1u) / scale;
 }
 
-/// Sides to powers of two, so that images are seldom made anew while they grow.
+/// Rounds sides up to powers of two, so that images are seldom re-created while they grow.
 glm::uvec2 roomy(const glm::uvec2& pixels)
 {
     return {std::bit_ceil(pixels.x), std::bit_ceil(pixels.y)};
@@ -66,7 +66,7 @@ void View::light_changed(const VoxelBox& voxels)
     if (shown_sight_) mark_voxels(voxels);
 }
 
-/// The pixels in which the camera, or either of two, may show the voxels.
+/// The pixels in which one or both cameras may show the voxels.
 PixelBox View::pixels_of(const Sight& sight, const VoxelBox& voxels) const
 {
     // A voxel's paint fills only its own cube, so nothing beyond it changes.
@@ -121,7 +121,7 @@ void View::reserve(gpu::Storage& image, const std::string& name, Format format, 
     }
 }
 
-/// Nothing is shown or under way any more, and no memory is held: the next picture begins anew.
+/// Resets the view: nothing is shown or in progress, and no memory is held; the next picture starts from scratch.
 void View::forget()
 {
     for (const Running& running : running_) running.submission.wait();
@@ -166,14 +166,14 @@ void View::submit_sketches(double ahead_ms)
     }
 }
 
-/// Where memory is short, the light gives way to the picture.
+/// If memory is short, ambient occlusion is released in favour of the picture.
 bool View::submit_or_give_way(bool sketches_alone)
 {
     try {
         return submit_next(sketches_alone);
     } catch (const gpu::MemoryError& error) {
         if (!scene().give_way(error.what())) throw;
-        return false;  // the next turn tries again
+        return false;  // the next frame tries again
     }
 }
 
@@ -188,7 +188,7 @@ bool View::is_listed(const Sight& sight)
                      {.pixels = sight.pixels, .always_shown = voxels_of_shell(probe_, scene().info())});
 }
 
-/// The wanted sight, or one that was wanted a moment ago, once its bricks are listed; null: not yet.
+/// The requested sight, or a recently requested one, once its bricks are listed; null: not yet.
 View::SightRef View::listed_sight()
 {
     if (!coming_sight_) coming_sight_ = sight_;
@@ -210,7 +210,7 @@ bool View::submit_next(bool sketches_alone)
 {
     if (!sight_) return false;
     if (is_drawing_finer_sketch() && (sight_ != shown_sight_ || patch_is_due())) {
-        if (base_.running > 0) return false;  // for a moment: its image is needed for something else
+        if (base_.running > 0) return false;  // temporarily: its image is needed for something else
         drop_finer_sketch();
     }
     if (submit_sketch(base_, Purpose::base) || submit_sketch(patch_, Purpose::patch)) return true;
@@ -301,7 +301,7 @@ bool View::submit_occlusion()
     const Sight& sight = *shown_sight_;
     if (sight.shot.is_slice) return false;
     if (!sight.look.light.occlusion.automatic && !occlusion_is_asked_for_) return false;
-    constexpr double CELL_BRICKS = 8.0;  // cost about what the values of one brick do
+    constexpr double CELL_BRICKS = 8.0;  // cost about as much as the values of one brick
     const Occlusion::Counts before = scene().occlusion().counts();
     std::optional<FrameGraph> slice = next_occlusion(scene(), sight.look, sight.shot.camera,
                                                      {.bricks = bricks, .cell_bricks = size_t(CELL_BRICKS) * bricks});
@@ -311,21 +311,21 @@ bool View::submit_occlusion()
         occlusion_was_renewed_ = false;
         return false;
     }
-    const Occlusion::Counts& after = scene().occlusion().counts();  // it may be less than was asked for
+    const Occlusion::Counts& after = scene().occlusion().counts();  // it may be less than requested
     const double units = double(after.values - before.values) + double(after.cells - before.cells) / CELL_BRICKS;
     submit(std::move(*slice), {.purpose = Purpose::preparation, .pace = &occlusion_, .units = units});
     return true;
 }
 
-/// Takes the tiles of the next batch: those nearest to the focus, so many that few batches make the picture, and all
-/// that are left where they take but a moment.
+/// Selects the tiles of the next batch: those nearest to the focus, enough that few batches make up the picture, or all
+/// remaining tiles if they take only a moment.
 void View::choose_batch(const glm::dvec2& focus)
 {
     constexpr size_t BATCHES = 6;
     const uint32_t across = tile_counts().x;
     std::vector<std::pair<double, uint32_t>> left;  // by distance
     for (uint32_t index = 0; index < tiles_.size(); ++index) {
-        if (tiles_[index].is_in_batch && !tiles_[index].is_drawn) return;  // there is one
+        if (tiles_[index].is_in_batch && !tiles_[index].is_drawn) return;  // there already is one
         if (tiles_[index].is_shown || !tiles_[index].is_due) continue;
         const glm::dvec2 apart = (glm::dvec2(index % across, index / across) + 0.5) * double(TILE) - focus;
         left.emplace_back(glm::dot(apart, apart), index);
@@ -351,13 +351,13 @@ void View::show_batch()
 bool View::may_draw(const Tile& tile) const
 {
     constexpr double AGAIN_S = 0.25;
-    if (!tile.is_shown && !tile.is_urgent && !tile.is_in_batch) return false;  // its turn comes
+    if (!tile.is_shown && !tile.is_urgent && !tile.is_in_batch) return false;  // its batch comes later
     if (!tile.is_due || tile.drawn_s == 0.0 || tile.is_urgent) return tile.is_due;
     const bool more_comes = scene().volume().state() == DeviceVolume::State::loading;
     return !more_comes || now_s() - tile.drawn_s > AGAIN_S;
 }
 
-/// Whether there is memory for sharp tiles. If not, that is said once for each view.
+/// Whether memory suffices for sharp tiles. If not, reports that once per view.
 bool View::has_room_for_tiles()
 {
     if (unsharp_sight_ == shown_sight_) return false;
@@ -378,7 +378,7 @@ bool View::has_room_for_tiles()
     }
 }
 
-/// What changed is sketched anew.
+/// Replaces sharp tiles, which do not fit in memory, by a new sketch of the whole picture.
 bool View::submit_sketch_instead()
 {
     start(base_, shown_sight_, std::nullopt, options_.motion_ms);
@@ -386,7 +386,7 @@ bool View::submit_sketch_instead()
     return submit_sketch(base_, Purpose::base);
 }
 
-/// Of the tiles around one that is due, so many as fit in one step: neighbours in its row, then rows beside that.
+/// Around a due tile, as many tiles as fit in one step: neighbours in its row, then adjacent rows.
 PixelBox View::strip_of_tiles(const glm::uvec2& nearest) const
 {
     constexpr uint32_t MAX_TILES = (1u << 20) / (TILE * TILE);  // 16 MiB of light
@@ -454,7 +454,7 @@ bool View::submit_tiles()
         }
     if (!nearest) return false;
     if (!has_room_for_tiles()) return submit_sketch_instead();
-    if (!is_listed(*shown_sight_)) return false;  // paint or the probe's shell has come to another brick
+    if (!is_listed(*shown_sight_)) return false;  // paint or the probe's shell has reached another brick
     if (submit_preparation(*shown_sight_)) return true;
 
     const PixelBox strip = strip_of_tiles(*nearest);
@@ -480,7 +480,7 @@ bool View::submit_tiles()
     submit(std::move(graph), std::move(running));
     for (const uint32_t index : running_.back().tiles) {
         Tile& tile = tiles_[index];
-        if (tile.is_urgent) tile.is_in_batch = false;  // what was changed is shown at once
+        if (tile.is_urgent) tile.is_in_batch = false;  // changed voxels are shown at once
         tile.is_due = tile.is_urgent = false;
         tile.drawn_s = now_s();
     }
@@ -517,9 +517,9 @@ void View::account(const gpu::FrameResult& result, const Running& done)
     busy_since_ = now;
     if (!host_tells_time())
         for (const gpu::PassReport& pass : result.passes) note(pass.name, pass.gpu_ms, waits(pass));
-    // Passes may overlap, so their sum is more than they take.
+    // Passes may overlap, so their sum can exceed the total time.
     const double ms = host_tells_time() ? host_ms : result.gpu_ms;
-    // If only the host can measure time, all of it is assigned to the pass that takes most.
+    // If only the host can measure time, all of it is attributed to the most expensive pass.
     if (host_tells_time() && !result.passes.empty()) {
         const auto rays = std::ranges::find(result.passes, "raycast", &gpu::PassReport::name);
         const bool has_rays = rays != result.passes.end();
@@ -537,7 +537,7 @@ void View::wait()
     }
 }
 
-/// Tells once for each view.
+/// Reports once per view.
 void View::note_cut_short(const Running& done, uint64_t rays)
 {
     if (rays == 0 || !done.sight || done.sight == cut_short_sight_) return;

@@ -62,8 +62,8 @@ void View::start(Sketch& sketch, Sketch::Content content, PixelBox part)
     sketch.job = std::move(content);
 }
 
-/// Before the sharp tiles, whose edges stand out less beside a finer sketch. Once for each sight, and only where it
-/// adds little to the time that the picture takes.
+/// Precedes the sharp tiles, whose edges stand out less next to a finer sketch. Once per sight, and only if it adds
+/// little to the picture's total time.
 bool View::submit_finer_sketch()
 {
     constexpr double SHARE = 0.18;  // of the pixels along each axis: 3 % of all
@@ -110,7 +110,8 @@ void View::submit_rows(Sketch& sketch, Purpose purpose)
     Running running{.purpose = purpose, .pixels = uint64_t(width) * rows, .sight = job.sight};
     const Resource light = draw(graph, part, work_.import(), running);
     const uint32_t end = sketch.next_row + rows;
-    const bool encodes = job.share == 1.0;  // otherwise rows are enlarged beside their neighbours, once all are drawn
+    const bool encodes = job.share == 1.0;  // otherwise rows are enlarged together with their neighbours, once all are
+                                            // drawn
     if (encodes) encode_rows(graph, light, sketch, sketch.next_encoded, end);
     submit(std::move(graph), std::move(running));
     sketch.next_row = end;
