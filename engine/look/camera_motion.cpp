@@ -91,7 +91,7 @@ Camera zoomed(const Camera& camera, const glm::uvec2& pixels, const glm::dvec2& 
 
 namespace {
 
-/// Of another eye that looks the same way.
+/// Adjusts the clip planes for another eye with the same direction.
 void keep_clip_planes(const Camera& was, Camera& is, const glm::dvec3& forward)
 {
     const double way = glm::dot(was.eye - is.eye, forward);
@@ -140,7 +140,7 @@ Camera fitted(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& 
         height = std::max(height, 2.0 * reach);
         distance = std::max(distance, reach / slope - glm::dot(at, axes.forward));
     }
-    // The eye of parallel rays stands before the box, too, since nothing behind it is seen.
+    // The eye of an orthographic camera also lies in front of the box, since nothing behind it is visible.
     if (!is_perspective(camera)) distance = MARGIN * glm::length(half);
     Camera result = camera;
     result.target = center;

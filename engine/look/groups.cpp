@@ -12,7 +12,7 @@ namespace {
 constexpr const char* GROUP_COLORS[] = {"#fe3099", "#1817ff", "#cbf200", "#09979d", "#ce97ff",
                                         "#1b5b3d", "#95088c", "#686505", "#02cac2", "#9d61f7"};
 
-/// Decoded once: every picture asks for the looks of all groups.
+/// Decoded once: every picture needs the looks of all groups.
 const std::array<glm::dvec3, std::size(GROUP_COLORS)>& group_colors()
 {
     static const auto colors = [] {

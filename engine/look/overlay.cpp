@@ -11,7 +11,7 @@ namespace shvr {
 namespace {
 
 constexpr double WIDTH = 1.5;        ///< pixels
-constexpr double TRACE_WIDTH = 2.5;  ///< of highlighted parts of the trace
+constexpr double TRACE_WIDTH = 2.5;  ///< for highlighted parts of the trace
 constexpr double HALO = 2.0;         ///< extra pixels that set a stroke off from its background
 constexpr double DASH = 5.0, GAP = 4.0;
 constexpr glm::dvec3 DARK(0.02);
@@ -258,7 +258,7 @@ void for_each_covered(const Stroke& stroke, const glm::uvec2& origin, const Pixe
     const glm::dvec2 upper = glm::min(glm::ceil(glm::max(from, to) + reach), glm::dvec2(pane.end));
     const glm::dvec2 way = to - from;
     const double square = glm::dot(way, way);
-    // A row meets a short piece of a long stroke: the rest of the row is not looked at.
+    // A row meets only a short piece of a long stroke: the rest of the row is skipped.
     const auto x_at = [&](double y) {
         return way.y == 0.0 ? 0.0 : from.x + std::clamp((y - from.y) / way.y, 0.0, 1.0) * way.x;
     };

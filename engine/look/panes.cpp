@@ -11,7 +11,7 @@ namespace {
 
 constexpr uint32_t MIN_PANE = 16;      ///< pixels a side
 constexpr double SLICE_MARGIN = 1.05;  ///< around the volume
-constexpr double MAP_MARGIN = 1.5;     ///< and the camera that looks at it
+constexpr double MAP_MARGIN = 1.5;     ///< also contains the camera that looks at it
 
 PixelBox part_of(const glm::uvec2& pixels, const glm::uvec2& counts, const glm::uvec2& at)
 {
@@ -41,7 +41,7 @@ Pane map_pane(const std::string& side, const PixelBox& box, const VolumeInfo& vo
     return {.kind = Pane::Kind::map, .shot = camera, .box = box, .name = side};
 }
 
-/// The voxel that slices have in their middle.
+/// The voxel at the centre of slices.
 glm::dvec3 middle_of(const SliceSettings& slices, const VolumeInfo& volume, const glm::dvec3& probe_voxel)
 {
     const glm::dvec3 size(volume.size);
@@ -66,7 +66,8 @@ Pane slice_pane(int axis, const PixelBox& box, const VolumeInfo& volume, const g
     Camera& camera = pane.shot.camera;
     const glm::dvec3 forward = glm::normalize(camera.target - camera.eye);
     const glm::dvec3 size(volume.size);
-    // Below the volume's end in the floats of a kernel, too: a plane in it has no inside, and is drawn without an edge.
+    // Slightly below the volume's end, even in a kernel's floats: a plane at the end has no inside, and is drawn
+    // without an edge.
     constexpr double LAST = 1.0 - 1e-6;
     const double voxel = std::clamp(probe_voxel[axis], 0.0, LAST * size[axis]);
     if (slices.center || slices.zoom > 1.0) {
@@ -117,7 +118,7 @@ std::pair<Camera, Camera> eyes_of(const Camera& camera, const StereoSettings& se
         const glm::dvec3 way = double(side) * half * axes.right;
         eye.eye += way;
         if (half > 0.0 && (settings.toe_in || !is_perspective)) {
-            eye.up = axes.up;  // the eyes turn about it, so that neither rolls
+            eye.up = axes.up;  // the eyes rotate about it, so that neither rolls
             continue;
         }
         eye.target += way;
@@ -186,7 +187,7 @@ SliceSettings slices_following(const SliceSettings& slices, const std::vector<Pa
 {
     const glm::dvec3 seen = glm::clamp(probe_voxel, glm::dvec3(0.0), glm::dvec3(volume.size)) * volume.spacing;
     glm::bvec3 follows(false);
-    int held_axis = -1;  // across the slice under the mouse, along which it does not move
+    int held_axis = -1;  // normal axis of the slice under the mouse, along which it does not move
     for (size_t i = 0; i < panes.size(); ++i) {
         const Pane& pane = panes[i];
         if (!pane.shot.is_slice) continue;

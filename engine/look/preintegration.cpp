@@ -10,7 +10,7 @@ namespace shvr {
 
 namespace {
 
-/// Extinction where the opacity of a reference length rounds to 1: the smallest part of the shortest step is opaque,
+/// Extinction at which the opacity of a reference length rounds to 1: the smallest part of the shortest step is opaque,
 /// and differences of its integrals are still exact to 1e-8.
 constexpr double OPAQUE = 1e6;
 constexpr uint32_t MAX_PARTS = 16;

@@ -7,7 +7,7 @@ namespace shvr {
 
 namespace {
 
-/// Calls with x, y and the share of each pixel inside the rows that the stamp covers.
+/// Calls `take` with x, y and coverage for each pixel of the stamp within the rows.
 template <class Take>
 void for_each_covered(const Stamp& stamp, const PixelBox& pane, const PixelBox& rows, Take take)
 {

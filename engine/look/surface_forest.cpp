@@ -61,7 +61,7 @@ bool SurfaceForest::replace(std::span<const uint64_t> keys, std::span<const Keye
     return true;
 }
 
-/// The small hierarchy, of `added_`.
+/// Replaces the small hierarchy, that of `added_`.
 void SurfaceForest::set_added(const SurfaceTree& tree)
 {
     nodes_.resize(base_nodes_);

@@ -71,8 +71,8 @@ double depth_of_step(double opacity, double step_voxels)
 
 double Samples::at(uint32_t entry) const
 {
-    // Multiply before dividing, and set the last one explicitly: where entries are whole intensities, each is exactly
-    // at its own.
+    // Multiplies before dividing, and sets the last one
+    // explicitly: if entries are whole intensities, each is exact.
     return entry + 1 == entries ? upper : lower + (upper - lower) * entry / (entries - 1);
 }
 
