@@ -50,21 +50,21 @@ void distance(FrameGraph& graph, const VolumeBinding& volume, uint32_t axis, con
     to = pass.write("leap", to);
 }
 
-/// By so many codes a sample may pass the codes of the voxels that it is taken for (leap.h): as far as it may lie
-/// beside them, along all axes, times the largest difference of codes.
+/// How far a sample's code may exceed the codes of its voxels (leap.h): its maximum distance from them, along all axes,
+/// times the largest difference of codes.
 float guard_of_sample_bits(const glm::uvec3& cell_counts)
 {
     constexpr double CODES = 65535.0, EPSILON = 0x1p-24;
     const glm::uvec3 size = gpu::CELL_SIZE * cell_counts;
     const double side = std::max({size.x, size.y, size.z}), reach = gpu::SAMPLE_BITS_REACH;
-    // In floats, a length along the ray, its product and sum with where the ray begins; of the two samples that the way
-    // between is measured from.
+    // In floats: a length along the ray, its product and its sum with the ray's start; for the two samples from which
+    // the distance between is measured.
     const double of_floats = 2.0 * EPSILON * side * (3.0 * reach + (1.0 + reach));
     const double of_parts = (0.5 * gpu::SAMPLE_BITS_AHEAD + 1.0) / gpu::SAMPLE_BIT_PARTS;
     return float(1.0 + CODES * (3.0 * of_floats + of_parts * (1.0 + 1.0 / 4.0 + 1.0 / 16.0)));
 }
 
-/// A sample between the voxels of two cells has its bit in the upper one.
+/// A sample between the voxels of two cells has its bit in the upper cell.
 void sample_bits(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input)
 {
     if (!volume.sample_bits) return;

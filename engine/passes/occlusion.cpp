@@ -13,14 +13,14 @@ namespace {
 /// How far from its voxel a ray may begin.
 constexpr double MAX_OFFSET = double(gpu::OCCLUSION_FURTHEST) + double(gpu::OCCLUSION_LIFT);
 
-/// In units, for a radius of 16: taps in voxels, in cells of two voxels and in cells of four; the stretches of the
-/// latter two grow with the radius. Smaller radii have fewer taps.
+/// In voxels of the level, for a radius of 16: taps in voxels, in cells of two voxels and in cells of four; the
+/// stretches of the latter two grow with the radius. Smaller radii have fewer taps.
 constexpr double NEAR_STRETCH = 1.035;
 constexpr double NEAR_STRETCHES[] = {NEAR_STRETCH, NEAR_STRETCH, 2.0 * NEAR_STRETCH};
 constexpr double NEAR_TOTAL = 4.0 * NEAR_STRETCH;
 constexpr uint32_t FAR_SIZES[] = {0, 0, 0, 1, 1};
 constexpr double STRETCHES_OF_SIZES[] = {2.077, 2.815};
-constexpr double MAX_STRETCH_2 = 8.6;  ///< beyond, only those of cells of four grow
+constexpr double MAX_STRETCH_2 = 8.6;  ///< beyond this, only those of cells of four grow
 constexpr uint32_t MAX_APRON = 14;     ///< in cells of any size, for the largest radius
 constexpr double MAX_STRETCHED = 1.2;  ///< before another tap is added
 static_assert(std::size(FAR_SIZES) == gpu::OCCLUSION_TAPS_2 + gpu::OCCLUSION_TAPS_4);
@@ -34,7 +34,7 @@ const double TURN = std::numbers::pi * (3.0 - std::sqrt(5.0));
 
 namespace {
 
-/// Of so many jobs in an image, gpu::scratch_place.
+/// The extent of an image for this many jobs, gpu::scratch_place.
 glm::uvec3 scratch_places(uint32_t jobs)
 {
     const uint32_t columns = (jobs + gpu::OCCLUSION_COLUMN - 1) / gpu::OCCLUSION_COLUMN;
@@ -93,7 +93,8 @@ OcclusionTaps occlusion_taps(double radius, bool is_paged)
 
 uint32_t occlusion_reach(double radius)
 {
-    // A tap lies within the radius of where its ray begins; 4 covers how far that is from the voxel, and the voxel.
+    // A tap lies within the radius of its ray's start; 4 covers the distance of the start from the voxel, and the
+    // voxel.
     return std::max(1u, uint32_t(std::ceil((radius + 4.0) / gpu::BRICK_SIZE)));
 }
 

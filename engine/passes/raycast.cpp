@@ -16,37 +16,38 @@ uint32_t shininess_squarings(float shininess)
 
 namespace {
 
-/// Threads that a device which ends loops runs in step (MAX_TURNS): each may make all of them take a turn. Sixteen stay
-/// below 65535 as well.
+/// Number of threads that a device which aborts long loops runs in lockstep (MAX_TURNS): each may make all of them take
+/// an iteration. Sixteen also stay below 65535.
 constexpr uint64_t LANES = 8;
 constexpr uint64_t MAX_BLOCKS = 4096;
-/// Around the pixels of an iso-surface: rays are rounded, and groups of threads are as wide as they may be.
+/// Margin around the pixels of an iso-surface: rays are rounded, and groups of threads are as wide as possible.
 constexpr double SHELL_MARGIN = 1.0, SHELL_ALIGNED = 16.0;  // pixels
 
 /// Steps of a ray that one dispatch may take.
 uint64_t steps_of_block(const VolumeBinding& volume, const RaycastInput& input, bool is_shelled)
 {
-    // A place is found in a loop of its own; in paged bricks that takes a turn for each level of the directory. Loops
-    // of a fixed length are unrolled (mask.glsl, groups.glsl, search.glsl) and take none.
+    // Finding a place is a loop of its own; in paged bricks it takes one iteration per level of the directory. Loops of
+    // fixed length are unrolled (mask.glsl, groups.glsl, search.glsl) and count none.
     const uint64_t levels = volume.pages ? volume.pages->depth : 0;
     const uint64_t to_leap = 1 + levels;
-    const uint64_t to_search = to_leap + 1 + gpu::SEARCH_AHEAD * levels;  // each but the last goes on by as many steps
+    const uint64_t to_search = to_leap + 1 + gpu::SEARCH_AHEAD * levels;  // each but the last advances by as many steps
     const uint64_t to_take = 1 + 2 * levels + (is_shelled ? 2 * (to_leap + 1) : 0);
-    // Any turn is a step of one lane at least, but for those in which all find that they have to go on elsewhere.
+    // Every iteration advances at least one lane by a step, except those in which all lanes find that they have to
+    // continue elsewhere.
     double turns = double(LANES * std::max(to_leap, to_take) + 1 + to_leap + to_search + to_take);
-    // An iso-surface is searched cell by cell: at most three a reference length, and one where the ray enters. Before
+    // An iso-surface is searched cell by cell: at most three per reference length, and one where the ray enters. Before
     // each, cells of four voxels a side are passed, of which there are a quarter.
     if (is_shelled) turns += 2.25 * double(LANES * (to_leap + 1)) * (3.0 * double(input.params.step) + 1.0);
     return std::max(uint64_t(double(gpu::MAX_TURNS) / turns), uint64_t{1});
 }
 
-/// Steps of the longest ray that there can be.
+/// Number of steps of the longest possible ray.
 uint64_t steps_of_ray(const gpu::RaycastParams& params)
 {
     constexpr double ROUNDING = 1.0 + 1e-5, MOST = 2147483648.0;
     const double longest = glm::length(glm::dvec3(params.box_upper - params.box_lower) * glm::dvec3(params.spacing));
     const double steps = longest / double(params.step) * ROUNDING + 1.0;
-    return uint64_t(steps < MOST ? steps : MOST);  // of what is no number, too
+    return uint64_t(steps < MOST ? steps : MOST);  // also for NaN
 }
 
 std::vector<std::byte> bytes_of(const RaycastOcclusion& occlusion)
@@ -58,7 +59,7 @@ std::vector<std::byte> bytes_of(const RaycastOcclusion& occlusion)
     return bytes;
 }
 
-/// What decides which kernel draws, and with which constants.
+/// The inputs that select the kernel and its constants.
 struct Choice {
     bool is_paged, is_filtered, is_masked, is_occluded, is_surfaced;
     std::vector<std::pair<std::string, uint32_t>> of_codes;  ///< constants
@@ -67,7 +68,7 @@ struct Choice {
     uint32_t kept = gpu::KEPT_NOTHING;
 };
 
-/// Whether all rays of the part are short enough for sample bits (shaders/leap.h), as they are unless the angle of view
+/// Whether all rays of the part are short enough for sample bits (shaders/leap.h), which holds unless the angle of view
 /// is extreme.
 bool finds_sample_bits(const gpu::RaycastParams& params)
 {
@@ -132,8 +133,8 @@ KernelVariant kernel_of(const Choice& choice, const RaycastInput& input)
     return kernel;
 }
 
-/// What a person may do next: paint, bring an iso-surface or something with a surface into the picture, click.
-/// `kept_of_shell`: what rays keep where there is an iso-surface.
+/// Hints for likely next actions: painting, bringing an iso-surface or an opaque surface into the picture, clicking.
+/// `kept_of_shell`: what rays keep if there is an iso-surface.
 void expect_next(FrameGraph& graph, const Choice& now, const RaycastInput& input, uint32_t kept_of_shell)
 {
     const auto expect = [&](const auto& change) {
@@ -158,15 +159,15 @@ void expect_next(FrameGraph& graph, const Choice& now, const RaycastInput& input
     });
 }
 
-/// Pixels of the part, from its first one on, that are drawn by one kernel.
+/// Pixels of the part, relative to its first one, that are drawn by one kernel.
 struct Area {
     glm::uvec2 begin{0}, end{0};
     bool is_shelled = false;
     bool is_empty() const { return begin.x >= end.x || begin.y >= end.y; }
 };
 
-/// An iso-surface costs rays that never meet it as much again, so they are drawn without: above, below, and on both
-/// sides of its pixels.
+/// Iso-surfaces would also double the cost of rays that never meet them, so these are drawn without: above, below, and
+/// on both sides of the surface's pixels.
 std::vector<Area> areas_of(const RaycastInput& input, bool is_shelled)
 {
     const glm::uvec2 size = input.params.pixel_end - input.params.pixel_begin;
@@ -202,7 +203,7 @@ Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastIn
     } else {
         pass.read("leap", volume.leap);
         if (!volume.is_filtered())
-            pass.read("sample_bits", volume.sample_bits.value_or(volume.leap));  // a stand-in is never read
+            pass.read("sample_bits", volume.sample_bits.value_or(volume.leap));  // the stand-in is never read
     }
     bind_atlas(pass, volume);
     if (is_shelled) pass.read("cell_ranges", volume.cell_ranges);
@@ -227,7 +228,7 @@ Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastIn
     }
     if (!input.blocks) pixel_groups(pass, pixels, input.pixel_groups);
     listed_groups(pass, input.blocks);
-    // Rays in waiting keep what they have gathered elsewhere.
+    // Waiting rays keep their accumulated values elsewhere.
     const bool continues = input.params.first_step > 0 && !input.waiting;
     return continues || is_begun ? pass.modify("color", target) : pass.write("color", target);
 }
@@ -244,19 +245,19 @@ ShellPixels shell_pixels(const gpu::RaycastParams& params)
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec3 side(corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0);
         const glm::dvec3 point = glm::dvec3(params.shell_center) + side * glm::dvec3(params.shell_reach);
-        // The plane through the point that is parallel to those on which rays begin and end.
+        // The plane through the point parallel to those on which rays begin and end.
         const double t = glm::dot(normal, point - near) / depth;
         const auto between = [&](const glm::vec3& a, const glm::vec3& b) {
             return (1.0 - t) * glm::dvec3(a) + t * glm::dvec3(b);
         };
         const glm::dvec3 dx = between(params.near_dx, params.far_dx), dy = between(params.near_dy, params.far_dy);
         const glm::dvec3 from = point - between(params.near_corner, params.far_corner);
-        // dx and dy need not be square to each other in voxel space.
+        // dx and dy need not be orthogonal in voxel space.
         const double xx = glm::dot(dx, dx), xy = glm::dot(dx, dy), yy = glm::dot(dy, dy);
         const double along_x = glm::dot(from, dx), along_y = glm::dot(from, dy);
         const glm::dvec2 pixel =
             glm::dvec2(yy * along_x - xy * along_y, xx * along_y - xy * along_x) / (xx * yy - xy * xy);
-        const bool is_ahead = t >= 0.0 && glm::abs(pixel.x) < 1e9 && glm::abs(pixel.y) < 1e9;  // and is a number
+        const bool is_ahead = t >= 0.0 && glm::abs(pixel.x) < 1e9 && glm::abs(pixel.y) < 1e9;  // false for NaN
         if (!is_ahead) return all;
         lower = glm::min(lower, pixel);
         upper = glm::max(upper, pixel);
@@ -278,7 +279,7 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
     for (const Area& area : areas_of(input, is_shelled)) {
         const uint64_t steps_each = steps_of_block(volume, input, area.is_shelled);
         const uint64_t blocks = std::min((steps + steps_each - 1) / steps_each, MAX_BLOCKS);
-        std::optional<Resource> of_area;  ///< unless all wait
+        std::optional<Resource> of_area;  ///< unless all rays wait
         if (!input.waiting && area.is_shelled && blocks > 1)
             of_area = graph.create(
                 "rays", picture_desc(Format::rgba32_float, input.params.pixel_end - input.params.pixel_begin));
