@@ -15,16 +15,16 @@ namespace shvr {
 
 namespace {
 
-/// A tile bounds the time of a single submission on a slow device. On a GPU squares keep similar rays together; a CPU
-/// takes rows of bricks from its caches, and waits for the last of its threads at the end of each tile. Powers of two:
-/// so the number of dispatches does not depend on that of threads.
+/// A tile bounds the time of a single submission on a slow device. On a GPU, squares keep similar rays together; a CPU
+/// serves rows of bricks from its caches, and waits for its slowest thread at the end of each tile. Powers of two make
+/// the number of dispatches independent of the number of threads.
 PixelGroups pixel_groups_of(const gpu::DeviceTraits& traits)
 {
     if (!traits.is_cpu) return {.width = 8, .layers = 1, .tile = {128, 128}};
     return {.width = 16, .layers = std::min(std::bit_ceil(traits.cpu_threads), 64u), .tile = {256, 256}};
 }
 
-/// Opacity of a preview behind something else, and of one in slices.
+/// Opacity of a preview hidden by something else, and of one in slices.
 constexpr float PREVIEW_SHARE = 0.55f, PREVIEW_SLICE_SHARE = 0.7f;
 
 RaycastOcclusion raycast_occlusion(Resource values, const OcclusionSettings& settings)
@@ -33,7 +33,7 @@ RaycastOcclusion raycast_occlusion(Resource values, const OcclusionSettings& set
     const std::vector<OcclusionPoint>& points = settings.mapping;
     if (points.empty()) return occlusion;
     constexpr double NARROWEST = 1e-6;  // a step
-    // Where there is one point alone, a segment that rises by nothing.
+    // With a single point, a segment without a rise.
     for (size_t i = 0; i + 1 < std::max<size_t>(points.size(), 2); ++i) {
         const OcclusionPoint &from = points[i], &to = points[std::min(i + 1, points.size() - 1)];
         occlusion.segments.push_back({float(from.arrives), float(1.0 / std::max(to.arrives - from.arrives, NARROWEST)),
@@ -58,7 +58,7 @@ PageView page_view(const Look& look, const Shot& shot, const PicturePart& part)
 /// Data shared by the eyes of a shot.
 struct Prepared {
     VolumeBinding volume;
-    RaycastInput input;  ///< all but the surfaces
+    RaycastInput input;  ///< complete except for the surfaces
     std::optional<SurfaceList> listed;
     double adaptive_tolerance = 0.0;  ///< 0: every pixel has a ray
 };
@@ -107,13 +107,13 @@ std::optional<Resource> draw_surfaces(FrameGraph& graph, Scene& scene, const Pre
     return surfaces(graph, wanted);
 }
 
-/// Where it shows what lies behind the probe's ball, too: two pictures are mixed.
+/// Whether it also shows what lies behind the probe's ball: two pictures are then mixed.
 bool is_translucent(const std::optional<ProbeLook>& probe)
 {
     return probe && probe->ball_share > 0.0 && probe->ball_opacity > 0.0 && probe->ball_opacity < 1.0;
 }
 
-/// The part as it is drawn where no ball of the probe is seen.
+/// The part with the probe's ball removed.
 PicturePart without_ball(PicturePart part)
 {
     if (part.probe) part.probe->ball_share = 0.0;
@@ -143,7 +143,7 @@ PreviewSeen draw_preview(FrameGraph& graph, const RaycastInput& input, const Ray
     return preview(graph, wanted);
 }
 
-/// A coarse picture, and what lies between alike pixels of it: the blocks of others are listed.
+/// Draws a coarse picture and interpolates between its similar pixels; the blocks of all others are listed.
 Adapted draw_adaptively(FrameGraph& graph, Scene& scene, Prepared& prepared, const RaycastInput& input,
                         const RayPlanes& planes, const PicturePart& part, Resource target)
 {
@@ -169,7 +169,8 @@ Adapted draw_adaptively(FrameGraph& graph, Scene& scene, Prepared& prepared, con
     return adaptive(graph, picture, target, wanted);
 }
 
-/// The volume and what is in it. A preview is drawn before the rays, so that they end at it, and then over the picture.
+/// Draws the volume and its contents. A preview is computed before the rays, so that they end at it, and then drawn
+/// over the picture.
 Resource draw_contents(FrameGraph& graph, Scene& scene, Prepared& prepared, RaycastInput input, const Camera& camera,
                        const PicturePart& part, Resource target, const WaitingRays* rays, size_t which)
 {
@@ -190,7 +191,7 @@ Resource draw_contents(FrameGraph& graph, Scene& scene, Prepared& prepared, Rayc
         expect_preview(graph, preview_input(input));
         return raycast(graph, prepared.volume, input, target);
     }
-    // A preview is drawn whole, and so are the surfaces before it.
+    // A preview is drawn in full, and so are the surfaces before it.
     input.surfaces = draw_surfaces(graph, scene, prepared, input, planes, part);
     const PreviewSeen made = draw_preview(graph, input, planes, part);
     input.surfaces = made.surfaces;
@@ -202,7 +203,7 @@ Resource draw_contents(FrameGraph& graph, Scene& scene, Prepared& prepared, Rayc
                          .share = input.slice ? PREVIEW_SLICE_SHARE : PREVIEW_SHARE});
 }
 
-/// The same, through a translucent ball: as with an opaque one, and as without it.
+/// The same through a translucent ball: mixes pictures with an opaque ball and without it.
 Resource draw_through_ball(FrameGraph& graph, Scene& scene, Prepared& prepared, const RaycastInput& input,
                            const Camera& camera, const PicturePart& part, Resource target, const WaitingRays* rays,
                            size_t eye)
@@ -218,7 +219,7 @@ Resource draw_through_ball(FrameGraph& graph, Scene& scene, Prepared& prepared, 
                {.target = input.params.target, .size = size, .share = float(1.0 - part.probe->ball_opacity)});
 }
 
-/// The picture of one eye.
+/// Draws the picture of one eye.
 Resource draw_eye(FrameGraph& graph, Scene& scene, const Look& look, Prepared& prepared, const RaycastInput& input,
                   const Camera& camera, const PicturePart& part, Resource target, const WaitingRays* rays, size_t eye)
 {

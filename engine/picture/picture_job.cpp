@@ -33,17 +33,17 @@ void append(std::vector<gpu::PassReport>& sum, std::vector<gpu::PassReport> pass
     }
 }
 
-/// Bytes of a pixel that a picture is read back with.
+/// Bytes per pixel of a picture's read-back.
 constexpr uint64_t PIXEL_BYTES = 4 * sizeof(float);
-/// At most so much of the host's memory is for the band that is drawn; another one may still be written.
+/// Maximum host memory for the band being drawn; another one may still be being written.
 constexpr uint64_t MAX_BAND_BYTES = uint64_t{32} << 20;
-/// More is on the device beside a part's own images: tables and the directory of bricks.
+/// Device memory in addition to a part's own images: tables and the directory of bricks.
 constexpr uint64_t BESIDE_PARTS = uint64_t{8} << 20;
 
-/// Parts of at most so many pixels, of which a ray's state takes WaitingRays::PIXEL_BYTES, are drawn by rays that wait.
+/// Maximum pixels of parts drawn by rays that wait, whose state takes WaitingRays::PIXEL_BYTES per pixel.
 constexpr uint64_t MAX_WAITING_PIXELS = 64 * 64;
 
-/// Bytes on the device for a pixel of a part, as frame.cpp adds images.
+/// Device bytes per pixel of a part, as frame.cpp allocates images.
 uint64_t device_bytes_per_pixel(const Scene& scene, const Shot& shot, const std::optional<ProbeLook>& probe,
                                 bool is_adaptive)
 {
@@ -60,7 +60,7 @@ uint64_t device_bytes_per_pixel(const Scene& scene, const Shot& shot, const std:
     return PIXEL_BYTES + (shot.right_eye ? 2 * (PIXEL_BYTES + of_eye) : of_eye);
 }
 
-/// Some rows of a pane in parts, the first one last.
+/// Splits some rows of a pane into parts, the first one last.
 std::vector<PicturePart> parts_of(const PicturePart& whole, const PixelBox& rows, uint32_t side)
 {
     std::vector<PicturePart> parts;
@@ -74,7 +74,7 @@ std::vector<PicturePart> parts_of(const PicturePart& whole, const PixelBox& rows
     return parts;
 }
 
-/// The four quarters of a part, the next one to draw last.
+/// The four quarters of a part, next to draw last.
 std::vector<PicturePart> quarters_of(const PicturePart& part)
 {
     std::vector<PicturePart> quarters;
@@ -139,17 +139,17 @@ void PictureJob::begin_band()
     band_begin_ = band_end_;
     band_end_ = std::min(band_begin_ + band_rows_, size_.y);
     const size_t values = size_t(size_.x) * (band_end_ - band_begin_) * 4;
-    // Whoever takes the rows may hold a band while the next one is drawn; a part is copied once more.
+    // The receiver of the rows may hold a band while the next one is drawn; a part is copied once more.
     constexpr uint64_t BANDS = 2;
     renderer_.note_picture_bytes(BANDS * values * sizeof(float) +
                                  PIXEL_BYTES * options_.part_pixels * std::min(options_.part_pixels, band_rows_));
     band_ = {int(size_.x), int(band_end_ - band_begin_), std::vector<float>(values)};
     pane_ = 0;
     begin_parts();
-    if (parts_.empty()) end_band();  // a row that panes leave free
+    if (parts_.empty()) end_band();  // a row that no pane covers
 }
 
-/// The parts of the pane within the band; of the next pane, where this one has none there.
+/// Lists the parts of the pane within the band, or of the next pane if it has none there.
 void PictureJob::begin_parts()
 {
     for (; pane_ < panes_.size(); ++pane_) {
@@ -167,7 +167,7 @@ void PictureJob::begin_parts()
     }
 }
 
-/// The side of parts that the memory which is left holds twice: parts at borders have images of their own.
+/// The largest side of parts of which the remaining memory holds two: parts at borders have images of their own.
 uint32_t PictureJob::part_side()
 {
     gpu::Memory& memory = renderer_.memory();
@@ -179,9 +179,9 @@ uint32_t PictureJob::part_side()
         return side * side * of_pixel <= (left - std::min(left, spare)) / 2 &&
                side * side * PIXEL_BYTES <= memory.host_bytes_left() / 2;
     };
-    static_cast<void>(!pane().shot.is_slice && scene().has_occlusion(look_));  // takes its memory
+    static_cast<void>(!pane().shot.is_slice && scene().has_occlusion(look_));  // allocates its memory
     if (fits(BESIDE_PARTS)) return uint32_t(side);
-    // What is needed whatever the part's size is made now, so that the rest is known.
+    // Data that is needed for any part size is made now, so that the remaining memory is known.
     renderer_.executor().run(
         prepared(
             scene(), look_, pane().shot,
@@ -192,7 +192,7 @@ uint32_t PictureJob::part_side()
     return uint32_t(side);
 }
 
-/// Draws lines over the band and hands it on.
+/// Draws lines over the band and delivers it.
 void PictureJob::end_band()
 {
     catch_up();
@@ -203,14 +203,14 @@ void PictureJob::end_band()
     renderer_.note_picture_bytes(0);
 }
 
-/// Takes the bricks that are asked for. False: some are still to come, and it waits for none.
+/// Takes the requested bricks. False: some are still to come, and it did not wait.
 bool PictureJob::load(const Progress& progress, bool waits)
 {
     scene().advance(waits, progress);
     return waits || scene().volume().state() != DeviceVolume::State::loading;
 }
 
-/// Loads the bricks that light comes from, as far as there is room.
+/// Loads the bricks that light comes from, as far as there are slots.
 bool PictureJob::load_around(const Progress& progress, bool waits)
 {
     if (pane().shot.is_slice || !scene().has_occlusion(look_)) return true;
@@ -218,8 +218,8 @@ bool PictureJob::load_around(const Progress& progress, bool waits)
     return load(progress, waits);
 }
 
-/// Completes the ambient occlusion that the look wants, as far as the loaded bricks allow. False: there is more to do
-/// and it waits for nothing.
+/// Completes the ambient occlusion of the look, as far as the loaded bricks allow. False: there is more to do, and it
+/// did not wait.
 bool PictureJob::renew_occlusion(const Progress& progress, bool waits)
 {
     constexpr Occlusion::Most MOST{.bricks = gpu::OCCLUSION_SLICE, .cell_bricks = 512};
@@ -236,7 +236,7 @@ bool PictureJob::renew_occlusion(const Progress& progress, bool waits)
     return true;
 }
 
-/// Of a part that is drawn for the nth time: how often it will be is not known, so each round counts half of the rest.
+/// Progress of a part drawn for the nth time: the number of rounds is unknown, so each counts as half of the rest.
 Progress PictureJob::progress_of(const PicturePart& part, int round)
 {
     if (!options_.progress) return {};
@@ -253,7 +253,7 @@ void PictureJob::step(bool waits)
     SHVR_CHECK(!is_done());
     const PicturePart part = rounds_ ? rounds_->part : parts_.back();
     if (!rounds_) parts_.pop_back();
-    // A CPU that draws takes the pixels as well: it would only need more memory.
+    // A CPU that draws also copies the pixels: drawing ahead would only need more memory.
     const bool is_paged = scene().volume().counts().has_value(), is_ahead = !is_paged && !scene().traits().is_cpu;
     try {
         if (is_ahead)
@@ -265,7 +265,7 @@ void PictureJob::step(bool waits)
         scene().volume().let_rays_wait(false);
         if (under_way_) {
             catch_up();
-            return parts_.push_back(part);  // alone there may be room for it
+            return parts_.push_back(part);  // it may fit when drawn alone
         }
         if (!has_given_way(part, error.what())) throw;
     }
@@ -275,7 +275,7 @@ void PictureJob::step(bool waits)
     if (parts_.empty()) end_band();
 }
 
-/// Where memory is short: without ambient light, then in smaller parts.
+/// If memory is short: frees ambient light, then uses smaller parts.
 bool PictureJob::has_given_way(const PicturePart& part, const std::string& why)
 {
     if (scene().give_way(why)) {
@@ -287,7 +287,7 @@ bool PictureJob::has_given_way(const PicturePart& part, const std::string& why)
     return true;
 }
 
-/// Begins to draw a part with the bricks on the device.
+/// Starts drawing a part with the bricks on the device.
 PictureJob::UnderWay PictureJob::begin(const PicturePart& part, WaitingRays* waiting)
 {
     FrameGraph& graph = picture_.graph = FrameGraph();
@@ -301,7 +301,7 @@ PictureJob::UnderWay PictureJob::begin(const PicturePart& part, WaitingRays* wai
                                                 .serialize = options_.serialize})};
 }
 
-/// Stores its pixels, and reports the visited bricks to the volume.
+/// Copies its pixels, and reports the visited bricks to the volume.
 std::vector<gpu::PassReport> PictureJob::take(UnderWay part)
 {
     gpu::FrameResult result = part.submission.finish();
@@ -311,7 +311,7 @@ std::vector<gpu::PassReport> PictureJob::take(UnderWay part)
     const size_t row_bytes = size_t(size.x) * 4 * sizeof(float);
     for (uint32_t y = 0; y < size.y; ++y, row += row_bytes)
         std::memcpy(&band_.rgba[4 * (origin.x + size_t(size_.x) * (origin.y - band_begin_ + y))], row, row_bytes);
-    // Where two are under way, the time that both took counts once.
+    // If two are in flight, the time that both took counts once.
     const double now_ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
     picture_.wall_ms += std::min(result.wall_ms, now_ms - last_taken_ms_.value_or(-HUGE_VAL));
@@ -324,8 +324,8 @@ std::vector<gpu::PassReport> PictureJob::draw(const PicturePart& part, WaitingRa
     return take(begin(part, waiting));
 }
 
-/// One drawing makes a part complete; the part before it is taken once the device has this one. But the first is waited
-/// for: how long it took tells how the others are divided.
+/// One drawing completes a part; the previous part is copied once the device has this one. The first part is waited
+/// for, because its time decides how the others are divided.
 void PictureJob::draw_ahead(const PicturePart& part)
 {
     look_at(scene(), look_, pane().shot, part);
@@ -338,7 +338,7 @@ void PictureJob::draw_ahead(const PicturePart& part)
     under_way_ = std::move(next);
 }
 
-/// Finishes the part that is under way, if there is one.
+/// Finishes the part in flight, if there is one.
 void PictureJob::catch_up()
 {
     if (!under_way_) return;
@@ -348,11 +348,11 @@ void PictureJob::catch_up()
     finish(part, take(std::move(last)));
 }
 
-/// Draws a part with all bricks that its rays visit, or splits it into quarters. False: it goes on in the next step.
+/// Draws a part with all bricks that its rays visit, or splits it into quarters. False: it continues in the next step.
 bool PictureJob::draw_completely(const PicturePart& part, bool waits)
 {
     DeviceVolume& volume = scene().volume();
-    // Others may have looked since the last step; what was drawn is stale then, and is drawn again.
+    // Other callers may have set the view since the last step; the drawing is then stale, and is repeated.
     look_at(scene(), look_, pane().shot, part);
     if (!rounds_) {
         if (area_of(part) != PixelBox{glm::uvec2(0), part.pixels}.area()) volume.forget_visits();
@@ -375,7 +375,7 @@ bool PictureJob::draw_completely(const PicturePart& part, bool waits)
     return true;
 }
 
-/// Draws the part of `rounds_` until all bricks that its rays visit are on the device, or there is no room for them.
+/// Draws the part of `rounds_` until all bricks that its rays visit are on the device, or no slots are left for them.
 bool PictureJob::draw_rounds(bool waits)
 {
     using State = DeviceVolume::State;
@@ -389,7 +389,7 @@ bool PictureJob::draw_rounds(bool waits)
             rounds_->is_drawn = true;
         }
         if (!load(progress, waits)) return false;
-        // Bricks seen again may have been lit while there was no room for those around them.
+        // Bricks visited again may have been lit while there were no slots for those around them.
         if (!load_around(progress, waits)) return false;
         rounds_->is_drawn = false;
         if (volume.state() == State::limited) return true;
@@ -406,9 +406,9 @@ void PictureJob::begin_waiting()
     rounds_->waits_for_light = !pane().shot.is_slice && scene().has_occlusion(look_);
 }
 
-/// Draws a part whose rays need more bricks than there is room for. In every round the bricks that rays wait for are
-/// loaded, the nearest first, as many as there is room for; so some ray goes on, and bricks are passed from near to
-/// far. Where others have drawn since the last step, which rays wait for what is found out again.
+/// Draws a part whose rays need more bricks than fit. In every round the bricks that rays wait for are loaded, nearest
+/// first, as many as fit; so some ray advances, and bricks are passed from near to far. If others have drawn since the
+/// last step, the awaited bricks are determined again.
 bool PictureJob::draw_waiting(bool waits)
 {
     DeviceVolume& volume = scene().volume();
@@ -419,7 +419,7 @@ bool PictureJob::draw_waiting(bool waits)
             append(rounds_->passes, draw(rounds_->part, &*rounds_->rays));
             if (!volume.has_rays_waiting()) return true;
             if (rounds_->waits_for_light && !volume.limit_visits(scene().occlusion().reach())) {
-                // In vain: rays go on with what light there is.
+                // No progress: rays continue with the light available.
                 note_limited();
                 volume.let_rays_wait(false);
                 volume.want_around({});
@@ -433,7 +433,7 @@ bool PictureJob::draw_waiting(bool waits)
     }
 }
 
-/// The light of one brick needs more bricks than there is room for.
+/// The light of one brick needs more bricks than fit.
 void PictureJob::note_limited()
 {
     picture_.complete = false;
