@@ -16,8 +16,8 @@ namespace {
 /// Bytes that one worker reads at a time from a source without a preferred block size.
 constexpr int64_t TASK_BYTES = int64_t{1} << 20;
 
-/// The smallest and the largest finite value of level 0, exactly: neither a sample nor coarser levels would do, since a
-/// reversed value beyond them could leave its type. 0 and 0 where no voxel is finite.
+/// The smallest and the largest finite value of level 0, exactly: neither a sample nor coarser levels suffice, since a
+/// reversed value beyond them could leave its type. 0 and 0 if no voxel is finite.
 ValueRange ends_of(const VolumeSource& source, const Progress& progress)
 {
     const VolumeInfo& info = source.info();
@@ -51,7 +51,7 @@ ImportBox::ImportBox(const VolumeSource& source, const VoxelBox& box, bool rever
 {
     if (!reverses) return;
     const ValueRange ends = ends_of(source, progress);
-    ends_ = ends.lower + ends.upper;  // of integers of 32 bits: exact
+    ends_ = ends.lower + ends.upper;  // exact for integers of 32 bits
 }
 
 void ImportBox::read(const VoxelBox& part, std::span<std::byte> voxels, WorkPool& pool) const

@@ -115,7 +115,7 @@ void ImportChunks::pack(int level, int64_t shard)
         if (!error) fs::rename(unfinished, path, error);
         if (error) fail(path.string(), ": cannot be created: ", error.message());
     }
-    for (const Size3& chunk : stored) fs::remove(from.loose.path_of(chunk), error);  // or remove_loose() does it
+    for (const Size3& chunk : stored) fs::remove(from.loose.path_of(chunk), error);  // otherwise remove_loose() does it
 }
 
 void ImportChunks::remove_loose() const

@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 /// Increment when the layout of an import's files or of its state changes.
 constexpr int LAYOUT = 3;
 
-/// Chunks of a shard along an axis: 512 voxels. So a scan of 2048^3 is 64 files, and a shard's index takes 8 KiB.
+/// Chunks per shard along an axis: 512 voxels. So a scan of 2048^3 is 64 files, and a shard's index takes 8 KiB.
 constexpr int64_t SHARD_CHUNKS = 8;
 
 /// In the array's order: z, y, x.
@@ -47,7 +47,7 @@ std::string signature_of(const fs::path& path)
                     status.st_mtim.tv_nsec);
 }
 
-/// https://ngff.openmicroscopy.org/0.5/#labels-md; what is ours stands beside what is of OME-Zarr.
+/// https://ngff.openmicroscopy.org/0.5/#labels-md; our own attributes are stored next to those of OME-Zarr.
 void describe_labels(const LabelImage& labels, Json& label, Json& attributes)
 {
     Json colors = Json::array(), properties = Json::array();
@@ -61,7 +61,7 @@ void describe_labels(const LabelImage& labels, Json& label, Json& attributes)
     if (labels.painted_on.empty()) return;
     Json& ours = attributes["shvr"] = {{"shvr_mask", 1}, {"image", labels.painted_on}};
     if (!labels.journal) return;
-    // A file's name need not be UTF-8.
+    // A file's name need not be valid UTF-8.
     const Json name = Json::parse(Json(labels.journal->name).dump(-1, ' ', false, Json::error_handler_t::replace));
     ours["journal"] = {
         {"name", name}, {"record", labels.journal->record}, {"checksum", labels.journal->checksum_digits()}};
@@ -87,7 +87,7 @@ std::string text_of(const Json& document, int indent)
     return document.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-/// The file and the files beside it with the same stem (headers refer to other files), or the content of the folder.
+/// The file and those next to it with the same stem (headers refer to other files), or the content of the folder.
 Json signatures_of(const fs::path& origin)
 {
     std::error_code ignored;
@@ -145,7 +145,7 @@ std::vector<std::pair<std::string, std::string>> group_files(OmeZarrVersion vers
 std::string import_attributes(OmeZarrVersion version, const std::string& name, const VolumeInfo& info, int levels,
                               Halving how, const LabelImage* labels)
 {
-    const bool has_own_versions = version == OmeZarrVersion::v0_4;  // since 0.5 there is one, of all
+    const bool has_own_versions = version == OmeZarrVersion::v0_4;  // since 0.5 there is one version for all
     Json datasets = Json::array();
     for (int level = 0; level < levels; ++level) {
         const double factor = double(int64_t{1} << level);

@@ -77,7 +77,8 @@ bool all_finite(std::span<const T> voxels)
 template <class T>
 struct Plane {
     std::vector<Number<T>> values;
-    // If a voxel is not finite: the blurred share of finite voxels, which divides the values, and the original slice.
+    // If a voxel is not finite: the blurred fraction of finite voxels, which divides the values, and the original
+    // slice.
     std::vector<Number<T>> shares;
     std::vector<T> original;
 };
@@ -315,7 +316,7 @@ private:
             }
         }
         for (size_t x = 0; x < sums.size(); ++x) {
-            const double mean = sums[x] / double(counts[x]);  // 0 / 0: NaN, as it should be
+            const double mean = sums[x] / double(counts[x]);  // 0 / 0: NaN, as intended
             if constexpr (std::is_floating_point_v<T>) {
                 out[x] = static_cast<T>(mean);
             } else {

@@ -14,7 +14,7 @@
 namespace shvr {
 namespace {
 
-/// Going through everything, with all threads, costs less than this share of it here.
+/// A dense import, with all threads, costs as much as this fraction of it does here.
 constexpr int64_t MIN_GAIN = 8;
 
 Size3 chunk_counts(const Size3& size)
@@ -22,7 +22,7 @@ Size3 chunk_counts(const Size3& size)
     return (size + (IMPORT_CHUNK - 1)) / IMPORT_CHUNK;
 }
 
-/// The bits of x, y and z in turn (Morton 1966): chunks below one of a coarser level follow each other. Chunks of
+/// The bits of x, y and z interleaved (Morton 1966): chunks below one of a coarser level are adjacent. Chunks of
 /// LARGEST_SIDE voxels have 14 bits a side.
 uint64_t interleaved(const Size3& chunk)
 {
@@ -37,8 +37,8 @@ Size3 ancestor(const Size3& chunk, int levels)
     return {chunk.x >> levels, chunk.y >> levels, chunk.z >> levels};
 }
 
-/// Makes the chunks of a level, and of all levels below, that hold anything: depth first, so that one chunk of each
-/// level is in memory.
+/// Makes the non-empty chunks of a level and of all levels below: depth first, so that one chunk of each level is in
+/// memory.
 template <class T>
 class Levels {
 public:
@@ -161,7 +161,7 @@ std::optional<std::vector<Size3>> sparse_chunks(const VolumeSource& source)
             for (int64_t y = lower.y; y < upper.y; ++y)
                 for (int64_t x = lower.x; x < upper.x; ++x) {
                     if (!chunks.empty() && chunks.back() == Size3(x, y, z)) continue;
-                    // Small blocks reach the same chunk again and again.
+                    // Small blocks touch the same chunk again and again.
                     if (int64_t(chunks.size()) > 64 * MAX_STORED_BLOCKS) return std::nullopt;
                     chunks.emplace_back(x, y, z);
                 }

@@ -53,7 +53,7 @@ void check_labels(const VolumeInfo& info, const PreparationOptions& preparation)
 
 class Import {
 public:
-    /// Tells how far the look at voxels that are to be reversed is.
+    /// Progress of the pass that finds the range of voxels to be reversed.
     static Progress looking(const ImportOptions& options)
     {
         return [&options](double fraction) {
@@ -63,10 +63,10 @@ public:
         };
     }
 
-    /// Refuses what would be too large; reads nothing.
+    /// Refuses sizes that would be too large; reads nothing.
     static void check_size(const VolumeSource& source, const fs::path& project, PreparationOptions preparation)
     {
-        preparation.reverse = false;  // for which all voxels are looked at
+        preparation.reverse = false;  // it would require a pass over all voxels
         static_cast<void>(checked(make_preparation(source, preparation)->info(), project));
     }
 
@@ -124,7 +124,7 @@ public:
     }
 
 private:
-    /// Before anything is allocated or read.
+    /// Checks before anything is allocated or read.
     static const VolumeInfo& checked(const VolumeInfo& info, const fs::path& project)
     {
         static_cast<void>(voxel_count(info));
@@ -218,7 +218,7 @@ private:
         slabs_done_ = 0;
     }
 
-    /// Everything it refers to is on the disk already.
+    /// Everything that it refers to is already on disk.
     void write_state()
     {
         StateWriter state;
@@ -230,13 +230,13 @@ private:
         state.write(folder_.state());
     }
 
-    /// True if there was a state to resume. Clears a damaged state, or one of another import.
+    /// Resumes from a saved state; false if there was none. Clears a damaged state, or one of another import.
     bool resume(const std::vector<std::string>& warnings)
     {
         report_.warnings = warnings;
         std::error_code ignored;
         const bool is_begun = fs::exists(folder_.state(), ignored);
-        // Labels come from sources whose changes leave no trace in any file.
+        // Labels come from sources whose changes are not reflected in any file.
         if (is_begun && !options_.label_image) {
             folder_.clear_temporary();
             try {
@@ -285,7 +285,7 @@ private:
         }
     }
 
-    /// Chunks have files of their own until all are written: a shard spans many slabs, and is not changed any more.
+    /// Chunks have separate files until all are written: a shard spans many slabs, and is not changed once written.
     void pack_shards()
     {
         for (int level = 0; level < pyramid_->levels(); ++level)
@@ -377,7 +377,7 @@ private:
     std::unique_ptr<Preparation> preparation_;
     VolumeInfo info_;
     std::string identity_;
-    PartFolder folder_;  ///< created last: if anything above fails, no folder is made
+    PartFolder folder_;  ///< created last: if any member above fails, no folder is made
     int threads_;
     ImportReport report_;
 
@@ -386,7 +386,7 @@ private:
     std::unique_ptr<ImportTally> tally_;
     int64_t slabs_done_ = 0;
     int64_t other_bytes_ = 0;  ///< of files other than chunks
-    int64_t rows_ = 0;         ///< of a slab, held at once
+    int64_t rows_ = 0;         ///< rows of a slab held at once
     std::array<std::vector<std::byte>, 2> buffers_;
 
     int64_t chunks_of_plane_ = 0;
@@ -398,7 +398,7 @@ private:
     WorkPool pool_;  ///< last: its tasks use all members above
 };
 
-/// A label image, or nothing.
+/// Exports a label image, completely or not at all.
 ImportReport import_all(const VolumeSource& labels, const fs::path& target, const ImportOptions& options)
 {
     Import job(labels, target, target, options);
@@ -413,7 +413,7 @@ ImportReport import_all(const VolumeSource& labels, const fs::path& target, cons
     }
 }
 
-/// The same, of what is stored.
+/// The same for only the stored chunks.
 ImportReport import_sparse(const VolumeSource& labels, const fs::path& target, const std::vector<Size3>& chunks,
                            const ImportOptions& options)
 {
@@ -423,7 +423,7 @@ ImportReport import_sparse(const VolumeSource& labels, const fs::path& target, c
     const OmeZarrVersion version = options.version.value_or(OmeZarrVersion::v0_4);
     PartFolder folder(target, true);
     folder.clear();
-    StateWriter().write(folder.state());  // so that what a killed process leaves is known to be ours
+    StateWriter().write(folder.state());  // identifies the remains of a killed process as ours
     const auto progress = [&](double fraction) {
         if (options.cancel != nullptr && *options.cancel)
             throw ImportStopped(target.string() + ": stopped; no file is left half written");

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Without a trailing slash, with which a path would be its own parent.
+/// The path without a trailing slash, with which it would be its own parent.
 fs::path plain(const fs::path& path)
 {
     const fs::path whole = fs::absolute(path).lexically_normal();
@@ -78,7 +78,7 @@ bool belongs_to_zarr(const fs::path& path)
            name == "OME" || is_zarr(path);
 }
 
-/// All that is in the folder.
+/// Removes everything in the folder.
 void remove_content(const fs::path& folder)
 {
     std::error_code error;
@@ -96,7 +96,7 @@ PartFolder::PartFolder(const fs::path& target, bool overwrites)
     refuse_target();
     if (!is_there(part_)) make_folder(part_);
     lock_.emplace(locked(part_));
-    // A folder that merely has that name is not ours to clear. Ours has the state, or has hardly begun.
+    // A folder that merely has that name is not ours to clear. Ours contains the state, or has hardly begun.
     if (is_there(state())) return;
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(part_, error)) {
@@ -162,7 +162,7 @@ void PartFolder::finish()
         refuse_write(target_, errno);
     }
     part_ = target_;
-    std::error_code ignored;  // leaving it there does no harm
+    std::error_code ignored;  // leaving it there is harmless
     fs::remove(state(), ignored);
     fs::remove(state().parent_path(), ignored);  // only if it is empty
     const FileDescriptor parent(::open(target_.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
