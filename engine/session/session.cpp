@@ -34,13 +34,13 @@ bool is_session_file(const fs::path& path)
 JsonDocument document_for_volume(const fs::path& path)
 {
     JsonDocument document = session_document(R"({"shvr_session": 1, "volume": {}})", path.string());
-    // Set directly, not parsed from text: a path need not be UTF-8.
+    // Set directly, not parsed from text: a path need not be valid UTF-8.
     document.value()["volume"]["path"] = fs::absolute(path).lexically_normal().string();
     return document;
 }
 
-/// A project's session as it was when the project was made, where its file is missing: annotation is found, and looks
-/// are the program's own.
+/// A project's session as at the import, if its file is missing: annotation is found, and looks are the program's
+/// defaults.
 JsonDocument document_for_project(const fs::path& session_file, std::vector<std::string>& losses)
 {
     losses.push_back(sentence(session_file.string(),
@@ -53,7 +53,7 @@ JsonDocument document_for_project(const fs::path& session_file, std::vector<std:
 
 namespace {
 
-/// Linear between points, so that multiplied points make a multiplied function.
+/// Linear between points, so that multiplying the points multiplies the function.
 TransferFunction multiplied(const TransferFunction& function, double factor)
 {
     std::vector<ControlPoint> points(function.points().begin(), function.points().end());
@@ -72,7 +72,7 @@ Look Session::look() const
     for (int group = 1; view.solo && group < 256; ++group)
         if (*view.solo == 0 || !is_within(groups, uint8_t(group), *view.solo))
             look.groups[uint8_t(group)].visible = false;
-    // Nothing of it is left, but slices, which no plane cuts, and surfaces.
+    // Everything is cut away except slices, which ignore cuts, and surfaces.
     if (!view.volume) look.cut.upper = look.cut.lower;
     return look;
 }

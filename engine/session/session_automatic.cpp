@@ -9,7 +9,7 @@
 namespace shvr {
 namespace {
 
-/// Where the ramp is full: this share of the voxels it shows is at or below.
+/// The ramp is full at this quantile of the voxels it shows.
 constexpr double FULL_QUANTILE = 0.9;
 
 ControlPoint point(double intensity, const char* color, double opacity)
@@ -17,7 +17,7 @@ ControlPoint point(double intensity, const char* color, double opacity)
     return {intensity, glm::dvec3(color_of(color).value()), opacity};
 }
 
-/// Otsu 1979: the number of bins in the lower class that makes the variance between the two classes largest.
+/// Otsu 1979: the number of bins in the lower class that maximizes the variance between the two classes.
 size_t otsu_split(const std::vector<int64_t>& histogram)
 {
     double count = 0.0;
@@ -78,7 +78,7 @@ double automatic_node_radius(const VolumeInfo& info)
 
 namespace {
 
-/// A session holds only a black that is below white: around the one value of a volume that has no other.
+/// A session requires black to be below white: widens the range of a volume with only one value.
 ValueRange contrast_between(double black, double white)
 {
     if (black < white) return {black, white};
@@ -95,7 +95,7 @@ ValueRange automatic_contrast(const VolumeStatistics& statistics)
     const std::vector<int64_t>& histogram = statistics.histogram;
     if (!(lower < upper) || histogram.size() < 4) return contrast_between(lower, upper);
     const double bin = (upper - lower) / double(histogram.size());
-    const size_t dark = quantile_split(histogram, 0, DARK_SHARE);  // the first at least holds something
+    const size_t dark = quantile_split(histogram, 0, DARK_SHARE);  // at least one of these bins is not empty
     const size_t bright = quantile_split(histogram, 0, 1.0 - BRIGHT_SHARE);
     const double black = lower + bin * double(dark > 0 ? dark - 1 : 0), white = lower + bin * double(bright);
     return contrast_between(black, std::max(white, black + 2.0 * bin));

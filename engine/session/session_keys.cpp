@@ -80,7 +80,7 @@ void spacing_fields(Fields& f, glm::dvec3& spacing, std::string& unit)
     f.check("unit", !has_controls(unit), "the name of a unit");
 }
 
-/// Of a file, which may state them itself.
+/// Spacing and unit of a file, which may state them itself.
 void spacing_fields(Fields& f, OpenOptions& options)
 {
     f.vector("spacing", options.spacing, above_zero(MIN_SPACING, MAX_SPACING), SPACING);
@@ -253,7 +253,7 @@ void annotation_fields(Fields& f, Session& session)
         session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
 }
 
-/// Groups by number, each once; none: everything is felt.
+/// Groups by number, each once; none: everything can be felt.
 void felt_groups_field(Fields& f, std::vector<uint8_t>& groups)
 {
     const auto read = [&](const JsonNode& node) {
@@ -415,7 +415,7 @@ void fields(Fields& f, SurfaceLook& surface)
 
 namespace {
 
-/// In files, other sections stand between these and the cuts.
+/// In files, other sections come between these and the cuts.
 void look_fields(Fields& f, Session& session)
 {
     f.section("transfer_function", [&](Fields& transfer) { transfer_fields(transfer, session); });
@@ -448,7 +448,7 @@ void work_fields(Fields& f, Session& session)
     f.list("measurements", session.measurements, MAX_MEASUREMENTS, MEASUREMENTS);
 }
 
-/// Beside cameras, what a person sets that is no work.
+/// In addition to cameras, user settings that are not part of the work.
 void passing_fields(Fields& f, Session& session)
 {
     f.section("view", session.view);

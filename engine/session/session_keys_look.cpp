@@ -91,7 +91,7 @@ void fields(Fields& f, Unpainted& unpainted)
 
 namespace {
 
-/// Sets the keys that a preset is about; those that are there, too, are read afterwards.
+/// Sets the keys that a preset covers; explicit keys in the same file are read afterwards and override it.
 void quality_fields(Fields& f, RenderSettings& render)
 {
     const About about{.meaning =
@@ -108,7 +108,7 @@ void quality_fields(Fields& f, RenderSettings& render)
         if (name == each.name) take(render, each);
 }
 
-// What says how a picture is made stands in two places of a file, before the background and behind it.
+// Keys for how a picture is computed are in two places of a file, before the background and after it.
 
 void sample_fields(Fields& f, RenderSettings& render)
 {

@@ -84,7 +84,7 @@ json missing_container(const json* fallback)
     return fallback && fallback->is_array() ? *fallback : json::object();
 }
 
-/// It takes the place of those that were given before.
+/// A quality replaces the keys that were given before.
 void erase_keys_of_quality(json& render)
 {
     for (const std::string_view key : keys_of_quality()) render.erase(std::string(key));

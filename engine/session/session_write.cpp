@@ -16,7 +16,7 @@ std::string path_text(const std::filesystem::path& path, const std::filesystem::
 {
     const std::filesystem::path whole = std::filesystem::absolute(folder / ".").lexically_normal();
     const std::filesystem::path relative = path.lexically_relative(whole);
-    // A project's files are in or beside its folder shvr and move together with it.
+    // A project's files are in its folder shvr or next to it and move together with it.
     const bool is_project = whole.parent_path().filename() == "shvr";
     auto step = relative.begin();
     if (is_project && step != relative.end() && *step == "..") ++step;
@@ -129,7 +129,7 @@ std::string laid_out(const OrderedJson& value, const std::string& indent, bool m
     return value.is_array() ? "[" + text + "]" : "{" + text + "}";
 }
 
-/// A value as a person reads it. Of points and the like, whose numbers say little one by one, their count.
+/// A value in human-readable form. Points and the like, whose numbers say little individually, are counted.
 std::string in_words(const OrderedJson& value)
 {
     if (value.is_number_float()) return sentence(value.get<double>());
@@ -142,14 +142,14 @@ std::string in_words(const OrderedJson& value)
 }
 
 struct ChangedKey {
-    std::string path, from, to;  ///< words; empty where there is no value
+    std::string path, from, to;  ///< words; empty if there is no value
 };
 
 /// The keys of a section that differ. An array is one value.
 void add_changes(const OrderedJson& was, const OrderedJson& is, const std::string& path, std::vector<ChangedKey>& found)
 {
     if (!was.is_object() || !is.is_object()) {
-        // Of a whole object that comes or goes its name says enough.
+        // For a whole object that is added or removed, its name suffices.
         const auto words = [](const OrderedJson& value) {
             return value.is_null() || value.is_object() ? std::string() : in_words(value);
         };
@@ -171,14 +171,14 @@ std::string in_words(const ChangedKey& changed)
 {
     std::string path = changed.path;
     std::ranges::replace(path, '_', ' ');
-    if (path == "occlusion mapping") path = "occlusion curve";  // as the window calls both
+    if (path == "occlusion mapping") path = "occlusion curve";  // the window's name for both
     if (changed.from == changed.to) return path;
     if (changed.to.empty()) return sentence(path, " ", changed.from, " given up");
     if (changed.from.empty()) return sentence(path, " ", changed.to);
     return sentence(path, " ", changed.from, " to ", changed.to);
 }
 
-/// One section's difference: its name and, where few values differ, which.
+/// Describes one section's difference: its name and, if few values differ, which.
 std::string difference_of(std::string name, const std::string& before, const std::string& after)
 {
     constexpr size_t MOST = 3;
@@ -221,7 +221,7 @@ SettingValues lasting_settings(const Session& session)
 
 SettingValues kept_settings(const Session& session)
 {
-    // A copy, as above, but not of surfaces, of which there may be many: this is asked for often.
+    // A copy, as above, but without surfaces, of which there may be many: this is called often.
     Session written;
     take_kept_sections(written, session);
     return sections_of(Writer::write({}, [&](Fields& f) { kept_fields(f, written); }));
