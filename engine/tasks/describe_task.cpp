@@ -24,7 +24,7 @@ DescribeResult run(const DescribeTask& task, ProgressReporter& reporter)
     const OpeningOptions opening{.measure = {.exact = task.exact,
                                              .progress = reporter.begin("measuring " + task.input.string()),
                                              .gaps = &gaps}};
-    // Opening a session would compute a transfer function for a bare volume and report it, which nobody requested.
+    // Opening a session would compute an unneeded transfer function for a bare volume and report it.
     if (is_bare) {
         opened.source =
             task.settings.empty() ? open_volume(task.input) : open_unmeasured_session(task.input, task.settings).source;

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Which group of a file is read as which.
+/// Maps the groups of a file to those they are read as.
 struct GroupMap : std::array<uint8_t, 256> {
     GroupMap() { std::iota(begin(), end(), uint8_t{0}); }
 };
@@ -48,7 +48,7 @@ bool is_bare_mask(const fs::path& path)
     return path.extension() == ".mask";
 }
 
-/// "group 3", "groups 1, 2 and 255"; many are cut short.
+/// "group 3", "groups 1, 2 and 255"; long lists are truncated.
 std::string groups_in_words(const std::map<uint8_t, int64_t>& voxels)
 {
     constexpr size_t MAX_NAMED = 8;
@@ -62,7 +62,7 @@ std::string groups_in_words(const std::map<uint8_t, int64_t>& voxels)
     return text;
 }
 
-/// The voxels of a project's volume are no groups, unless it is of a mask itself and has none of its own.
+/// The voxels of a project's volume are not groups, unless it was imported from a mask and has none of its own.
 void expect_no_annotated_project(const fs::path& path)
 {
     std::error_code ignored;
@@ -93,7 +93,7 @@ public:
     }
 
 private:
-    /// The space of `volume`; else of the first trace or mask that states one.
+    /// The space of `volume`, or else of the first trace or mask that states one.
     std::optional<TraceSpace> find_space() const
     {
         const auto space_at = [&](const fs::path& path) {
@@ -144,7 +144,7 @@ private:
         return mask_of(space->size, load_mask(path, space->size));
     }
 
-    /// Of two bare masks, whose shape may be unknown.
+    /// The Dice scores of two bare masks, whose shape may be unknown.
     Dice dice_of_files(const GroupMap& groups_of_truth)
     {
         const Progress progress = reporter_.begin("comparing masks");
@@ -186,7 +186,7 @@ private:
         take(dice_of(truth, mask));
     }
 
-    /// Warns where the two have groups, but none in common.
+    /// Warns if the two have groups, but none in common.
     void take(const Dice& dice)
     {
         result_.dice = dice;

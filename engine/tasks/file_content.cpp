@@ -38,7 +38,7 @@ std::optional<FileContent> content_of_json(const fs::path& path)
     return std::nullopt;
 }
 
-/// Lines of the thesis's traces and of SWC, which have no mark of their own.
+/// Lines of the thesis's traces and of SWC, which have no magic number.
 bool begins_like_a_trace(const std::string& begin)
 {
     const size_t line = begin.find_first_not_of(" \t\r\n");
@@ -48,7 +48,7 @@ bool begins_like_a_trace(const std::string& begin)
            (rest[0] >= '0' && rest[0] <= '9');
 }
 
-/// Bytes of a voxel's offset in the thesis's form.
+/// Bytes of a voxel's offset in the thesis's format.
 int64_t bytes_of_offset(VoxelType type)
 {
     return bytes_of(type) == 1 ? 2 : 4;

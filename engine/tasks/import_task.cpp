@@ -36,7 +36,7 @@ std::unique_ptr<VolumeSource> open_as_told(const ImportTask& task)
     return open_raw(volume, layout);
 }
 
-/// Two stretches where voxels are reversed, which are then looked at first; otherwise one.
+/// Two stages if voxels are reversed, as their range is found first; otherwise one.
 class ImportListener {
 public:
     ImportListener(const ImportTask& task, VoxelType type, ProgressReporter& reporter)
@@ -47,14 +47,16 @@ public:
 
     void take(const ImportProgress& told)
     {
-        if (told.voxels_per_second == 0.0) return progress_(told.fraction);  // nothing is there yet that could be kept
+        if (told.voxels_per_second == 0.0)
+            return progress_(told.fraction);  // nothing has been written yet that could
+                                              // be kept
         try {
             if (!std::exchange(is_importing_, true)) progress_ = reporter_.begin("importing " + volume_);
             const double rate = told.voxels_per_second * double(bytes_of(type_)) / 1e6;
             reporter_.show(told.fraction, sentence(std::fixed, std::setprecision(rate < 10.0 ? 1 : 0), rate, " MB/s"),
                            told.seconds_left);
         } catch (const Stopped&) {
-            // The import looks for itself, and keeps what is done.
+            // The import polls for a stop itself, and keeps what is done.
         }
     }
 
@@ -139,7 +141,7 @@ ImportResult run(const ImportTask& task, ProgressReporter& reporter)
 {
     using Clock = std::chrono::steady_clock;
     check(task);
-    // Replacing a project takes its annotation away, too: nobody may be writing it.
+    // Replacing a project also deletes its annotation, so no process may be writing it.
     const std::filesystem::path session = task.project / "shvr" / "session.json";
     const std::shared_ptr<Hold> hold = task.overwrite ? Hold::take(journal_beside(session), task.program) : nullptr;
     const Clock::time_point begin = Clock::now();

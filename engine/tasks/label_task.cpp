@@ -123,7 +123,7 @@ void check(const LabelTask& task)
 
 void check(const LabelTask& task, const VolumeSource& source, const fs::path& volume)
 {
-    // Of a sparse volume more can be labelled than anybody can write.
+    // More voxels of a sparse volume can be labelled than can be written.
     constexpr int64_t MAX_VOXELS_WRITTEN = int64_t{1} << 44;
     check(task);
     check_output_is_not(volume, task.output);

@@ -48,7 +48,7 @@ void check_output_is_not(const std::filesystem::path& input, const std::filesyst
     namespace fs = std::filesystem;
     std::error_code ignored;
     if (input.empty() || output.empty() || !fs::exists(output, ignored)) return;
-    // A Zarr image has other images in it; in other folders each file is a slice.
+    // A Zarr image may contain other images; in other folders each file is a slice.
     const auto is_zarr = [&](const char* name) { return fs::exists(input / name, ignored); };
     const char* const zarr[] = {".zattrs", ".zgroup", ".zarray", "zarr.json"};
     const std::string extension = lower_case(output.extension().string());
