@@ -7,12 +7,12 @@
 namespace shvr {
 namespace {
 
-/// Of fewer voxels than these (a cube of three), nobody can say what is usual.
+/// With fewer voxels than these (a cube of three), there is no telling what is usual.
 constexpr int64_t MIN_VOXELS = 27;
 
-/// Outliers at one end are no more than a share of all voxels, or than `few`, and lie beyond a gap of `gap` times the
-/// range of all others. What is rare and bright in a scan, such as metal or one vessel, is more voxels than these, or
-/// blends into the rest through the voxels that hold a part of it, so that there is no gap.
+/// Outliers at one end are at most a fraction of all voxels, or at most `few`, and lie beyond a gap of `gap` times the
+/// range of all others. Rare bright structures in a scan, such as metal or one vessel, have more voxels than that, or
+/// blend into the rest through partial-volume voxels, so they leave no gap.
 struct Rule {
     double share;
     int64_t few;

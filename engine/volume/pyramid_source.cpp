@@ -14,7 +14,7 @@ namespace shvr {
 
 namespace {
 
-/// A file's coarsest level may have at most so many bricks, 512^3 voxels, before coarser ones are made.
+/// A file's coarsest level may have at most this many bricks, 512^3 voxels, before coarser ones are made.
 constexpr int64_t MAX_COARSEST = 4096;
 
 /// A level in the layout of a file.
@@ -58,7 +58,7 @@ public:
     void build(int levels, const Progress& progress)
     {
         double begun = 0.0;
-        // Each level has an eighth of the voxels of the one before.
+        // Each level has an eighth of the voxels of the previous one.
         for (double share = 0.875; this->levels() < levels; share /= 8.0) {
             coarse_.push_back(halved<T>(*this, this->levels() - 1, part_of(progress, begun, begun + share)));
             begun += share;
@@ -105,10 +105,10 @@ private:
     std::shared_ptr<const VolumeSource> base_;
     std::vector<Level> coarse_;
     std::optional<SparseLevels> sparse_;
-    int levels_ = 0;  ///< with sparse ones
+    int levels_ = 0;  ///< including sparse ones
 };
 
-/// What is to be made of a source.
+/// The levels to be made for a source.
 struct Plan {
     int levels = 0;  ///< 0: nothing
     std::optional<SparseLevels> sparse{};

@@ -17,7 +17,7 @@ namespace {
 
 constexpr size_t BINS = 256;
 
-/// What is measured, who is told how far it is, and what takes gaps. Several passes may go over the same walk.
+/// What is measured, and the receivers of progress and gaps. Several passes may go over the same walk.
 struct Measured {
     const VolumeSource& source;
     const VoxelWalk& walk;
@@ -25,8 +25,8 @@ struct Measured {
     Gaps* gaps;
 };
 
-/// Calls `take(span<const T>, times)` for every box of the walk, or what can be read of it: each voxel of the span
-/// occurs so many times.
+/// Calls `take(span<const T>, times)` for every box of the walk, or its readable parts: each voxel of the span occurs
+/// `times` times.
 template <class T, class Take>
 void for_each_slab(const Measured& measured, double lower, double upper, const Take& take)
 {
@@ -62,8 +62,8 @@ VolumeStatistics measure_integers(const Measured& measured)
 {
     using Unsigned = std::make_unsigned_t<T>;
     constexpr size_t VALUES = size_t{std::numeric_limits<Unsigned>::max()} + 1;
-    // Neighbouring voxels are often equal; counting them in several tables in turn keeps one addition from waiting for
-    // the previous one.
+    // Neighbouring voxels are often equal; counting them in several tables in turn avoids a dependency between
+    // successive additions.
     constexpr size_t TABLES = 4;
     std::vector<int64_t> counts(TABLES * VALUES);
     for_each_slab<T>(measured, 0.0, 1.0, [&](std::span<const T> voxels, int64_t times) {
@@ -108,7 +108,7 @@ int64_t for_each_finite(const Measured& measured, double lower, double upper, co
 template <class T>
 void find_bulk(OutlierFinder& outliers, VolumeStatistics& statistics)
 {
-    // All integers have their own codes anyway.
+    // All integers have codes of their own anyway.
     if (std::is_integral_v<T> && statistics.maximum - statistics.minimum <= 65535.0) return;
     const std::optional<OutlierFinder::Bulk> bulk = outliers.bulk();
     if (!bulk) return;
@@ -212,7 +212,7 @@ double voxels_of_level(const VolumeSource& source, int level)
     return double(size.x) * double(size.y) * double(size.z);
 }
 
-/// What a level of a large volume stores; nothing if it is all read anyway, or if that is more than `most_voxels`.
+/// The stored blocks of a level of a large volume; null if it is all read anyway, or if they exceed `most_voxels`.
 std::optional<StoredBlocks> stored_in(const VolumeSource& source, int level, int64_t most_voxels)
 {
     if (voxels_of_level(source, level) <= double(MAX_VOXELS_MEASURED)) return std::nullopt;
@@ -221,7 +221,7 @@ std::optional<StoredBlocks> stored_in(const VolumeSource& source, int level, int
     return source.stored_blocks(level, int64_t(std::clamp(most, 64.0, double(MAX_STORED_BLOCKS))));
 }
 
-/// One level, whole or what it stores.
+/// Measures one level, all of it or its stored blocks.
 VolumeStatistics measure_exactly(const VolumeSource& source, std::optional<StoredBlocks> stored,
                                  const MeasureOptions& options)
 {

@@ -16,9 +16,9 @@ namespace shvr {
 namespace {
 
 constexpr int64_t TILE = 8, TILE_VOXELS = TILE * TILE * TILE;
-/// For a tile's position and place in the tables beside its voxels.
+/// Bytes per tile in the tables of positions and indices, in addition to its voxels.
 constexpr uint64_t TABLE_BYTES = 80;
-/// Where more than this share of a volume is stored, levels without gaps are smaller and faster.
+/// If more than this fraction of a volume is stored, dense levels are smaller and faster.
 constexpr double MAX_SHARE = 0.25;
 
 uint64_t key_of(const Size3& tile)
@@ -69,7 +69,7 @@ std::optional<SparseLevels> SparseLevels::plan(const VolumeSource& source, int l
         const Size3 size = size_of_level(planned.size_, level);
         if (double(voxels_stored(*stored, size)) > MAX_SHARE * double(size.x) * double(size.y) * double(size.z))
             return std::nullopt;
-        planned.fill_ = stored->fill;  // of the coarsest of them, which the others are made of
+        planned.fill_ = stored->fill;  // that of the coarsest source level, from which the others are made
         if (std::isfinite(stored->fill))
             planned.fills_ = {std::min(planned.fills_.lower, stored->fill),
                               std::max(planned.fills_.upper, stored->fill)};
@@ -138,7 +138,7 @@ void SparseLevels::read(int level, const VoxelBox& box, std::span<std::byte> vox
         store_voxels(type_, std::span(&fill_, 1), fill.data());
     else
         with_voxel_type(type_, [&]<class T>(T) {
-            const auto value = static_cast<T>(std::numeric_limits<double>::quiet_NaN());  // as halving makes of it
+            const auto value = static_cast<T>(std::numeric_limits<double>::quiet_NaN());  // as halving computes it
             std::memcpy(fill.data(), &value, sizeof value);
         });
     const Size3 first = box.lower / TILE, last = (box.upper - int64_t{1}) / TILE;

@@ -151,7 +151,7 @@ int64_t voxel_count(const VolumeInfo& info)
 
 uint32_t IntensityWindow::threshold_code(double threshold) const
 {
-    // Searched with `intensity_of`, which callers compare voxels by, so rounding in `code_of` cannot be off by one.
+    // Searched with `intensity_of`, with which callers compare voxels, so rounding in `code_of` cannot be off by one.
     uint32_t below = 0;
     uint32_t above = 65536;
     while (below < above) {
@@ -175,7 +175,7 @@ IntensityWindow window_for(VoxelType type, double minimum, double maximum)
         const bool is_exact = range <= LARGEST_CODE || type == VoxelType::uint16 || type == VoxelType::int16;
         if (is_exact) return {lower, std::floor(LARGEST_CODE / std::clamp(range, 1.0, LARGEST_CODE))};
     }
-    // Doubles may lie so far apart that their difference is infinite, or so close that the inverse is.
+    // Doubles may be so far apart that their difference is infinite, or so close that its inverse is.
     const double lower = std::clamp(minimum, -LARGEST_END, LARGEST_END);
     const double range = std::clamp(maximum, -LARGEST_END, LARGEST_END) - lower;
     return {lower, range > 0.0 ? std::min(LARGEST_CODE / range, LARGEST_END) : LARGEST_CODE};

@@ -76,7 +76,7 @@ VoxelWalk VoxelWalk::stored(const VolumeSource& source, StoredBlocks blocks)
 
 namespace {
 
-/// About as many voxels as other samples have: every nth block.
+/// Thins to about as many voxels as in other samples: every nth block.
 void thin_out(std::vector<glm::ivec3>& blocks, int64_t voxels)
 {
     const auto count = int64_t(blocks.size());
@@ -115,7 +115,7 @@ VoxelWalk VoxelWalk::sample(const VolumeSource& source)
         walk.boxes_->push_back({lower, glm::min(lower + piece, size)});
         walk.voxels_ += count_of(walk.boxes_->back().size());
     }
-    // Forwards through the file, where a slice has several.
+    // Sorted forwards through the file, if a slice has several.
     std::ranges::sort(*walk.boxes_, {}, [](const VoxelBox& box) {
         return std::array{box.lower.z, box.lower.y, box.lower.x};
     });
