@@ -105,7 +105,7 @@ private:
         stream_.avail_in = static_cast<uInt>(count);
     }
 
-    /// gzip files may be concatenated; like gzip, ignores anything else after the end.
+    /// Continues with the next member: gzip files may be concatenated; like gzip, ignores anything else after the end.
     void begin_next_member()
     {
         std::array<std::byte, 2> next{};

@@ -37,7 +37,7 @@ void warn_of_turn(VolumeInfo& info)
     double most = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
         const glm::dvec3& direction = info.directions[axis];
-        // By atan2, since acos near 1 cannot resolve small angles.
+        // Uses atan2, since acos near 1 cannot resolve small angles.
         const double along = std::abs(direction[nearest_axis(direction)]);
         const double across = std::sqrt(std::max(0.0, glm::dot(direction, direction) - along * along));
         most = std::max(most, degrees_of(std::atan2(across, along)));

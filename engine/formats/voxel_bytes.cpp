@@ -98,7 +98,7 @@ size_t InputFile::read_some(int64_t offset, std::span<std::byte> buffer) const
 
 InputFile open_input_file(const std::filesystem::path& path)
 {
-    // Without O_NONBLOCK, opening a FIFO blocks until a writer comes, before we can see that it is one.
+    // Without O_NONBLOCK, opening a FIFO blocks until a writer appears, before we can detect that it is a FIFO.
     InputFile file{.path = path, .descriptor = FileDescriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK))};
     if (!file.descriptor) fail(path.string(), ": cannot be opened: ", reason_of(errno));
     struct stat status {};

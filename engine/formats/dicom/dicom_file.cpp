@@ -33,7 +33,7 @@ class Values {
 public:
     explicit Values(std::vector<const DataSet*> sets) : sets_(std::move(sets)) {}
 
-    /// Up to a 0, without what fills it up.
+    /// The text up to a NUL, without padding.
     std::string text(const Tag& tag) const
     {
         const gdcm::ByteValue* value = find(tag);

@@ -8,7 +8,7 @@
 namespace shvr {
 namespace {
 
-constexpr std::string_view PREFIX = "1.2.840.10008.1.2.4.";  ///< of the transfer syntaxes of JPEG's standards
+constexpr std::string_view PREFIX = "1.2.840.10008.1.2.4.";  ///< prefix of the transfer syntaxes of JPEG's standards
 
 enum Marker : uint8_t {
     TEM = 0x01,
@@ -94,7 +94,7 @@ private:
         return std::string_view(name.data(), 5) == std::string_view("JFIF\0", 5);
     }
 
-    /// Any number of bytes 0xff, and the marker's.
+    /// Skips fill bytes 0xff and returns the next marker.
     uint8_t next_marker()
     {
         const int64_t begin = at_;

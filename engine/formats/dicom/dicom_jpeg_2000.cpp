@@ -12,7 +12,7 @@
 namespace shvr {
 namespace {
 
-/// What OpenJPEG reads instead of a file.
+/// The memory that OpenJPEG reads instead of a file.
 struct Input {
     std::span<const std::byte> bytes;
     size_t at = 0;
@@ -21,7 +21,7 @@ struct Input {
     {
         Input& self = *static_cast<Input*>(input);
         const size_t count = std::min(wanted, self.bytes.size() - self.at);
-        if (count == 0) return OPJ_SIZE_T(-1);  // the end
+        if (count == 0) return OPJ_SIZE_T(-1);  // end of the data
         std::memcpy(buffer, &self.bytes[self.at], count);
         self.at += count;
         return count;
@@ -74,7 +74,7 @@ Stream stream_of(Input& input)
     return stream;
 }
 
-/// What the picture says of itself, against what the DICOM header says.
+/// Checks the picture's own header against the DICOM header.
 void check_header(const std::string& subject, const opj_image_t& image, int64_t columns, int64_t rows, size_t bytes)
 {
     const int64_t wide = int64_t(image.x1) - image.x0, high = int64_t(image.y1) - image.y0;
@@ -94,7 +94,7 @@ template <class Number>
 void take(const OPJ_INT32* values, std::span<std::byte> pixels)
 {
     for (size_t i = 0; i < pixels.size() / sizeof(Number); ++i) {
-        const auto number = Number(values[i]);  // with its sign, in as many bits as there are
+        const auto number = Number(values[i]);  // sign-extended to the available bits
         std::memcpy(&pixels[i * sizeof(Number)], &number, sizeof(number));
     }
 }
@@ -110,7 +110,7 @@ void decode_jpeg_2000(const std::string& subject, std::span<const std::byte> pic
                       std::span<std::byte> pixels)
 {
     SHVR_CHECK(columns > 0 && rows > 0);
-    const size_t bytes = pixels.size() / size_t(columns * rows);  // of a pixel
+    const size_t bytes = pixels.size() / size_t(columns * rows);  // per pixel
     Input input{.bytes = picture};
     const Stream stream = stream_of(input);
     const Codec codec(opj_create_decompress(is_in_boxes(picture) ? OPJ_CODEC_JP2 : OPJ_CODEC_J2K));

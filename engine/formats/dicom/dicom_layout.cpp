@@ -88,7 +88,7 @@ private:
         return element.value_at + element.length;
     }
 
-    /// GDCM would read a value.
+    /// Refuses a delimiter with a length, for which GDCM would read a value.
     int64_t after_delimiter(const Element& element) const
     {
         if (element.length != 0) refuse(element, "0, as of every end");
@@ -159,7 +159,8 @@ private:
     /// Walks elements up to `end`, or to the end of their item. Returns where the next one begins.
     int64_t walk_elements(int64_t at, int64_t end, const Encoding& encoding, int depth, bool ends_by_delimiter)
     {
-        constexpr int64_t A_TAG = 4;  // GDCM takes what begins with one for an element, and asserts the rest of it
+        constexpr int64_t A_TAG = 4;  // GDCM takes anything that begins with a tag for an element, and asserts the rest
+                                      // of it
         while (at < end) {
             if (depth == 0 && end - at < A_TAG) return end;  // padding
             const Element element = read_element(at, end, encoding);
@@ -230,7 +231,7 @@ private:
 
     const InputFile& file_;
     DicomLayout layout_;
-    bool has_offsets_ = false;  ///< the first item of Pixel Data is their table
+    bool has_offsets_ = false;  ///< the first item of Pixel Data is the offset table
 };
 
 }  // namespace

@@ -17,15 +17,15 @@
 namespace shvr {
 namespace {
 
-/// From big-endian numbers to this machine's.
+/// Converts big-endian numbers to the machine's byte order.
 void turn_bytes(std::span<std::byte> pixels, size_t bytes_of_number)
 {
     for (size_t i = 0; i + bytes_of_number <= pixels.size(); i += bytes_of_number)
         std::reverse(pixels.begin() + std::ptrdiff_t(i), pixels.begin() + std::ptrdiff_t(i + bytes_of_number));
 }
 
-/// Numbers of `stored.bits` bits, the highest of them at `stored.high_bit`; what else is beside them, as overlays are,
-/// is no part of them.
+/// Extracts numbers of `stored.bits` bits, the highest at `stored.high_bit`; the remaining bits, such as overlays, are
+/// not part of them.
 template <class Number>
 void take_bits(const DicomStored& stored, std::span<std::byte> pixels)
 {
@@ -35,7 +35,7 @@ void take_bits(const DicomStored& stored, std::span<std::byte> pixels)
         std::make_unsigned_t<Number> number;
         std::memcpy(&number, &pixels[i], sizeof(number));
         const auto upwards = std::make_unsigned_t<Number>(number << (ALL - 1 - stored.high_bit));
-        const auto value = Number(Number(upwards) >> (ALL - stored.bits));  // with its sign, if it has one
+        const auto value = Number(Number(upwards) >> (ALL - stored.bits));  // sign-extended, if signed
         std::memcpy(&pixels[i], &value, sizeof(value));
     }
 }
@@ -61,7 +61,7 @@ void read_plain(const DicomFile& file, size_t frame, std::span<std::byte> pixels
     if (layout.is_big_endian && of_number > 1) turn_bytes(pixels, of_number);
 }
 
-/// Where the coded picture of a frame lies.
+/// The fragments of a frame's encoded picture.
 std::span<const DicomLayout::Fragment> fragments_of(const DicomFile& file, size_t frame)
 {
     const std::span<const DicomLayout::Fragment> fragments = file.stored.layout.fragments;
@@ -72,7 +72,7 @@ std::span<const DicomLayout::Fragment> fragments_of(const DicomFile& file, size_
     return is_only ? fragments : fragments.subspan(frame, 1);
 }
 
-/// The coded picture of a frame.
+/// The encoded picture of a frame.
 std::vector<std::byte> bytes_of_picture(const DicomFile& file, size_t frame)
 {
     const std::unique_ptr<VoxelBytes> input = bytes_of_file(open_input_file(file.path), 0);
@@ -85,7 +85,7 @@ std::vector<std::byte> bytes_of_picture(const DicomFile& file, size_t frame)
     return picture;
 }
 
-/// The same as GDCM keeps one.
+/// The same in GDCM's form.
 gdcm::SmartPointer<gdcm::SequenceOfFragments> sequence_of(const DicomFile& file, std::span<const std::byte> picture)
 {
     if (picture.size() > UINT32_MAX)
@@ -97,7 +97,7 @@ gdcm::SmartPointer<gdcm::SequenceOfFragments> sequence_of(const DicomFile& file,
     return sequence;
 }
 
-/// Whether the codec knows the file's transfer syntax and has decoded all pixels of the picture.
+/// Whether the codec supports the file's transfer syntax and has decoded all pixels of the picture.
 template <class Codec>
 bool decodes(const DicomFile& file, const gdcm::DataElement& picture, std::span<std::byte> pixels)
 {
@@ -114,7 +114,7 @@ bool decodes(const DicomFile& file, const gdcm::DataElement& picture, std::span<
     gdcm::DataElement decoded;
     if (!codec.Decode(picture, decoded)) return false;
     const gdcm::ByteValue* bytes = decoded.GetByteValue();
-    if (bytes == nullptr || bytes->GetLength() < pixels.size()) return false;  // more: filled up to an even length
+    if (bytes == nullptr || bytes->GetLength() < pixels.size()) return false;  // more: padded to an even length
     std::memcpy(pixels.data(), bytes->GetPointer(), pixels.size());
     return true;
 }

@@ -17,7 +17,7 @@
 namespace shvr {
 namespace {
 
-/// Positions closer than this count as one position: files state them with about six digits.
+/// Positions closer than this count as equal: files state them with about six digits.
 constexpr double SAME_PLACE_MM = 1e-3;
 /// Distances may differ by this fraction.
 constexpr double SAME_DISTANCE = 0.01;
@@ -48,7 +48,7 @@ Kind kind_of(const DicomFile& file, const DicomFrame& frame)
     return {file.columns, file.rows, int(file.type), direction};
 }
 
-/// The slices of the most frequent kind; leaves out, for example, a scout beside an axial series.
+/// The slices of the most frequent kind; leaves out, for example, a scout image next to an axial series.
 std::vector<Placed> slices_of_one_kind(const std::vector<DicomFile>& files, VolumeInfo& info)
 {
     std::map<Kind, std::vector<Placed>> kinds;
@@ -89,7 +89,7 @@ bool sort_slices(std::vector<Placed>& slices, VolumeInfo& info)
     return are_placed;
 }
 
-/// Removes copies of one file, which are common in exports.
+/// Removes duplicate files, which are common in exports.
 void leave_out_copies(std::vector<Placed>& slices, VolumeInfo& info)
 {
     std::set<std::pair<std::string, size_t>> seen;
@@ -159,7 +159,7 @@ double find_distance(const std::vector<Placed>& slices, VolumeInfo& info)
     return usual;
 }
 
-/// The step from slice to slice. First pixels need not lie above each other: gantries tilt.
+/// The step from slice to slice. Their first pixels need not be aligned: gantries tilt.
 glm::dvec3 step_between(const std::vector<Placed>& slices, double distance, const glm::dvec3& normal)
 {
     const glm::dvec3 way = *slices.back().frame->position - *slices.front().frame->position;

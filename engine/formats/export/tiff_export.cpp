@@ -16,8 +16,8 @@
 namespace shvr {
 namespace {
 
-/// The file being written, as libtiff's client functions see it. They are called from C, so no exception may leave
-/// them.
+/// The file being written, as seen by libtiff's client functions.
+/// They are called from C, so no exception may escape.
 struct ClientFile {
     AtomicWriter& writer;
     int64_t at = 0, size = 0;

@@ -28,7 +28,7 @@ std::vector<std::string> texts_of(std::string_view value)
     return texts;
 }
 
-/// Takes "(a,b,c)" off the start of `rest`.
+/// Parses and removes "(a,b,c)" at the start of `rest`.
 std::optional<glm::dvec3> take_vector(std::string_view& rest)
 {
     rest = trimmed(rest);
@@ -50,7 +50,7 @@ std::optional<glm::dvec3> take_vector(std::string_view& rest)
     return vector;
 }
 
-/// One entry per axis of the file; nothing for an axis that is not spatial ("none", or NaNs).
+/// One entry per axis of the file; null for an axis that is not spatial ("none", or NaNs).
 std::vector<std::optional<glm::dvec3>> axis_directions(const HeaderFields& fields, size_t dimension)
 {
     std::string_view rest = fields.required(DIRECTIONS, DIRECTIONS_EXPECTED);
@@ -133,7 +133,7 @@ glm::dvec3 space_origin(const HeaderFields& fields)
     return is_known ? *origin : glm::dvec3(0.0);
 }
 
-/// A known frame, and whether the file's x runs against it.
+/// A known frame, and whether the file's x axis is opposite to the frame's.
 struct Space {
     std::string frame;
     bool is_left_handed = false;

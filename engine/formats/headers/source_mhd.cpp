@@ -1,6 +1,6 @@
 // MetaImage (https://itk.org/Wiki/MetaIO/Documentation): a header of "key = value" lines. The last one,
-// ElementDataFile, says where the voxels are: in one or many other files (MHD), or right after the header (LOCAL, MHA),
-// raw or compressed with zlib.
+// ElementDataFile, states where the voxels are: in one or many other files (MHD), or right after the header (LOCAL,
+// MHA), raw or compressed with zlib.
 
 #include <cmath>
 #include <utility>
@@ -61,7 +61,7 @@ void refuse_what_is_not_supported(const HeaderFields& fields)
 
 /// Columns are the directions of x, y and z. MetaImage names no frame; if it states the anatomical orientation of the
 /// axes, the frame is that of ITK, which writes most of these files: LPS. The orientation letters themselves are
-/// ignored: programs disagree whether they say where axes come from or where they lead.
+/// ignored: programs disagree on whether they denote where axes come from or where they lead.
 void read_orientation(const HeaderFields& fields, VolumeInfo& info)
 {
     const char* const matrix = first_of(fields, {"TransformMatrix", "Rotation", "Orientation"});

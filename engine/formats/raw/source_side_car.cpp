@@ -1,4 +1,4 @@
-// Raw voxels and the files kept beside them. For scan.raw these are, in this order:
+// Raw voxels and the files stored next to them. For scan.raw these are, in this order:
 //   scan.json, scan.raw.json   our own: {"size": [x,y,z], "type": "int16", "endian": "little", "offset": 0,
 //                              "spacing": [x,y,z], "unit": "um"}; size and type are required
 //   scan.nhdr, scan.mhd        if they name this file
@@ -36,7 +36,7 @@ fs::path with_suffix(fs::path path, const char* suffix)
     return path += suffix;
 }
 
-/// Nothing if the document is about something else (a session, another program's settings).
+/// Null if the document is something else (a session, another program's settings).
 std::optional<JsonDocument> parse_json(const fs::path& path)
 {
     JsonDocument document = read_json(path, LONGEST_HEADER, {.depth = 64, .expected = "size and type"});
@@ -50,7 +50,7 @@ bool is_same_file(const fs::path& a, const fs::path& b)
     return fs::equivalent(a, b, error) && !error;
 }
 
-/// A header beside raw voxels counts only if it refers to them.
+/// A header next to raw voxels counts only if it refers to them.
 Source open_by_header(const fs::path& header, const char* data_field, const fs::path& raw,
                       Source (*open)(const fs::path&, const OpenOptions&))
 {

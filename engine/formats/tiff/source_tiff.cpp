@@ -142,7 +142,7 @@ private:
     }
     const TiffLayout& layout_of_page(uint32_t page) { return layout_of_kind(directories_.pages[page].kind); }
 
-    /// Slices that scripts declared as channels by mistake. ImageJ composes at most 7 channels.
+    /// Corrects slices that scripts declared as channels by mistake. ImageJ composes at most 7 channels.
     void take_many_channels_as_slices()
     {
         if (description_.writer != TiffDescription::Writer::imagej || description_.channels <= 7 ||
@@ -153,7 +153,7 @@ private:
         std::swap(description_.channels, description_.slices);
     }
 
-    /// Pages of different kinds may still have equal pictures, stored in different ways.
+    /// Checks pages of different kinds, which may still have equal pictures, stored in different ways.
     void check_kinds()
     {
         std::vector<int64_t> pages(directories_.kinds.size());
@@ -233,8 +233,8 @@ private:
         description_.pages.clear();
     }
 
-    /// ImageJ's form for stacks above 4 GiB, which also works for small ones: the first directory is the only one, and
-    /// the voxels of the images follow each other without gaps.
+    /// Checks ImageJ's layout for stacks above 4 GiB, which also works for small ones: the first directory is the only
+    /// one, and the voxels of the images follow each other without gaps.
     void check_contiguous(int64_t planes)
     {
         const TiffPage page(*file_, directories_.pages.front().offset, 1);
@@ -263,7 +263,7 @@ private:
         is_contiguous_ = true;
     }
 
-    /// The pages that OME-XML names must exist and be alike.
+    /// Checks that the pages that OME-XML names exist and are alike.
     void check_planes()
     {
         for (uint32_t& plane : description_.pages) {

@@ -78,7 +78,7 @@ std::vector<SliceName> names_in(const fs::path& folder)
     return names;
 }
 
-/// The number that counts the slices: the first one that differs from file to file and never decreases. Nothing if the
+/// The number that counts the slices: the first one that differs from file to file and never decreases. Null if the
 /// names belong to several series.
 std::optional<size_t> counting_number(const std::vector<SliceName>& names)
 {
@@ -139,7 +139,7 @@ size_t check_one_series(const fs::path& folder, const std::vector<SliceName>& na
          "; expected one: put each into a folder of its own");
 }
 
-/// Warns of gaps in the count: slices are drawn evenly spaced all the same.
+/// Warns about gaps in the numbering: slices are drawn evenly spaced nevertheless.
 void warn_of_gaps(const std::vector<SliceName>& names, size_t number, std::vector<std::string>& warnings)
 {
     std::optional<int64_t> step;
@@ -249,7 +249,7 @@ private:
     const std::vector<SliceName>& names_;
     std::map<std::string, TiffLayout> layouts_;  ///< by TiffKind::fields
     TiffVolume volume_;
-    bool has_warned_ = false;  ///< of slips in a file
+    bool has_warned_ = false;  ///< about errors in a file
 };
 
 }  // namespace

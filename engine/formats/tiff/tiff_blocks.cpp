@@ -158,7 +158,7 @@ private:
         }
     }
 
-    /// libtiff decodes to this machine's byte order already.
+    /// Converts to the machine's byte order; libtiff has already done so for compressed blocks.
     void put_in_order(std::span<std::byte> samples) const
     {
         if (file_.is_big_endian() && layout_.bits % 8 == 0) swap_bytes(samples, size_t(layout_.bits / 8));

@@ -29,7 +29,7 @@ std::string numbers_to(int64_t count)
     return text;
 }
 
-/// How to request each: by name if that is a word, otherwise by number.
+/// How to request each channel: by name if that is a word, otherwise by number.
 std::string channel_choices(const std::vector<std::string>& names)
 {
     constexpr size_t MOST = 8;
@@ -136,7 +136,7 @@ std::vector<TiffPixelChannel> channels_of_pixel(const TiffPage& page, const Tiff
         }
         channels.push_back({name, int(sample)});
     }
-    // Some writers do not say what the fourth sample after red, green and blue is; it is almost always alpha.
+    // Some writers do not declare the fourth sample after red, green and blue; it is almost always alpha.
     const bool is_rgb = layout.photometric == PHOTOMETRIC_RGB || layout.photometric == PHOTOMETRIC_YCBCR;
     if (is_rgb && samples == 4) channels[3].name = "alpha";
     const bool has_alpha = samples == 2 && channels[1].name == "alpha";

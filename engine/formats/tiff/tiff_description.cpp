@@ -15,7 +15,7 @@ namespace {
 constexpr double UM_PER_INCH = 25400.0;
 constexpr double UM_PER_CM = 10000.0;
 
-/// The unit in micrometres; nothing if it is not a known unit of length.
+/// The unit in micrometres; null if it is not a known unit of length.
 std::optional<double> um_of(const std::string& unit)
 {
     constexpr std::pair<const char*, double> LENGTHS[] = {
@@ -27,7 +27,7 @@ std::optional<double> um_of(const std::string& unit)
     return {};
 }
 
-/// Nothing if it is a word for voxels rather than a unit of length.
+/// Null if it is a word for voxels rather than a unit of length.
 std::optional<std::string> length_unit(const std::string& stated)
 {
     const std::string unit = plain_unit(stated);
@@ -41,7 +41,7 @@ std::optional<std::string> length_unit(const std::string& stated)
     return unit;
 }
 
-/// What the resolution fields say about the distance between pixels.
+/// The distance between pixels according to the resolution fields.
 struct Resolution {
     std::optional<double> x, y;  ///< pixels per unit
     double um_per_unit = 0.0;    ///< 0: the fields name no unit
@@ -128,7 +128,7 @@ void add_resolution(TiffDescription& description, const Resolution& resolution)
     for (std::string& unit : description.unit) unit = "um";
 }
 
-/// Resolution fields are fractions of 32 bits: the exact spacing is taken if it is what they were made from.
+/// Resolution fields are fractions of 32 bits: takes the exact spacing if they were derived from it.
 void take_place(VolumeInfo& info, const TiffDescription::Place& place, const std::string& unit)
 {
     constexpr double TOLERANCE = 1e-5;

@@ -107,7 +107,7 @@ public:
         }
         size_t bytes = count_bytes_ + size_t(count) * field_bytes_ + offset_bytes_;
         start = window_.at(offset, bytes);
-        // Some files end with the fields, exactly, and lack the offset of a next directory.
+        // Some files end exactly after the fields, and lack the offset of a next directory.
         lacks_next_ = start == nullptr && offset + bytes - offset_bytes_ == uint64_t(file_.size_bytes());
         if (lacks_next_) bytes -= offset_bytes_;
         if (lacks_next_) start = window_.at(offset, bytes);
@@ -190,7 +190,7 @@ public:
         (field.tag == STRIP_OFFSETS || field.tag == TILE_OFFSETS ? offset_ : bytes_) = value;
     }
 
-    /// Whether more bytes were stated than the file holds, though it holds all that the pixels take.
+    /// Whether more bytes were stated than the file holds, although it holds all that the pixels need.
     bool finish(size_t page)
     {
         const bool states_too_many = !file_.holds(offset_, bytes_) && picture_.bytes() < bytes_;
@@ -214,7 +214,7 @@ public:
 private:
     struct Picture {
         uint64_t width = 0, length = 0, bits = 1, samples = 1, compression = 1;
-        /// Of a strip that is the whole page, uncompressed; nothing is known of others.
+        /// Size of a strip that is the whole uncompressed page; other strips are unknown.
         uint64_t bytes() const
         {
             uint64_t row_bits = 0, bytes = 0;
@@ -226,7 +226,7 @@ private:
 
     void look_at_picture(const Field& field, const Reader& reader)
     {
-        // Several samples of a pixel state their bits outside the field, and are left to libtiff.
+        // Several samples per pixel store their bits outside the field, and are left to libtiff.
         const uint64_t value = field.count == 1 ? reader.value(field) : 0;
         if (field.tag == IMAGE_WIDTH) picture_.width = value;
         if (field.tag == IMAGE_LENGTH) picture_.length = value;

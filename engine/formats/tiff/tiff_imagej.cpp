@@ -74,7 +74,7 @@ private:
     std::map<std::string, std::string> values_;
 };
 
-/// As many numbers as `Value` has, separated by spaces; nothing if they are others.
+/// As many numbers as `Value` has, separated by spaces; null if they are malformed.
 template <class Value, size_t COUNT>
 std::optional<Value> numbers_of(const std::string& text)
 {
@@ -92,7 +92,7 @@ std::optional<Value> numbers_of(const std::string& text)
     return value;
 }
 
-/// Lines that only we write.
+/// Reads lines that only we write.
 void read_place(const Lines& lines, TiffDescription& description)
 {
     description.place = {numbers_of<glm::dvec3, 3>(lines.text("shvr_spacing")),

@@ -56,7 +56,7 @@ const Compression* find_compression(int scheme)
     return found == std::end(COMPRESSIONS) ? nullptr : found;
 }
 
-/// The most bytes that `bytes` of the file can decode to.
+/// The maximum number of bytes that `bytes` of the file can decode to.
 int64_t most_decoded(const TiffLayout& layout, int64_t bytes)
 {
     const Compression* const known = find_compression(layout.compression);
@@ -198,7 +198,7 @@ void check_is_supported(const TiffPage& page, const TiffLayout& layout)
              " bits; expected integers of 8, 16 or 32 bits, unsigned ones of 1 to 16 bits, or floats of 16, 32 or 64 "
              "bits");
     }
-    // Whose one bit for a row is one for the few pixels of a fax, not for thousands of channels.
+    // Their one bit per row means one for the few pixels of a fax, not for thousands of channels.
     if (known->largest_ratio == 0 && ((layout.samples != 1 && !layout.is_planar) || layout.bits != 1))
         fail(page.subject(), ": has ", layout.samples, " samples of ", layout.bits, " bits a pixel by ", known->name,
              "; expected one of 1 bit, as there is in a fax");
@@ -240,7 +240,7 @@ TiffExtent extent_of_block(const TiffFile& file, const TiffPage& page, const Tif
     uint64_t bytes = TIFFGetStrileByteCount(page.handle(), index);
     const int64_t row_of_blocks = block / layout.blocks_across() % layout.blocks_down();
     const int64_t decoded = layout.rows_of_block(row_of_blocks) * layout.block_row_bytes();
-    // Old programs state more than the pixels take, up to the next strip's bytes or beyond the file's end.
+    // Old programs state more bytes than the pixels need, up to the next strip's bytes or beyond the file's end.
     if (layout.compression == COMPRESSION_NONE) bytes = std::min(bytes, uint64_t(decoded));
     const auto refuse = [&](const auto&... words) {
         fail(page.subject(), ": ", name_of_block(layout), block + 1, " of ", layout.blocks(), words...);

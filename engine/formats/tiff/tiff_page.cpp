@@ -131,7 +131,7 @@ uint32_t TiffPage::number32(uint32_t tag, uint32_t fallback) const
 
 bool TiffPage::has(uint32_t tag) const
 {
-    // Room for whatever libtiff stores; never read.
+    // Space for any value that libtiff stores; never read.
     std::array<void*, 4> values{};
     return TIFFGetField(handle_, tag, &values[0], &values[1], &values[2], &values[3]) == 1;
 }

@@ -5,7 +5,7 @@
 namespace shvr {
 namespace {
 
-/// The cost of an entry besides its voxels, so that chunks of fill value do not accumulate without limit.
+/// The cost of an entry in addition to its voxels, so that chunks of fill value do not accumulate without limit.
 constexpr int64_t OVERHEAD_BYTES = 256;
 
 int64_t cost_of(const Block& block)

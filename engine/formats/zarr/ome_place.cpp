@@ -41,7 +41,7 @@ void read_ome_place(const JsonNode& attributes, const std::optional<glm::dvec3>&
         return;
     }
     if (!translation) return;
-    // The two were rounded apart from each other.
+    // The two were rounded independently.
     const glm::dvec3 apart = glm::abs(ome_translation(info) - *translation);
     const double far = 1e-12 * std::max({glm::length(*translation), info.spacing.x, info.spacing.y, info.spacing.z});
     if (!glm::all(glm::lessThanEqual(apart, glm::dvec3(far)))) info.origin = info.directions * *translation;

@@ -125,7 +125,7 @@ struct Transformation {
     }
 };
 
-/// Those of a dataset, or of all datasets.
+/// Applies the transformations of a dataset, or of all datasets.
 void apply_transformations(const JsonNode& owner, size_t axes, Transformation& transformation)
 {
     constexpr const char* EXPECTED = "a list of at most 8 objects of type scale, translation or identity";

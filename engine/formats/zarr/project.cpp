@@ -46,7 +46,7 @@ glm::dmat3 read_matrix(const JsonNode& node)
     return {rows[0].vector(any_number()), rows[1].vector(any_number()), rows[2].vector(any_number())};
 }
 
-/// Projects of before have no such key.
+/// Older projects have no such key.
 Provenance read_provenance(const JsonNode& node)
 {
     constexpr std::array<std::string_view, 3> NAMES{"assumed", "file", "given"};

@@ -31,7 +31,7 @@ void try_to(const Read& read, std::vector<std::string>& warnings)
     }
 }
 
-/// What an import writes of every level.
+/// Chunk side that an import writes for every level.
 constexpr int64_t PROJECT_CHUNK = 64;
 
 std::string list_of(const std::vector<int64_t>& numbers)
@@ -41,13 +41,13 @@ std::string list_of(const std::vector<int64_t>& numbers)
     return list + "]";
 }
 
-/// A sentence for each array that is not as the import wrote it.
+/// Adds a warning for each array that differs from what the import wrote.
 void check_arrays(const fs::path& folder, const ProjectRecord& record, std::vector<std::string>& warnings)
 {
     for (int level = 0; level < record.levels; ++level) {
         const ZarrPlace array = zarr_folder(folder / std::to_string(level));
         const bool is_3 = array.has("zarr.json");
-        if (!is_3 && !array.has(".zarray")) continue;  // the image says so
+        if (!is_3 && !array.has(".zarray")) continue;  // opening the image reports it
         const auto warn = [&](const char* key, const auto& found, const auto& expected) {
             warnings.push_back(sentence(
                 array.path_of(is_3 ? "zarr.json" : ".zarray").string(), ": key ", key, " is ", found, "; expected ",
@@ -57,7 +57,7 @@ void check_arrays(const fs::path& folder, const ProjectRecord& record, std::vect
         try {
             found = read_zarr_metadata(array, is_3 ? 3 : 2);
         } catch (const Error&) {
-            continue;  // likewise
+            continue;  // opening the image reports it
         }
         const Size3 size = size_of_level(record.info.size, level);
         const std::vector<int64_t> shape{size.z, size.y, size.x}, chunks(3, PROJECT_CHUNK);

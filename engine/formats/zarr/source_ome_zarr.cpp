@@ -95,7 +95,8 @@ private:
         });
     }
 
-    /// A level whose size was rounded down lacks its last voxel, which may be alone in its block.
+    /// Adds the block of the last voxel, which a level whose size was rounded down lacks, and which may be alone in its
+    /// block.
     void add_beyond(int level, std::vector<glm::ivec3>& chunks) const
     {
         const ZarrVolume& volume = volumes_[size_t(level)];
@@ -113,7 +114,7 @@ private:
         });
     }
 
-    /// A level whose size was rounded down lacks its last voxel; the one before is repeated.
+    /// Fills in the last voxel, which a level whose size was rounded down lacks, by repeating the one before it.
     void read_beyond(int level, const VoxelBox& box, std::span<std::byte> voxels) const
     {
         const Size3 size = volumes_[size_t(level)].size();
@@ -147,7 +148,7 @@ std::string name_of_folder(const fs::path& path)
     return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
 
-// ---- Choosing where there is more than one --------------------------------------------------------------------------
+// ---- Choosing if there is more than one -----------------------------------------------------------------------------
 
 /// `what`: "channel" or "frame".
 int64_t chosen(const fs::path& path, const char* what, const std::string& wanted, int64_t count,
@@ -220,8 +221,8 @@ std::string objection(const OmeImage& image, const ZarrMetadata& first, size_t d
         if (!(std::abs(ratio / factor - 1.0) < 1e-3)) {
             return sentence("is ", ratio, " times as coarse along ", "xyz"[axis], ", not ", factor, " times");
         }
-        // Its first voxel lies in the middle of those it covers. If it lies on the first of them, a missing translation
-        // is assumed, which older programs do not write.
+        // Its first voxel must be centred on the voxels it covers. If it lies on the first of them, the translation,
+        // which older programs do not write, is assumed to be missing.
         const double offset = (stated.translation ? (*stated.translation)[axis] : 0.0) -
                               (fine.translation ? (*fine.translation)[axis] : 0.0);
         const double voxels = offset / (*fine.scale)[axis];
@@ -233,7 +234,7 @@ std::string objection(const OmeImage& image, const ZarrMetadata& first, size_t d
     return {};
 }
 
-/// What the image and its first level call the axes must agree, since version 0.5.
+/// Since version 0.5 the axis names of the image and of its first level must agree.
 void compare_names(const ZarrPlace& array, const OmeImage& image, const ZarrMetadata& metadata,
                    std::vector<std::string>& warnings)
 {
@@ -311,7 +312,7 @@ std::unique_ptr<VolumeSource> open_image(const ZarrPlace& place, const ZarrNode&
     return std::make_unique<OmeZarrSource>(std::move(info), std::move(volumes), std::move(knowledge));
 }
 
-/// The axes called x, y and z; nothing unless each is there once.
+/// The axes called x, y and z; null unless each exists exactly once.
 std::optional<std::array<size_t, 3>> named_axes(const ZarrMetadata& metadata)
 {
     std::array<size_t, 3> xyz{};
@@ -352,7 +353,7 @@ std::unique_ptr<VolumeSource> open_array(const ZarrPlace& place, int version, co
     return std::make_unique<OmeZarrSource>(std::move(info), std::move(volumes), ProjectKnowledge{});
 }
 
-/// The images in a group that is none itself: bioformats2raw puts them into 0, 1, ... or lists them.
+/// The images in a group that is not an image itself: bioformats2raw puts them into 0, 1, ... or lists them.
 std::vector<std::string> images_in(const ZarrPlace& group)
 {
     const ZarrPlace listing = group / "OME";
@@ -395,7 +396,8 @@ std::unique_ptr<VolumeSource> open_group(const ZarrPlace& place, const ZarrNode&
     return open_image(inner, *image, options);
 }
 
-/// The usual mistakes: the folder was zipped, not what is in it, or the archive holds something else.
+/// Refuses an archive and names the usual mistakes: the folder was zipped instead of its content, or it holds something
+/// else.
 [[noreturn]] void refuse_archive(const fs::path& path, const ZarrPlace& place)
 {
     std::string first;

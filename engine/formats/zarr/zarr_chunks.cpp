@@ -12,7 +12,7 @@ namespace shvr {
 namespace {
 
 constexpr int64_t KEPT_INDEX_BYTES = int64_t{16} << 20;
-/// Names that are looked at for one that is no chunk's.
+/// Number of names checked for one that is not a chunk's.
 constexpr int64_t MAX_NAMES_LOOKED_AT = 1024;
 
 /// Numbers between separators of any kind, with or without a leading "c", as in "0.1.2" or "c/0/1/2".
@@ -27,7 +27,7 @@ bool is_like_chunk(std::string_view key)
     }
 }
 
-/// A chunk's place in a shard, as the index has it.
+/// A chunk's place in a shard, as stated in the index.
 struct IndexEntry {
     uint64_t offset, bytes;
     auto operator<=>(const IndexEntry&) const = default;
@@ -39,7 +39,7 @@ uint64_t end_of(const IndexEntry& entry)
     return __builtin_add_overflow(entry.offset, entry.bytes, &end) ? ~uint64_t{0} : end;
 }
 
-/// The places of which bytes belong to another place as well, ascending. Equal places are one: some writers store equal
+/// The places that share bytes with another place, ascending. Identical places count as one: some writers store equal
 /// chunks once.
 std::vector<IndexEntry> overlapping(std::vector<IndexEntry> entries)
 {
@@ -123,7 +123,7 @@ bool ZarrChunks::is_missing(std::span<const int64_t> chunk) const
     }
 }
 
-/// Of the chunk or shard with this key; empty if it is of none.
+/// The indices of the chunk or shard with this key; empty if the key is not one.
 std::vector<int64_t> ZarrChunks::numbers_of(std::string_view key) const
 {
     const std::vector<int64_t>& side = metadata_.sharding ? metadata_.sharding->shape : metadata_.chunks;
@@ -142,7 +142,7 @@ std::vector<int64_t> ZarrChunks::numbers_of(std::string_view key) const
     return metadata_.key_of(numbers) == key ? numbers : std::vector<int64_t>();
 }
 
-/// Each chunk of a shard that lies in the array.
+/// Visits each chunk of a shard that lies in the array.
 template <class Take>
 bool ZarrChunks::list_shard(std::span<const int64_t> shard, const Take& take) const
 {
@@ -177,7 +177,7 @@ bool ZarrChunks::list(std::span<const std::optional<int64_t>> at, int64_t most,
         take(chunk);
         return true;
     };
-    std::string folder;  // the innermost that holds them all
+    std::string folder;  // the innermost folder that contains them all
     if (metadata_.separator == '/') {
         folder = metadata_.has_prefix ? "c/" : "";
         for (size_t axis = 0; axis + 1 < at.size() && at[axis]; ++axis) {
@@ -204,7 +204,7 @@ std::string ZarrChunks::stray() const
             return found.empty() && --left > 0;
         });
     } catch (const Error&) {
-        return {};  // reading says why
+        return {};  // reading reports the reason
     }
     return found;
 }
@@ -226,7 +226,7 @@ ZarrChunks::Part ZarrChunks::part_of(std::span<const int64_t> chunk, const std::
         const int64_t along = sharding.shape[axis] / metadata_.chunks[axis];
         place = place * size_t(along) + size_t(chunk[axis] % along);
     }
-    uint64_t number = 0;  // of the shard; unsigned, for it may wrap around in arrays of absurd sizes
+    uint64_t number = 0;  // index of the shard's chunk; unsigned, because it may wrap around in arrays of absurd sizes
     for (size_t axis = 0; axis < chunk.size(); ++axis) {
         const int64_t shards = (metadata_.shape[axis] - 1) / sharding.shape[axis] + 1;
         number = number * uint64_t(shards) + uint64_t(chunk[axis] / (sharding.shape[axis] / metadata_.chunks[axis]));
@@ -238,7 +238,7 @@ ZarrChunks::Part ZarrChunks::part_of(std::span<const int64_t> chunk, const std::
     return part;
 }
 
-/// The parts of a shard, one for each chunk; empty if there is no such shard.
+/// The places of a shard's chunks, one for each; empty if there is no such shard.
 Block ZarrChunks::index_of(const std::string& shard) const
 {
     const ZarrSharding& sharding = *metadata_.sharding;

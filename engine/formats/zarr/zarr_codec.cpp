@@ -95,7 +95,7 @@ void decompress_deflate(Bytes stored, std::span<std::byte> chunk, const std::str
     if (made != chunk.size()) refuse_size(name, "decodes to", made, chunk.size());
 }
 
-/// Of one compressor.
+/// The same check for one compressor.
 void check_compressed_size(ZarrCompressor::Kind kind, size_t stored_bytes, size_t chunk_bytes, const std::string& name)
 {
     if (kind == ZarrCompressor::Kind::none) {
@@ -156,7 +156,7 @@ Bytes without_checksum(Bytes stored, const std::string& name)
     if (stored.size() < CHECKSUM_BYTES)
         fail(name, ": holds ", stored.size(), " bytes; expected at least its checksum of ", CHECKSUM_BYTES);
     const Bytes content = stored.first(stored.size() - CHECKSUM_BYTES);
-    uint32_t expected = 0;  // little-endian, as this machine is
+    uint32_t expected = 0;  // little-endian, like this machine
     std::memcpy(&expected, stored.data() + content.size(), CHECKSUM_BYTES);
     if (const uint32_t found = crc32c(content); found != expected)
         fail(name, ": is damaged: its CRC-32C is ", found, "; expected ", expected, ", which is stored with it");

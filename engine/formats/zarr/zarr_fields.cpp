@@ -30,7 +30,7 @@ void put_whole(const JsonNode& fill, ZarrMetadata& metadata)
     put(static_cast<T>(fill.whole(int64_t{Limits::min()}, int64_t{Limits::max()})), metadata);
 }
 
-/// "0x", and two digits for each byte of the number, the highest bits first.
+/// "0x", and two digits for each byte of the number, highest bits first.
 template <class Bits>
 bool put_bits(const JsonNode& fill, ZarrMetadata& metadata)
 {

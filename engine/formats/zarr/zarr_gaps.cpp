@@ -12,13 +12,13 @@
 namespace shvr {
 namespace {
 
-/// A brick and its apron meet no more of usual chunks; so many looks are quicker than most listings.
+/// A brick and its apron touch no more chunks of usual size; this many probes are faster than most listings.
 constexpr int64_t FEW_FILES = 8;
 constexpr size_t MANY_LOOKS = 4096;
 /// Chunks along an axis have numbers below 2^21.
 constexpr int CODE_BITS = 21;
 
-/// Bit i to bit 3 i.
+/// Spreads bit i to bit 3 i.
 uint64_t spread(uint64_t number)
 {
     uint64_t code = 0;
@@ -63,13 +63,14 @@ bool any_in(Codes codes, const Size3& corner, int bits, const VoxelBox& box)
 
 }  // namespace
 
-/// What is known of a level. The mutex is held while any of it is used.
+/// What is known of a level. The mutex must be held for any access.
 struct ZarrGaps::Level {
     std::mutex mutex{};
     std::optional<std::vector<uint64_t>> codes{};     ///< of all stored chunks, ascending
-    int64_t more_than = 0;                            ///< chunks are stored, if it was not listed for their number
+    int64_t more_than = 0;                            ///< a lower bound of the stored chunks, if there were too many to
+                                                      ///< list
     bool is_unlistable = false;                       ///< a name or the index of a shard cannot be read
-    std::unordered_map<uint64_t, bool> is_missing{};  ///< chunks that were looked up
+    std::unordered_map<uint64_t, bool> is_missing{};  ///< results of probes
 
     void list(const ZarrVolume& volume, int64_t most)
     {
@@ -83,7 +84,7 @@ struct ZarrGaps::Level {
         codes = std::move(found);
         is_missing = {};
     }
-    /// Whoever reads what cannot be listed is told why.
+    /// A failure to list is reported by whichever read needs the data.
     void try_to_list(const ZarrVolume& volume)
     {
         if (is_unlistable) return;
@@ -143,7 +144,7 @@ ZarrGaps::Chunks ZarrGaps::chunks_below(int level, const VoxelBox& box, int belo
 {
     const ZarrVolume& volume = volumes_[size_t(below)];
     const int64_t factor = int64_t{1} << (level - below);
-    // A level whose size was rounded down lacks its last voxels; the last existing ones stand for them.
+    // A level whose size was rounded down lacks its last voxels; the last existing ones stand in for them.
     const Size3 lower = glm::min(box.lower * factor, volume.size() - int64_t{1});
     const Size3 upper = glm::min(box.upper * factor, volume.size());
     return {lower / volume.chunk(), (upper - int64_t{1}) / volume.chunk() + int64_t{1}};

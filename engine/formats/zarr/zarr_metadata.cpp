@@ -83,7 +83,7 @@ Json compressor_of(const std::vector<ZarrCompressor>& codecs)
     if (codecs.empty()) return nullptr;
     const ZarrCompressor& compressor = codecs[0];
     switch (compressor.kind) {
-        case Kind::crc32c:  // which version 2 does not have
+        case Kind::crc32c:  // not supported in version 2
         case Kind::none: return nullptr;
         case Kind::blosc:
             return {{"id", "blosc"},

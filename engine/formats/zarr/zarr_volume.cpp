@@ -64,7 +64,7 @@ ZarrVolume::ZarrVolume(ZarrPlace array, ZarrMetadata metadata, ZarrView view)
     }
 }
 
-/// Along each axis of the array.
+/// The chunk's indices along each axis of the array.
 std::vector<int64_t> ZarrVolume::numbers_of(const Size3& chunk) const
 {
     std::vector<int64_t> numbers(view_.at.size());

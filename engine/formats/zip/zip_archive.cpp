@@ -17,12 +17,12 @@ namespace {
 
 constexpr uint64_t HEADER_BYTES = 30;  ///< of a local header, without name and extra fields
 constexpr uint32_t HEADER_MARK = 0x04034b50;
-/// The most that a byte of deflate can decode to (zlib's technical notes).
+/// The maximum that a byte of deflate can decode to (zlib's technical notes).
 constexpr uint64_t MAX_OUT_OF_A_BYTE = 1032;
 
 FileDescriptor opened(const std::filesystem::path& path)
 {
-    // Without O_NONBLOCK, opening a FIFO blocks until a writer comes.
+    // Without O_NONBLOCK, opening a FIFO blocks until a writer appears.
     FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (!file) fail(path.string(), ": cannot be opened: ", reason_of(errno));
     return file;
@@ -100,7 +100,7 @@ void ZipArchive::read_at(uint64_t offset, std::span<std::byte> bytes) const
     }
 }
 
-/// Where the entry's stored bytes begin; all of them lie before the directory.
+/// The offset of the entry's stored bytes, all of which precede the directory.
 uint64_t ZipArchive::data_of(const ZipEntry& entry) const
 {
     const std::string name = name_of(entry);

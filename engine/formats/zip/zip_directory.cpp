@@ -23,7 +23,7 @@ constexpr uint32_t IN_ZIP64 = 0xffffffff;
 
 /// Where the directory is.
 struct End {
-    uint64_t at = 0;  ///< of the first end record: the directory ends here, or before
+    uint64_t at = 0;  ///< offset of the first end record: the directory ends here, or before
     uint64_t entries = 0, bytes = 0, offset = 0;
 };
 
@@ -63,7 +63,7 @@ void take_zip64(const std::string& path, const ReadAt& read_at, End& end)
            little_endian<uint64_t>(record.data() + 48)};
 }
 
-/// The end record is the last one whose comment ends with the file.
+/// Finds the last end record whose comment extends to the end of the file.
 End find_end(const std::string& path, uint64_t file_bytes, const ReadAt& read_at)
 {
     const uint64_t count = std::min(file_bytes, END_BYTES + MAX_COMMENT);
@@ -82,7 +82,7 @@ End find_end(const std::string& path, uint64_t file_bytes, const ReadAt& read_at
     refuse(path, "has no end record: it is truncated, or not a zip archive");
 }
 
-/// Values of 64 bits that stand in an extra field where the entry has all ones, in this order.
+/// Reads values of 64 bits from an extra field if the entry has all ones, in this order.
 void take_zip64_sizes(const std::string& path, std::string_view extra, ZipEntry& entry)
 {
     const bool wanted[] = {entry.bytes == IN_ZIP64, entry.stored_bytes == IN_ZIP64, entry.header == IN_ZIP64};
@@ -103,13 +103,13 @@ void take_zip64_sizes(const std::string& path, std::string_view extra, ZipEntry&
         }
         return;
     }
-    // Without such a field the size is what it says: 2^32 - 1.
+    // Without such a field the size is taken literally: 2^32 - 1.
 }
 
 std::vector<ZipEntry> entries_of(const std::string& path, const std::vector<char>& bytes, uint64_t count)
 {
     std::vector<ZipEntry> entries;
-    entries.reserve(size_t(count));  // which the size of the directory bounds
+    entries.reserve(size_t(count));  // bounded by the size of the directory
     std::string_view rest(bytes.data(), bytes.size());
     for (uint64_t number = 0; number < count; ++number) {
         if (rest.size() < ENTRY_BYTES || little_endian<uint32_t>(rest.data()) != ENTRY_MARK)

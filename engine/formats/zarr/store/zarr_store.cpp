@@ -63,10 +63,10 @@ public:
     }
 
 private:
-    /// One in another: an array of many axes has a folder for each, and a link may lead in circles.
+    /// Maximum nesting: an array of many axes has a folder level for each, and a link may form a cycle.
     static constexpr int MAX_FOLDERS = 20;
 
-    /// Hidden names are no keys: temporary files, or version 2's own.
+    /// Hidden names are not keys: temporary files, or those of version 2.
     static bool list_folder(const fs::path& folder, const std::string& before, int folders,
                             const std::function<bool(std::string_view)>& take)
     {
@@ -89,8 +89,8 @@ private:
     fs::path folder_;
 };
 
-/// Deflated entries of which parts are wanted (shards, where the archive's writer compressed them once more) are
-/// decoded as a whole; the last ones are kept.
+/// Deflated entries that are read in parts (shards, if the archive's writer compressed them again) are decoded as a
+/// whole; the most recent ones are kept.
 constexpr int64_t KEPT_ENTRY_BYTES = int64_t{64} << 20;
 constexpr int64_t LARGEST_DEFLATED_SHARD = int64_t{256} << 20;
 
@@ -160,7 +160,7 @@ struct PathIntoArchive {
     fs::path inside;  ///< empty: its root
 };
 
-/// Nothing if no archive is on the way.
+/// Null if no archive is on the path.
 std::optional<PathIntoArchive> split(const fs::path& path)
 {
     PathIntoArchive found{path, {}};

@@ -1,5 +1,5 @@
 // Reads the core of the specification, and the codecs that other programs write: bytes, transpose, blosc, gzip, zstd,
-// zlib (as numcodecs.zlib), crc32c and sharding_indexed. What is not understood is refused by name.
+// zlib (as numcodecs.zlib), crc32c and sharding_indexed. Anything unsupported is refused by name.
 
 #include "engine/formats/zarr/v3/zarr_v3.h"
 
@@ -19,7 +19,7 @@ using Json = nlohmann::json;
 using Kind = ZarrCompressor::Kind;
 
 constexpr size_t MAX_CODECS = 16;
-/// Of the index of a shard, which is read as a whole: four million chunks.
+/// Limit of a shard's index, which is read as a whole: four million chunks.
 constexpr int64_t LARGEST_INDEX_BYTES = int64_t{64} << 20;
 
 /// numcodecs' names are those of zarr-python's numcodecs.zarr3, whose bytes are the same.
@@ -33,7 +33,7 @@ constexpr const char* KNOWN_CODECS =
 constexpr const char* CHAIN =
     "transpose as often as needed, then bytes or sharding_indexed, then at most one compressor and checksums";
 
-/// Of an object with a name and perhaps a configuration, or of a name alone.
+/// The name of an extension: an object with a name and perhaps a configuration, or a name alone.
 std::string name_of_extension(const JsonNode& node, const char* expected)
 {
     if (!node.is_object() && !node.is_text()) node.refuse(expected);
@@ -80,7 +80,7 @@ bool read_is_big_endian(const JsonNode& codec, size_t voxel_bytes)
     return order.choice(orders) == 1;
 }
 
-/// The axes after a further transposition of those that are now in the order `before`.
+/// The order of the axes after a further transposition of the order `before`.
 std::vector<size_t> transposed(const JsonNode& codec, const std::vector<size_t>& before)
 {
     const JsonNode node = codec["configuration"].required("order", "a list of axes");
@@ -98,7 +98,7 @@ std::vector<size_t> transposed(const JsonNode& codec, const std::vector<size_t>&
 /// A chain of codecs, split as the specification orders them.
 struct Chain {
     std::vector<size_t> order{};           ///< after its transpositions
-    std::optional<JsonNode> bytes{};       ///< the codec that makes bytes of an array
+    std::optional<JsonNode> bytes{};       ///< the codec that converts an array to bytes
     std::vector<ZarrCompressor> codecs{};  ///< those after it
     bool is_sharding = false;
     bool is_transposed = false;
@@ -128,7 +128,7 @@ Chain read_chain(const JsonNode& node, const std::vector<size_t>& axes)
     return chain;
 }
 
-/// The axes' order, or nothing if they are in the array's own.
+/// The axes' order, or nothing if it is the array's own.
 std::vector<size_t> unless_plain(std::vector<size_t> order)
 {
     return std::ranges::is_sorted(order) ? std::vector<size_t>() : order;
@@ -149,7 +149,7 @@ void read_index(const JsonNode& configuration, ZarrSharding& sharding)
     sharding.is_index_first = place.exists() && place.choice(places) == 0;
 }
 
-/// Chunks are then those inside a shard, the unit that is read.
+/// Chunks are then those inside a shard, the unit of reads.
 void read_sharding(const Chain& outer, ZarrMetadata& metadata)
 {
     const JsonNode configuration = (*outer.bytes)["configuration"];
@@ -227,7 +227,7 @@ Json codec_of(const ZarrCompressor& codec, size_t voxel_bytes)
     return nullptr;
 }
 
-/// `codecs`: of a chunk in a shard.
+/// `codecs`: those of a chunk in a shard.
 Json sharding_of(const ZarrMetadata& metadata, const Json& codecs)
 {
     const ZarrSharding& sharding = *metadata.sharding;
