@@ -12,7 +12,7 @@ namespace {
 constexpr double VELOCITY_CUTOFF_HZ = 100.0;
 /// Fades treat a longer pause of the servo as one of this length.
 constexpr uint64_t LONGEST_TICK_NS = 10'000'000;
-/// Interval at which the thesis's damping, which has none, is what `damping` says.
+/// Interval at which the thesis's damping, which has no interval, equals `damping`.
 constexpr double THESIS_TICK_S = 0.001;
 
 bool is_place(const DeviceState& state)
@@ -35,8 +35,8 @@ void disengage(ForceMemory& memory)
     memory.energy = {};
 }
 
-/// A person switched assistance on again: a fault is forgotten. Numbers of forces go on, and motors are as warm as they
-/// were.
+/// Clears a fault after the user switched assistance on again. Numbers of forces continue, and motors stay as warm as
+/// they were.
 void clear_fault(uint32_t reset, ForceMemory& memory)
 {
     if (memory.reset == reset) return;
@@ -82,7 +82,7 @@ void accept_elsewhere(const DeviceState& state, ForceMemory& memory)
 /// Exact for a constant velocity over the interval, so that damping does not depend on the rate.
 void accept_next(const DeviceState& state, ForceMemory& memory)
 {
-    // If the device's clock stands still or goes back, the velocity is left as it was.
+    // If the device's clock stands still or goes back, the velocity is left unchanged.
     const auto nanoseconds = int64_t(state.time_ns - memory.last.time_ns);
     if (nanoseconds > 0) {
         const double dt = double(nanoseconds) * 1e-9;
@@ -122,7 +122,7 @@ glm::dvec3 shortened(const glm::dvec3& v, double most)
     return length > most ? v * (most / length) : v;
 }
 
-/// What eq. 3.7 divides by: the probe's size in the hand and the scale of its moves.
+/// The divisor of eq. 3.7: the probe's size in the hand times the scale of its movements.
 double scaling(const ForceSettings& settings)
 {
     const double in_hand_m = settings.probe_radius / settings.workspace.scale();
@@ -143,7 +143,7 @@ struct Moment {
     bool is_fresh = false;
 };
 
-/// From the pull of one mode, law or object to that of the next without a step.
+/// Cross-fades from the pull of one mode, law or object to that of the next without a step.
 glm::dvec3 cross_faded(const ForceSettings& settings, const ModePull& pull, const glm::dvec3& wanted, uint64_t dt_ns,
                        ForceMemory& memory)
 {
@@ -176,7 +176,7 @@ glm::dvec3 click_of(const ForceSettings& settings, const DeviceCaps& caps, const
     const bool begins = pull.in_contact && click.off_ns >= CLICK_PAUSE_NS && speed >= CLICK_LEAST_SPEED;
     if (pull.in_contact)
         click.off_ns = 0;
-    else if (pull.is_usable)  // what is not known is not off
+    else if (pull.is_usable)  // an unknown contact does not count as off
         click.off_ns = std::min(click.off_ns + dt_ns, CLICK_PAUSE_NS);
     if (!settings.clicks || !caps.outputs_force) {
         click.left_ns = 0;
@@ -222,7 +222,7 @@ ForceStep feel(const ForceSettings& settings, const DeviceCaps& caps, const Rele
         const SentForce effect = force_in_effect(caps, memory.last, moment.now_ns, memory.sent);
         observe_energy(memory.last.position_m, pulled, effect.force_n, memory.energy);
     }
-    if (memory.contact_fade == 0.0) memory.energy.made_j = 0.0;  // nothing to take it from
+    if (memory.contact_fade == 0.0) memory.energy.made_j = 0.0;  // no contact: nothing to dissipate
     const glm::dvec3 taken = take_energy(memory.velocity, double(moment.dt_ns) * 1e-9, memory.energy);
     const glm::dvec3 driven = pulled + fade * click_of(settings, caps, pull, moment.dt_ns, memory);
     return {.force_n = driven - fade * rate_share * damping_of(settings, memory) + memory.engagement * taken,
@@ -233,8 +233,8 @@ ForceStep feel(const ForceSettings& settings, const DeviceCaps& caps, const Rele
             .objects = growth.contacts};
 }
 
-/// What the force may change by in a tick. A law that is steep where a ball meets a thin sheet, 1200 N/m on one of two
-/// voxels, is no jolt for a hand that is slow.
+/// Maximum change of the force in a tick. A steep law, where a ball meets a thin sheet (1200 N/m for two voxels), then
+/// causes no jolt if the hand is slow.
 double slew_at(const glm::dvec3& velocity)
 {
     return std::clamp(GENTLE_SLEW_N * glm::length(velocity) / GENTLE_SPEED, GENTLE_SLEW_N, SLEW_N);
@@ -269,7 +269,7 @@ ForceStep step(const ForceSettings& settings, const DeviceCaps& stated, ReadResu
                                : std::min(now_ns - memory.last_tick_ns, LONGEST_TICK_NS);
     const double dt_s = double(dt_ns) * 1e-9;
     memory.last_tick_ns = now_ns;
-    add_heat(memory.force_n, dt_s, memory.heat);  // of the last tick, which ends now
+    add_heat(memory.force_n, dt_s, memory.heat);  // the force of the last tick, which ends now
 
     // ---- The hand's position ----
     if (result == ReadResult::lost) return stop(settings, FORCE_NO_DEVICE, now_ns, memory);

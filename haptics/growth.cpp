@@ -21,7 +21,7 @@ uint32_t fill_runs(uint32_t seeds, uint32_t mask)
     return up | down;
 }
 
-/// Bits of word `word` that are voxels.
+/// The bits of word `word` that are voxels.
 uint32_t valid_bits(const RelevancePatch& patch, int32_t word)
 {
     const int32_t rest = patch.size.x - 32 * word;
@@ -49,7 +49,7 @@ struct Growing {
         list.waits[at / 32] &= ~(1u << (at % 32));
         return at;
     }
-    /// True if a voxel was added. `word` is the place of `at` in its row.
+    /// Adds seeds and queues the word; true if a voxel was added. `word` is the index of `at` in its row.
     bool seed(uint32_t at, int32_t word, uint32_t seeds)
     {
         const uint32_t allowed = mask.words[at] & valid_bits(mask, word);
@@ -61,7 +61,7 @@ struct Growing {
     }
 };
 
-/// The 32 bits from bit `x` of a row on; what lies outside it is 0.
+/// The 32 bits from bit `x` of a row on; bits outside it are 0.
 uint32_t bits_from(const uint32_t* row, int32_t words, int32_t x)
 {
     const int32_t word = x >> 5;  // rounds down
@@ -73,7 +73,7 @@ uint32_t bits_from(const uint32_t* row, int32_t words, int32_t x)
 struct Box {
     glm::ivec3 lower{0}, upper{0};  ///< half-open
 };
-/// The voxels of a patch that the ball may hold.
+/// The voxels of a patch that the ball may contain.
 Box voxels_around(const RelevancePatch& patch, const glm::dvec3& centre, double radius)
 {
     const glm::dvec3 lower = (centre - radius) / patch.spacing - glm::dvec3(patch.origin);
@@ -83,7 +83,7 @@ Box voxels_around(const RelevancePatch& patch, const glm::dvec3& centre, double 
             glm::ivec3(glm::clamp(glm::ceil(upper), glm::dvec3(0.0), size))};
 }
 
-/// Calls `take(voxel, middle)` for each set voxel whose middle lies in the ball.
+/// Calls `take(voxel, middle)` for each set voxel whose centre lies in the ball.
 template <class Take>
 void each_voxel_in_ball(const RelevancePatch& patch, const glm::dvec3& centre, double radius, const Take& take)
 {
@@ -113,7 +113,7 @@ uint32_t seed_across_levels(const RelevancePatch& object, const glm::dvec3& cent
         const uint32_t at = uint32_t(voxel.x / 32 + mask.words_per_row * (voxel.y + mask.size.y * voxel.z));
         seeded += growing.seed(at, voxel.x / 32, 1u << (voxel.x % 32));
     };
-    // From the finer of the two, so that no voxel of it is passed over.
+    // Iterates over the finer of the two, so that none of its voxels is missed.
     if (object.spacing.x <= mask.spacing.x) {
         each_voxel_in_ball(object, centre, radius, [&](const glm::ivec3&, const glm::dvec3& p) { seed_at(p); });
         return seeded;
@@ -159,7 +159,7 @@ void begin_growth(const RelevancePatch& mask, RelevancePatch& grown, GrowthList&
 {
     grown.take_place_of(mask);
     std::fill_n(grown.words.begin(), mask.word_count(), 0u);
-    while (list.count > 0) {  // what an earlier growth left
+    while (list.count > 0) {  // left over from an earlier growth
         const uint32_t at = list.ring[list.first];
         list.waits[at / 32] = 0;
         list.first = (list.first + 1) % RelevancePatch::MAX_WORDS;
@@ -224,7 +224,7 @@ void forget_object(GrowthMemory& memory) noexcept
 const RelevancePatch& advance_object(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
                                      GrowthMemory& memory) noexcept
 {
-    // A new contact's patch was replaced before anything was grown in it: the next tick touches anew.
+    // A new contact's patch was replaced before anything was grown in it: the next tick touches again.
     if (memory.is_growing && !memory.has_mask && patch.sequence != memory.seen_sequence)
         memory.is_growing = memory.is_new_contact = false;
     const bool is_new = patch.sequence != 0 && patch.sequence != memory.seen_sequence && patch.is_well_formed();
@@ -233,13 +233,13 @@ const RelevancePatch& advance_object(const RelevancePatch& patch, const glm::dve
         RelevancePatch& next = memory.patches[1 - memory.current];
         memory.is_growing = seed_from_object(memory.object(), patch, centre, radius, next, memory.list) > 0;
         memory.is_new_contact = false;
-        if (!memory.is_growing) {  // nothing of it is left, or the hand jumped past its region
+        if (!memory.is_growing) {  // no part of it is left, or the hand jumped out of its region
             memory.has_object = false;
             memory.patches[memory.current].sequence = 0;
         }
     }
     RelevancePatch& held = memory.patches[memory.current];
-    // The same bits, known to be true for longer: so is what was grown in them.
+    // The same bits with a newer time stamp: the growth is valid for as long.
     if (patch.sequence == held.sequence && patch.settings == held.settings)
         held.time_ns = std::max(held.time_ns, patch.time_ns);
     if (!memory.is_growing) return memory.object();

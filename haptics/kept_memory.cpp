@@ -22,14 +22,14 @@ Pages pages_of(void* begin, size_t bytes)
     return {reinterpret_cast<std::byte*>(first), end - first};
 }
 
-/// `how`: as they will be used. Locking would bring them in as well, but not where it is refused.
+/// `how`: the expected use. Locking would load the pages as well, but not if it is refused.
 bool keep(const Pages& pages, int how) noexcept
 {
     static_cast<void>(::madvise(pages.begin, pages.bytes, how));
     return ::mlock(pages.begin, pages.bytes) == 0;
 }
 
-/// The program, and what its arithmetic and its clock call; not the drivers, which are many times larger.
+/// The program and the libraries used by its arithmetic and clock; not the drivers, which are many times larger.
 bool is_used_by_ticks(const char* file)
 {
     return file[0] == '\0' || std::strstr(file, "/libc.so") || std::strstr(file, "/libm.so");

@@ -22,7 +22,8 @@ ModePull towards(const Proxy& proxy)
 ModePull pull_to_surface(const ForceSettings& settings, const RelevancePatch& patch, const glm::dvec3& probe,
                          SurfaceMemory& surface)
 {
-    const ProxyLaw law = settings.law == ProxyLaw::thesis ? ProxyLaw::thesis : ProxyLaw::mean;  // only its share counts
+    const ProxyLaw law = settings.law == ProxyLaw::thesis ? ProxyLaw::thesis : ProxyLaw::mean;  // only its share is
+                                                                                                // used
     const Proxy around = patch.sequence == 0 ? Proxy{} : find_proxy(patch, probe, settings.probe_radius, law);
     const double hold = std::clamp(settings.surface_share, 0.0, 1.0);
     const bool is_little = around.relevant_share < SURFACE_HYSTERESIS * hold;
@@ -69,7 +70,7 @@ ModePull pull_of(const ForceSettings& settings, const RelevancePatch& patch, con
     } else if (patch.sequence != 0) {
         pull = towards(find_proxy(patch, probe, settings.probe_radius, settings.law));
     }
-    // An object is as old as what it was grown in; without one, nothing is felt and the patch itself counts.
+    // An object is as old as the patch it was grown in; without one, nothing is felt and the patch itself counts.
     const bool is_object = settings.mode == HapticMode::object && growth.has_object;
     pull.is_usable = is_usable(is_object ? growth.object() : patch, settings, probe, now_ns);
     return pull;

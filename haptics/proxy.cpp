@@ -56,8 +56,8 @@ RowRange rows_within(double centre, double reach, int32_t count)
     return {int32_t(begin), int32_t(end)};
 }
 
-/// Lines per row of voxels along y, and the same along z. Their places are fixed in the voxels, not in the ball: only
-/// then are the sums of the potential law exact gradients.
+/// Lines per row of voxels along y, and the same along z. Their positions are fixed relative to the voxels, not to the
+/// ball: only then are the sums of the potential law exact gradients.
 struct RowRule {
     std::array<double, 3> places{};   ///< voxels from the row's lower side
     std::array<double, 3> weights{};  ///< with a sum of 1
@@ -83,7 +83,7 @@ bool is_empty(const uint32_t* words, int32_t count)
     return std::all_of(words, words + count, [](uint32_t word) { return word == 0; });
 }
 
-/// A point of the ball of radius 1 for three shares of 1, evenly distributed where they are.
+/// Maps three fractions of 1 to a point in the ball of radius 1, uniformly distributed if they are.
 glm::dvec3 point_of(double of_volume, double of_height, double of_turn)
 {
     const double r = std::cbrt(of_volume), z = 2.0 * of_height - 1.0;

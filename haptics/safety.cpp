@@ -6,7 +6,7 @@
 namespace shvr {
 namespace {
 
-/// A device's stiffness limit holds for two ticks: 2 ms, half a tick that a force is held, and what smoothing the
+/// A device's stiffness limit applies at two ticks: 2 ms, half a tick for which a force is held, and what smoothing the
 /// velocity at 100 Hz adds (fitted to K = 300 B at two ticks).
 constexpr double USUAL_LATENCY_S = 0.002, HELD_S = 0.0005, VELOCITY_LAG_S = 0.00083;
 constexpr double LATENCY_SMOOTHING_S = 0.1;
@@ -77,7 +77,7 @@ void measure_latency(const DeviceCaps& caps, const DeviceState& state, uint64_t 
     if (!caps.tells_force_sequence || state.force_sequence == 0) return;
     const SentForce effect = force_in_effect(caps, state, now_ns, sent);
     if (effect.sequence == 0 || now_ns < effect.time_ns) return;
-    // A force acts for a tick before the state that tells of it.
+    // A force acts for a tick before the state that reports it.
     const double latency_s = std::max(double(now_ns - effect.time_ns) * 1e-9 - tick_s, 0.0);
     const double share = 1.0 - std::exp(-tick_s / LATENCY_SMOOTHING_S);
     sent.latency_s += share * (latency_s - sent.latency_s);

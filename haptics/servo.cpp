@@ -17,7 +17,7 @@ namespace {
 
 constexpr int SERVO_PRIORITY = 80;
 constexpr uint64_t SECOND_NS = 1'000'000'000;
-constexpr size_t STACK_BYTES = size_t{128} << 10;  ///< of a tick, at most
+constexpr size_t STACK_BYTES = size_t{128} << 10;  ///< maximum used in a tick
 
 class RealPacing : public Pacing {
 public:

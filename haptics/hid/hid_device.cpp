@@ -90,7 +90,7 @@ std::string described(const HidListing& device)
 
 struct Opened {
     std::unique_ptr<HidPort> port;
-    std::string reason;  ///< without a port: hidapi's words
+    std::string reason;  ///< without a port: hidapi's message
 };
 Opened open_port(const std::string& path)
 {
@@ -99,8 +99,8 @@ Opened open_port(const std::string& path)
     return {nullptr, printable(hid_error(nullptr))};
 }
 
-/// What the system shows of the device's description of its reports; empty where it shows none (hidapi 0.13 cannot
-/// ask).
+/// The device's report descriptor as exposed by the system;
+/// empty if it is not (hidapi 0.13 cannot query it).
 std::vector<uint8_t> descriptor_of(const std::string& path)
 {
     const std::filesystem::path file =

@@ -25,10 +25,10 @@ using std::chrono::milliseconds;
 
 constexpr int READ_TIMEOUT_MS = 10;  ///< so that shutdown never has to interrupt a read
 constexpr milliseconds REOPEN_EVERY{15};
-constexpr milliseconds LOOK_EVERY{5};             ///< whether the link is to end, meanwhile
+constexpr milliseconds LOOK_EVERY{5};             ///< checks whether the link is to end
 constexpr int MAX_REPORTS_A_DRAIN = 256;          ///< a device that floods us must not delay the newest report
-constexpr uint64_t LONGEST_STEP_NS = 20'000'000;  ///< of rate control: after a pause it does not leap
-// A hand without motors gives way to a force like the mouse's: 75 N/m, settled within some 10 ms.
+constexpr uint64_t LONGEST_STEP_NS = 20'000'000;  ///< of rate control: no jump after a pause
+// A hand without motors yields to a force like the mouse's: 75 N/m, settled within some 10 ms.
 constexpr double GIVE_WAY = 75.0;
 constexpr double SETTLE_S = 0.01;
 constexpr int LINK_PRIORITY = 81;  ///< above the servo's: both are short and then wait
@@ -56,7 +56,7 @@ uint64_t steady_ns()
     return uint64_t(SteadyClock::now().time_since_epoch() / std::chrono::nanoseconds(1));
 }
 
-/// Extends the counters of one connection past their overflows, and joins what came in several reports.
+/// Extends the counters of one connection past their overflows, and combines data from several reports.
 class Decoder {
 public:
     explicit Decoder(const HidProfile& profile)
@@ -66,7 +66,7 @@ public:
           force_sequence_(bits_of(profile, HidQuantity::force_sequence)),
           time_(bits_of(profile, HidQuantity::time))
     {}
-    /// Nothing if the report is malformed, or nothing is known yet of the device's place: `is_malformed()` tells.
+    /// Null if the report is malformed, or the device's position is still unknown: `is_malformed()` distinguishes them.
     std::optional<DeviceState> next(std::span<const uint8_t> report)
     {
         is_malformed_ = false;
@@ -101,7 +101,7 @@ private:
     DeviceState state_;
 };
 
-/// Where the speeds have led.
+/// Position reached by integrating the speeds.
 struct RateMotion {
     glm::dvec3 wish_m{0.0}, given_way_m{0.0};
     glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
@@ -162,7 +162,7 @@ public:
     }
 
 private:
-    /// Rate control: the next place, by the speeds last heard of.
+    /// Rate control: advances the position by the latest speeds.
     ReadResult move_on(uint64_t connection, DeviceState& state) noexcept
     {
         const uint64_t now = now_ns_();
@@ -209,7 +209,7 @@ private:
         wake_.notify_one();
     }
 
-    /// Of the device on that port: it may be another one than before.
+    /// Reads the limits of the device on that port: it may differ from the previous one.
     DeviceCaps ask_limits(HidPort& port) const
     {
         DeviceCaps caps = profile_.limits;
@@ -305,7 +305,7 @@ private:
 
     void send(const Command& command, bool enabled)
     {
-        // An unverified device gets no bytes at all: nobody knows what they would do.
+        // An unverified device gets no bytes at all: their effect is unknown.
         if (!profile_.verified || !profile_.output || write_failed_) return;
         const std::shared_ptr<HidPort> open = port();
         if (open && !open->write(encode(profile_, command.force_n, command.sequence, enabled).span()))

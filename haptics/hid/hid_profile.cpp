@@ -140,7 +140,7 @@ void need_all_or_none(const JsonNode& node, const HidReport& report, std::initia
         need(node, report, quantities);
 }
 
-/// Several input reports: no two are alike, and what belongs together arrives together.
+/// Several input reports: no two are alike, and related fields are in the same report.
 std::vector<HidReport> read_inputs(const JsonNode& node)
 {
     std::vector<HidReport> reports;
@@ -221,7 +221,7 @@ DeviceCaps read_limits(const JsonNode& node)
     return limits;
 }
 
-/// What schema 2 adds: reports to pass over, and rate control in place of positions.
+/// What schema 2 adds: reports to ignore, and rate control in place of positions.
 void read_second(const JsonNode& node, HidProfile& profile)
 {
     using enum HidQuantity;

@@ -93,7 +93,7 @@ std::optional<HidInput> decode(const HidProfile& profile, std::span<const uint8_
         if (reader.has(position_x)) input.position_m = profile.axes * reader.vector(position_x, position_y, position_z);
         if (reader.has(rotation_w)) input.rotation = rotation_of(reader, profile.axes);
         if (reader.has(rate_x)) input.rate = profile.axes * reader.vector(rate_x, rate_y, rate_z);
-        // A speed of turning is a pseudovector: a reflection also flips its sign.
+        // An angular velocity is a pseudovector: a reflection also flips its sign.
         if (reader.has(turn_x))
             input.turn_rate = glm::determinant(profile.axes) * (profile.axes * reader.vector(turn_x, turn_y, turn_z));
         input.buttons = reader.raw(buttons);

@@ -27,9 +27,9 @@ using std::chrono::milliseconds;
 using Event = WebSocketReader::Event;
 
 constexpr milliseconds RETRY_EVERY{20};
-constexpr milliseconds GIVE_UP{1000};  ///< without an answer for so long the connection is ended
+constexpr milliseconds GIVE_UP{1000};  ///< the connection is ended after that long without an answer
 constexpr int LINK_PRIORITY = 81;      ///< above the servo's: it is short and then waits
-constexpr double PEAK_FORCE_N = 3.3;   ///< our limits, not its maker's: nobody has tried this on the device
+constexpr double PEAK_FORCE_N = 3.3;   ///< our limits, not its maker's: untested on the device
 constexpr double CONTINUOUS_FORCE_N = 0.88;
 constexpr double STIFFNESS_LIMIT = 250.0;  ///< N/m: an arm of low friction, two ticks of delay
 
@@ -40,13 +40,13 @@ struct Reading {
 struct Command {
     glm::dvec3 force_n{0.0};
     uint32_t sequence = 0;
-    uint64_t interruptions = 0;  ///< that the servo knew of
+    uint64_t interruptions = 0;  ///< number of interruptions known to the servo
 };
 
 struct Channels {
     std::unique_ptr<WebSocketClient> states, events;
     std::string device_id;
-    std::string trouble;  ///< why there is no `states`
+    std::string trouble;  ///< why `states` is null
 };
 
 /// The first message of the service, which lists its devices.
@@ -88,7 +88,7 @@ Channels connect(const Inverse3Options& options)
     return channels;
 }
 
-/// A sentence that is never freed. There are as many as kinds of trouble.
+/// A sentence that is never freed. There are only as many as kinds of failure.
 const char* kept(const std::string& text)
 {
     static std::mutex mutex;
@@ -106,7 +106,7 @@ public:
           wake_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC))
     {
         if (wake_ < 0) fail("the Inverse3's thread cannot be woken; expected fewer open files");
-        options_.device_id = device_id_;  // the same one is looked for after a loss
+        options_.device_id = device_id_;  // after a loss, the same device is searched for
         begin();
         thread_ = std::thread(&Link::run, this);
         ::pthread_setname_np(thread_.native_handle(), "inverse3");
@@ -126,7 +126,7 @@ public:
 
     DeviceCaps caps() const noexcept override
     {
-        // About the middle of the reach with the service's default mount; forces are ours to limit.
+        // About the centre of the workspace with the service's default mount; forces are limited by us.
         const glm::dvec3 middle = from_inverse3({0.0, -0.12, 0.15});
         return {.usable_lower_m = middle - 0.08,
                 .usable_upper_m = middle + 0.08,
@@ -142,7 +142,7 @@ public:
     {
         const uint64_t connection = connection_, interruptions = interruptions_;
         if (connection == 0) return ReadResult::lost;
-        // The force went to zero meanwhile: the servo must fade it in anew.
+        // The force went to zero meanwhile: the servo must fade it in again.
         if (std::exchange(interruptions_seen_, interruptions) != interruptions) return ReadResult::lost;
         if (!readings_.take() || readings_.value().connection != connection) return ReadResult::stale;
         state = readings_.value().state;
@@ -205,7 +205,7 @@ private:
     {
         in_flight_ = 0;
         is_first_ = true;
-        is_braked_ = is_unplugged_ = is_telling_ = false;  // a device that brakes locks itself
+        is_braked_ = is_unplugged_ = is_telling_ = false;  // a braking device locks itself
         ++interruptions_;                                  // forces of the last connection are not sent on this one
         last_sent_force_ = glm::dvec3(0.0);
         sent_at_ = write_at_ = SteadyClock::now();
@@ -213,7 +213,7 @@ private:
         trouble_ = channels_.events ? "" : NO_EVENTS;
         connection_ = ++connections_;
     }
-    /// States wait meanwhile: there is no force to keep in time.
+    /// States wait meanwhile: no force has deadlines now.
     void find_events()
     {
         std::string ignored;
@@ -222,7 +222,7 @@ private:
         if (channels_.events) trouble_ = "";
     }
 
-    /// One turn: waits, takes what has come, sends what is due.
+    /// One iteration: waits, receives, sends what is due.
     void serve()
     {
         std::array<pollfd, 3> each{pollfd{wake_, POLLIN, 0}, pollfd{channels_.states->descriptor(), POLLIN, 0},
@@ -342,7 +342,7 @@ private:
                                !is_unwritten && commands_.value().interruptions == interruptions_ &&
                                std::isfinite(glm::length(wanted));
         const bool is_pulling = last_sent_force_ != glm::dvec3(0.0);
-        if (is_pulling && !may_force) {  // at once, whatever is on its way
+        if (is_pulling && !may_force) {  // at once, even with a message in flight
             ++interruptions_;
             if (!send({}, commands_.value().sequence)) lose();
             return;
@@ -358,7 +358,7 @@ private:
     bool send(const glm::dvec3& force_n, uint32_t sequence)
     {
         text_.clear();
-        // + 0.0: no "-0" from the turned axes of a zero force
+        // + 0.0: avoids "-0" from the rotated axes of a zero force
         append_inverse3_command(text_, device_id_, to_inverse3(force_n) + 0.0, std::exchange(is_first_, false));
         if (!channels_.states->send_text(text_)) return false;
         has_command_ = false;
@@ -372,14 +372,14 @@ private:
     bool refuse(const char* wrong)
     {
         trouble_ = kept(sentence("the Inverse3's service sent what it must not: ", wrong));
-        ++refused_;  // last: who sees the count sees why
+        ++refused_;  // last: an observer of the count also sees the reason
         next_try_ = SteadyClock::now() + options_.hold;
         return false;
     }
     void lose()
     {
         connection_ = 0;
-        send({}, commands_.value().sequence);  // where it still hears us
+        send({}, commands_.value().sequence);  // in case it still receives
         channels_.states->close();
         channels_ = {};
     }
@@ -399,10 +399,10 @@ private:
     uint64_t interruptions_seen_ = 0;         ///< used by the servo only
     std::atomic<const char*> trouble_{""};
 
-    // Of the link's thread.
+    // Used by the link's thread only.
     int in_flight_ = 0;
     bool is_first_ = true, has_command_ = false, is_braked_ = false, is_unplugged_ = false;
-    bool is_telling_ = false;  ///< `trouble_` is of an event, and ends with its hold
+    bool is_telling_ = false;  ///< `trouble_` is from an event, and ends with its hold
     glm::dvec3 last_sent_force_{0.0};
     uint32_t last_sent_sequence_ = 0;
     SteadyClock::time_point sent_at_, write_at_, held_until_, next_try_, events_tried_;

@@ -14,7 +14,7 @@ constexpr int MAX_DEPTH = 24;
 constexpr size_t MAX_ID = 64;
 constexpr double MAX_PLACE_M = 10.0;  ///< no device reaches farther
 
-/// Reads JSON from front to back. The first trouble is kept, and nothing is read after it.
+/// Parses JSON from front to back. The first error is kept, and nothing is parsed after it.
 class Scanner {
 public:
     explicit Scanner(std::string_view text) : rest_(text) {}
@@ -41,7 +41,7 @@ public:
     {
         return nested('[', ']', element);
     }
-    /// As it is written: escapes stay.
+    /// The raw string: escapes are not decoded.
     bool string(std::string_view& text)
     {
         if (!sign('"')) return false;
@@ -149,7 +149,7 @@ bool is_id(std::string_view text)
     });
 }
 
-/// A key for each component; all must be there.
+/// One key per component; all must be present.
 template <size_t SIZE>
 bool read_components(Scanner& scanner, std::string_view keys, std::array<double, SIZE>& values)
 {
@@ -230,7 +230,7 @@ bool read_grip(Scanner& scanner, Inverse3State& state)
     });
 }
 
-/// The shortest text that is read back as the same number.
+/// Appends the shortest text that parses back to the same number.
 void append_number(std::string& text, double value)
 {
     std::array<char, 32> digits{};

@@ -18,7 +18,7 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr int MAX_RECEIVES = 64;  ///< at a time, of 16 KiB: who floods us must not keep us from sending
+constexpr int MAX_RECEIVES = 64;  ///< at a time, of 16 KiB: a flood of messages must not keep us from sending
 
 bool wait_for(int descriptor, short what, SteadyClock::time_point until)
 {
@@ -37,7 +37,8 @@ int connect_socket(uint16_t port, SteadyClock::time_point until)
     const int descriptor = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     if (descriptor < 0) return -1;
     const int on = 1;
-    ::setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);  // a force is not worth waiting for another one
+    ::setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);  // disables Nagle's algorithm: a force must not
+                                                                         // wait for the next one
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_port = htons(port);
@@ -99,7 +100,7 @@ bool WebSocketClient::shake_hands(uint16_t port, SteadyClock::time_point until, 
 
 bool WebSocketClient::send_bytes(std::string_view bytes)
 {
-    // A message in flight is a few hundred bytes: a buffer that has no room for it belongs to a side that has stopped.
+    // A message in flight is a few hundred bytes: a full send buffer means that the other side has stopped reading.
     ssize_t count = -1;
     do count = ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     while (count < 0 && errno == EINTR);

@@ -17,14 +17,15 @@ using SteadyClock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds WRITE_TIMEOUT{18};
 constexpr std::chrono::milliseconds HOLD{100};   ///< after an error: long enough for the servo to notice
-constexpr double TOO_WARM = 0.95;                ///< share of the motors' limit: before the driver lets go by itself
-constexpr double WARM_AGAIN = 0.8;               ///< below it there is force again
+constexpr double TOO_WARM = 0.95;                ///< fraction of the motors' limit: before the driver switches off by
+                                                 ///< itself
+constexpr double WARM_AGAIN = 0.8;               ///< below it force is enabled again
 constexpr uint64_t MAX_ERRORS = 100;             ///< in a row, 0.1 s: the device is gone
 constexpr double RECOMMENDED_STIFFNESS = 400.0;  ///< N/m, chai3d's figure for a Touch; two ticks of delay
 
 std::atomic<bool> is_in_use{false};
 
-/// Sets it free, however opening ends.
+/// Releases the device, however opening ends.
 struct Claim {
     Claim()
     {
@@ -35,7 +36,7 @@ struct Claim {
     Claim& operator=(const Claim&) = delete;
 };
 
-/// What an error of the driver means to a person.
+/// A user-readable message for an error of the driver.
 std::string in_words(const HdLibrary& hd, const HdError& error)
 {
     switch (error.code) {
@@ -157,7 +158,7 @@ private:
         caps_.senses_rotation = true;
         caps_.outputs_force = allow_force;
         caps_.tells_force_sequence = true;
-        hd_.get_error();  // what a device does not state is no trouble
+        hd_.get_error();  // values that a device does not report are not an error
     }
 
     // ---- The driver's thread ----
@@ -255,7 +256,7 @@ private:
     std::atomic<double> temperature_{0.0};
     std::atomic<const char*> trouble_{""};
 
-    // Of the driver's thread.
+    // Used by the driver's thread only.
     bool is_warm_ = false, has_error_ = false;
     uint32_t sequence_ = 0, set_sequence_ = 0;
     uint64_t errors_ = 0;

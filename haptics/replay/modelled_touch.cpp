@@ -20,7 +20,7 @@ ModelledTouch::ModelledTouch(const TouchModel& model) : model_(model), random_(m
 
 DeviceCaps ModelledTouch::caps() const noexcept
 {
-    return {.usable_lower_m = glm::dvec3(-MAX_REACH_M),  // its wishes lie where the trace does
+    return {.usable_lower_m = glm::dvec3(-MAX_REACH_M),  // its wishes are where the trace's are
             .usable_upper_m = glm::dvec3(MAX_REACH_M),
             .peak_force_n = model_.peak_n,
             .latency_s = model_.delay_ticks * model_.tick_s,
@@ -43,7 +43,7 @@ void ModelledTouch::move_on(double seconds, const glm::dvec3& wish_m, const glm:
         seconds -= dt;
         const glm::dvec3 pull = force_n + model_.hand_stiffness * (wish_m - position_m_);
         velocity_ = (velocity_ + pull * (dt / mass)) / (1.0 + damping * dt / mass);
-        // Friction takes what speed it can in the step, and no more.
+        // Friction takes at most all of the speed within the step.
         const double speed = glm::length(velocity_), taken = model_.coulomb_n * dt / mass;
         velocity_ = speed > taken ? velocity_ * (1.0 - taken / speed) : glm::dvec3(0.0);
         position_m_ += velocity_ * dt;

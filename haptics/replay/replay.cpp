@@ -36,7 +36,7 @@ ForceSettings chosen(const TraceSettings& settings, const ReplayOptions& options
     return force;
 }
 
-/// The device of a replay: the trace's answers, or a modelled one that its positions draw along.
+/// The device of a replay: the trace's answers, or a modelled one drawn along the trace's positions.
 class Player {
 public:
     Player(const Trace& trace, const ReplayOptions& options) : trace_(trace)
@@ -66,7 +66,7 @@ public:
             return tick.read;
         }
         if (is_finite(tick.state.position_m)) wish_m_ = tick.state.position_m;
-        // It begins where the trace does.
+        // It starts where the trace starts.
         touch_->wish().publish({.position_m = wish_m_, .buttons = tick.state.buttons, .jump = tick.state.jump + 1});
         return touch_->read(state);
     }
@@ -84,11 +84,11 @@ private:
     size_t caps_ = 0;  ///< changes of limits so far
     TouchModel model_;
     std::unique_ptr<ModelledTouch> touch_;
-    double work_before_j_ = 0.0;  ///< of devices before it
+    double work_before_j_ = 0.0;  ///< sum over earlier devices
     glm::dvec3 wish_m_{0.0};
 };
 
-/// Makes relevance when what is there no longer does.
+/// Computes relevance when the present one no longer suffices.
 class Mirror {
 public:
     Mirror(const MakeRelevance& make, uint32_t every)
@@ -199,7 +199,7 @@ ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, cons
         result.tick_ns.push_back(uint64_t(std::chrono::nanoseconds(Clock::now() - begin).count()));
         player.write(step_now);
 
-        // The force of the last tick acted on the way here.
+        // The force of the last tick acted during this motion.
         if (has_last && is_finite(state.position_m))
             result.energy_j += glm::dot(last_force, state.position_m - last_position);
         has_last = is_finite(state.position_m);

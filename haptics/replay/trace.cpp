@@ -160,7 +160,7 @@ bool read_head(const JsonNode& node, Trace& trace)
     return number == "3";
 }
 
-/// Reads lines after the head. Runs are read once, to be refused by their line.
+/// Reads lines after the head. Runs are decoded here, so that errors name their line.
 class LineReader {
 public:
     explicit LineReader(Trace& trace) : trace_(trace) {}
@@ -200,7 +200,7 @@ private:
         const bool is_other = !trace_.swaps.empty() && trace_.swaps.back() == trace_.ticks.size();
         trace_.ticks.push_back(
             read_tick(node, trace_.ticks.empty() ? nullptr : &trace_.ticks.back(), 1'000'000'000 / trace_.rate_hz));
-        // What is not said of another device's relevance is that there is none.
+        // If another device's relevance is not stated, there is none.
         if (is_other && !node["relevance_time"].exists()) trace_.ticks.back().relevance_time_ns = 0;
     }
     void swap_device()
@@ -257,7 +257,7 @@ Trace parse_trace(const std::string& whole, const std::string& origin)
             continue;
         }
         reader.read_first(document.root());
-        // Before what a damaged line says is told as a mistake in it.
+        // Checked first, before a damaged line is reported as a mistake in it.
         if (reader.has_end()) text = without_trace_end(text, origin);
     }
     if (!has_head) fail(origin, " is empty; expected a line {\"shvr_stylus_trace\":1}");

@@ -40,7 +40,7 @@ std::string trace_end(std::string_view text)
 std::string_view without_trace_end(std::string_view text, const std::string& origin)
 {
     const size_t last = text.find_last_not_of(BLANK);
-    const size_t begin = text.rfind('\n', last) + 1;  // 0 where there is no line break
+    const size_t begin = text.rfind('\n', last) + 1;  // 0 if there is no line break
     const std::string_view before = text.substr(0, begin), line = text.substr(begin, last + 1 - begin);
     if (!line.starts_with("{\"end\":") || !line.ends_with("}}"))
         fail(origin, " has no end line after its ", lines_of(text),

@@ -10,7 +10,7 @@ namespace {
 constexpr std::string_view DIGITS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
 constexpr uint32_t MORE = 32;
 
-/// The bits of `before` where a word of a patch with that origin lies.
+/// The bits of `before` at the voxels of a word that starts at `first_voxel`.
 uint32_t word_before(const RelevancePatch& before, int32_t level, const glm::ivec3& first_voxel)
 {
     if (before.sequence == 0 || before.level != level) return 0;
@@ -40,7 +40,7 @@ void put_length(uint32_t length, std::string& runs)
     runs += DIGITS[length];
 }
 
-/// The next length; false at the end, at other characters, and where it is too long.
+/// Parses the next length; false at the end, on other characters, and if it is too long.
 bool take_length(std::string_view& runs, uint32_t& length)
 {
     length = 0;
@@ -56,7 +56,7 @@ bool take_length(std::string_view& runs, uint32_t& length)
 
 bool has_place(const RelevancePatch& patch)
 {
-    // Far enough from the limits that sums of places do not overflow.
+    // Far enough from the limits that sums of positions do not overflow.
     const auto fits = [](int32_t n) { return n >= 0 && n <= (1 << 30); };
     bool is_right = patch.sequence > 0 && patch.is_well_formed() && patch.level >= 0 && patch.level < 31;
     for (int axis = 0; axis < 3; ++axis)

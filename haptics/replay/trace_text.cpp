@@ -1,4 +1,4 @@
-// Writing of traces.
+// Writes traces.
 
 #include <charconv>
 #include <cmath>
@@ -105,7 +105,7 @@ std::string line_of(const TraceSettings& settings)
     line.add("surface_share", force.surface_share);
     line.add("movement_scale", force.movement_scale);
     line.add("strength", force.strength);
-    if (force.clicks) line.add("clicks", true);  // programs before it had a click refuse the key
+    if (force.clicks) line.add("clicks", true);  // older programs without clicks refuse the key
     line.add("let_go", force.let_go);
     line.add("relevance_settings", force.relevance_settings);
     return "{\"settings\":" + line.end() + "}";
