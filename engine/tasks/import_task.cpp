@@ -47,9 +47,7 @@ public:
 
     void take(const ImportProgress& told)
     {
-        if (told.voxels_per_second == 0.0)
-            return progress_(told.fraction);  // nothing has been written yet that could
-                                              // be kept
+        if (told.voxels_per_second == 0.0) return progress_(told.fraction);  // nothing to keep has been written yet
         try {
             if (!std::exchange(is_importing_, true)) progress_ = reporter_.begin("importing " + volume_);
             const double rate = told.voxels_per_second * double(bytes_of(type_)) / 1e6;
