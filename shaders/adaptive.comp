@@ -1,8 +1,8 @@
-// Which blocks of a picture have to be drawn pixel by pixel, and the pixels of all others, between those of the coarse
-// picture (adaptive.h). One thread per block.
+// Decides which blocks of a picture must be drawn pixel by pixel, and interpolates the pixels of all others from the
+// coarse picture (adaptive.h). One thread per block.
 //
-// A block is drawn where the largest and the smallest value of the coarse pixels in it and beside it differ by more
-// than the tolerance, in any channel.
+// A block is drawn if the largest and the smallest value of the coarse pixels in it and next to it differ by more than
+// the tolerance, in any channel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -17,10 +17,11 @@ layout(push_constant, scalar) uniform Push
 layout(binding = 0, rgba32f) uniform readonly image2D coarse;
 layout(binding = 1, rgba32f) uniform writeonly image2D color;
 layout(binding = 2, scalar) writeonly buffer Blocks { uint numbers[]; } blocks;
-// Three words for each dispatch, how many groups there are along each axis; and in the last word, blocks in the list.
+// Three words per dispatch, the group counts along each axis; the last word is the number of blocks in the list.
 layout(binding = 3, scalar) buffer Dispatches { uint words[]; } dispatches;
 
-const ivec2 AROUND = ivec2(ADAPTIVE_BLOCK_X, ADAPTIVE_BLOCK_Y) / 2 + 1;   // pixels of the coarse picture
+const ivec2 AROUND = ivec2(ADAPTIVE_BLOCK_X, ADAPTIVE_BLOCK_Y) / 2 + 1;   // neighbourhood in pixels of the coarse
+                                                                          // picture
 
 void list(uint block)
 {

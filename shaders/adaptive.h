@@ -1,17 +1,17 @@
-// Adaptive pictures: rays through every second pixel of every second row first, then through all pixels of the blocks
-// in which those differ; elsewhere colours are interpolated. (Levoy, Volume rendering by adaptive refinement, The
-// Visual Computer 6, 1990.)
+// Adaptive pictures: first traces rays through every second pixel of every second row, then through all pixels of the
+// blocks in which those differ; elsewhere colours are interpolated. (Levoy, Volume rendering by adaptive refinement,
+// The Visual Computer 6, 1990.)
 #ifndef SHVR_ADAPTIVE_H
 #define SHVR_ADAPTIVE_H
 #include "shared.h"
 
 SHARED_BEGIN
 
-/// Blocks have so many pixels along x and y, and begin at multiples of them in the whole picture, whatever part of it
-/// is drawn: eight pixels, which are a vector on CPUs.
+/// Size of a block in pixels. Blocks begin at multiples of it in the whole picture, whatever part of it is drawn: eight
+/// pixels, which are one vector on CPUs.
 SHARED_CONST uint ADAPTIVE_BLOCK_X = 4u;
 SHARED_CONST uint ADAPTIVE_BLOCK_Y = 2u;
-/// Blocks that a workgroup of the refining kernels draws.
+/// Blocks per workgroup of the refining kernels.
 SHARED_CONST uint ADAPTIVE_BLOCKS_IN_GROUP = 8u;
 
 /// Pixel (x, y) of the coarse picture has the ray of pixel (2 x, 2 y) of the picture.
@@ -29,7 +29,7 @@ SHARED_FUNCTION uvec2 adaptive_begin(uvec2 pixel_begin)
     return uvec2(pixel_begin.x - pixel_begin.x % ADAPTIVE_BLOCK_X, pixel_begin.y - pixel_begin.y % ADAPTIVE_BLOCK_Y);
 }
 
-/// Blocks of the part along x and y. They are listed by number, along x first.
+/// Number of blocks of the part along x and y. They are listed by number, along x first.
 SHARED_FUNCTION uvec2 adaptive_blocks(uvec2 pixel_begin, uvec2 pixel_end)
 {
     const uvec2 pixels = pixel_end - adaptive_begin(pixel_begin);
@@ -37,7 +37,7 @@ SHARED_FUNCTION uvec2 adaptive_blocks(uvec2 pixel_begin, uvec2 pixel_end)
                  (pixels.y + ADAPTIVE_BLOCK_Y - 1u) / ADAPTIVE_BLOCK_Y);
 }
 
-/// In the list, beyond its end.
+/// Marks list entries beyond the end.
 SHARED_CONST uint NO_BLOCK = 0xffffffffu;
 
 SHARED_END

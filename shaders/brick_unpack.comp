@@ -1,6 +1,6 @@
-// Puts bricks into their places: a group for each slice of a brick's codes; the first ones bring the cells as well.
-// Copies would do the same, but some devices run a dispatch for each slice of each.
-// FILTERED: the atlas is the one for the device's filter. Else codes are staged as they lie in it.
+// Copies bricks into their slots: one group per slice of a brick's codes; the first ones also copy the cells. Copy
+// commands would do the same, but some devices run a dispatch for each slice of each.
+// FILTERED: the atlas is the one for the device's filter. Otherwise staged codes have the layout of the atlas.
 // variants: FILTERED
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,17 +1,17 @@
-// Where brick_unpack.comp takes a brick from, and where it goes.
+// Source and destination of a brick for brick_unpack.comp.
 #ifndef SHVR_BRICK_UNPACK_H
 #define SHVR_BRICK_UNPACK_H
 #include "bricks.h"
 
 SHARED_BEGIN
 
-SHARED_CONST uint UNPACK_THREADS = 64u;  // for each slice of a brick
+SHARED_CONST uint UNPACK_THREADS = 64u;  // per slice of a brick
 
 struct BrickUnpackJob {
-    uvec3 code;    ///< the place of its first code
+    uvec3 code;    ///< texel of its first code
     uint codes;    ///< the first staged word of its codes
     uvec3 extent;  ///< in codes
-    uvec3 cell;    ///< the place of its first cell
+    uvec3 cell;    ///< texel of its first cell
     uint ranges;   ///< the first word of its cells' ranges
 };
 

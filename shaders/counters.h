@@ -10,22 +10,22 @@ SHARED_CONST uint COUNTER_SAMPLES = 1u;         // density samples taken
 SHARED_CONST uint COUNTER_SHADED = 2u;          // samples with a gradient
 SHARED_CONST uint COUNTER_LEAPS = 3u;           // jumps over empty cells
 SHARED_CONST uint COUNTER_BRICKS_VISITED = 4u;  // bricks in which a ray took a sample, summed over rays and blocks
-SHARED_CONST uint COUNTER_BRICKS_SKIPPED = 5u;  // bricks that a ray crossed without one, likewise
+SHARED_CONST uint COUNTER_BRICKS_SKIPPED = 5u;  // bricks that a ray crossed without taking a sample, likewise
 SHARED_CONST uint COUNTER_TERMINATED = 6u;      // rays that ended early
-/// Always counted: rays that stopped before their end, once for each dispatch that they stopped in. The picture lacks
-/// what is behind.
+/// Always counted: rays that stopped before their end, once per dispatch in which they stopped. The picture lacks what
+/// is behind.
 SHARED_CONST uint COUNTER_CUT_SHORT = 7u;
-SHARED_CONST uint COUNTER_DENSITY_READS = 8u;  // texels of the atlas, or taps of its filter, that samples asked for
-SHARED_CONST uint COUNTER_TURNS = 9u;          // of the loops along a ray, but those of a fixed length
+SHARED_CONST uint COUNTER_DENSITY_READS = 8u;  // texels of the atlas, or taps of its filter, read by samples
+SHARED_CONST uint COUNTER_TURNS = 9u;          // iterations of the loops along a ray, except loops of fixed length
 
 SHARED_CONST uint COUNTERS_IN_ROW = 16u;
-/// Where a group counts; neighbours in other rows. `rows` is a power of two.
+/// The counter row of a group; neighbouring groups use other rows. `rows` is a power of two.
 SHARED_FUNCTION uint counter_row(uvec3 group, uint rows)
 {
     return (group.x + 8u * group.y) & (rows - 1u);
 }
 
-/// The loops of one thread take no more together in a dispatch. Some devices end loops after 65535, without a word.
+/// Maximum number of loop iterations of one thread in a dispatch. Some devices silently abort loops after 65535.
 SHARED_CONST uint MAX_TURNS = 32768u;
 
 SHARED_END

@@ -1,7 +1,7 @@
 // The leap grid: for every cell of 4^3 voxels, how far a ray may jump, whether it is painted, and which brick holds it.
 //
-// An entry is (distance << 25) | (painted << 24) | slot. Painted: a voxel of the cell (or, where borders are smooth,
-// beside it) is in a group; samples in other
+// An entry is (distance << 25) | (painted << 24) | slot. Painted: a voxel of the cell (or, with smooth borders, next to
+// it) is in a group; samples in other
 // cells need not read the mask. Distance 0: something visible may be in the cell. Distance D > 0: every cell within
 // Chebyshev distance D - 1 is empty, so a ray may leave the cube of 2 D - 1 cells around it without sampling.
 #ifndef SHVR_LEAP_H
@@ -16,8 +16,8 @@ SHARED_CONST uint LEAP_DISTANCE_SHIFT = 25u;
 /// Largest distance searched: a jump of 15 cells crosses 60 voxels.
 SHARED_CONST uint LEAP_LIMIT = 15u;
 
-/// So many codes past the range of its cell a sample may be, so that pictures with and without skipping are equal, bit
-/// for bit. Exact sampling is a few ulp off; a device's filter may round its result by a code.
+/// Tolerance in codes by which a sample may exceed the range of its cell, so that pictures with and without skipping
+/// are equal, bit for bit. Exact sampling is a few ulp off; a device's filter may round its result by a code.
 SHARED_CONST float GUARD_EXACT = 0.02f;
 SHARED_CONST float GUARD_FILTERED = 1.5f;
 
@@ -33,7 +33,7 @@ struct OccupancyParams {
     float guard;          ///< GUARD_EXACT or GUARD_FILTERED
     uint skipping;        ///< 0: every cell counts as occupied
     uint empty_distance;  ///< distance for cells that are not occupied
-    uint paint_reach;     ///< voxels, 0 or 1: so far around a painted voxel its group may be seen
+    uint paint_reach;     ///< distance in voxels, 0 or 1, at which a painted voxel's group may be visible
 };
 
 struct LeapBoundParams {
@@ -45,22 +45,22 @@ struct LeapBoundParams {
 
 SHARED_CONST uint SAMPLE_BITS_AHEAD = 24u;
 SHARED_CONST uint SAMPLE_BIT_PARTS = 32768u;
-/// Voxels along z of volumes with sample bits: parts have 31 bits. Along y there may be four times as many.
+/// Maximum voxels along z of volumes with sample bits: parts have 31 bits. Along y there may be four times as many.
 SHARED_CONST uint SAMPLE_BITS_SIZE = 4095u;
 SHARED_CONST float SAMPLE_BITS_REACH = 4.0f;
 
-/// Sample bits: whether a sample may show anything, by the eight voxels that it lies between. Its place is that of the
-/// upper ones, floor(position - 0.5) + 1, no further than the volume's last voxel. Two texels per cell, of two planes
-/// along z each: bit x + 4 y + 16 z.
+/// Sample bits: whether a sample may show anything, according to the eight voxels around it. A sample's bit is at the
+/// upper ones, floor(position - 0.5) + 1, at most the volume's last voxel. Two texels per cell, with two planes along z
+/// each: bit x + 4 y + 16 z.
 ///
-/// Rays find the places of SAMPLE_BITS_AHEAD samples by whole parts of a voxel: SAMPLE_BIT_PARTS along x, four times as
-/// many along y and sixteen times along z. So a sample may be taken for one of the neighbouring voxels, as far away as
-/// its own coordinates may be wrong and the parts round; bits are guarded against that for rays whose ends are at most
-/// SAMPLE_BITS_REACH times the volume's longest side apart, along each axis, and others do without.
+/// Rays find the places of SAMPLE_BITS_AHEAD samples in fixed point: SAMPLE_BIT_PARTS parts of a voxel along x, four
+/// times as many along y and sixteen times along z. So a sample may be assigned to a neighbouring voxel, by the error
+/// of its own coordinates plus the rounding of the parts; bits have a guard against that for rays whose ends are at
+/// most SAMPLE_BITS_REACH times the volume's longest side apart, along each axis; other rays do not use them.
 struct SampleBitsParams {
     uvec3 cell_begin;  ///< the cells to compute
     uvec3 cell_end;
-    float lower, upper;  ///< codes that are seen
+    float lower, upper;  ///< range of visible codes
 };
 
 struct LeapDistanceParams {

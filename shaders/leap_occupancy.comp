@@ -1,5 +1,5 @@
-// One cell per thread: is anything in it visible? If so its distance is 0, otherwise `empty_distance`.
-// MASKED: a cell is also occupied if one of its voxels, or of those beside it, is in a visible group; also records
+// One cell per thread: sets its distance to 0 if anything in it is visible, otherwise to `empty_distance`.
+// MASKED: a cell is also occupied if one of its voxels, or of those next to it, is in a visible group; also records
 // whether it is painted.
 // variants: MASKED
 #version 460

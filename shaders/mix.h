@@ -8,7 +8,7 @@ SHARED_BEGIN
 struct MixParams {
     uvec2 target;  ///< first texel of the picture to change
     uvec2 size;    ///< texels
-    float share;   ///< of the other picture
+    float share;   ///< weight of the other picture
 };
 
 SHARED_END

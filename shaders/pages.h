@@ -6,11 +6,11 @@
 // Distance D > 0: nothing visible in the cube of 2 D - 1 grid cells around this one. Otherwise, level PAGE_NODE: the
 // payload is the first of eight entries, x fastest, for the octants of this cell. Otherwise the payload is the slot
 // (pack_slot) of a brick of that level that contains the cell: the finest one loaded, perhaps coarser than wanted. Or,
-// level PAGE_MISSING, a ray that comes here waits.
+// level PAGE_MISSING: a ray that arrives here waits.
 //
 // Within a brick, `cell_leap` describes its 8^3 cells: distance << 1 | painted. The distance is Chebyshev, to the
-// nearest cell of the brick that may contain something visible, or to the brick's end; where painted is 0, no voxel of
-// the cell is in a group.
+// nearest cell of the brick that may contain something visible, or to the brick's end; if painted is 0, no voxel of the
+// cell is in a group.
 #ifndef SHVR_PAGES_H
 #define SHVR_PAGES_H
 #include "leap.h"
@@ -30,10 +30,10 @@ SHARED_CONST uint PAGE_GRID = 32u;
 
 /// A brick whose cells are examined: one workgroup.
 struct BrickLeapJob {
-    uvec3 brick;  ///< of its level
+    uvec3 brick;  ///< in bricks of its level
     uint level;
     uint slot;
-    uint mask_slot;  ///< 0: no painted voxel in it, nor, where paint reaches farther, in the bricks around it
+    uint mask_slot;  ///< 0: no painted voxel in it nor, with a larger paint reach, in the bricks around it
 };
 
 /// As OccupancyParams, for bricks anywhere in the atlas.

@@ -1,6 +1,6 @@
-// The first voxel on each pixel's ray that a brush would change, as a solid cube: its lit colour and the length along
-// the ray. The ray caster ends there if it lies before other surfaces (surfaces.comp); `seen` marks these pixels. In
-// slices it is the voxel half-way along the ray, with unlit colours. One thread per pixel.
+// Finds the first voxel on each pixel's ray that a brush would change, as a solid cube: its lit colour and the length
+// along the ray. The ray caster ends there if it lies in front of other surfaces (surfaces.comp); `seen` marks these
+// pixels. In slices it is the voxel half-way along the ray, with unlit colours. One thread per pixel.
 //   SURFACED   there are other surfaces
 // variants: SURFACED
 //
@@ -103,7 +103,7 @@ void main()
         next = is_hit ? next : next + vec3(axis) * apart;
         goes_on = !is_hit && to < end && is_inside(preview, voxel);
     } while (goes_on);
-    count(COUNTER_CUT_SHORT, uint(goes_on));   // where a device ends loops
+    count(COUNTER_CUT_SHORT, uint(goes_on));   // if a device aborts loops
 
 #ifdef SURFACED
     const vec4 behind = imageLoad(surfaces, ivec2(in_part));

@@ -13,7 +13,7 @@ struct PreviewParams {
     vec3 far_corner;
     vec3 far_dx;
     vec3 far_dy;
-    ivec3 size;          ///< of the box, voxels
+    ivec3 size;          ///< voxels of the box
     uint words_per_row;  ///< bit b of word w is x = 32 w + b
     vec3 lower;          ///< the box's first corner in the volume, voxels
     vec3 color;          ///< linear light
@@ -23,7 +23,7 @@ struct PreviewParams {
 struct PreviewOverParams {
     uvec2 target;  ///< first texel of the picture to change
     uvec2 size;    ///< texels
-    float share;   ///< of the preview's colour
+    float share;   ///< weight of the preview's colour
 };
 
 SHARED_CONST uint PREVIEW_STRIPE = 2u;  ///< voxels along x + y + z

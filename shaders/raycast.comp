@@ -8,14 +8,14 @@
 //              drop it
 // variants: PAGED FILTERED MASKED OCCLUDED SURFACED SHELLED
 //
-// Samples lie in the middle of steps of equal length, on a lattice that starts where the ray enters the drawn box; the
+// Samples are in the middle of steps of equal length, on a lattice that starts where the ray enters the drawn box; the
 // last, shorter step has its own sample. Leaps go from lattice point to lattice point, so pictures with and without
 // skipping have the same bits. The number of steps is not limited: a long ray is drawn in blocks of steps, one dispatch
-// each, because some devices end a thread's loops after 65535 turns, without a word. Between blocks the target holds
-// what a ray has gathered. A ray that stops short of its end nevertheless is counted.
+// each, because some devices silently abort a thread's loops after 65535 iterations. Between blocks the target holds a
+// ray's accumulated colour. A ray that nevertheless stops short of its end is counted.
 //
-// Where a ray passes more bricks than there is room for, it waits (KEPT_ALL): it stops before a brick that is not on
-// the device, marks it, and goes on in a later dispatch. What it adds, and in which order, does not depend on where it
+// If a ray passes more bricks than fit on the device, it waits (KEPT_ALL): it stops before a brick that is not on the
+// device, marks it, and continues in a later dispatch. What it adds, and in which order, does not depend on where it
 // stops.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -40,24 +40,25 @@ layout(constant_id = 1) const uint COUNT_WORK = 0u;
 // are linear.
 layout(constant_id = 2) const uint GROUP_WIDTH = 8u;
 layout(constant_id = 3) const uint SHININESS_SQUARINGS = NOT_A_POWER_OF_TWO;
-// Stores where the ray's opacity rises most (voxel space) and the ray's opacity instead of a colour, or 0 where it
-// rises too little to be seen. The target has PICK_ROWS rows.
+// Stores the point of steepest opacity (voxel space) and the ray's opacity instead of a colour, or 0 if the rise is too
+// small to be visible. The target has PICK_ROWS rows.
 layout(constant_id = 4) const uint PICK = 0u;
-// Records which bricks rays visit. Pictures that are complete do without.
+// Records which bricks rays visit. Complete pictures do not need it.
 layout(constant_id = 5) const uint FEEDBACK = 0u;
 layout(constant_id = 6) const uint DISTANCE_BLEND = 0u;
-// Draws one sample half-way along each ray, in grey, whatever the transfer function shows.
+// Draws one sample half-way along each ray, in grey, ignoring the transfer function.
 layout(constant_id = 7) const uint SLICE = 0u;
-// 1: classifies a step by the densities at both of its ends. 2: and there are densities at which rays end.
+// 1: classifies a step by the densities at both of its ends. 2: the same, and rays end at some densities.
 layout(constant_id = 9) const uint PREINTEGRATED = 0u;
 layout(constant_id = 10) const uint KEPT = KEPT_NOTHING;
-// A sample is in the group that weighs most among the eight voxels around it, not in that of the nearest.
+// Assigns a sample to the group with the largest weight among the eight voxels around it, instead of the nearest
+// voxel's.
 layout(constant_id = 11) const uint SMOOTH_BORDERS = 0u;
 #if !defined(PAGED) && !defined(FILTERED)
 #define BITTED
 layout(constant_id = 12) const uint HAS_SAMPLE_BITS = 0u;
 #endif
-layout(constant_id = 16) const uint BLOCKS_ALONE = 0u;   // draws listed blocks of pixels (adaptive.h), no others
+layout(constant_id = 16) const uint BLOCKS_ALONE = 0u;   // draws only listed blocks of pixels (adaptive.h)
 #ifdef SHELLED
 layout(constant_id = 8) const uint SHELL = SHELL_BALL;   // the region's shape
 layout(binding = 19, r32ui) uniform readonly uimage3D cell_ranges;   // minimum | maximum << 16
@@ -72,8 +73,8 @@ layout(binding = 2) uniform sampler3D atlas;
 #else
 layout(binding = 2, r32ui) uniform readonly uimage3D atlas;
 #endif
-// Tables are images, not buffers: one load for four components, and lavapipe would read a buffer one lane after
-// another.
+// Tables are images, not buffers: one load for four components,
+// and lavapipe would read a buffer one lane at a time.
 // linear RGB (PREINTEGRATED: times opacity), opacity of a full step; then optical depths (raycast.h)
 layout(binding = 3, rgba32f) uniform readonly image2D table;
 layout(binding = 4, rgba32f) uniform image2D color;
@@ -85,7 +86,7 @@ layout(binding = 7, rgba32f) uniform readonly image2D groups;
 #endif
 
 #ifdef OCCLUDED
-// Light follows a curve of points, not a power (occlusion.h).
+// Light follows a curve of points instead of a power (occlusion.h).
 layout(constant_id = 14) const uint OCCLUSION_MAPPED = 0u;
 layout(binding = 10, r8ui) uniform readonly uimage3D occlusion;
 layout(binding = 11, scalar) readonly buffer Look { OcclusionLook data; OcclusionSegment segments[]; } occlusion_look;
@@ -102,7 +103,7 @@ layout(binding = 14, r32ui) uniform readonly uimage3D sample_bits;   // leap.h
 #define KEEPS
 layout(binding = 13, rgba32f) uniform image2D rays;   // raycast.h, KEPT; without it, one texel
 
-// The second half of what a ray keeps lies below the first.
+// The second half of a ray's state is stored below the first.
 ivec2 beside(const RaycastParams params, uvec2 in_part)
 {
     return ivec2(in_part.x, in_part.y + (params.pixel_end.y - params.pixel_begin.y));
@@ -136,7 +137,7 @@ uint density_reads = 0u;
 #ifdef PAGED
 #include "library/pages.glsl"
 #else
-// What a position is in: a region with nothing visible (distance > 0), or a brick.
+// The region that contains a position: one with nothing visible (distance > 0), or a brick.
 struct Place {
     uint distance;   // in cells
     uint slot;
@@ -151,24 +152,24 @@ Place place_at(const RaycastParams params, vec3 position)
 }
 #endif
 
-// In steps: one from the last step (library/lattice.glsl) still ends at a number of 32 bits.
+// Limit of a leap in steps: from the last step (library/lattice.glsl) it still ends at a number of 32 bits.
 const float MAX_LEAP = 2147483648.0;
 const float NO_SHELL = 1e30;   // a length along a ray
-// Lanes that have seen nothing in so many samples in a row search for the next one that shows something: soon where the
-// search before was long, late where nearly every sample is seen, since all lanes wait while one searches.
+// Lanes that have seen nothing in this many consecutive samples search for the next visible one: soon if the previous
+// search was long, late if nearly every sample is visible, since all lanes wait while one searches.
 const uint AWAY_FROM_SEEN = 64u;
-const uint SAMPLES_OF_LEAP = 8u;   // which count as unseen
+const uint SAMPLES_OF_LEAP = 8u;   // counted as unseen
 const uint LITTLE_PATIENCE = 2u;
 const uint MUCH_PATIENCE = 64u;
-// A target's alpha is never negative; between blocks its sign says whether the ray is inside the iso-surface. Less than
-// this is 0, whose sign devices may lose.
+// A target's alpha is never negative; between blocks its sign says whether the ray is inside the iso-surface. Smaller
+// values count as 0, whose sign devices may lose.
 const float LEAST_ALPHA = 1e-30;
 
 struct Ray {
     vec3 origin;      // voxel space, at length 0
     vec3 direction;   // voxels per reference length
-    vec3 inverse;     // 1 / direction; a large number where the direction is 0
-    vec3 ahead;       // 1 where the direction is positive, else 0
+    vec3 inverse;     // 1 / direction; a large number if the direction is 0
+    vec3 ahead;       // 1 if the direction is positive, else 0
     vec3 half_way;    // unit, between the directions to the eye and to the light; 0 where they are opposite
 };
 
@@ -188,7 +189,7 @@ void note_sample(const Place place, inout Work work)
     work.last_slot = place.slot;
 }
 
-// A sample that is also shaded, if any is.
+// Counts a sample, which is also shaded if any is.
 void note_taken(const Place place, inout Work work)
 {
     note_sample(place, work);
@@ -214,7 +215,7 @@ uint steps_to_leave(const RaycastParams params, const Ray ray, vec3 position, co
     const float exit = min(lengths.x, min(lengths.y, lengths.z));
     // The guard keeps rays from leaping over a sample that rounding puts on the border.
     const float steps = exit / params.step - 0.01;
-    return 1u + (steps > 0.0 && steps < MAX_LEAP ? uint(steps) : 0u);   // not of what is no number
+    return 1u + (steps > 0.0 && steps < MAX_LEAP ? uint(steps) : 0u);   // not for NaN
 }
 
 void note(const Place place, inout Work work)
@@ -228,7 +229,7 @@ void note(const Place place, inout Work work)
 #endif
 }
 
-// The single sample of a slice. It is shown even where the transfer function hides it, but not outside the view.
+// The single sample of a slice. It is shown even if the transfer function hides it, but not outside the view.
 vec4 sliced(const RaycastParams params, const Ray ray, vec3 position, inout Work work, out bool waits)
 {
     Place place = place_at(params, position);
@@ -257,27 +258,27 @@ void add(const RaycastParams params, vec4 look, float middle, inout vec4 sum, in
     accumulate(sum, look);
 }
 
-// What a ray gathers, and where it is.
+// A ray's accumulated state, and its position.
 struct March {
-    uint i;        // the step that is next: as many as are whole, the rest; more, none
+    uint i;        // the next step: the whole ones, then the rest; beyond that, none
     vec4 sum;
     Rises rises;
-    uint unseen;   // samples that showed nothing, since the last that did
+    uint unseen;   // consecutive samples that showed nothing
     bool waits;    // for a brick
     bool has_rest;
-    Sample rest;   // what is found there, not added yet
+    Sample rest;   // the sample found there, not added yet
 };
 
-// Adds samples from step `march.i` on, up to `until`, a length along the ray, or to `end_step`; what is left of the ray
-// after its whole steps counts as a step, and is found here and added by others: its opacity takes loads that no whole
-// step needs.
+// Adds samples from step `march.i` on, up to `until`, a length along the ray, or to `end_step`; the rest of the ray
+// after its whole steps counts as a step, and is found here and added by the caller: its opacity takes loads that no
+// whole step needs.
 //
-// SIMD devices run both sides of a branch for all their lanes, so what is cheap, the search for a sample that can be
-// seen, and what is costly are loops of their own, in which lanes stay together as long as it pays.
+// SIMD devices run both sides of a branch for all their lanes, so the cheap part, the search for a visible sample, and
+// the costly part are separate loops, in which lanes stay together as long as it pays.
 void take_samples(const RaycastParams params, const Ray ray, const Lattice lattice, uint end_step, float until,
                   inout March march, inout Work work)
 {
-    const uint first = march.i;   // is taken, whatever rounding makes of `until`
+    const uint first = march.i;   // always taken, whatever rounding makes of `until`
     bool is_behind = false;
     bool searches_on = march.i < end_step && march.sum.a < params.opacity_limit && !march.waits;
     if (searches_on) do {
@@ -286,7 +287,7 @@ void take_samples(const RaycastParams params, const Ray ray, const Lattice latti
         const uint patience = march.unseen >= AWAY_FROM_SEEN ? LITTLE_PATIENCE : MUCH_PATIENCE;
         if (march.i > step_before) march.rises.trough = 0.0;
         march.unseen = 0u;
-        // A step's density at its beginning is that at the end of the one before, if that is in a brick of its level.
+        // A step's density at its beginning is that at the end of the previous one, if that is in a brick of its level.
         const uint run = march.i;
         float front = 0.0;
         uint level = 0u;
@@ -334,7 +335,7 @@ void take_samples(const RaycastParams params, const Ray ray, const Lattice latti
             goes_on = goes_on && !march.waits && march.i < end_step && march.unseen < patience &&
                       march.sum.a < params.opacity_limit;
         } while (goes_on);
-        // Drivers may round positions in one loop as they do not in the other, which then disagree about a border.
+        // Drivers may round positions in one loop differently from the other, and the two then disagree about a border.
         march.i += uint(march.i == step_before && !march.waits && !is_behind);
         if (COUNT_WORK != 0u) ++work.turns;
         searches_on = march.i < end_step && march.sum.a < params.opacity_limit && !march.waits && !is_behind;
@@ -395,7 +396,7 @@ void main()
         march.sum = imageLoad(color, texel);
         begins_inside = march.sum.a < 0.0;
         march.sum.a = abs(march.sum.a) > LEAST_ALPHA ? abs(march.sum.a) : 0.0;
-        if (PICK != 0u && march.sum.a >= params.opacity_limit) return;   // what was found stays
+        if (PICK != 0u && march.sum.a >= params.opacity_limit) return;   // the point found stays
         if (PICK != 0u) {
             const vec4 runs = imageLoad(color, texel + ivec2(0, 1)), run = imageLoad(color, texel + ivec2(0, 2));
             march.rises = Rises(runs.x, runs.y, runs.z, runs.w, run.x, run.y, run.z);
@@ -439,7 +440,7 @@ void main()
 
     march.i = first_step;
 #ifdef SHELLED
-    // Crossings are few, and drawn outside the loops that look for samples and take them.
+    // Crossings are few, and drawn outside the loops that search for samples and take them.
     bool goes_on = march.i < end_step && march.sum.a < params.opacity_limit && !march.waits;
     if (goes_on) do {
         const float next_sample = middle_of(params, lattice, march.i);
@@ -455,8 +456,8 @@ void main()
         const float opacity = opacity_of_rest(params, march.rest, lattice.part);
         add(params, vec4(march.rest.look.rgb, opacity), lattice.rest_middle, march.sum, march.rises);
     }
-    march.i = min(march.i, steps);   // leaps go beyond the end
-    // Nobody but the device ends the loop before its end; and the last block may end before the ray.
+    march.i = min(march.i, steps);   // leaps may go beyond the end
+    // Only the device ends the loop before its end; and the last block may end before the ray.
     bool is_cut_short = march.i < (is_last ? steps : end_step) && march.sum.a < params.opacity_limit &&
                         !march.waits && !was_done;
 
@@ -516,7 +517,7 @@ void main()
     if (!is_stopped && surface.a < NO_SURFACE) {
         if (PICK != 0u && 1.0 - march.sum.a > march.rises.most) {
             march.rises.most = 1.0 - march.sum.a;
-            seen = ray.origin + surface.a * ray.direction;  // which may be outside the volume
+            seen = ray.origin + surface.a * ray.direction;  // may be outside the volume
         }
         accumulate(march.sum, vec4(surface.rgb, 1.0));
     }

@@ -6,17 +6,17 @@
 SHARED_BEGIN
 
 /// The transfer function's table is an image in rows of TABLE_WIDTH texels: first its entries (preintegrated:
-/// TABLE_WIDTH x TABLE_WIDTH, front density along x), filled up to whole rows. From `table_depths` on, optical depths
-/// of a full step, OPAQUE_DEPTH where it is opaque: opacity alone would round to 1, and nothing could be said of a part
-/// of such a step. Four entries' depths a texel, one after another; preintegrated: a texel each, of the entry, its
-/// neighbours along x and y, and the one across.
+/// TABLE_WIDTH x TABLE_WIDTH, front density along x), padded to whole rows. From `table_depths` on, optical depths of a
+/// full step, OPAQUE_DEPTH if it is opaque: opacity alone would round to 1, and the opacity of a part of such a step
+/// would be unknown. Depths of four entries per texel, in order; preintegrated: one texel per entry, with the depths of
+/// the entry, its neighbours along x and y, and the diagonal one.
 SHARED_CONST uint TABLE_WIDTH = 256u;
 SHARED_CONST float OPAQUE_DEPTH = 1e30f;
 
 /// From `opaque_map` on, where a preintegrated function reaches opacity 1: OPAQUE_ENTRIES texels over the table's
 /// range, whose x is the first opaque interval that ends at or above the texel, and y the last one that begins at or
 /// below the next texel. Then the intervals: colour and density at their beginnings and ends, two texels each. The
-/// first and the last interval are out of reach.
+/// first and the last interval are sentinels out of reach.
 SHARED_CONST uint OPAQUE_ENTRIES = 65536u;
 SHARED_CONST float OUT_OF_REACH = 1e30f;
 
@@ -28,23 +28,23 @@ SHARED_CONST uint SHELL_NONE = 0u;
 SHARED_CONST uint SHELL_BALL = 1u;
 SHARED_CONST uint SHELL_BOX = 2u;
 
-/// The specialization constant PICK: the target's first row is the answer; between blocks the others hold what is known
-/// of the runs so far. A rise of less than LEAST_SEEN is not seen.
+/// The specialization constant PICK: the target's first row is the answer; between blocks the other rows hold the state
+/// of the runs so far. A rise of less than LEAST_SEEN does not count as visible.
 SHARED_CONST uint PICK_ROWS = 3u;
 SHARED_CONST float LEAST_SEEN = 0.015625f;
 
-/// The specialization constant KEPT: what a ray leaves in `rays` between two dispatches, beside what it has gathered in
-/// its pixel. Of the upper half, x: where the next iso-surface is; y: from where on the search goes on, below 0 before
-/// the region. KEPT_ALL is for rays that wait for bricks, each at a place of its own: z, w: the step that is next, in
-/// two halves, and RAY_* times 65536 in w; lower half: what it has gathered. Pixels then have their final look in every
-/// dispatch.
+/// The specialization constant KEPT: the state that a ray leaves in `rays` between two dispatches, in addition to the
+/// colour accumulated in its pixel. Upper half, x: length at the next iso-surface; y: length from which the search
+/// continues, below 0 before the region. KEPT_ALL is for rays that wait for bricks, each at its own place: z, w: the
+/// next step, in two halves, and RAY_* times 65536 in w; lower half: the accumulated colour. Pixels then have their
+/// final look in every dispatch.
 SHARED_CONST uint KEPT_NOTHING = 0u;
 SHARED_CONST uint KEPT_SHELL = 1u;
 SHARED_CONST uint KEPT_ALL = 2u;
 SHARED_CONST uint RAY_IS_INSIDE = 1u;  // the iso-surface
 SHARED_CONST uint RAY_IS_DONE = 2u;
 
-/// Samples that one turn of the search for a visible one asks for their density (library/search.glsl).
+/// Samples whose density is read per iteration of the search for a visible one (library/search.glsl).
 SHARED_CONST uint SEARCH_AHEAD = 4u;
 
 struct RaycastParams {
@@ -58,15 +58,15 @@ struct RaycastParams {
     uvec2 pixel_begin;  ///< the part of the picture to draw
     uvec2 pixel_end;
     uvec2 target;       ///< texel of pixel_begin
-    uvec2 drawn_begin;  ///< pixels of the part that this dispatch draws, from pixel_begin on; set by raycast()
+    uvec2 drawn_begin;  ///< pixels of the part that this dispatch draws, relative to pixel_begin; set by raycast()
     uvec2 drawn_end;
     vec3 box_lower;  ///< the drawn part of the volume, voxel space
     vec3 box_upper;
     vec3 position_limit;  ///< an ulp before the volume's end: samples in its upper faces belong to the last voxel
     vec3 spacing;         ///< reference lengths per voxel
     vec3 inverse_spacing;
-    uvec3 page_counts;    ///< cells of the directory's grid, see pages.h
-    uint page_shift;      ///< log2 of such a cell's side in voxels
+    uvec3 page_counts;    ///< size of the directory's grid in cells, see pages.h
+    uint page_shift;      ///< log2 of a grid cell's side in voxels
     uint page_depth;      ///< depth of the directory's nodes
     float step;           ///< reference lengths
     float opacity_limit;  ///< a ray stops at or above it
@@ -77,8 +77,8 @@ struct RaycastParams {
     uint table_depths;   ///< texel of the table
     uint opaque_map;     ///< texel of the table; 0: none
     float opaque_scale;  ///< texel of the map = (code - table_lower) * opaque_scale
-    uint first_step;     ///< the block: steps of every ray that this dispatch takes; 0: rays begin
-    uint end_step;       ///< KEPT_ALL: only how many steps these are counts
+    uint first_step;     ///< the block: range of steps of every ray in this dispatch; 0: rays begin
+    uint end_step;       ///< KEPT_ALL: only their number matters
     uint is_last_block;
     vec4 background;  ///< linear light, straight alpha
     vec3 light;       ///< unit vector towards the light, volume space
@@ -98,7 +98,7 @@ struct RaycastParams {
     vec3 shell_reach;     ///< voxels; half of the box, or the ball's radius along each axis
     float shell_code;     ///< threshold of the surface
     vec3 shell_color;     ///< linear light
-    float shell_opacity;  ///< of one crossing
+    float shell_opacity;  ///< of one crossing of the surface
 };
 
 SHARED_END

@@ -1,6 +1,6 @@
-// Where samples of the exact density may show something (leap.h, sample bits): one cell per thread. A bit of a sample
-// between eight voxel centres is set if one of the codes there is not below what is seen, and one is not above it; so
-// are all bits of a cell beside paint.
+// Finds where samples of the exact density may show something (leap.h, sample bits): one cell per thread. The bit of a
+// sample between eight voxel centres is set if at least one code there is not below the visible range, and at least one
+// is not above it; so are all bits of a cell next to paint.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -16,8 +16,8 @@ layout(binding = 2, r32ui) uniform writeonly uimage3D sample_bits;
 #include "library/atlas.glsl"
 
 const uint ALL = 0xffffffffu;
-// Of the codes of four voxels from `x` on, where a word begins, and of the one before: which are not below what is
-// seen, and which are not above it. Bits 0 to 4 and 8 to 12. The volume's first voxel repeats.
+// For the codes of four voxels from `x` on, where a word begins, and of the one before: bits for not below the visible
+// range, and for not above it. Bits 0 to 4 and 8 to 12. The volume's first voxel repeats.
 uint sides_of_row(int x, int y, int z)
 {
     const int before = max(x - 1, 0), first_word = x >> WORD_SHIFT;
@@ -29,15 +29,15 @@ uint sides_of_row(int x, int y, int z)
         const float code = float(CODE_UNIT * (word >> shift_to(i == 0 ? before : i - 1) & CODE_MASK));
         sides |= (uint(code >= params.lower) | uint(code <= params.upper) << 8u) << i;
     }
-    return sides | (sides >> 1u & 0x0f0fu);   // of the four pairs of neighbours
+    return sides | (sides >> 1u & 0x0f0fu);   // for the four pairs of neighbours
 }
 
 void main()
 {
     const uvec3 cell = params.cell_begin + gl_GlobalInvocationID;
     if (any(greaterThanEqual(cell, params.cell_end))) return;
-    // Samples between the centres of these voxels and of those before them lie in up to eight cells; taken for one of
-    // the next voxels, in any of those around.
+    // Samples between the centres of these voxels and the preceding ones are in up to eight cells; if assigned to a
+    // neighbouring voxel, in any of the cells around.
     const bool is_empty = imageLoad(leap, ivec3(cell)).x >> LEAP_DISTANCE_SHIFT > 1u;
     bool is_painted = false;
     [[unroll]] for (uint i = 0u; i < 8u && !is_empty; ++i) {
@@ -47,7 +47,7 @@ void main()
     uvec2 bits = uvec2(is_painted ? ALL : 0u);
     if (!is_empty && !is_painted) {
         const ivec3 first = place_of_first() + ivec3(CELL_SIZE * cell) - ivec3(0, 1, 1);
-        uint plane_before[4];   // four rows of bits, of two rows of voxels each
+        uint plane_before[4];   // four rows of bits, for two rows of voxels each
         [[unroll]] for (int z = 0; z < 5; ++z) {
             uint plane[4];
             uint row_before = 0u;

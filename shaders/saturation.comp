@@ -1,4 +1,4 @@
-// Mixes each pixel with the grey of its luminance, in linear light, premultiplied. Greys keep their bits, opacity too.
+// Mixes each pixel with the grey of its luminance, in linear light, premultiplied. Greys and opacity keep their bits.
 // One pixel per thread.
 #version 460
 #extension GL_GOOGLE_include_directive : require

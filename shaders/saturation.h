@@ -1,4 +1,4 @@
-// Parameters of the pass that takes colour out of a picture.
+// Parameters of the pass that desaturates a picture.
 #ifndef SHVR_SATURATION_H
 #define SHVR_SATURATION_H
 #include "shared.h"

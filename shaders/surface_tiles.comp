@@ -1,8 +1,9 @@
-// Which surfaces the rays of a tile may meet (surfaces.h): one thread per tile of SURFACE_TILE^2 pixels. The rays of
-// neighbouring pixels meet nearly the same ones, so that boxes are asked once a tile instead of once a ray.
+// Lists the surfaces that the rays of a tile may meet (surfaces.h): one thread per tile of SURFACE_TILE^2 pixels. The
+// rays of neighbouring pixels meet nearly the same ones, so that boxes are tested once per tile instead of once per
+// ray.
 //
-// Between the four planes through a tile's edges lie all its rays, whether they are parallel or come from one point. A
-// surface is left out only where all of it is behind one of the planes, by more than rounding may be off.
+// All rays of a tile lie between the four planes through its edges, whether they are parallel or come from one point. A
+// surface is left out only if all of it is behind one of the planes, by more than the rounding error.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -19,8 +20,8 @@ const uint GROUP_WIDTH = 8u;   // tiles
 #include "library/rays.glsl"
 #include "library/surface_list.glsl"
 
-// Normals are off by a few ulps, over distances that the slack of boxes knows; and tiles reach half a pixel beyond
-// their rays.
+// Normals are off by a few ulps, over distances that the slack of boxes allows for; and tiles extend half a pixel
+// beyond their rays.
 const float SLACKS = 8.0;
 
 struct Side {
@@ -28,7 +29,7 @@ struct Side {
     vec3 normal;   // unit, inwards
 };
 
-// `corner` in pixels, the tile's middle `to_middle` from there; `edge`: which way the tile's edge goes.
+// `corner` in pixels, the tile's centre `to_middle` from there; `edge`: direction of the tile's edge.
 Side side_of(const SurfaceParams scene, vec2 corner, vec2 to_middle, vec3 edge)
 {
     const vec3 along = scene.along_corner + corner.x * scene.along_dx + corner.y * scene.along_dy;
@@ -59,7 +60,8 @@ bool surface_may_be_met(const Side sides[4], const Surface surface, vec3 from, f
     return may;
 }
 
-// Bits of the tile's blocks in which a surface may be met: `borders` between left and right, and between rows of them.
+// Bits of the tile's blocks in which a surface may be met: `borders` between left and right, and between rows of
+// blocks.
 uint blocks_of(const Side borders[4], const Surface surface, vec3 from, float slack)
 {
     vec4 first, along;
@@ -80,7 +82,7 @@ void main()
     const RaycastParams params = params_block.data;
     const SurfaceParams scene = surface_params.data;
     const uvec2 tiles = surface_tiles_of(params.pixel_end - params.pixel_begin);
-    const uvec2 tile = thread_in_part();   // a tile, here
+    const uvec2 tile = thread_in_part();   // here: the index of a tile
     if (any(greaterThanEqual(tile, tiles))) return;
 
     const vec2 lower = vec2(params.pixel_begin + SURFACE_TILE * tile), upper = lower + float(SURFACE_TILE);
@@ -120,6 +122,6 @@ void main()
         node = is_met ? node + 1u : box.skip;
         goes_on = node < scene.end_node && count <= SURFACES_IN_TILE;
     } while (goes_on);
-    // Full, and also where a device has ended the loop.
+    // Full, also if a device has aborted the loop.
     imageStore(surface_tiles, counted, uvec4(node < scene.end_node ? SURFACES_IN_TILE + 1u : count));
 }

@@ -1,14 +1,14 @@
 // The nearest opaque surface of each pixel's ray: rgb is its lit colour in linear light, a is the length along the ray
 // from the near plane, as in raycast.comp, in reference lengths; NO_SURFACE if there is none. One thread per pixel.
-//   LISTED   there is a list of surfaces, besides the probe
+//   LISTED   there is a list of surfaces, in addition to the probe
 // variants: LISTED
 //
-// Rays of a tile that meets few surfaces take those that surface_tiles.comp has listed for it, others search the boxes:
-// the same is found, since the nearest counts and not the order.
+// Rays of a tile that meets few surfaces test those that surface_tiles.comp has listed for it, others search the boxes:
+// the result is the same, since the nearest counts and not the order.
 //
-// Nodes are visited in blocks, one dispatch each, because some devices end a thread's loops after 65535 turns, without
-// a word. Between blocks the target holds what a ray has met: its length, the surface's index in two parts, and whether
-// the ray begins inside. Listed ones are looked at in the last block.
+// Nodes are visited in blocks, one dispatch each, because some devices silently abort a thread's loops after 65535
+// iterations. Between blocks the target holds what a ray has met: its length, the surface's index in two parts, and
+// whether the ray begins inside. Listed surfaces are tested in the last block.
 //
 // Surfaces are solid: a ray that starts inside one (the near plane cuts it, or the eye is in it) hits it at its start,
 // facing the eye. The volume's cutting planes do not cut surfaces.
@@ -24,7 +24,7 @@ layout(constant_id = 0) const uint GROUP_WIDTH = 8u;
 layout(constant_id = 1) const uint SHININESS_SQUARINGS = NOT_A_POWER_OF_TWO;
 layout(constant_id = 2) const uint DISTANCE_BLEND = 0u;
 layout(constant_id = 3) const uint PROBE = 0u;
-layout(constant_id = 4) const uint BLOCKS_ALONE = 0u;   // draws listed blocks of pixels (adaptive.h), no others
+layout(constant_id = 4) const uint BLOCKS_ALONE = 0u;   // draws only listed blocks of pixels (adaptive.h)
 
 layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
 layout(binding = 1, scalar) readonly buffer Scene { SurfaceParams data; } surface_params;
@@ -114,16 +114,16 @@ uint listed_word(uvec2 tile, uint number)
     return imageLoad(surface_tiles, ivec2(surface_tile_texel(tile, 1u + number))).x;
 }
 
-// The next of a tile's list, from `next` on, that rays of the pixel's block may meet. A loop of its own: SIMD devices
-// run a test in full, whether or not any ray wants it, but no turn of a loop that all have left. Their lanes are in one
-// block (library/rays.glsl).
+// The next entry of a tile's list, from `next` on, that rays of the pixel's block may meet. A separate loop: SIMD
+// devices run a test in full, whether or not any ray needs it, but no iteration of a loop that all have left. Their
+// lanes are in one block (library/rays.glsl).
 uint next_in_block(uvec2 tile, uint block, uint next, uint count)
 {
     while (next < count && (listed_word(tile, next) >> block & 1u) == 0u) ++next;
     return next;
 }
 
-// What earlier blocks have found.
+// The result of earlier blocks.
 Hit unpacked_hit(const vec4 packed)
 {
     const uint index = uint(packed.y) * INDEX_PART + uint(packed.z);
@@ -149,7 +149,7 @@ void main()
     const float begin = (scene.begin - scene.middle) * length_to_far;
     const float end = (scene.end - scene.middle) * length_to_far;
 
-    Hit hit = Hit(end, false, 0u, PROBE_INDEX);  // at the far plane itself nothing is nearer
+    Hit hit = Hit(end, false, 0u, PROBE_INDEX);  // nothing is nearer than the far plane itself
 #ifdef LISTED
     const uvec2 tile = in_part / SURFACE_TILE;
     const uint count = imageLoad(surface_tiles, ivec2(surface_tile_texel(tile, 0u))).x;

@@ -7,20 +7,20 @@
 SHARED_BEGIN
 
 /// The convex hull of two balls (a round cone), or one ball if `along` is 0. The first ball is at `from` + `from_rest`:
-/// the rest holds the digits that a float loses in a large volume. As four texels of four words each.
+/// the rest holds the digits that a float loses in a large volume. Stored as four texels of four words each.
 struct Surface {
     vec3 from;
     float radius_from;
     vec3 along;       ///< from the first ball to the second
     float radius_to;  ///< neither ball contains the other
     vec3 from_rest;
-    uint number;  ///< of two at the same length, the lower number is seen
+    uint number;  ///< of two surfaces at the same length, the lower number is visible
     vec3 color;   ///< linear light
     uint unused;
 };
 
 /// A box around surfaces. Nodes are in depth-first order: the next one is the first child, or `skip` if there is none.
-/// As three texels of four words each.
+/// Stored as three texels of four words each.
 struct SurfaceNode {
     vec3 lower;
     uint skip;  ///< the next node outside this one
@@ -30,19 +30,20 @@ struct SurfaceNode {
     uvec3 unused;
 };
 
-/// At most, in a leaf. Fewer means more boxes to load, more means more rods to intersect.
+/// Maximum number of surfaces in a leaf. Fewer means more boxes to load, more means more rods to intersect.
 SHARED_CONST uint SURFACES_IN_LEAF = 4u;
 
-/// Both lie in images, in rows of so many: devices without a cache for buffers read those a thread at a time.
+/// Both are stored in images, in rows of this length: devices without a cache for buffers read those one thread at a
+/// time.
 SHARED_CONST uint SURFACES_IN_ROW = 1024u;
 SHARED_CONST uint SURFACE_TEXELS = 4u;
 SHARED_CONST uint SURFACE_NODE_TEXELS = 3u;
 
-/// The ray of a pixel goes through a point of the middle plane, in the direction from a point of the near plane to one
-/// of the far plane. Points are relative to the middle of that plane, which the user looks at, so that they stay
-/// accurate there even if the volume is large and the eye is far.
+/// The ray of a pixel passes through a point of the middle plane, in the direction from a point of the near plane to
+/// one of the far plane. Points are relative to the centre of the middle plane, which the user looks at, so that they
+/// stay accurate there even if the volume is large and the eye is far.
 struct SurfaceParams {
-    vec3 origin;  ///< the point that others are relative to: origin + origin_rest
+    vec3 origin;  ///< the point that other positions are relative to: origin + origin_rest
     vec3 origin_rest;
     vec3 middle_corner;
     vec3 middle_dx;
@@ -55,7 +56,7 @@ struct SurfaceParams {
     float end;     ///< end of the clip range
     float slack;   ///< margin of boxes on each side, larger than the rounding error
     uint node_count;
-    uint first_node;  ///< the block: nodes that this dispatch looks at
+    uint first_node;  ///< the block: range of nodes that this dispatch visits
     uint end_node;
     uint is_last_block;
     vec3 probe_center;  ///< relative to the origin; the probe is one more ball
@@ -63,9 +64,9 @@ struct SurfaceParams {
     vec3 probe_color;  ///< linear light
 };
 
-/// Surfaces are listed for tiles of so many pixels a side, from the first pixel of the part on: how many its rays may
-/// meet, and which, in a texel for each of the tile's pixels: an index, and from bit SURFACE_BLOCK on, in which of the
-/// tile's blocks of 4 x 2 pixels. Where there are more than that, rays look for theirs among the boxes.
+/// Surfaces are listed per tile of this many pixels a side, from the first pixel of the part on: the number that its
+/// rays may meet, and which, in a texel for each of the tile's pixels: an index, and from bit SURFACE_BLOCK on, a bit
+/// for each of the tile's blocks of 4 x 2 pixels. If there are more, rays search the boxes instead.
 SHARED_CONST uint SURFACE_TILE = 8u;
 SHARED_CONST uint SURFACES_IN_TILE = SURFACE_TILE * SURFACE_TILE - 1u;
 SHARED_CONST uint SURFACE_BLOCK = 24u;  // no scene has 2^24 surfaces
@@ -81,13 +82,13 @@ SHARED_FUNCTION uint surface_block(uvec2 in_part)
     return SURFACE_BLOCK + in_part.x / 4u % 2u + 2u * (in_part.y / 2u % 4u);
 }
 
-/// The texel of a word of a tile's list: the first is their number.
+/// The texel of a word of a tile's list: the first word is their number.
 SHARED_FUNCTION uvec2 surface_tile_texel(uvec2 tile, uint word)
 {
     return SURFACE_TILE * tile + uvec2(word % SURFACE_TILE, word / SURFACE_TILE);
 }
 
-/// The length where a ray meets no surface.
+/// The length if a ray meets no surface.
 SHARED_CONST float NO_SURFACE = 1e30f;
 
 SHARED_END

@@ -1,12 +1,12 @@
-// Texels of the atlas of densities. Needs bricks.h and `atlas`: r32ui, or FILTERED, a sampler3D of R16_UNORM codes.
-// Codes have 16 bits, and two along x are in a texel of r32ui, the first one in its low half. Of volumes of bytes they
-// are multiples of 257; four are in a texel then, as CODE_BYTES says.
+// Reads texels of the density atlas. Needs bricks.h and `atlas`: r32ui, or FILTERED, a sampler3D of R16_UNORM codes.
+// Codes have 16 bits, and two along x are in a texel of r32ui, the first one in its low half. In volumes of bytes codes
+// are multiples of 257 and four are in a texel, as CODE_BYTES says.
 //
 // Paged bricks lie in slots, those of a resident volume side by side (bricks.h).
 //
-// STACKED: where one image of the device cannot hold enough paged bricks there are several, all of the same size, one
-// upon the other along z: ATLASES of them. Those that are not there are bound to the first, and never read. A brick
-// lies in one image, with all that is read for a sample in it.
+// STACKED: if one image of the device cannot hold enough paged bricks there are several of the same size, stacked along
+// z: ATLASES of them. Bindings of missing ones get the first, and are never read. A brick lies in one image, with all
+// texels that its samples read.
 #ifndef SHVR_ATLAS_GLSL
 #define SHVR_ATLAS_GLSL
 
@@ -14,12 +14,12 @@
 const uint CODE_BYTES = 2u;
 #else
 layout(constant_id = 15) const uint CODE_BYTES = 2u;
-const int WORD_SHIFT = CODE_BYTES == 1u ? 2 : 1;   // from a code's place along x to that of its word
+const int WORD_SHIFT = CODE_BYTES == 1u ? 2 : 1;   // converts a code's position along x to that of its word
 const uint CODE_BITS = 8u * CODE_BYTES;
 const uint CODE_MASK = CODE_BYTES == 1u ? 0xffu : 0xffffu;
 const uint CODE_UNIT = CODE_BYTES == 1u ? 257u : 1u;
 
-// By how much a word is shifted to have that code at its end.
+// The shift that moves the code at x to the low bits of its word.
 uint shift_to(int x)
 {
     return uint(x & (1 << WORD_SHIFT) - 1) * CODE_BITS;
@@ -38,20 +38,20 @@ layout(binding = STACKED + 1, r32ui) uniform readonly uimage3D atlas_2;
 layout(binding = STACKED + 2, r32ui) uniform readonly uimage3D atlas_3;
 #endif
 
-// The image that holds z, of so many texels each.
+// The index of the image that holds z, for images of that height.
 int atlas_of(int z, int height)
 {
     return int(z >= height) + int(z >= 2 * height) + int(z >= 3 * height);
 }
 #endif
 
-// The place of the first voxel of a brick in a slot.
+// The position of the first voxel of a brick in a slot.
 ivec3 place_in_slot(uint slot)
 {
     return ivec3(slot_codes(CODE_BYTES) * unpack_slot(slot) + BRICK_APRON);
 }
 
-// The place of the first voxel of a volume whose bricks lie side by side.
+// The position of the first voxel of a volume whose bricks are side by side.
 ivec3 place_of_first()
 {
     return ivec3(code_border());
@@ -87,7 +87,7 @@ uint atlas_word(ivec3 at)
 }
 #endif
 
-// The last place along x of a volume whose bricks lie side by side.
+// The last position along x of a volume whose bricks are side by side.
 int last_along_x()
 {
 #ifdef FILTERED

@@ -1,5 +1,5 @@
-// What the transfer function's table says of a step, or of a part of one. Needs `table`, and PREINTEGRATED. The layout
-// of the table is in raycast.h.
+// Looks up a step, or a part of one, in the transfer function's table. Needs `table`, and PREINTEGRATED. The layout of
+// the table is in raycast.h.
 
 ivec2 table_texel(uint index)
 {
@@ -20,10 +20,10 @@ float table_depth(const RaycastParams params, uint entry)
     return imageLoad(table, table_texel(params.table_depths + entry / 4u))[entry % 4u];
 }
 
-// Where the table is read for a density: between an entry and the next one.
+// The place in the table for a density: between an entry and the next one.
 struct TablePlace {
     uint entry;
-    float share;   // of the next one
+    float share;   // weight of the next one
     bool is_inside;
 };
 
@@ -45,7 +45,7 @@ vec4 classify(const RaycastParams params, float density)
     return look;
 }
 
-// The opacity of that part of a step, less than 1.
+// The opacity of the fraction `part` of a step, less than 1.
 float opacity_of_part(const RaycastParams params, float density, float part)
 {
     const TablePlace place = table_place(params, density);
@@ -54,8 +54,8 @@ float opacity_of_part(const RaycastParams params, float density, float part)
     return place.is_inside ? opacity : 0.0;
 }
 
-// Colour and opacity of that part of a step, for a density that goes from `front` to `back`. Both are axes of the
-// table; the part of the step that is outside the function's range is empty.
+// Colour and opacity of the fraction `part` of a step, for a density that changes from `front` to `back`. Both are axes
+// of the table; the part of the step outside the function's range is empty.
 vec4 classify_change(const RaycastParams params, float front, float back, float part)
 {
     const vec2 ends = clamp(vec2(front, back), params.table_lower, params.table_upper);
@@ -88,7 +88,7 @@ Opaque opaque_interval(const RaycastParams params, uint number)
     return Opaque(imageLoad(table, table_texel(at)), imageLoad(table, table_texel(at + 1u)));
 }
 
-// The interval that a density meets first on its way from `front` to `back`, or another one.
+// The interval that a density meets first on its way from `front` to `back`, or an unreachable one.
 Opaque opaque_ahead(const RaycastParams params, float front, float back)
 {
     const float at = clamp((front - params.table_lower) * params.opaque_scale, 0.0, float(OPAQUE_ENTRIES - 1u));
@@ -101,7 +101,7 @@ Opaque opaque_ahead(const RaycastParams params, float front, float back)
     return opaque_interval(params, rises ? number + 1u : number - 1u);
 }
 
-// As classify_change; a step that meets a density at which rays end shows what is in front of it, and then its colour.
+// As classify_change; a step that meets an opaque density shows what is in front of it, and then its colour.
 vec4 classify_step(const RaycastParams params, float front, float back, float part)
 {
     if (PREINTEGRATED < 2u) return classify_change(params, front, back, part);

@@ -7,7 +7,8 @@
 // lie side by side, or within the brick's apron, so no second lookup is ever needed.
 #include "atlas.glsl"
 
-// Three neighbouring codes along x: the words that hold the first and the last of them, and how to take them out.
+// Three neighbouring codes along x: the words that hold the first and the last of them, and the shifts that extract
+// them.
 struct Row {
     int first_word, last_word;
     uvec3 shifts;
@@ -17,7 +18,7 @@ struct Row {
 struct Density {
     ivec3 corner;      // lower corner, in codes
     vec3 fraction;
-    Row row;           // from the corner, or from the code before
+    Row row;           // from the corner, or from the code before it
     float v[8];        // codes at the corners, x fastest
     float beyond[4];   // the next code along x on the nearer side, in the rows (y, z) = 00, 10, 01, 11
 };
@@ -66,7 +67,7 @@ Density density_at(ivec3 corner, vec3 fraction)
     return d;
 }
 
-// The codes at the corner's place along x, and at the next, in another row.
+// The codes at the corner's x, and at the next x, in another row.
 vec2 pair_in(const Density d, int y, int z)
 {
     const vec3 codes = codes_of(d.row, y, z);
@@ -88,7 +89,8 @@ float value_of(const Density d)
     return low + (high - low) * d.fraction.z;
 }
 
-// The derivative for three values in a row, `f` between the first two: f(p + 0.5) - f(p - 0.5) of their interpolant.
+// The derivative from three consecutive values, `f` between the first two: f(p + 0.5) - f(p - 0.5) of their
+// interpolant.
 float central(float low, float high, float beyond, float f)
 {
     const float inner = high - low;

@@ -1,4 +1,4 @@
-// Which group a position is in. Needs mask.glsl and `mask`.
+// Finds the group at a position. Needs mask.glsl and `mask`.
 
 uint group_of(uvec3 voxel)
 {
@@ -6,10 +6,10 @@ uint group_of(uvec3 voxel)
     return slot == 0u ? 0u : imageLoad(mask, ivec3(mask_slot_origin(slot) + voxel % BRICK_SIZE)).x;
 }
 
-// The label that weighs most among the eight voxels around the position, by trilinear weights, which add up where
-// labels are equal. Labels are never mixed, so none appears that is not there; in the middle of a voxel its own label
-// has all the weight. Beyond the last voxels (`last`) theirs go on. Of equal weights the voxel that is first in order
-// of x, y, z wins.
+// The label with the largest weight among the eight voxels around the position, using trilinear weights, which add up
+// for equal labels. Labels are never mixed, so no new label appears; at the centre of a voxel its own label has all the
+// weight. Beyond the last voxels (`last`) their labels continue. For equal weights the voxel that is first in order of
+// x, y, z wins.
 uint group_around(vec3 position, ivec3 last)
 {
     const vec3 lattice = position - 0.5;

@@ -1,19 +1,19 @@
-// Where along a ray its samples are. Needs sample.glsl.
+// The positions of samples along a ray. Needs sample.glsl.
 
-// Numbers of steps leave room for a leap.
+// Step numbers leave room for a leap.
 const float MAX_STEPS = 2147483648.0;
 
-// A ray's steps: whole ones, of equal length, and its rest, a shorter and therefore more transparent one.
+// A ray's steps: whole ones of equal length, and the rest, a shorter and therefore more transparent one.
 struct Lattice {
     float begin, end;    // lengths along the ray
-    uint whole;          // so many, and the number of the rest
+    uint whole;          // number of whole steps, and index of the rest
     float part;          // the rest, in whole steps; 0: there is none
     float rest_middle;   // length along the ray
 };
 
 Lattice lattice_of(const RaycastParams params, float begin, float end)
 {
-    const float extent = end > begin ? end - begin : 0.0;   // of what is no number, too
+    const float extent = end > begin ? end - begin : 0.0;   // 0 also for NaN
     const float steps = extent / params.step;
     const uint whole = steps > 0.0 ? uint(min(steps, MAX_STEPS)) : 0u;   // likewise
     const float whole_end = begin + float(whole) * params.step;
@@ -21,7 +21,7 @@ Lattice lattice_of(const RaycastParams params, float begin, float end)
     return Lattice(begin, end, whole, max(rest / params.step, 0.0), whole_end + 0.5 * rest);
 }
 
-// With the rest.
+// Number of steps including the rest.
 uint step_count(const Lattice lattice)
 {
     return lattice.whole + uint(lattice.part > 0.0);

@@ -1,10 +1,10 @@
-// The pixel that a thread draws where a list says which blocks of pixels are drawn (adaptive.h). The includer declares
+// The pixel that a thread draws if drawing is limited to listed blocks of pixels (adaptive.h). The includer declares
 // binding LISTED_BLOCKS_BINDING.
 
 layout(push_constant) uniform Push { uint groups_before; };   // in the dispatches before this one
 layout(binding = LISTED_BLOCKS_BINDING, scalar) readonly buffer Blocks { uint numbers[]; } listed_blocks;
 
-// Relative to pixel_begin; beyond pixel_end where there is none.
+// The pixel relative to pixel_begin; beyond pixel_end if there is none.
 uvec2 listed_in_part(uvec2 pixel_begin, uvec2 pixel_end)
 {
     const uint eight = gl_LocalInvocationIndex / 8u, in_eight = gl_LocalInvocationIndex % 8u;

@@ -19,7 +19,7 @@ uint mask_slot_of(uvec3 brick)
     return mask_slot_at(brick, places.x) | mask_slot_at(brick, places.y);
 }
 #else
-// An image, because every sample reads it, and lavapipe reads buffers one lane after another.
+// An image, because every sample reads it, and lavapipe reads buffers one lane at a time.
 layout(binding = MASK_TABLE_BINDING, r32ui) uniform readonly uimage3D mask_table;
 
 uint mask_slot_of(uvec3 brick)

@@ -4,7 +4,7 @@ layout(binding = 1, scalar) readonly buffer Directory { uint entries[]; } direct
 layout(binding = 8, r8ui) uniform readonly uimage3D cell_leap;
 layout(binding = 9, scalar) buffer Reached { uint bits[]; } reached;
 
-// What a position is in: a region with nothing visible (distance > 0), or a brick.
+// The region that contains a position: one with nothing visible (distance > 0), or a brick.
 struct Place {
     uint distance;    // in cells
     uint cell_shift;  // log2 of a cell's side, in voxels
@@ -24,7 +24,7 @@ Place place_at(const RaycastParams params, vec3 position)
     place.entry = grid_index(voxel >> place.cell_shift, params.page_counts);
     uint entry = directory.entries[place.entry];
     // The finest view of the largest volume descends ten times; most pictures never descend. All lanes descend
-    // together, because some devices lose what one lane sets in a loop that others have left.
+    // together, because some devices lose values that one lane sets in a loop that others have left.
     for (uint depth = 0u; depth < params.page_depth; ++depth) {
         const bool down = entry >> PAGE_LEVEL_SHIFT == PAGE_NODE;
         place.cell_shift -= uint(down);
@@ -50,8 +50,8 @@ Place place_at(const RaycastParams params, vec3 position)
     return place;
 }
 
-// Reports to the host that a ray visited this place; visits decide which bricks are loaded. Most rays come by where
-// others were before: they only read, since writes of one word wait for each other.
+// Reports to the host that a ray visited this place; visits decide which bricks are loaded. Most rays pass places that
+// others visited before: they only read, since writes to one word wait for each other.
 void note_reached(const Place place)
 {
     const uint bit = 1u << (place.entry & 31u);

@@ -1,14 +1,14 @@
-// Where along a ray a person points at: where its opacity rises most.
+// The point of a ray that the user points at: where its opacity rises most.
 
-// What PICK looks for: the run of samples that adds most to the ray's opacity, and in it the sample that adds most.
+// The result of PICK: the run of samples that adds most to the ray's opacity, and in it the sample that adds most.
 struct Rises {
-    float most, most_at;               // of the runs so far; lengths along the ray
-    float run, steepest, steepest_at;  // of this one
+    float most, most_at;               // of the best run so far; lengths along the ray
+    float run, steepest, steepest_at;  // of the present run
     float peak, trough;                // largest opacity of a sample of this run, and smallest since then
 };
 
-// A run ends where the opacity of samples has fallen well below its peak and rises again: behind a structure comes
-// another. A little noise ends none.
+// A run ends when the opacity of samples has fallen well below its peak and rises again: another structure follows.
+// Slight noise does not end a run.
 void note_rise(inout Rises rises, float added, float opacity, float at)
 {
     if (rises.trough < 0.25 * rises.peak && opacity > 2.0 * rises.trough) {

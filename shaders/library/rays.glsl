@@ -1,9 +1,9 @@
 // The pixel that a thread draws, and where its ray crosses a plane of points. The includer declares GROUP_WIDTH, which
-// is 8, 16 or 32: a group's 64 threads cover GROUP_WIDTH x 64 / GROUP_WIDTH pixels. Layers of groups take rows of them
-// in turn (engine/passes/pixel_groups.h).
+// is 8, 16 or 32: a group's 64 threads cover GROUP_WIDTH x 64 / GROUP_WIDTH pixels. Layers of groups take rows of
+// groups in turn (engine/passes/pixel_groups.h).
 
-// The pixel relative to the first pixel of the drawn part. Each eight threads, which are a vector on CPUs, cover 4 x 2
-// pixels: the nearer rays are, the more alike they are.
+// The pixel relative to the first pixel of the drawn part. Every eight threads, which are one vector on CPUs, cover 4 x
+// 2 pixels: neighbouring rays are more similar.
 uvec2 thread_in_part()
 {
     const uvec2 group_size = uvec2(GROUP_WIDTH, 64u / GROUP_WIDTH);

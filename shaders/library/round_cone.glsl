@@ -1,5 +1,5 @@
-// Where a line meets balls and rods. A rod is the convex hull of two balls: their common tangent cone, and a part of
-// each ball. Everything is computed from the line's point nearest to the surface, so that a far origin causes no
+// Intersects a line with balls and rods. A rod is the convex hull of two balls: their common tangent cone, and a part
+// of each ball. Everything is computed from the line's point nearest to the surface, so that a far origin causes no
 // cancellation (Haines and others, Precision improvements for ray/sphere intersection, Ray Tracing Gems, ch. 7).
 
 struct Line {
@@ -7,7 +7,7 @@ struct Line {
     vec3 direction;  // unit
 };
 
-// The interval in which a line is inside: x ... y; empty where x > y.
+// The interval in which a line is inside: x ... y; empty if x > y.
 const vec2 NOTHING = vec2(1e30, -1e30);
 
 // `center` relative to the line's origin.

@@ -1,18 +1,18 @@
-// What a ray sees in one step: density, transfer function, paint, light. Needs raycast.comp's Ray and Place,
-// density_*.glsl, shade.glsl, where MASKED mask.glsl and `groups`, where OCCLUDED occlusion.glsl.
+// Computes what a ray sees in one step: density, transfer function, paint, light. Needs raycast.comp's Ray and Place,
+// density_*.glsl, shade.glsl, if MASKED mask.glsl and `groups`, if OCCLUDED occlusion.glsl.
 #include "classify.glsl"
 #ifdef MASKED
 #include "groups.glsl"
 #endif
 
-// Rounding may move a ray that runs in a face an ulp outside. Below 0 that still truncates to voxel 0; above, it is
+// Rounding may move a ray that runs along a face an ulp outside. Below 0 that still truncates to voxel 0; above, it is
 // clamped.
 vec3 position_at(const RaycastParams params, const Ray ray, float s)
 {
     return min(ray.origin + s * ray.direction, params.position_limit);
 }
 
-// Grey, perceptually even: the inverse of the curve that pictures are encoded with (IEC 61966-2-1).
+// Grey, perceptually uniform: the inverse of the curve with which pictures are encoded (IEC 61966-2-1).
 vec4 slice_look(const RaycastParams params, float density)
 {
     const float grey = clamp((density - params.slice_black) * params.slice_scale, 0.0, 1.0);
@@ -36,7 +36,7 @@ vec4 painted(const RaycastParams params, uint group, vec4 look)
 }
 #endif
 
-// Where the texels around a position are.
+// The texels around a position.
 struct Texels {
     vec3 lattice;    // of voxel centres of the brick's level
     uvec3 brick;
@@ -47,7 +47,7 @@ struct Texels {
 };
 
 // Cell and fraction come from the global position, and only the integer part is moved into the brick: a bricked volume
-// gives the same bits as one in a single texture. What is read where there is no brick is not used.
+// gives the same bits as one in a single texture. If there is no brick, the values read are not used.
 Texels texels_at(vec3 position, const Place place)
 {
     Texels texels;
@@ -74,14 +74,14 @@ Texels texels_at(vec3 position, const Place place)
 // The density at a point at most half a voxel outside the brick whose first voxel is at `first`.
 float value_near(vec3 in_brick, ivec3 first)
 {
-    const vec3 held = clamp(in_brick, -1.0, float(BRICK_SIZE));   // its aprons included
+    const vec3 held = clamp(in_brick, -1.0, float(BRICK_SIZE));   // including its aprons
     const vec3 corner = min(floor(held), float(BRICK_SIZE) - 1.0);
     return value_of(density_at(ivec3(corner) + first, held - corner));
 }
 
 // The density where a step begins or ends, at length `s` along the ray; `texels` are of the step's middle, whose brick
-// reaches that far. One step's end is the next one's beginning, with the same bits if both are in bricks of one level:
-// what is subtracted from a position is whole.
+// reaches that far. One step's end is the next one's beginning, with the same bits if both are in bricks of one level,
+// because only whole numbers are subtracted from a position.
 float value_at_end(const RaycastParams params, const Ray ray, float s, const Texels texels, const Place place)
 {
     vec3 lattice = position_at(params, ray, s);
@@ -99,7 +99,8 @@ struct Sample {
 };
 
 // A step with its middle at `position`, in the brick at `place`. PREINTEGRATED: `ends` are the densities at its
-// beginning and end, and its opacity is that of `part` of a step; otherwise that of a whole one (opacity_of_rest).
+// beginning and end, and its opacity is that of the fraction `part` of a step; otherwise that of a whole one
+// (opacity_of_rest).
 Sample sample_at(const RaycastParams params, const Ray ray, vec3 position, float part, const Place place, vec2 ends)
 {
     const Texels texels = texels_at(position, place);
@@ -136,7 +137,7 @@ Sample sample_at(const RaycastParams params, const Ray ray, vec3 position, float
     return found;
 }
 
-// The opacity of that part of a step, whose middle the sample is of.
+// The opacity of the fraction `part` of a step whose middle was sampled.
 float opacity_of_rest(const RaycastParams params, const Sample taken, float part)
 {
     if (part >= 1.0) return taken.look.a;

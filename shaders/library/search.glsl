@@ -1,14 +1,15 @@
-// The search for the next sample that can be seen. In noise at the threshold hardly a cell is empty and hardly a sample
-// shows anything, so samples are asked for their density alone, several at a time, before any is shaded. Needs
-// raycast.comp's Ray, Place, Work and texels_at.
+// Searches for the next visible sample. In noise near the threshold hardly a cell is empty and hardly a sample shows
+// anything, so only densities are read, several samples at a time, before any is shaded. Needs raycast.comp's Ray,
+// Place, Work and texels_at.
 //
-// Lanes that leave a loop early wait for the others, and lavapipe does not keep what a lane has set in a loop that it
-// left: only the step and counts, which are added to, are carried out of these loops. What is found is read again.
+// Lanes that leave a loop early wait for the others, and lavapipe does not keep values that a lane has set in a loop
+// that it left: only the step and counts, which are added to, are carried out of these loops. The sample found is read
+// again.
 
-// Lanes that have found nothing by then take a sample as the others do.
+// After that many iterations, lanes that have found nothing take a sample like the others.
 const uint MAX_SEARCH_TURNS = 20u;
-// Whether the sample at `position` may show anything. Samples of paint may, whatever their density; and a step whose
-// ends are classified is not judged by its middle.
+// Whether the sample at `position` may show anything. Painted samples may, whatever their density; and a step
+// classified by its ends is not judged by its middle.
 bool may_be_seen(const RaycastParams params, vec3 position, const Place place)
 {
     if (PREINTEGRATED != 0u) return true;
@@ -18,18 +19,18 @@ bool may_be_seen(const RaycastParams params, vec3 position, const Place place)
 }
 
 #ifdef BITTED
-// Where there are sample bits (leap.h), a sample costs one load until one may show something.
+// With sample bits (leap.h), a sample costs one load until one may show something.
 
-// Cells: leaps from places with less around them are not worth a loop. In noise nearly all are short.
+// Cells: leaps from places with less empty space around them are not worth a loop. In noise nearly all are short.
 const uint NEAR = 1u;
 
-// Samples that a turn asks for their density after their bits: where noise is above a threshold, bits are set in
+// Samples per iteration whose density is read after their bits: where noise is above a threshold, bits are set in
 // groups.
 const uint ASKED_IN_TURN = 2u;
 
-// Which of the samples from step `i` on have their bits set; the lowest is that of step `i`. Places are found by whole
-// parts of a voxel (leap.h), which is a fraction of the work: from the voxels' first bits on coordinates lie side by
-// side, as in the number of a bit.
+// Which of the samples from step `i` on have their bits set; the lowest bit is that of step `i`. Positions are in fixed
+// point (leap.h), which costs a fraction of the work: coordinates are packed so that, from the voxels' first bits on,
+// they are adjacent, as in a bit's index.
 uint bits_ahead(const RaycastParams params, const Ray ray, float begin, uint i)
 {
     const vec3 parts = vec3(SAMPLE_BIT_PARTS, SAMPLE_BIT_PARTS << 2, SAMPLE_BIT_PARTS << 4);
@@ -38,7 +39,7 @@ uint bits_ahead(const RaycastParams params, const Ray ray, float begin, uint i)
     uvec3 place = uvec3(ivec3((sample_position(params, ray, begin, i) + 0.5) * parts));
     uint found = 0u;
     [[unroll]] for (uint k = 0u; k < SAMPLE_BITS_AHEAD; ++k) {
-        const uvec3 held = min(place, last);   // a ray may leave the volume; what is there is not used
+        const uvec3 held = min(place, last);   // a ray may leave the volume; values there are not used
         const uint bits = imageLoad(sample_bits, ivec3(held / (uvec3(parts) * uvec3(4u, 4u, 2u)))).x;
         const uint bit = (held.x & 3u * uint(parts.x) | held.y & 3u * uint(parts.y) | held.z & uint(parts.z)) /
                          SAMPLE_BIT_PARTS;
@@ -93,7 +94,7 @@ void search_bits(const RaycastParams params, const Ray ray, float begin, uint en
 }
 #endif
 
-// Goes on to a step whose sample may be seen, to the first that may not be followed further, or to `end_step`.
+// Advances to a step whose sample may be visible, to the first that may not be searched further, or to `end_step`.
 // `unseen` counts samples that showed nothing.
 void search_sample(const RaycastParams params, const Ray ray, float begin, uint end_step, inout uint i,
                    inout uint unseen, inout Work work)

@@ -1,7 +1,7 @@
 // Local illumination.
 
 // x^shininess. Powers of two, which most sessions use, are computed by squaring: exp2 and log2 took a tenth of a shaded
-// picture's time on a CPU. The floor keeps intermediate values out of the denormal numbers, which are even slower.
+// picture's time on a CPU. The floor keeps intermediate values out of the denormal range, which is even slower.
 float power(float x, float shininess)
 {
     if (SHININESS_SQUARINGS < NOT_A_POWER_OF_TWO) {
@@ -13,7 +13,7 @@ float power(float x, float shininess)
     return shininess == 0.0 ? 1.0 : x <= 0.0 ? 0.0 : exp2(shininess * log2(x));
 }
 
-// The half vector, normalised; 0 where the light is straight behind the sample.
+// The half vector, normalised; 0 if the light is straight behind the sample.
 vec3 half_way(vec3 light, vec3 to_eye)
 {
     const vec3 sum = light + to_eye;
@@ -21,8 +21,8 @@ vec3 half_way(vec3 light, vec3 to_eye)
     return sum_length > 1e-6 ? sum / sum_length : vec3(0.0);
 }
 
-// Blinn-Phong with one white light (Blinn 1977). `surface`: how far the normal is that of a surface; at 0 the highlight
-// vanishes and the diffuse term is its full, directionless value.
+// Blinn-Phong with one white light (Blinn 1977). `surface`: the degree to which the normal is that of a surface; at 0
+// the highlight vanishes and the diffuse term is its full, directionless value.
 vec3 lit(const RaycastParams params, float ambient, vec3 color, vec3 normal, float surface, vec3 half_way)
 {
     const float facing = max(dot(normal, params.light), 0.0);
@@ -31,7 +31,7 @@ vec3 lit(const RaycastParams params, float ambient, vec3 color, vec3 normal, flo
     return min(color * (ambient + params.diffuse * mix(1.0, facing, surface)) + highlight, vec3(1.0));
 }
 
-// Where the gradient is far below `gradient_fade` there is no surface; otherwise flat regions would sparkle or go dark.
+// If the gradient is far below `gradient_fade` there is no surface; otherwise flat regions would sparkle or go dark.
 vec3 shade(const RaycastParams params, float ambient, vec3 color, vec3 slope, vec3 half_way)
 {
     const float square = dot(slope, slope);

@@ -1,23 +1,23 @@
 // Thin-shell iso-surface in the region around the probe: where the trilinear field crosses a threshold, solved per cell
 // and not at samples, so that nothing thinner than a step is missed. Along a ray the field in a cell is a cubic; it is
 // split where its derivative is 0, and each piece holds at most one crossing (Marmitt and others 2004, "Fast and
-// accurate ray-voxel intersection techniques for iso-surface ray tracing"). Cells of 4^3 voxels whose ranges say that
-// the field stays on the ray's side of the threshold are passed at once.
+// accurate ray-voxel intersection techniques for iso-surface ray tracing"). Cells of 4^3 voxels whose range shows that
+// the field stays on the ray's side of the threshold are skipped at once.
 //
 // The inside state of a ray is carried from cell to cell: a crossing lost to rounding at a border is found at the start
 // of the next cell, so there are neither holes nor duplicates. Every variable that outlives an iteration is carried
-// through the loop, since lanes that leave early keep no other.
+// through the loop, since lanes that leave early keep no others.
 #include "voxel_code.glsl"
 
 // Reference lengths. A cell with a shorter piece of the ray counts as its neighbour; a thinner shell is ignored. Far
-// along a ray two ulps at least, so that every search goes on.
+// along a ray it is at least two ulps, so that every search advances.
 float hair_at(float s)
 {
     const float HAIR = 1e-3, TWO_ULPS = 2.384185791015625e-7;
     return max(HAIR, s * TWO_ULPS);
 }
 
-// Cells are always searched whole, also where a block of the ray's steps ends in one, so that crossings do not depend
+// Cells are always searched as a whole, even if a block of the ray's steps ends in one, so that crossings do not depend
 // on how rays are divided.
 struct Shell {
     float next;       // length along the ray of the next crossing
@@ -27,7 +27,7 @@ struct Shell {
     float end;
     bool is_inside;   // at `from`
     bool waits;       // for a brick
-    uint turns;       // of both loops; MAX_TURNS are more than any ray needs whose numbers are some
+    uint turns;       // iterations of both loops; MAX_TURNS are more than any ray with finite coordinates needs
 };
 
 // The cell of the lattice around a position, in the brick that holds it.
@@ -76,8 +76,9 @@ vec3 fraction_in(const Cell cell, vec3 position)
     return clamp(position / cell.scale - 0.5 - cell.corner, 0.0, 1.0);
 }
 
-// The codes at a cell's corners, x fastest: loaded once for the four values that a cubic needs. These are never a
-// sampler's, which rounds its weights, commonly to 8 bits: a cubic through such values turns where the field does not.
+// The codes at a cell's corners, x fastest: loaded once for the four values that a cubic needs. Never read through a
+// sampler, which rounds its weights, commonly to 8 bits: a cubic through such values has extrema where the field has
+// none.
 struct Corners {
     float v[8];
 };
@@ -112,7 +113,7 @@ float cubic(vec4 c, float u)
     return c.x + u * (c.y + u * (c.z + u * c.w));
 }
 
-// The cubic's derivative's zeros between 0 and 1, ascending; otherwise 0 or 1.
+// The zeros of the cubic's derivative between 0 and 1, ascending; otherwise 0 or 1.
 vec2 turning_points(vec4 c)
 {
     const float discriminant = c.z * c.z - 3.0 * c.y * c.w;
@@ -136,7 +137,7 @@ float crossing(vec4 c, float low, float high, bool low_is_inside)
     return mix(low, high, a != b ? clamp(a / (a - b), 0.0, 1.0) : 0.5);
 }
 
-// Goes on to a cell of 4^3 voxels (leap.h) in which something may cross, or to the end of what may be searched.
+// Advances to a cell of 4^3 voxels (leap.h) that may contain a crossing, or to the end of the search range.
 void pass_clear_cells(const RaycastParams params, const Ray ray, inout Shell shell)
 {
     bool is_clear;
@@ -166,7 +167,7 @@ void pass_clear_cells(const RaycastParams params, const Ray ray, inout Shell she
     } while (is_clear);
 }
 
-// Finds the next crossing. Sets `next` to NO_SHELL if the region, or what may be searched, ends first.
+// Finds the next crossing. Sets `next` to NO_SHELL if the region, or the search range, ends first.
 void search_shell(const RaycastParams params, const Ray ray, inout Shell shell)
 {
     shell.next = NO_SHELL;
@@ -234,8 +235,8 @@ vec2 shell_range(const RaycastParams params, const Ray ray)
     return middle + vec2(-half_chord, half_chord);
 }
 
-// `begin`, `end`: of the ray; `limit`: of its part that is followed now. `kept`, `is_inside`: as an earlier part left
-// them (raycast.h).
+// `begin`, `end`: of the ray; `limit`: of its part that is followed now. `kept`, `is_inside`: the state left by an
+// earlier part (raycast.h).
 Shell begin_shell(const RaycastParams params, const Ray ray, float begin, float end, float limit, vec4 kept,
                   bool is_inside)
 {
@@ -265,7 +266,7 @@ float known_until(const Shell shell)
     return shell.next == NO_SHELL && shell.waits ? shell.known : shell.next;
 }
 
-// Whether a crossing before `s` may not be known yet, or cannot be drawn yet.
+// Whether a crossing before `s` may still be unknown, or cannot be drawn yet.
 bool shell_waits(const RaycastParams params, const Shell shell, float s, vec4 sum)
 {
     return shell.waits && sum.a < params.opacity_limit && known_until(shell) < s;
@@ -284,7 +285,7 @@ vec4 shell_look(const RaycastParams params, const Ray ray, const Cell cell, vec3
     return vec4(color, params.shell_opacity);
 }
 
-// Whether there is a crossing before `s` to be added, or the next one is to be searched.
+// Whether there is a crossing before `s` to add, or the next one must be searched.
 bool has_more_shells(const RaycastParams params, const Shell shell, float s, vec4 sum)
 {
     const bool is_unknown = shell.next == NO_SHELL && shell.from >= 0.0 && shell.from < shell.limit;

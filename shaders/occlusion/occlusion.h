@@ -7,58 +7,59 @@
 //
 //   surface   strength = g^2 / (g^2 + fade^2) for a gradient g
 //   edge      the voxel is moved along the normal to where the medium ends: by the integral over 0 < s < 1.5 of the
-//             minimum so far of e(s), less that over -1.5 < s < 0 of 1 - the maximum so far, where
+//             running minimum of e(s), minus that over -1.5 < s < 0 of 1 - the running maximum, where
 //             e = 1 - (1 - min(o / o', 1))^2. Rays begin 0.07 units in front of that; all this times the strength.
-//   side      directions whose cosine with the normal is below strength - 1 come from the front instead, mirrored in
-//             the surface. Unless the full sphere is asked for.
-//   itself    as far as a ray is in its own voxel it meets no more than half a unit after leaving it.
+//   side      directions whose cosine with the normal is below strength - 1 are replaced by their mirror image in
+//             front of the surface, unless the full sphere is requested.
+//   itself    within its own voxel a ray meets no more than half a unit after leaving it.
 //
-// So a ray begins where what is seen begins, however deep in the edge its voxel lies: on a plane all light arrives, and
-// in a hollow the wall is as near as it is. tests/reference/occlusion.h has all of it in double.
+// So a ray begins at the visible edge, however deep in the edge its voxel lies: on a plane all light arrives, and in a
+// hollow the wall is at its true distance. tests/reference/occlusion.h has all of it in double.
 //
-// A "ramp" says in 32 bits how opaque a cube is from place to place: the plane that fits its densities, through the
-// transfer function, as an opacity that rises in a straight line from 0 to a top. Where it rises, and over how long,
-// follows from the function's mean and mean square over the densities of the cube, which are sums over its table. Ramps
-// have a surface where it is inside a cube, so nothing is taken out of them for the half-space behind it.
+// A "ramp" encodes in 32 bits how opaque a cube is from place to place: the plane fitted to its densities, mapped
+// through the transfer function to an opacity that rises linearly from 0 to a maximum (top). Position and width of the
+// rise follow from the function's mean and mean square over the densities of the cube, which are sums over its table.
+// Ramps resolve a surface inside a cube, so they need no correction for the half-space behind it.
 //
 // "Cells" hold the opacity of the medium, in two coarse copies of every brick. Those of 2^3 voxels are ramps. Those of
 // 4^3 have three codes, the opacities of paths through it along x, y and z, each the mean over its columns: a wall
-// stops what crosses it, however thin, and not what runs beside it. Opacity = (code / 255)^2; the square root puts more
-// codes where opacities are small. A ray takes their mean, weighted with the squares of its direction. Both are those
-// of the stretch of a ray that a cell stands for, which grows with the radius.
+// blocks rays that cross it, however thin, but not rays parallel to it. Opacity = (code / 255)^2; the square root puts
+// more codes where opacities are small. A ray takes their mean, weighted with the squares of its direction. Both apply
+// to the stretch of a ray that a cell represents, which grows with the radius.
 //
-// "Near" are ramps of voxels. They are made from densities and gradients for each brick in turn, with the surroundings
-// of the brick, and then discarded; so are copies of the cells around a paged brick, which let rays read from one piece
-// of memory. Cells of a resident volume lie side by side as in the volume, so nothing is copied. A voxel that paint or
-// a cut holds has that opacity throughout.
+// "Near" values are ramps of voxels. They are computed from densities and gradients for each brick in turn, with the
+// surroundings of the brick, and then discarded; so are copies of the cells around a paged brick, which let rays read
+// from one piece of memory. Cells of a resident volume are side by side as in the volume, so nothing is copied. A voxel
+// whose opacity is fixed by paint or a cut has that opacity throughout.
 //
-// "Values" are the result, 255 where all light arrives, in slots like those of the density atlas, aprons included. Of a
-// resident volume a brick's values are written to the aprons of its neighbours. A paged brick's aprons are computed
-// with it, from the same numbers and to the same bits, so that its values depend on the bricks around it alone, and not
-// on whether and when those had theirs.
+// "Values" are the result, 255 where all light arrives, in slots like those of the density atlas, aprons included. In a
+// resident volume a brick's values are also written to the aprons of its neighbours. A paged brick's aprons are
+// computed with it, from the same numbers and to the same bits, so that its values depend only on the bricks around it,
+// and not on whether and when those had theirs.
 #ifndef SHVR_OCCLUSION_H
 #define SHVR_OCCLUSION_H
 #include "../bricks.h"
 
 SHARED_BEGIN
 
-SHARED_CONST uint OCCLUSION_SIZES = 2u;  // of cells: 2 << size voxels a side
+SHARED_CONST uint OCCLUSION_SIZES = 2u;  // cell sizes: 2 << size voxels a side
 /// Bricks whose values can be computed at once: enough to keep a GPU busy.
 SHARED_CONST uint OCCLUSION_SLICE = 256u;
-/// The scratch images hold them in columns along z, these in rows along x.
+/// The scratch images hold them in columns along z, which are in rows along x.
 SHARED_CONST uint OCCLUSION_COLUMN = 16u;
 SHARED_CONST uint OCCLUSION_COLUMNS_A_ROW = 4u;
 SHARED_CONST uint OCCLUSION_NEAR_APRON = 4u;  // voxels
 SHARED_CONST uint OCCLUSION_NEAR_SIDE = 40u;  // BRICK_SIZE + 2 OCCLUSION_NEAR_APRON
-/// Likewise for paged bricks, whose rays begin in their aprons as well.
+/// The same for paged bricks, whose rays begin in their aprons as well.
 SHARED_CONST uint OCCLUSION_NEAR_APRON_PAGED = 8u;
 SHARED_CONST uint OCCLUSION_NEAR_SIDE_PAGED = 48u;
-/// Maximum number of bricks on each side of a brick that its light comes from; sets the largest radius.
+/// Maximum number of bricks away, on each side of a brick, from which light arrives; sets the largest radius.
 SHARED_CONST uint OCCLUSION_REACH = 2u;
 SHARED_CONST uint OCCLUSION_AROUND = 125u;  // (2 OCCLUSION_REACH + 1)^3
-/// Workgroups per brick: more of them keep a GPU busy with few bricks.
+/// Workgroups per brick: several keep a GPU busy even with few bricks.
 SHARED_CONST uint OCCLUSION_SPLIT = 8u;
-/// An entry of `around` is a packed slot and, from this bit on, how many levels its brick is above the job's; 0: none.
+/// An entry of `around` is a packed slot and, from this bit on, by how many levels its brick is coarser than the job's;
+/// 0: none.
 SHARED_CONST uint OCCLUSION_LEVEL_SHIFT = 24u;
 
 /// Maximum number of levels of a volume.
@@ -66,12 +67,12 @@ SHARED_CONST uint OCCLUSION_LEVELS = 32u;
 
 /// A brick whose cells are computed: one workgroup.
 struct OcclusionCellsJob {
-    uvec3 brick;  ///< of its level
+    uvec3 brick;  ///< in bricks of its level
     uint slot;
 };
 
-/// Of the transfer function: an opacity, and sums over the entries before this one, of opacities and of their squares.
-/// The sums are two floats each, a value and what it lacks: where much is opaque at lower densities, the sums over a
+/// An entry of the transfer function: an opacity, and sums over the preceding entries, of opacities and of their
+/// squares. Each sum is two floats, a value and its remainder: if much is opaque at lower densities, the sums over a
 /// few translucent entries are small differences of large numbers.
 struct OcclusionEntry {
     float opacity;
@@ -85,10 +86,10 @@ struct OcclusionCellsParams {
     float table_scale;
     uint table_entries;
     uint level;
-    vec3 lower;  ///< what blocks light, voxels of level 0; everything outside is empty
+    vec3 lower;  ///< box that blocks light, in voxels of level 0; everything outside is empty
     vec3 upper;
     uvec3 brick_counts;  ///< of level 0
-    float far_exponent;  ///< from the opacities of this to those of cells of 4 for each voxel
+    float far_exponent;  ///< converts the opacities in this table to those of cells of 4, per voxel
 };
 
 /// A brick whose values are computed: OCCLUSION_SPLIT workgroups.
@@ -101,15 +102,16 @@ struct OcclusionJob {
 /// Parameters for gathering the surroundings of bricks of one level.
 struct OcclusionGatherParams {
     OcclusionCellsParams voxels;
-    uvec3 cell_counts;  ///< of the leap grid
+    uvec3 cell_counts;  ///< size of the leap grid
     uint reach;
     uint aprons[OCCLUSION_SIZES];  ///< in cells of each size
-    /// From the cells of a level above to the stretches of this one's taps.
+    /// Converts the cells of a coarser level to the stretches of this level's taps.
     float exponents[OCCLUSION_SIZES * OCCLUSION_LEVELS];
 };
 
-/// A ramp's bits: 8 for the top, coded as in cells; 6 for the height in the middle, above a half of the top, and 6 for
-/// the slope across the cube along each axis, in these parts of the top. Of RAMP_HELD: paint or a cut holds it.
+/// The bits of a ramp: 8 for the top, coded as in cells; 6 for the height at the centre, above half of the top, and 6
+/// for the slope across the cube along each axis, in these fractions of the top. RAMP_HELD: the opacity is fixed by
+/// paint or a cut.
 SHARED_CONST float RAMP_HEIGHTS = 20.0f, RAMP_SLOPES = 10.0f;
 SHARED_CONST int RAMP_HELD = 31;
 
@@ -129,20 +131,20 @@ SHARED_FUNCTION ivec3 ramp_slope(uint packed)
     return ivec3(int(packed << 12u) >> 26, int(packed << 6u) >> 26, int(packed) >> 26);
 }
 
-/// Where the scratch images hold a job, in bricks.
+/// The position of a job in the scratch images, in bricks.
 SHARED_FUNCTION uvec3 scratch_place(uint job)
 {
     const uint column = job / OCCLUSION_COLUMN;
     return uvec3(column % OCCLUSION_COLUMNS_A_ROW, column / OCCLUSION_COLUMNS_A_ROW, job % OCCLUSION_COLUMN);
 }
 
-/// Converts values to the share of ambient light: 1 - strength (1 - value^curve), which maps 1 to 1; or, where a curve
-/// of points is set (OCCLUSION_MAPPED of raycast.comp), 1 - strength (1 - lowest - the sum of what its segments rise).
+/// Converts values to the share of ambient light: 1 - strength (1 - value^curve), which maps 1 to 1; or, if a curve of
+/// points is set (OCCLUSION_MAPPED of raycast.comp), 1 - strength (1 - lowest - the sum of the rises of its segments).
 struct OcclusionLook {
     float strength;
     float curve;
-    float lowest;   ///< of the curve of points: at its first one
-    uint segments;  ///< and how many follow this, each an OcclusionSegment
+    float lowest;   ///< value of the curve of points at its first one
+    uint segments;  ///< number of OcclusionSegment that follow this struct
 };
 
 /// rise clamp((value - begin) per_width, 0, 1)

@@ -1,6 +1,6 @@
-// How much light reaches every potentially visible voxel of a brick, by the definition in occlusion.h. A ray takes
-// three samples in ramps of voxels, three in ramps of cells of two voxels and two in cells of four. PAGED: cells are
-// those of paged bricks.
+// Computes how much light reaches every potentially visible voxel of a brick, by the definition in occlusion.h. A ray
+// takes three samples in ramps of voxels, three in ramps of cells of two voxels and two in cells of four. PAGED: cells
+// are those of paged bricks.
 // variants: PAGED FILTERED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -48,24 +48,25 @@ layout(binding = 10, scalar) readonly buffer Opacities { OcclusionEntry entries[
 OcclusionBakeParams params;
 #include "../library/occupancy.glsl"
 
-// Found by search: least errors over the cases of tests/gpu/occlusion/occlusion_light_test.cpp. A cell of 4 counts as
-// this much nearer to the surface than it is, in units; ...
+// Found by optimization: minimal errors over the cases of tests/gpu/occlusion/occlusion_light_test.cpp. A cell of 4
+// counts as this much nearer to the surface than it is, in units; ...
 const float MARGIN_4 = 0.853;
-// ... that much more of it is taken to be the surface's; ...
+// ... this much more of it is attributed to the surface; ...
 const float WALL_4 = 8.2;
-// ... and what stops light does so this much earlier than evenly along the stretch.
+// ... and its opacity is concentrated this much towards the start of the stretch.
 const float BEND_4 = 0.08;
-// Ramps are softened the more, the further away they are, as rays stand for what is around them.
+// Ramps are softened more with distance, as rays represent the directions around them.
 const float SOFT_NEAR[] = {1.25, 0.874, 0.734}, SOFT_2[] = {0.751, 0.59, 0.527};
 
 #include "occlusion_listed.glsl"
 
-// Positions are relative to the block of 4^3 voxels that the voxel is in, plus these many voxels, so that they are
-// above 0 where they are truncated; so the arithmetic is the same wherever a brick, or its apron, begins.
+// Positions are relative to the block of 4^3 voxels that contains the voxel, plus these many voxels, so that they are
+// positive where they are truncated; so the arithmetic is the same wherever a brick, or its apron, begins.
 const int NEAR_AHEAD = 4, CELLS_AHEAD = 64;
 
-// From positions in that block to texels: of the scratch images, which hold jobs stacked along z, and of the cells,
-// which those of a resident volume are read from. In those positions, what blocks light: everything outside is empty.
+// Converts positions in that block to texels: of the scratch images, which hold jobs stacked along z, and of the cells,
+// from which those of a resident volume are read. The box that blocks light is in the same positions: everything
+// outside is empty.
 struct Block {
     ivec3 to_near, to_2, to_4;
     vec3 lower, upper;
@@ -90,13 +91,13 @@ Block block_of(const OcclusionJob of, ivec3 voxel)
                  share * params.voxels.lower - begin, share * params.voxels.upper - begin);
 }
 
-// Densities along the normal on one side of a voxel: a cubic as far as the neighbours, level beyond.
+// Densities along the normal on one side of a voxel: a cubic as far as the neighbours, constant beyond.
 struct Course {
     vec4 factors;
     float least, most;
 };
 
-// `to`: to the neighbours on that side along the axes; `rise`: voxels along each axis for each unit.
+// `to`: direction of the neighbours on that side along the axes; `rise`: voxels along each axis per unit.
 Course course_of(ivec3 texel, ivec3 to, vec3 rise, float own)
 {
     const ivec3 x = ivec3(to.x, 0, 0), y = ivec3(0, to.y, 0), z = ivec3(0, 0, to.z);
@@ -123,7 +124,7 @@ float opacity_along(const Course course, float along)
     return opacity_of(params.voxels, clamp(code, course.least, course.most));
 }
 
-// The opacity that the voxel there is held at, whatever its density; below 0: none.
+// The fixed opacity of the voxel there, whatever its density; below 0: none.
 float held_at(const Block block, vec3 place)
 {
     const ivec3 voxel = ivec3(place + float(NEAR_AHEAD));
@@ -135,13 +136,14 @@ float held_at(const Block block, vec3 place)
     return is_inside ? held : 0.0;
 }
 
-// The surface at a voxel, and what cells of 4 hold of the half-space behind it: that stops no ray which leaves it.
+// The surface at a voxel, and the contribution of the half-space behind it to cells of 4: that blocks no ray that
+// leaves it.
 struct Surface {
     vec3 normal;
     float strength;
-    vec3 place;     // where rays begin, voxels from the block's corner
-    vec3 heights;   // units along the normal for each voxel
-    vec3 scale;     // the part of a cell's columns along each axis that are behind it: base - scale * height in cells
+    vec3 place;     // start of rays, in voxels from the block's corner
+    vec3 heights;   // units along the normal per voxel
+    vec3 scale;     // the part of a cell's columns along each axis that is behind it: base - scale * height in cells
     vec3 base;
     float height;   // of the surface, as dot(heights, position) in cells
     float wall;     // opacity of the half-space behind the surface over the stretch of a tap
@@ -198,7 +200,7 @@ Surface surface_at(const Block block, ivec3 texel, vec3 centre, vec3 slope)
     return s;
 }
 
-// An opacity without what the half-space behind the surface has of it.
+// An opacity without the contribution of the half-space behind the surface.
 float beyond_surface(float opacity, float of_surface)
 {
     const float own = min(of_surface, 0.95);
@@ -215,7 +217,7 @@ float cell_tap(const Surface s, ivec3 cell, uint packed, vec3 weights, float lea
     return beyond_surface(opacity, leaves * s.wall * dot(weights, behind));
 }
 
-// x: light left; y: light that arrived. `left` of it over the stretch, `half_left` over half of it.
+// x: light left; y: light that arrived. `left` is the transmittance of the stretch, `half_left` that of half of it.
 vec2 after(vec2 light, float stretch, float left, float half_left)
 {
     return vec2(light.x * left, light.y + light.x * stretch * half_left);
@@ -226,7 +228,7 @@ vec2 after_cell(vec2 light, float stretch, float stopped)
     return vec2(light.x * (1.0 - stopped), light.y + light.x * stretch * (1.0 - stopped * (0.5 + BEND_4 * stopped)));
 }
 
-// Light left of a ray over the stretch of a ramp, that far from the middle of the cube, which is 1 a side. A ramp is
+// Light left of a ray over the stretch of a ramp, at an offset from the centre of the cube, whose side is 1. A ramp is
 // `softened` about the middle of its rise.
 float ramp_left(uint packed, vec3 from_middle, float softened)
 {
@@ -248,8 +250,8 @@ float left_of_2(const Block block, vec3 place, float softened)
     return ramp_left(imageLoad(around_2, cell + block.to_2).x, place - (vec3(cell) + 0.5), softened);
 }
 
-// Light that arrives along a ray, in units. No buffer is read and nothing is a loop: SIMD devices would go lane by
-// lane.
+// Light that arrives along a ray, in units. No buffer is read and nothing is a loop, which SIMD devices would run lane
+// by lane.
 float along(const Surface s, const Block block, vec3 direction, float leaves, ivec3 in_block)
 {
     const vec3 step = direction * params.inverse_spacing, weights = direction * direction;
@@ -285,8 +287,8 @@ float along(const Surface s, const Block block, vec3 direction, float leaves, iv
     return after_cell(light, params.taps_4[1].stretch, cell_tap(s, cell_1, packed_1, weights, leaves)).y;
 }
 
-// Stores the value at the voxel and at its copies in other bricks; those of paged bricks compute their own. Aprons that
-// no brick of this level has repeat their edge voxels.
+// Stores the value at the voxel and at its copies in other bricks; those of paged bricks compute their own. Aprons
+// without a brick of this level repeat their edge voxels.
 void store(const OcclusionJob job, ivec3 voxel, bool is_apron, uint value)
 {
     const ivec3 side = ivec3(equal(voxel, ivec3(31))) - ivec3(equal(voxel, ivec3(0)));
@@ -333,18 +335,18 @@ void main()
                                 code_at(texel + ivec3(0, 1, 0)) - code_at(texel - ivec3(0, 1, 0)),
                                 code_at(texel + ivec3(0, 0, 1)) - code_at(texel - ivec3(0, 0, 1)));
         const Surface surface = surface_at(block, texel, vec3(in_block) + 0.5, slope);
-        // Two vectors that are square to the normal and to each other (Duff et al. 2017).
+        // Two vectors orthogonal to the normal and to each other (Duff et al. 2017).
         const vec3 n = surface.normal;
         const float up = n.z < 0.0 ? -1.0 : 1.0, a = -1.0 / (up + n.z), b = n.x * n.y * a;
         const vec3 one = vec3(1.0 + up * n.x * n.x * a, up * b, -up * n.x), other = vec3(b, up + n.y * n.y * a, -n.y);
-        // Of the sphere behind the surface, the part whose rays come from the front instead.
+        // The part of the sphere behind the surface whose rays come from the front instead.
         const float open = params.full_sphere != 0u ? 1.0 : 1.0 - surface.strength;
 
         float sum = 0.0;
         vec2 turned = vec2(1.0, 0.0);
         const float share = 1.0 / float(params.rays);
         for (uint k = 0u; k < rays; ++k) {
-            // Spherical Fibonacci points (Gonzalez 2010) about the normal, twice as dense where both sides' rays go.
+            // Spherical Fibonacci points (Gonzalez 2010) about the normal, twice as dense where rays of both sides go.
             const float height_share = 1.0 - share * (float(k) + 0.5);
             const float height = height_share < open ? 2.0 * height_share - open : height_share;
             const vec2 beside = sqrt(max(1.0 - height * height, 0.0)) * turned;

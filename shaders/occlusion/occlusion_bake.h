@@ -5,17 +5,17 @@
 
 SHARED_BEGIN
 
-/// Samples of a ray: in voxels, and in cells of each size.
+/// Samples per ray: in voxels, and in cells of each size.
 SHARED_CONST uint OCCLUSION_NEAR_TAPS = 3u;
 SHARED_CONST uint OCCLUSION_TAPS_2 = 3u;
 SHARED_CONST uint OCCLUSION_TAPS_4 = 2u;
-/// Along the normal, on each side of a voxel, evenly spaced: where the medium ends. Nearly always two and two lie in
-/// one voxel, so they share what paint and cuts hold there.
+/// Samples along the normal, on each side of a voxel, evenly spaced, to find where the medium ends. Nearly always two
+/// of them are in one voxel, so they share its fixed opacity.
 SHARED_CONST uint OCCLUSION_EDGE_TAPS = 6u;
 SHARED_CONST float OCCLUSION_EDGE_REACH = 1.5f;
-/// Rays begin this far in front of the edge: of these few samples the error is least so.
+/// Rays begin this far in front of the edge: for this few samples that minimizes the error.
 SHARED_CONST float OCCLUSION_LIFT = 0.13f;
-/// The edge is at most so far from the voxel, in units: what rays reach is bounded.
+/// Maximum distance of the edge from the voxel, in units: the reach of rays is bounded.
 SHARED_CONST float OCCLUSION_FURTHEST = 1.2f;
 /// A sample along a ray: one cell's opacity, applied to `stretch` units of the ray.
 struct OcclusionTap {
@@ -26,28 +26,28 @@ struct OcclusionTap {
 struct OcclusionBakeParams {
     vec3 inverse_spacing;  ///< voxels per unit
     float radius;
-    float first;          ///< length that light always passes, in units
+    float first;          ///< initial length that never blocks light, in units
     float gradient_fade;  ///< codes per unit
     uint full_sphere;
     uint rays;
     float turn_cos;  ///< angle between successive rays, about the normal
     float turn_sin;
     uint reach;
-    /// 1: all voxels of occupied cells and those beside them (painted ones and ends of steps show outside the cells'
-    /// ranges); 0: only those beside which the transfer function shows something.
+    /// 1: all voxels of occupied cells and those next to them (painted ones and ends of steps may be visible outside
+    /// the cells' ranges); 0: only those next to which the transfer function shows something.
     uint grow;
-    float table_lower;  ///< of `visible_intervals`, as in RaycastParams
+    float table_lower;  ///< for `visible_intervals`, as in RaycastParams
     float table_upper;
     float table_scale;
     uint table_entries;
     float guard;  ///< leap.h
     uint aprons[OCCLUSION_SIZES];
-    uvec3 cell_counts;  ///< of the leap grid
-    /// The nearest first; unused ones have a stretch of 0.
+    uvec3 cell_counts;  ///< size of the leap grid
+    /// Nearest first; unused ones have a stretch of 0.
     OcclusionTap near_taps[OCCLUSION_NEAR_TAPS];
     OcclusionTap taps_2[OCCLUSION_TAPS_2];
     OcclusionTap taps_4[OCCLUSION_TAPS_4];
-    float far_exponent;           ///< from the stretch of the first near tap to that of a tap in cells of 4
+    float far_exponent;           ///< converts the stretch of the first near tap to that of a tap in cells of 4
     OcclusionCellsParams voxels;  ///< as for gathering
 };
 

@@ -1,5 +1,5 @@
-// Gathers what rays of a brick sample from the bricks around it (occlusion.h): ramps of voxels, made from densities and
-// gradients, and copies of the cells of paged bricks: those of a resident volume lie side by side.
+// Gathers the data that a brick's rays sample around it (occlusion.h): ramps of voxels, computed from densities and
+// gradients, and copies of the cells of paged bricks: those of a resident volume are already side by side.
 // variants: PAGED FILTERED MASKED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -41,7 +41,7 @@ layout(binding = 13, r32ui) uniform writeonly uimage3D around_4;
 
 const uint CELLS_A_SIDE = NEAR_SIDE / CELL_SIZE;
 const uint CELLS_OF_ALL = CELLS_A_SIDE * CELLS_A_SIDE * CELLS_A_SIDE;
-// Where nothing is visible, `near` is 0 from the start. Work is skipped by loop counts, never by branches.
+// Where nothing is visible, `near` is initially 0. Work is skipped by loop counts, never by branches.
 const uint CELLS_OF_ONE = (CELLS_OF_ALL + OCCLUSION_SPLIT - 1u) / OCCLUSION_SPLIT;
 shared uint cells[CELLS_OF_ONE];
 shared uint cell_count;
@@ -72,12 +72,12 @@ uint near_of(const OcclusionGatherParams params, const OcclusionJob job, ivec3 v
     const vec3 behind = vec3(code_at(texel + ivec3(1, 0, 0)), code_at(texel + ivec3(0, 1, 0)),
                              code_at(texel + ivec3(0, 0, 1)));
     const vec3 slope = (behind - before) / (2.0 * side);
-    // A coarse voxel covers several: this one lies off its centre.
+    // A coarse voxel covers several: this one is off its centre.
     const vec3 beside = vec3(voxel & int((1u << above) - 1u)) + 0.5 - 0.5 * side;
-    // Densities bend at the middle of a voxel: by this much their mean in it differs.
+    // Densities curve within a voxel: their mean in it differs by this much.
     const float bend = dot(before + behind - 2.0 * middle, vec3(0.125 / side));
     const float code = middle + dot(slope, beside) + bend;
-    // Nothing is more extreme than its neighbours: where these show nothing, cells are not occupied and never read.
+    // No extremes beyond the neighbours: where these show nothing, cells are not occupied and never read.
     const vec3 least = min(before, behind), most = max(before, behind);
     const float lower = min(middle, min(least.x, min(least.y, least.z)));
     const float upper = max(middle, max(most.x, max(most.y, most.z)));
@@ -89,7 +89,8 @@ uint near_of(const OcclusionGatherParams params, const OcclusionJob job, ivec3 v
 }
 
 #ifdef PAGED
-// What a ramp of a coarser level has for one of the cells that it covers, for the stretch of a tap of this level.
+// The contribution of a coarser level's ramp to one of the cells that it covers, for the stretch of a tap of this
+// level.
 uint part_of_ramp(uint packed, ivec3 cell, int above, float exponent)
 {
     const float share = 1.0 / float(1 << above);
@@ -110,8 +111,8 @@ uint stretched(uint packed, float exponent)
     return packed == 0u ? 0u : of_tap.x | of_tap.y << 8u | of_tap.z << 16u;
 }
 
-// Copies the cells of one size around the brick. `are_coarser`: those that bricks of coarser levels stand in for, in
-// place of all others.
+// Copies the cells of one size around the brick. `are_coarser`: copies cells for which bricks of coarser levels stand
+// in, otherwise all others.
 void copy_cells(const OcclusionGatherParams params, const OcclusionJob job, uint size, bool are_coarser, uint end)
 {
     const int shift = int(size) + 1, apron = int(params.aprons[size]);
@@ -168,7 +169,7 @@ void main()
     bool is_any_coarser = false;
     for (uint i = 0u; i < OCCLUSION_AROUND; ++i)
         is_any_coarser = is_any_coarser || (i < around_count(params.reach) && around[i] >> OCCLUSION_LEVEL_SHIFT > 0u);
-    // Work that is rarely there is skipped by the loops' ends.
+    // Rare work is skipped by the loops' ends.
     const uint end_of_coarser = is_any_coarser ? ~0u : 0u;
     copy_cells(params, job, 0u, false, ~0u);
     copy_cells(params, job, 1u, false, ~0u);

@@ -1,5 +1,5 @@
-// Which voxels of a brick are computed, for occlusion_bake.comp: those beside which something shows. Needs its
-// `params`, and the codes of voxels.
+// Lists the voxels of a brick that are computed, for occlusion_bake.comp: those next to which something is visible.
+// Needs its `params`, and the codes of voxels.
 
 const uint CELLS_OF_ONE = BRICK_CELLS * BRICK_CELLS * BRICK_CELLS / OCCLUSION_SPLIT;
 const uint VOXELS_OF_CELL = CELL_SIZE * CELL_SIZE * CELL_SIZE;
@@ -11,7 +11,7 @@ const uint APRONS_OF_ONE = 0u;
 #endif
 shared uint cells[CELLS_OF_ONE];
 shared uint cell_count;
-// Two in each entry: cell << 6 | voxel of the cell, or IN_APRON + number of the apron's voxel.
+// Two per entry: cell << 6 | voxel of the cell, or IN_APRON + number of the apron's voxel.
 shared uint voxels[(CELLS_OF_ONE * VOXELS_OF_CELL + APRONS_OF_ONE + 1u) / 2u];
 shared uint voxel_count;
 const uint IN_APRON = 1u << 15u;
@@ -35,7 +35,7 @@ ivec3 voxel_of(uint cell, uint lane)
 }
 
 #ifdef PAGED
-// The voxels right around the brick: two whole layers, and between them rings.
+// The voxels directly around the brick: two whole layers, and rings between them.
 ivec3 apron_voxel(uint number)
 {
     const uint side = BRICK_TEXELS, layer = side * side, ring = 4u * (side - 1u), inner = side - 2u;
@@ -49,7 +49,7 @@ ivec3 apron_voxel(uint number)
 }
 #endif
 
-// The place of a voxel's code, in the brick that it belongs to, which is there and of this level.
+// The position of a voxel's code, in the brick that it belongs to, which is present and of this level.
 ivec3 texel_of(const OcclusionJob job, ivec3 voxel)
 {
 #ifdef PAGED
@@ -59,8 +59,8 @@ ivec3 texel_of(const OcclusionJob job, ivec3 voxel)
 #endif
 }
 
-// Whether visible samples may read the values of four voxels in a row: bits. They may if the transfer function shows
-// something between a voxel's density and those around it. Not of use where a voxel may be seen for another reason.
+// Whether visible samples may read the values of four voxels in a row, as bits. They may if the transfer function shows
+// something between a voxel's density and those around it. Not valid if a voxel may be visible for another reason.
 uint shows_nearby(ivec3 texel)
 {
     vec4 lower = vec4(65535.0), upper = vec4(0.0);
@@ -85,7 +85,7 @@ void add_voxel(uint voxel)
     atomicAdd(voxels[at >> 1u], voxel << 16u * (at & 1u));
 }
 
-// Lists the voxels that are computed, in no order.
+// Lists the voxels that are computed, in no particular order.
 void list_voxels(const OcclusionJob job)
 {
     const uint lane = gl_LocalInvocationIndex;
@@ -101,7 +101,7 @@ void list_voxels(const OcclusionJob job)
         if (any_cell_is_occupied(job, first, first + 3)) cells[atomicAdd(cell_count, 1u)] = cell;
     }
     barrier();
-    // Loops' counts are the same for all lanes; the one that is not of use is 0.
+    // Loop counts are the same for all lanes; the one that does not apply is 0.
     const uint found = cell_count, by_voxel = params.grow != 0u ? found : 0u;
     for (uint i = 0u; i < by_voxel; ++i) {
         const ivec3 voxel = voxel_of(cells[i], lane);
@@ -116,7 +116,7 @@ void list_voxels(const OcclusionJob job)
             if (index < found && (bits >> k & 1u) != 0u) add_voxel(cell << 6u | 4u * row + k);
     }
 #ifdef PAGED
-    // Those that the neighbours list as their own.
+    // Excludes those that the neighbours list as their own.
     for (uint i = OCCLUSION_SPLIT * lane + gl_WorkGroupID.z; i < APRON_VOXELS; i += 64u * OCCLUSION_SPLIT) {
         const ivec3 voxel = apron_voxel(i);
         const uint entry = entry_at(params.reach, voxel >> 5);

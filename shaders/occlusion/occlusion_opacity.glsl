@@ -1,4 +1,4 @@
-// How opaque a voxel is to light (occlusion.h). Needs `opacities`, of OcclusionEntry; if MASKED, `mask` from binding 6
+// The opacity of a voxel to light (occlusion.h). Needs `opacities`, of OcclusionEntry; if MASKED, `mask` from binding 6
 // on.
 #ifdef MASKED
 layout(binding = 6, r8ui) uniform readonly uimage3D mask;
@@ -11,8 +11,8 @@ layout(binding = 8, scalar) readonly buffer GroupOpacities { float values[]; } g
 #include "../library/mask.glsl"
 #endif
 
-// Of a code: its opacity, and sums of opacities and of their squares over the table's entries up to there, in two
-// parts.
+// Values at a code: its opacity, and sums of opacities and of their squares over the table's entries up to there, in
+// two parts.
 struct Sums {
     float opacity;
     vec2 sums, rests;
@@ -33,7 +33,8 @@ float opacity_of(const OcclusionCellsParams params, float code)
     return sums_at(params, code).opacity;
 }
 
-// The opacity that paint and the cut give a voxel, whatever its density; below 0: none. `centre` in voxels of level 0.
+// The fixed opacity that paint and the cut give a voxel, whatever its density; below 0: none. `centre` in voxels of
+// level 0.
 float opacity_held(const OcclusionCellsParams params, vec3 centre)
 {
     const bool inside = all(greaterThanEqual(centre, params.lower)) && all(lessThan(centre, params.upper));

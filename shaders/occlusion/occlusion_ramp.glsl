@@ -1,14 +1,14 @@
 // Makes ramps (occlusion.h). Needs occlusion_opacity.glsl.
 
-// Found by search, as those of occlusion_bake.comp. A ramp is whole where the variance of the opacity, of a top of 1,
-// is above one of these parts; ...
+// Found by optimization, like those of occlusion_bake.comp. A ramp is complete if the variance of the opacity, for a
+// top of 1, is above one of these fractions; ...
 const float RAMP_UNEVEN = 230.0;
-// ... it rises at most so steeply, across the cube.
+// ... this is its maximum steepness across the cube.
 const float STEEPEST_OF_VOXELS = 3.3, STEEPEST_OF_CELLS = 2.6;
 
-// `level`, `squares`: the mean of the opacity in the cube, and of its square, of a `top` of 1. `direction`: in which it
-// rises. Where the ramp ends inside the cube, its width follows from the two; where the opacity hardly differs there is
-// no ramp inside.
+// `level`, `squares`: the mean of the opacity in the cube, and of its square, for a `top` of 1. `direction`: in which
+// it rises. If the ramp ends inside the cube, its width follows from the two; if the opacity hardly varies there is no
+// ramp inside.
 uint packed_ramp(float top, float level, float squares, vec3 direction, float steepest)
 {
     const float steepness = 1.0 / max(6.0 * (level - squares), 1.0 / steepest);
@@ -19,10 +19,10 @@ uint packed_ramp(float top, float level, float squares, vec3 direction, float st
     return code == 0u ? 0u : ramp_bits(code, height, slope);
 }
 
-// Of a cube with a density in the middle, a slope across it, and densities between `least` and `most`.
+// The ramp of a cube with a density at its centre, a slope across it, and densities between `least` and `most`.
 uint ramp_of(const OcclusionCellsParams params, float middle, vec3 slope, float least, float most, float steepest)
 {
-    // Along the slope densities are taken to be spread evenly, and as far as those in the cube: exact along an axis.
+    // Densities are assumed to be uniformly distributed along the slope, within those in the cube: exact along an axis.
     const float steep = length(slope), half_width = max(0.5 * steep, 0.5 / params.table_scale);
     const float lower = middle - half_width, upper = middle + half_width;
     const float from = clamp(lower, least, most), to = clamp(upper, least, most);
@@ -37,7 +37,7 @@ uint ramp_of(const OcclusionCellsParams params, float middle, vec3 slope, float 
     return packed_ramp(top, min(mean.x * inverse, 1.0), min(mean.y * inverse * inverse, 1.0), up * slope, steepest);
 }
 
-// Of a voxel whose opacity is held.
+// The ramp of a voxel with a fixed opacity.
 uint held_ramp(float opacity)
 {
     return ramp_bits(uint(255.0 * sqrt(clamp(opacity, 0.0, 1.0)) + 0.5), RAMP_HELD, ivec3(0));

@@ -7,7 +7,7 @@
 #include "regions.h"
 
 layout(local_size_x = 1, local_size_y = 8, local_size_z = 8) in;
-layout(constant_id = 0) const uint IN_SLOTS = 0u;   // of paged bricks
+layout(constant_id = 0) const uint IN_SLOTS = 0u;   // for paged bricks
 layout(push_constant, scalar) uniform Push { RegionParams params; };
 #ifdef FILTERED
 layout(binding = 0) uniform sampler3D atlas;

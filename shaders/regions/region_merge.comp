@@ -12,9 +12,9 @@ layout(binding = 1, scalar) coherent buffer Parents { uint of[]; } parents;
 #include "forest.glsl"
 #include "region.glsl"
 
-// As find_root, and halves the way for whoever comes next: chains stay short, however a component winds. Other threads
-// link roots meanwhile: a parent that is read too old is an ancestor all the same, since parents only ever get lower,
-// and what decides is the atomic in `unite`.
+// As find_root, and halves the path for later searches: chains stay short, however convoluted a component is. Other
+// threads link roots concurrently: a stale parent is still an ancestor, since parents only ever decrease, and the
+// atomic in `unite` decides.
 uint find_root_halving(uint run)
 {
     uint parent = parents.of[run];
@@ -27,7 +27,7 @@ uint find_root_halving(uint run)
     return run;
 }
 
-// Links the higher root below the lower one; tries again if another thread has moved a root meanwhile.
+// Links the higher root below the lower one; retries if another thread has moved a root meanwhile.
 void unite(uint a, uint b)
 {
     a = find_root_halving(a);

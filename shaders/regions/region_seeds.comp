@@ -1,5 +1,5 @@
 // One word per thread: marks the roots of components that hold a seed: a set voxel of the region that is also set in
-// another box of bits, the former object, which may lie anywhere beside or over the region.
+// another box of bits, the previous object, which may be anywhere relative to the region.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -15,7 +15,7 @@ layout(binding = 3, scalar) buffer Marked { uint words[]; } marked;   // one bit
 #include "forest.glsl"
 #include "region.glsl"
 
-// A word of the seeds' row; the bits beyond the row's end are no voxels.
+// A word of the seeds' row; bits beyond the row's end are not voxels.
 uint seed_word(int word, int row)
 {
     if (word < 0 || word >= int(params.seed_words_per_row)) return 0u;

@@ -1,16 +1,16 @@
 // Brushes: declarations that the region and labelling kernels share with C++.
 //
-// A region's voxels are bits: 32 along x in one word, rows of `words_per_row` words, y next, z last. A run is a
-// maximal row of set bits within one word; it goes by the index of its first bit, and the forest of runs is kept in
-// one uint per bit.
+// A region's voxels are bits: 32 along x in one word, rows of `words_per_row` words, y next, z last. A run is a maximal
+// sequence of set bits within one word; it is identified by the index of its first bit, and the forest of runs is
+// stored in one uint per bit.
 //   region_bits    bit = density code >= threshold, within the row's span
 //   region_merge   connects each run with the runs before it (union-find with atomic minimum; Komura 2015, Playne and
 //                  Hawick 2018): the root of a component is its lowest run, so the result does not depend on timing
 //   region_mark    speckle fill: marks the roots whose component holds an edge voxel of the region
 //   region_select  keeps the runs connected to the seed (flood fill), those with an unmarked root (speckle fill), or
 //                  those with a marked one (touch)
-//   region_roots   takes the place of region_bits where the bits are known (touch, also on coarser levels)
-//   region_seeds   takes the place of region_mark: marks the roots whose component holds a seed
+//   region_roots   replaces region_bits if the bits are known (touch, also on coarser levels)
+//   region_seeds   replaces region_mark: marks the roots whose component holds a seed
 #ifndef SHVR_REGIONS_H
 #define SHVR_REGIONS_H
 #include "../bricks.h"
@@ -34,11 +34,11 @@ struct RegionParams {
     uvec3 brick_counts;
 };
 
-/// region.glsl needs `size` and `words_per_row`, as of RegionParams.
+/// region.glsl needs `size` and `words_per_row`, as in RegionParams.
 struct SeedParams {
     uvec3 size;  ///< voxels of the region
     uint words_per_row;
-    ivec3 to_seeds;   ///< from a voxel of the region to the same one of the seeds' box
+    ivec3 to_seeds;   ///< offset from a voxel of the region to the same one in the seeds' box
     uvec3 seed_size;  ///< voxels
     uint seed_words_per_row;
 };
