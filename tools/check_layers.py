@@ -12,9 +12,9 @@ from pathlib import Path, PurePosixPath
 
 # ---- The rules, as data ---------------------------------------------------------------------------------------------
 
-# Room: the rooms whose files it may include, besides its own. Exactly the arrows in use: a new arrow is a decision,
-# made here. A file belongs to the longest of these paths that is a prefix of its own; a file without one is an error.
-# From the ground up:
+# Room: the rooms whose files it may include, in addition to its own. Exactly the dependencies in use: adding one is a
+# decision, made here. A file belongs to the longest of these paths that is a prefix of its own; a file without one is
+# an error. From the ground up:
 MAY_INCLUDE = {
     "shaders": "",
     "engine/base": "",
@@ -72,11 +72,11 @@ MAY_INCLUDE = {
     "engine/annotation/work engine/session engine/jobs engine/tasks engine/picture engine/live haptics haptics/devices haptics/hid ui ui/workbench "
     "tools/golden tools/bench tools/report",
 }
-# Rooms without a device: none of them may include a room that knows one, directly or indirectly.
+# Rooms without a device: none of them may include a room that depends on one, directly or indirectly.
 WITHOUT_DEVICE = ["engine/session", "engine/projects", "engine/bricks", "engine/annotation/work", "engine/tasks", "haptics",
                   "haptics/devices"]
 WITH_DEVICE = {"engine/gpu", "engine/passes", "engine/device"}
-MAX_SOURCES = 30  # in a folder
+MAX_SOURCES = 30  # per folder
 
 # third party: pattern of its headers, pattern of the files that may include them
 THIRD_PARTIES = {
@@ -137,7 +137,7 @@ def read_includes(root, files):
         includes[file] = []
         for match in INCLUDE.finditer(text):
             line, spelled = text.count("\n", 0, match.start(2)) + 1, match[2]
-            # Like compilers: first beside the including file, then from the root.
+            # Like compilers: first relative to the including file, then from the root.
             beside = PurePosixPath(os.path.normpath(file.parent / spelled))
             target = next((path for path in (beside, PurePosixPath(spelled)) if path in known), None)
             includes[file].append((line, spelled, target))
@@ -242,7 +242,7 @@ def check(root, rooms=MAY_INCLUDE):
 
 # ---- The self-test --------------------------------------------------------------------------------------------------
 
-# The rooms of an invented tree.
+# The rooms of a made-up tree.
 ROOMS = {
     "shaders": "",
     "engine/base": "",
@@ -273,7 +273,7 @@ ALLOWED = {
     "build/made.cpp": '#include "nowhere.h"',
 }
 
-# file with its content -> what the one finding must contain
+# file with its content -> text that the one finding must contain
 FORBIDDEN = [
     ("engine/base/bad.h", '#include "engine/volume/volume.h"', "engine/base may not include engine/volume/volume.h"),
     ("engine/volume/bad.cpp", "#include <vulkan/vulkan.h>", "Vulkan (vulkan/vulkan.h) may be included only in"),
@@ -294,7 +294,7 @@ FORBIDDEN = [
     ("engine/formats/tiff/tiff.h", "", "engine/formats/tiff may include engine/formats, but does not"),
 ]
 
-# a change of the table -> what one of the findings must contain
+# a change of the table -> text that one of the findings must contain
 FORBIDDEN_TABLES = [
     ({"engine/base": "engine/volume"}, "rooms in a circle: engine/base -> engine/volume -> engine/base"),
     ({"engine/volume": "engine/base shaders engine/gpu"},

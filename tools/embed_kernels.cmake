@@ -1,5 +1,5 @@
 # Writes OUTPUT, a C++ file that holds the SPIR-V files BINARIES as arrays, so that `shvr` is one file that runs from
-# anywhere, and which macros a kernel may be compiled with. Run by the build:
+# anywhere, and the macros that a kernel may be compiled with. Run by the build:
 # cmake -DOUTPUT=... -DBINARIES=a.spv;b.spv "-DVARIANTS=raycast PAGED MASKED;surfaces LISTED" -P embed_kernels.cmake
 set(arrays "")
 set(entries "")

@@ -1,5 +1,5 @@
-// Linked into programs built with a sanitizer: libraries stay loaded to the end. The Vulkan loader closes its drivers
-// and layers. AddressSanitizer would report their process-lifetime allocations without naming the library, and
+// Linked into programs built with a sanitizer: keeps libraries loaded to the end. The Vulkan loader unloads its drivers
+// and layers. AddressSanitizer would then report their process-lifetime allocations without naming the library, and
 // ThreadSanitizer stops if a library named by a suppression is loaded a second time.
 
 extern "C" int dlclose(void*)

@@ -1,5 +1,5 @@
 #pragma once
-// Parts of pictures, enlarged: where they err most, what they look like there. Pure; any thread.
+// Enlarged parts of pictures: where their errors are largest, and what they look like there. Pure; any thread.
 
 #include "tools/bench/measure.h"
 
@@ -11,21 +11,22 @@ struct Window {
     bool operator==(const Window&) const = default;
 };
 
-/// A quarter of the sides, where the squares of the errors sum up to most; the first such one from the top.
+/// The window of a quarter of the sides in which the squared errors sum up to most; in case of a tie the first from the
+/// top.
 Window worst_window(const ImageF& picture, const ImageF& truth);
-/// As people see it, each pixel as `times` x `times` ones.
+/// As displayed (8 bits), with each pixel enlarged to `times` x `times`.
 Image8 enlarged(const ImageF& picture, const Window& window, int times);
-/// In linear light, within the window alone.
+/// In linear light, within the window only.
 double rmse_in(const ImageF& picture, const ImageF& truth, const Window& window);
 
-/// One scene's insets, of what is worth a look: the reference, each quality, another program.
+/// One scene's insets: the reference, each quality, another program.
 struct Insets {
     Window window;
-    std::vector<std::pair<std::string, const ImageF*>> pictures;  ///< into what they were made of
+    std::vector<std::pair<std::string, const ImageF*>> pictures;  ///< refer to the pictures that they were made from
 };
-/// Where `interactive` errs most.
+/// The window where `interactive` has the largest errors.
 Insets insets_of(const Pictures& pictures);
-/// All of them as one picture: a row for each scene, what it is above each.
+/// All of them as one picture: a row per scene, with a title above each inset.
 Image8 sheet_of(const Results& results, const std::vector<Pictures>& pictures);
 
 }  // namespace shvr::bench

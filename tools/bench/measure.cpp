@@ -24,9 +24,9 @@ namespace shvr::bench {
 
 namespace {
 
-// Far below the errors that are measured; 1e-12 takes three times as long.
+// Far below the measured errors; 1e-12 would take three times as long.
 constexpr double REFERENCE_TOLERANCE = 1e-8;
-/// Raised whenever the reference renderer draws something else, so that kept pictures are drawn anew.
+/// Incremented whenever the reference renderer changes its output, so that kept pictures are drawn again.
 constexpr int REFERENCE_VERSION = 1;
 constexpr size_t ROWS_AT_A_TIME = 4;
 constexpr const char* YARDSTICK = "yardstick";  // among the runs' names
@@ -45,7 +45,7 @@ std::filesystem::path kept_reference(const golden::Studio& studio, const Scene& 
     return options.kept / sentence("reference-", golden::hash_of(std::as_bytes(std::span(all))), ".light");
 }
 
-/// As floats, after the picture's width and height; null where there is none of this size.
+/// Stored as floats, after the picture's width and height; null if there is none of this size.
 std::optional<ImageF> read_kept(const std::filesystem::path& path, const glm::uvec2& size)
 {
     const size_t values = size_t(size.x) * size.y * 4;
@@ -95,11 +95,11 @@ struct Prepared {
     const Run* run;
     golden::Studio* studio;
     Session session;
-    size_t passes = 0;  ///< of a picture for which everything is there
+    size_t passes = 0;  ///< number in a picture for which everything is prepared
     int redraws = 0;
 };
 
-/// Studios by what decides how the device holds a volume; runs that agree in it share one.
+/// Studios by the settings that decide how the device holds a volume; runs that agree in them share one.
 class Studios {
 public:
     Studios(const Scene& scene, const MeasureOptions& options) : scene_(scene), options_(options) {}
@@ -135,8 +135,8 @@ Picture draw(Prepared& prepared, bool counted)
     return prepared.studio->picture_of(prepared.session, prepared.studio->camera(), counted);
 }
 
-/// Milliseconds of a picture for which everything is there: where another run's settings are made good first (leap
-/// grid, sample bits, table), of the next one.
+/// Milliseconds of a picture for which everything is prepared: if another run's settings first require an update (leap
+/// grid, sample bits, table), those of the next picture.
 double steady_ms(Prepared& prepared)
 {
     const Picture picture = draw(prepared, false);
@@ -176,14 +176,14 @@ std::string words_of_volume(const VolumeInfo& info)
     return sentence(info.size.x, " x ", info.size.y, " x ", info.size.z, " ", name_of(info.type));
 }
 
-/// One of the runs that are timed in turns.
+/// One of the runs that are timed in interleaved rounds.
 struct Timed {
     std::string name;
     std::function<double()> draw;  ///< milliseconds
     std::vector<double> milliseconds = {};
 };
 
-/// Starts another program where it draws the same; otherwise a note says why it does not.
+/// Starts another program if it can draw the same picture; otherwise a note states why not.
 std::unique_ptr<Peer> started_peer(const Scene& scene, const golden::Studio& studio, const MeasureOptions& options,
                                    std::vector<PeerRun>& runs, std::vector<std::string>& notes)
 {
@@ -235,7 +235,7 @@ Measured first_look_of_peer(Peer& peer, const PeerRun& run, const ImageF& refere
 
 void time_in_turns(std::vector<Timed>& timed, int rounds, const std::function<void(double)>& tell)
 {
-    // To and fro, so that a machine that grows slower or faster does so for all.
+    // Back and forth, so that a machine that becomes slower or faster does so for all.
     for (int round = 0; round < rounds; ++round) {
         tell(double(round) / rounds);
         for (Timed& each : timed) each.milliseconds.push_back(each.draw());
@@ -243,8 +243,8 @@ void time_in_turns(std::vector<Timed>& timed, int rounds, const std::function<vo
     }
 }
 
-/// Where 95 % of medians lie whose times are drawn from these, as often and with putting back (a bootstrap); the same
-/// for the same times. `sorted` holds one at least.
+/// The 95 % interval of medians of times drawn from these with replacement, equally many (a bootstrap); deterministic.
+/// `sorted` holds at least one.
 std::pair<double, double> interval_of_median(const std::vector<double>& sorted)
 {
     constexpr size_t DRAWS = 1000;

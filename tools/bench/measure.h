@@ -1,6 +1,6 @@
 #pragma once
-// Draws a scene in every way of `runs`, measures each against the reference renderer, and times them in turns. One
-// thread, apart from the reference's.
+// Draws a scene in every way of `runs`, measures each against the reference renderer, and times them in interleaved
+// rounds. One thread, apart from the reference's.
 
 #include <functional>
 
@@ -15,16 +15,16 @@ namespace shvr::bench {
 struct MeasureOptions {
     std::string device;
     bool quick = false;
-    int mixed = 0;  ///< settings that turn all knobs at once (mixed_runs)
+    int mixed = 0;  ///< number of settings that vary all knobs at once (mixed_runs)
     int rounds = 7;
-    int threads = 2;  ///< of the reference
+    int threads = 2;  ///< threads of the reference
     PeerOptions peer = {};
-    std::filesystem::path kept;  ///< folder in which references are kept from run to run; it exists
+    std::filesystem::path kept;  ///< an existing folder that keeps references between runs
     std::function<void(const std::string& what, double share)> tell = {};  ///< may throw, which ends the work
 };
 
-/// A scene with pictures to look at: the reference's, those of the qualities, and another program's at the step that
-/// `interactive` has.
+/// A scene with pictures to look at: the reference's, those of the qualities, and another program's at the step of
+/// `interactive`.
 struct Pictures {
     ImageF reference;
     std::vector<std::pair<std::string, ImageF>> of_qualities, of_peers = {};
@@ -35,13 +35,13 @@ struct MeasuredScene {
 };
 
 MeasuredScene measure_scene(const Scene& scene, const MeasureOptions& options);
-/// Who measures, when `device` is what SHVR draws on.
+/// Describes the machine and program that measure, when SHVR draws on `device`.
 Results who_measures(const std::string& device);
 
 Error error_of(const ImageF& picture, const ImageF& reference);
-/// Bilinear between pixel centres, the border repeated.
+/// Bilinear between pixel centres, with the border repeated.
 ImageF resized(const ImageF& image, int width, int height);
-/// Of at least one value; the 95th percentile is one of them.
+/// Requires at least one value; the 95th percentile is one of the values.
 Time time_of(std::vector<double> milliseconds);
 
 }  // namespace shvr::bench

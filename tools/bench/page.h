@@ -1,5 +1,5 @@
 #pragma once
-// The bench's results for people: one self-contained page, and the plots as files.
+// The bench's results for readers: one self-contained page, and the plots as files.
 
 #include "tools/bench/measure.h"
 #include "tools/bench/sweeps.h"
@@ -8,9 +8,9 @@
 namespace shvr::bench {
 
 enum class Metric { rmse, flip };
-/// A scene's runs: milliseconds to the right, error upwards, a series for each family, the qualities labelled.
+/// A scene's runs: milliseconds to the right, error upwards, one series per family, with the qualities labelled.
 report::Plot plot_of(const SceneResult& scene, Metric metric);
-/// The qualities of all scenes by what they read: one series for each scene.
+/// The qualities of all scenes by the samples they read: one series per scene.
 report::Plot plot_of_qualities(const Results& results);
 std::string page_of(const Results& results, const std::vector<Pictures>& pictures, const std::vector<Sweep>& sweeps);
 /// bench.json, bench.csv, front.csv, equal_error.csv, equal_time.csv, equal_peer.csv, pareto*.svg and .png, insets.png,

@@ -24,7 +24,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* FAMILY = "VTK";
 constexpr const char* CAMERA = "bench";
-constexpr int64_t PADDING = 2;  // voxels: VTK's volume ends at the middles of its outermost, and so do its gradients
+constexpr int64_t PADDING = 2;  // voxels: VTK's volume ends at the centres of its outermost voxels, and so do its
+                                // gradients
 constexpr int PATIENCE_S = 300;
 constexpr int64_t MAX_COMPLAINT_BYTES = 1 << 20;
 
@@ -193,7 +194,7 @@ Peer::~Peer()
 
 void Peer::end()
 {
-    // The end of its input ends it.
+    // Closing its input ends it.
     if (socket_ >= 0) ::shutdown(socket_, SHUT_RDWR), ::close(socket_);
     int status = 0;
     if (process_ > 0) ::waitpid(process_, &status, 0);
@@ -208,7 +209,7 @@ std::string Peer::next_line()
         if (end != std::string::npos) {
             const std::string line = received_.substr(0, end);
             received_.erase(0, end + 1);
-            // What else is printed on the way, as by xvfb-run, is no answer.
+            // Other lines printed in between, as by xvfb-run, are not answers.
             if (line.starts_with("{")) return line;
             continue;
         }
@@ -232,7 +233,7 @@ double Peer::ask(const PeerRun& run, const std::filesystem::path& output)
     for (size_t sent = 0; sent < line.size();) {
         const ssize_t count = ::send(socket_, line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
         if (count < 0 && errno == EINTR) continue;
-        if (count <= 0) break;  // it ended, as the answer's reading says
+        if (count <= 0) break;  // it terminated, which reading the answer reports
         sent += size_t(count);
     }
     return Json::parse(next_line()).at("ms").get<double>();

@@ -1,6 +1,6 @@
 #pragma once
-// Another program beside SHVR: VTK's volume ray casters, which tools/peers/vtk_raycast.py draws on request. It is not
-// needed: where it cannot be started, that is a sentence.
+// A comparison program: VTK's volume ray casters, which tools/peers/vtk_raycast.py draws on request. It is optional: if
+// it cannot be started, a sentence in the results says so.
 //
 // One thread.
 
@@ -15,18 +15,18 @@
 namespace shvr::bench {
 
 struct PeerOptions {
-    std::filesystem::path program;  ///< vtk_raycast.py, or what answers as it does; empty: none
+    std::filesystem::path program;  ///< vtk_raycast.py, or a program with the same interface; empty: none
     std::vector<std::string> mappers = {"fixed"};
     int threads = 2;
 };
 
-/// A picture of the peer's.
+/// A run of the peer program.
 struct PeerRun {
     std::string name, family;  ///< "VTK step 0.5", "VTK"
     std::string mapper;        ///< "fixed", "gpu"
     double step = 1.0;         ///< reference lengths
 };
-/// Those of all mappers.
+/// The runs of all mappers.
 std::vector<PeerRun> peer_runs(const PeerOptions& options, bool quick);
 /// Whether a family of runs is the peer's.
 bool is_peer(const std::string& family);
@@ -37,7 +37,7 @@ std::optional<std::string> why_not_by_peer(const Session& session, const VolumeS
 
 class Peer {
 public:
-    /// Starts it on a scene. Fails in a sentence where it does not start, or ends.
+    /// Starts the peer on a scene. Fails with a sentence if it does not start, or terminates.
     Peer(const PeerOptions& options, const Session& session, const VolumeSource& source, const Camera& camera);
     ~Peer();
     Peer(const Peer&) = delete;
@@ -45,9 +45,9 @@ public:
 
     /// "9.1.0".
     const std::string& version() const { return version_; }
-    /// Milliseconds.
+    /// Returns the time in milliseconds.
     double draw(const PeerRun& run);
-    /// In linear light.
+    /// Returns the picture in linear light.
     ImageF picture(const PeerRun& run);
 
 private:

@@ -13,7 +13,7 @@ namespace shvr::bench {
 namespace {
 
 constexpr double LARGEST_CODE = 65535.0;
-// Of the definition of ambient occlusion, which is far nearer to its limit with these than pictures are
+// Directions for the definition of ambient occlusion, which is far closer to its limit with these than pictures are
 // (tests/gpu/occlusion/occlusion_test.cpp).
 constexpr uint32_t OCCLUSION_DIRECTIONS = 128;
 constexpr int OCCLUSION_STEPS = 32;
@@ -55,7 +55,7 @@ glm::dvec3 to_light(const glm::dvec3& stated, const Camera& camera)
     return glm::dmat3(right, glm::cross(back, right), back) * along;
 }
 
-/// The opacity of a reference length at a position; 0 outside of what is drawn.
+/// The opacity of a reference length at a position; 0 outside the drawn region.
 class OpacityField {
 public:
     explicit OpacityField(const reference::Scene& scene) : scene_(scene), transfer_(scene.points) {}
@@ -147,7 +147,8 @@ void refuse_what_is_unknown(const Session& session, const VolumeInfo& info)
              ", which the reference renderer keeps in 8 bytes each");
 }
 
-/// Where the ray meets a ball first, in units of its direction; null where it does not, or only behind t_min.
+/// The first intersection of the ray with a ball, in units of its direction; null if there is none, or only behind
+/// t_min.
 std::optional<double> first_hit(const Ball& ball, const reference::Ray& ray, const glm::dvec3& spacing)
 {
     const glm::dvec3 along = ray.direction * spacing, from = ray.origin * spacing - ball.center;
@@ -160,7 +161,7 @@ std::optional<double> first_hit(const Ball& ball, const reference::Ray& ray, con
     return std::max(near, ray.t_min);
 }
 
-/// Blinn-Phong, as of a surface that has no doubt about its normal.
+/// Blinn-Phong for a surface with full certainty of its normal.
 glm::dvec3 lit(const Ball& ball, const reference::Shading& light, const glm::dvec3& normal, const glm::dvec3& to_eye)
 {
     const glm::dvec3 towards = glm::normalize(light.to_light), sum = towards + to_eye;

@@ -1,6 +1,6 @@
 #pragma once
-// A session as the reference renderer (tests/reference) takes it: what the device holds of its volume (16-bit codes),
-// transfer function, groups, light, cut, and balls among its surfaces. Any thread.
+// Converts a session for the reference renderer (tests/reference): the volume as the device holds it (16-bit codes),
+// transfer function, groups, light, cut, and the balls among its surfaces. Any thread.
 
 #include <span>
 
@@ -10,7 +10,7 @@
 
 namespace shvr::bench {
 
-/// A ball that rays stop at.
+/// A ball at which rays stop.
 struct Ball {
     glm::dvec3 center{0.0};  ///< physical
     double radius = 1.0;
@@ -22,14 +22,14 @@ struct ReferenceScene {
     std::vector<Ball> balls;
 };
 
-/// 8 bytes a voxel. `mask`: null where nothing is painted. Fails where the session shows what the reference does not
-/// know (rods, a trace, slices, distance blending) or has more voxels than MAX_REFERENCE_VOXELS. Ambient occlusion as
-/// it is defined takes seconds: for each voxel near which something shows.
+/// Takes 8 bytes per voxel. `mask`: null if nothing is painted. Fails if the session shows something that the reference
+/// does not support (rods, a trace, slices, distance blending) or has more voxels than MAX_REFERENCE_VOXELS. Exact
+/// ambient occlusion takes seconds: it is computed for each voxel near which something is visible.
 ReferenceScene reference_scene_of(const Session& session, const VolumeSource& source,
                                   const VolumeStatistics& statistics, const Camera& camera, const Mask* mask);
 inline constexpr int64_t MAX_REFERENCE_VOXELS = int64_t{1} << 29;
 
-/// Through the middles of pixels.
+/// Rays through the centres of pixels.
 std::vector<reference::Ray> rays_through(std::span<const glm::uvec2> pixels, const RayPlanes& planes);
 
 /// Linear light, premultiplied, over the session's background, in the order of `rays`.

@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 constexpr int64_t MAX_BENCH_BYTES = int64_t{64} << 20;
 constexpr int SCHEMA = 1;
 constexpr double ERROR_MARGIN = 1.01;
-constexpr double LEAST_ERROR = 1e-7;  // of a float
+constexpr double LEAST_ERROR = 1e-7;  // resolution of a float
 
 Json json_of(const Measured& run)
 {
@@ -79,19 +79,19 @@ Measured measured_of(const Json& json)
     return run;
 }
 
-/// What a comparison of two files looks at.
+/// The input of a comparison of two files.
 struct Looked {
     size_t a_rounds = 0, b_rounds = 0;
     bool at_work = false, at_times = false;
 };
 
-/// Of the median, in milliseconds; nothing where there were too few rounds.
+/// Noise of the median, in milliseconds; null if there were too few rounds.
 std::optional<double> noise_of(const Time& time, size_t rounds)
 {
     return report::noise_of(time.min_ms, time.p95_ms, rounds);
 }
 
-/// `time` as a machine would have taken it on which the yardstick takes 1 / machine of its time.
+/// `time` scaled to a machine on which the yardstick takes 1 / machine of its time.
 Time scaled(const Time& time, double machine)
 {
     return {time.min_ms / machine, time.median_ms / machine, time.p95_ms / machine, time.low_ms / machine,
@@ -135,21 +135,21 @@ void compare_runs(const SceneResult& of_a, const Measured& a, const SceneResult&
     for (const auto& [name, value] : b.work) {
         const auto before = std::ranges::find(a.work, name, &std::pair<std::string, uint64_t>::first);
         if (before == a.work.end() || !looked.at_work) continue;
-        // Bricks that are skipped and rays that end early are work that is saved.
+        // Skipped bricks and rays that end early are saved work.
         const bool saves = name == "bricks_skipped" || name == "rays_terminated_early" || name == "leaps";
         add(name, double(before->second), double(value), !saves && value > before->second);
     }
     if (looked.at_times) compare_times(of_a, a, of_b, b, looked, changes);
 }
 
-/// The run of `scene` that was drawn with the same settings; null where there is none.
+/// The run of `scene` that was drawn with the same settings; null if there is none.
 const Measured* same_run(const SceneResult& scene, const Measured& run)
 {
     const auto found = std::ranges::find(scene.runs, run.name, &Measured::name);
     return found != scene.runs.end() && found->settings == run.settings ? &*found : nullptr;
 }
 
-/// "only A has tubes; tissue: step 4": what is in `a` alone.
+/// "only A has tubes; tissue: step 4": the content that only `a` has.
 std::optional<std::string> only_in(const Results& a, const Results& b, const char* name)
 {
     std::string found;

@@ -85,8 +85,8 @@ std::string scene_names(const std::vector<Scene>& own)
     return names.substr(0, names.size() - 2);
 }
 
-/// As tools/fetch_example left it, without what people painted since; "-matt": without highlights and fading.
-/// Fails where it is not there.
+/// As tools/fetch_example left it, without later painting; "-matt": without highlights and fading. Fails if it is
+/// missing.
 Scene example_scene(const Example& example, bool is_matt, const SceneChoice& choice)
 {
     const std::filesystem::path folder = choice.examples / example.name / "shvr";
@@ -254,7 +254,7 @@ std::vector<Run> runs_of(const Scene& scene, bool quick)
         runs.push_back({sentence("sampling ", sampling), "sampling", {sentence("render.sampling=", sampling)}});
     for (const double scale : quick ? std::vector{0.5} : std::vector{0.7, 0.5, 0.35})
         runs.push_back({sentence("resolution ", digits_of(scale)), "resolution", {}, scale});
-    // Coarser than anyone works with, to see what an error of another program's costs.
+    // Coarser than in practical use, to see the cost of another program's error level.
     const auto coarse = [&](double scale, double step, bool preintegration) {
         runs.push_back(
             {sentence("coarse ", digits_of(scale), preintegration ? ", pre-integrated " : ", step ", digits_of(step)),
@@ -297,7 +297,7 @@ std::vector<Run> runs_of(const Scene& scene, bool quick)
 
 std::vector<Run> mixed_runs(int count)
 {
-    // A Latin hypercube: of each knob every one of `count` equal parts of its range is used once.
+    // A Latin hypercube: for each knob every one of `count` equal parts of its range is used once.
     std::mt19937 random(1);
     const auto places = [&] {
         std::vector<int> order(size_t(std::max(count, 0)));

@@ -15,9 +15,9 @@ namespace shvr::bench {
 namespace {
 
 constexpr int TIMES = 5;
-constexpr double REFERENCE_REACH = 8.0;  // sigmas: what is beyond is 1e-15 of the weights
+constexpr double REFERENCE_REACH = 8.0;  // sigmas: the remainder is 1e-15 of the weights
 
-/// Noise of 0 to 1, the same at every place and time.
+/// Noise from 0 to 1, a deterministic function of the position.
 double noise_at(const Size3& at)
 {
     auto x = uint32_t(at.x + 1009 * (at.y + 1013 * at.z)) * 0x9e3779b9u;
@@ -80,7 +80,7 @@ private:
     }
 };
 
-/// Seconds of one call, the median of several.
+/// Seconds per call, the median of several.
 double median_seconds(const std::function<void()>& call)
 {
     std::vector<double> seconds;
@@ -154,7 +154,7 @@ report::Plot plot_of(const std::vector<SweepRow>& rows, bool is_by_share)
 {
     report::Plot plot;
     for (const SweepRow& row : rows) {
-        const bool is_labelled = row.series == rows.back().series;  // one series stands for all
+        const bool is_labelled = row.series == rows.back().series;  // one series represents all
         auto series = std::ranges::find(plot.series, row.series, &report::PlotSeries::name);
         if (series == plot.series.end()) {
             plot.series.push_back({row.series, {}, true, false});

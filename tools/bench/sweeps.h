@@ -1,5 +1,5 @@
 #pragma once
-// Speed against error beside pictures: blurring before an import, and the labelling of components. One thread calls
+// Speed against error of other features: blurring before an import, and the labelling of components. One thread calls
 // these.
 
 #include <filesystem>
@@ -13,17 +13,17 @@ namespace shvr::bench {
 
 struct SweepRow {
     std::string series, setting;  ///< "uint8", "sigma 2"
-    double share = 0.0;           ///< of voxels that are open, in percent; labelling alone
+    double share = 0.0;           ///< percentage of open voxels; only for labelling
     double ns_per_voxel = 0.0;    ///< median
-    double error = 0.0;           ///< blur: RMS, of the range of values; labelling: voxels with another label
+    double error = 0.0;           ///< blur: RMS, relative to the range of values; labelling: voxels with another label
 };
 struct Sweep {
     std::string name, what;
-    std::string error;  ///< what `SweepRow::error` is
+    std::string error;  ///< meaning of `SweepRow::error`
     std::vector<SweepRow> rows;
     report::Plot plot;
-    std::string svg = {};    ///< of one that was drawn elsewhere, instead of `plot`
-    std::string table = {};  ///< likewise: CSV, instead of `rows`
+    std::string svg = {};    ///< replaces `plot` if it was drawn elsewhere
+    std::string table = {};  ///< likewise: CSV that replaces `rows`
 };
 
 struct SweepOptions {
@@ -33,9 +33,9 @@ struct SweepOptions {
     std::function<void()> poll = {};  ///< may throw, which ends the work
 };
 
-/// Sigma by type of voxel, against a direct sum in double to 8 sigma.
+/// Sigma by voxel type, compared with a direct sum in double up to 8 sigma.
 Sweep sweep_blur(const SweepOptions& options);
-/// Share of open voxels by connectivity, against breadth-first labelling.
+/// Fraction of open voxels by connectivity, compared with breadth-first labelling.
 Sweep sweep_labelling(const SweepOptions& options);
 
 /// The sweep's own CSV.

@@ -1,4 +1,4 @@
-// The tables of what the bench found, as CSV.
+// The tables of the bench's results, as CSV.
 
 #include <algorithm>
 #include <iomanip>
@@ -86,7 +86,7 @@ std::string front_csv(const Results& results)
     std::string text = "scene,run,family,settings,samples,reads,rmse\n";
     for (const SceneResult& scene : results.scenes)
         for (const Measured& run : scene.runs) {
-            if (is_peer(run.family)) continue;  // whether it is there differs, and its work is not known
+            if (is_peer(run.family)) continue;  // it may be missing on other machines, and its work is unknown
             std::string settings;
             for (const std::string& setting : run.settings) settings += (settings.empty() ? "" : " ") + setting;
             text += sentence(cell(scene.name), ",", cell(run.name), ",", cell(run.family), ",", cell(settings), ",",

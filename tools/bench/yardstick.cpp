@@ -9,10 +9,10 @@ namespace shvr::bench {
 
 namespace {
 
-constexpr int NUMBERS = 1 << 15;  // 128 KiB: in the nearest caches, as most of what kernels read is
+constexpr int NUMBERS = 1 << 15;  // 128 KiB: in the nearest caches, like most data that kernels read
 constexpr int ROUNDS_OF_WORK = 150;
 
-/// Multiplies and adds as kernels do, over numbers that stay between 0 and 1.
+/// Multiplies and adds as kernels do, on numbers that stay between 0 and 1.
 float worked(int seed)
 {
     std::vector<float> numbers(NUMBERS);
@@ -28,7 +28,7 @@ float worked(int seed)
 
 double yardstick_ms(int threads)
 {
-    static std::atomic<float> sink;  // so that no compiler leaves the work out
+    static std::atomic<float> sink;  // prevents compilers from removing the work
     const auto begun = std::chrono::steady_clock::now();
     std::vector<std::jthread> workers;
     for (int i = 1; i < threads; ++i) workers.emplace_back([i] { sink.store(worked(i)); });

@@ -1,9 +1,9 @@
 #pragma once
-// How fast the machine is now, by work that is always the same: what a change of the program is told from.
+// Measures the machine's present speed by a fixed amount of work, to distinguish it from changes of the program.
 
 namespace shvr::bench {
 
-/// Milliseconds that so many threads take for a fixed piece of arithmetic each, a few on a machine of today.
+/// Milliseconds that `threads` threads take for a fixed piece of arithmetic each; a few on a present-day machine.
 double yardstick_ms(int threads);
 
 }  // namespace shvr::bench

@@ -227,7 +227,7 @@ glm::dvec3 parse_spacing(const std::string& text)
     for (std::string_view rest = text; fits; ++axis) {
         const size_t comma = std::min(rest.find(','), rest.size());
         const double side = number_of(rest.substr(0, comma)).value_or(0.0);
-        fits = axis < 3 && side >= MIN_SPACING && side <= MAX_SPACING;  // nor NaN
+        fits = axis < 3 && side >= MIN_SPACING && side <= MAX_SPACING;  // false for NaN
         if (fits) spacing[axis] = side;
         if (comma == rest.size()) break;
         rest.remove_prefix(comma + 1);
@@ -246,7 +246,7 @@ void take_settings(Session& session, const Work& left, const std::vector<std::st
     set_kept_settings(session, without_overridden(left.kept_settings(), overridden));
 }
 
-/// A volume that perhaps cannot be read whole, with what it needs.
+/// A volume that may be partly unreadable, with its required data.
 struct Readable {
     Readable(std::shared_ptr<const VolumeSource> whole, std::shared_ptr<Gaps> what_is_not)
         : base(std::move(whole)), gaps(std::move(what_is_not)), source(*base, *gaps)
@@ -300,7 +300,7 @@ Opened open(const std::string& path, const Common& common, LongWork& work, Work:
     opened.project = is_picture ? session.pictured : session_file_of(path);
     Session kept = opened.session;
     choose_thresholds(kept, volume, session.statistics);
-    // A picture has settings of its own, whatever has become of the project's.
+    // A picture has its own settings, regardless of later changes of the project's.
     const WorkFiles files =
         is_picture ? work_files(opened.session, volume)
                    : with_kept_settings(work_files(opened.session, volume, common.settings), kept, common.settings);

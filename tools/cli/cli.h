@@ -30,18 +30,18 @@ struct Common {
     int threads = 0;
     bool quiet = false;
     bool json = false;
-    std::optional<bool> allows_incomplete;  ///< nothing: the command has no such option
+    std::optional<bool> allows_incomplete;  ///< null: the command has no such option
     Belief belief = Belief::ask;
 };
 
 /// --set, --raw, --spacing, --unit
 void add_input_options(CLI::App& command, Common& common);
-/// --spacing, --unit alone, for commands that read volumes without a session. What they state must be possible.
+/// Only --spacing, --unit, for commands that read volumes without a session. Impossible values are refused.
 void add_spacing_options(CLI::App& command, const std::function<void(const glm::dvec3&)>& take_spacing,
                          const std::function<void(const std::string&)>& take_unit);
 /// The input options, and --device, --budget-device, --budget-host, --threads.
 void add_device_options(CLI::App& command, Common& common);
-/// --ome-zarr: the version of what is written; nothing if it is not given.
+/// --ome-zarr: the version to write; null if it is not given.
 void add_version_option(CLI::App& command, std::optional<OmeZarrVersion>& version, const std::string& otherwise);
 /// --believe, for commands that open annotation.
 void add_belief_option(CLI::App& command, Common& common);
@@ -51,24 +51,24 @@ void add_incomplete_option(CLI::App& command, Common& common, const std::string&
 /// --json, --quiet: every command has them.
 void add_output_options(CLI::App& command, Common& common);
 
-/// A line on standard error, unless --quiet.
+/// Prints a line on standard error, unless --quiet.
 void say(const Common& common, const std::string& line);
 void warn(const std::vector<std::string>& warnings, const Common& common);
-/// The same of opening work; losses are told even with --quiet.
+/// The same for notices of opening work; losses are printed even with --quiet.
 void warn(const std::vector<Notice>& notices, const Common& common);
-/// Told even with --quiet.
+/// Printed even with --quiet.
 void warn_of_losses(const std::vector<std::string>& losses);
-/// Warns if another process writes the journal: what it has not written yet is not seen.
+/// Warns if another process is writing the journal: records that it has not written yet are not visible.
 void warn_of_holder(const std::filesystem::path& journal, const Common& common);
-/// One object on standard output.
+/// Prints one object on standard output.
 void print(const Json& result);
 /// "0.8,0.8,1.2"
 glm::dvec3 parse_spacing(const std::string& text);
 /// "512x384"
 glm::uvec2 parse_size(const std::string& text);
 
-/// An open session, with its volume on the device and its mask and trace, if any, loaded. It is only looked at unless
-/// `opening` brings the journal's hold or the session has no journal.
+/// An open session, with its volume on the device and its mask and trace, if any, loaded. It is read-only unless
+/// `opening` has the journal's hold or the session has no journal.
 struct Opened {
     Session session;
     std::shared_ptr<const VolumeSource> source;
@@ -78,15 +78,15 @@ struct Opened {
     std::unique_ptr<Annotator> annotator;
     std::filesystem::path project;     ///< its session's file; empty for a bare volume
     std::shared_ptr<const Gaps> gaps;  ///< grows while bricks are read; null: the command needs every voxel
-    std::string gaps_told{};           ///< by `warn_of_gaps`
+    std::string gaps_told{};           ///< already printed by `warn_of_gaps`
 
     bool is_whole() const { return !gaps || gaps->empty(); }
     int64_t voxels_not_read() const { return gaps ? gaps->voxels() : 0; }
 };
-/// Refuses what is too large for the budgets before it reads voxels, and what cannot be read unless
+/// Refuses volumes that are too large for the budgets before reading voxels, and unreadable ones unless
 /// `common.allows_incomplete`.
 Opened open(const std::string& path, const Common& common, LongWork& work, Work::Opening opening = {.only_look = true});
-/// Says what could not be read since the last time: bricks are read while pictures are drawn.
+/// Warns about parts that could not be read since the last call: bricks are read while pictures are drawn.
 void warn_of_gaps(Opened& opened, const std::string& path, const Common& common);
 
 /// {device, host, by_resource}

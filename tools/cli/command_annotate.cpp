@@ -19,7 +19,7 @@ struct AnnotateCommandOptions {
     bool verbose = false;
 };
 
-/// A script drives the workbench, as the window does.
+/// A script drives the workbench, like the window.
 class Replay {
 public:
     Replay(ui::Workbench& workbench, const AnnotateCommandOptions& given) : bench(workbench), options(given) {}
@@ -32,7 +32,7 @@ public:
     std::string at;                             ///< "file:line"
 
 private:
-    /// A line for a command, where that is asked for.
+    /// Prints a line for a command, if requested.
     template <class... Words>
     void tell(const Words&... words) const
     {
@@ -54,7 +54,7 @@ private:
         }
     }
 
-    /// All of them or none.
+    /// Performs all of them or none.
     void expect_steps(const char* what, int count, size_t there) const
     {
         if (size_t(count) > there)
@@ -73,7 +73,7 @@ public:
         kept_painted += result.kept_painted;
         const std::string& said = bench.messages().last();
         if (result.kept_locked_out > 0)
-            warn({sentence(at, ": ", said)}, options.common);  // the line does not do what it is there for
+            warn({sentence(at, ": ", said)}, options.common);  // the line does not have its intended effect
         else
             tell(said);
     }
@@ -131,7 +131,7 @@ public:
     }
 };
 
-/// Before anything is painted.
+/// Checks before anything is painted.
 void check_radii(const std::vector<ScriptLine>& script, const std::string& name, const VolumeInfo& volume)
 {
     for (const ScriptLine& line : script)
@@ -142,7 +142,7 @@ void check_radii(const std::vector<ScriptLine>& script, const std::string& name,
             }
 }
 
-/// Null where the project is a volume without a journal, or no lock can be kept there.
+/// Null if the project is a volume without a journal, or no lock can be kept there.
 std::shared_ptr<Hold> hold_of(const std::string& project)
 {
     const std::filesystem::path session = session_file_of(project);
@@ -198,8 +198,8 @@ void run_annotate(const AnnotateCommandOptions& options)
                {"journal_bytes", annotator.work().journal().bytes}});
 }
 
-/// Does an action and all that it begins, which a script does not go on without. What the window would only say, and
-/// go on, fails.
+/// Performs an action and everything that it starts, which a script waits for. Conditions that the window would merely
+/// report are failures here.
 void perform_to_end(ui::Workbench& bench, const ui::Action& action)
 {
     const uint64_t told_before = bench.messages().count();
@@ -211,7 +211,7 @@ void perform_to_end(ui::Workbench& bench, const ui::Action& action)
     if (const ui::Message* error = bench.messages().first_after(told_before, ui::Weight::error)) fail(error->text);
 }
 
-/// Replays what a person did in the window, as `shvr view --log` wrote it, without a display.
+/// Replays a user's actions in the window, as logged by `shvr view --log`, without a display.
 void run_actions(const AnnotateCommandOptions& options)
 {
     const std::string name = name_of_script(options.actions);
@@ -230,7 +230,7 @@ void run_actions(const AnnotateCommandOptions& options)
         throw JournalTaken(sentence(options.project, ": is open for writing in ", bench.document().holder,
                                     "; expected it to be closed there first"));
     static_cast<void>(work.begin("replaying " + name));
-    bench.set_hand_down(true);  // the log says where a step of settings ends
+    bench.set_hand_down(true);  // the log states where a step of settings ends
     size_t done = 0;
     for (const auto& [number, action] : actions) {
         work.show(double(done++) / double(actions.size()), {}, -1.0);

@@ -22,7 +22,7 @@ struct ErrorBenchOptions {
     std::vector<std::string> sweeps;
     std::vector<std::string> compared;  ///< none, or two files
     std::vector<std::string> mappers = {"fixed"};
-    std::string peer, examples;  ///< empty: those of the tree that the program was built in
+    std::string peer, examples;  ///< empty: those of the tree in which the program was built
     int64_t side = 0;            ///< 0: 32 where quick, otherwise 64
     std::vector<uint32_t> size;  ///< of pictures; empty: 48 x 36 where quick, otherwise 120 x 90
     bool quick = false, ignores_time = false;
@@ -54,7 +54,7 @@ Json pareto_row(const bench::SceneResult& scene, const bench::Measured& run)
 constexpr const char* SWEEPS[] = {"blur", "labelling", "proxy"};
 constexpr int64_t MAX_SWEEP_BYTES = 1 << 20;
 
-/// A file of the tree that the program was built in; empty if it is not there.
+/// A file of the tree in which the program was built; empty if it is not there.
 std::filesystem::path in_tree(const std::filesystem::path& path)
 {
     std::error_code unknown;
@@ -63,7 +63,7 @@ std::filesystem::path in_tree(const std::filesystem::path& path)
     return std::filesystem::exists(found, unknown) ? found : std::filesystem::path();
 }
 
-/// What the tree stands at now, which is what the program was built of unless something was changed since.
+/// The tree's present commit, from which the program was built unless something was changed since.
 std::string commit_of_tree()
 {
     const std::filesystem::path folder = in_tree(".git");

@@ -53,10 +53,10 @@ void run_export(const ExportCommandOptions& options)
 {
     const ExportTask task = task_of(options);
     check(task);
-    // Its annotations are in it, but empty files would be written.
+    // It contains annotations, but empty files would be written.
     if (const std::string archived = archived_project(options.project); !archived.empty()) fail(archived);
     LongWork long_work(options.common.quiet);
-    Gaps gaps;  // annotation is exported whatever has become of the scan
+    Gaps gaps;  // annotation is exported regardless of the scan's state
     const OpenedSession opened =
         open_session(options.project, options.common.settings,
                      {.measure = {.progress = long_work.begin("measuring " + options.project), .gaps = &gaps}});
@@ -84,7 +84,7 @@ void run_export(const ExportCommandOptions& options)
                                     .volume_path = opened.session.volume_path,
                                     .trace_path = opened.session.trace_path};
     const ExportResult result = run(task, annotation, long_work, [&](const ExportResult& so_far) {
-        // The trace is the first that is written.
+        // The trace is written first.
         if (so_far.written.size() == 1) warn(so_far.left_out, options.common);
         say(options.common, "wrote " + so_far.written.back());
     });

@@ -24,7 +24,7 @@ struct GoldenCommandOptions {
     std::string folder = "golden";
     std::string output = "golden-results";
     std::string reason;
-    std::string table;  ///< of calibrate; empty: none
+    std::string table;  ///< output of calibrate; empty: none
     bool only_failed = false, keeps_light = false;
 };
 
@@ -88,7 +88,7 @@ void run_goldens(const GoldenCommandOptions& options)
                                  outcome.failed.front(), "; see ", outcome.report.string()));
 }
 
-/// Those that failed in the last run, where only they are meant.
+/// The goldens that failed in the last run, if only these are requested.
 std::vector<golden::Golden> chosen(const GoldenCommandOptions& options)
 {
     std::vector<golden::Golden> goldens = golden::goldens_in(options.folder, options.pattern);
@@ -128,7 +128,7 @@ void bless(const GoldenCommandOptions& options)
         print_lines(text + "Look at each new picture before it is committed, with its side-car.\n");
 }
 
-/// `shvr golden run` in a process of its own: drivers read their environment once.
+/// Runs `shvr golden run` in a separate process: drivers read their environment once.
 void run_variant(const GoldenCommandOptions& options, const golden::Variant& variant, const fs::path& output)
 {
     std::vector<std::string> arguments{"shvr", "golden",        "run",     options.pattern, "--folder", options.folder,
@@ -156,7 +156,7 @@ void run_variant(const GoldenCommandOptions& options, const golden::Variant& var
     posix_spawn_file_actions_destroy(&actions);
     int status = 0;
     if (error == 0) ::waitpid(child, &status, 0);
-    // 3: pictures differ, which is what is to be measured.
+    // 3: pictures differ, which is what is being measured.
     if (error != 0 || !WIFEXITED(status) || (WEXITSTATUS(status) != 0 && WEXITSTATUS(status) != 3))
         fail("goldens could not be drawn as ", variant.name, "; expected exit status 0 or 3 of shvr golden run");
 }
@@ -170,7 +170,7 @@ Json spread_json(const golden::Moved& moved)
             {"light", moved.light}};
 }
 
-/// As a person types it.
+/// The command line as a user would type it.
 std::string calibrate_command(const GoldenCommandOptions& options)
 {
     return sentence("shvr golden calibrate", options.pattern == "*" ? "" : " '" + options.pattern + "'", " --folder ",

@@ -39,7 +39,7 @@ std::vector<std::string> choices()
     return names;
 }
 
-/// Of the volume, as the window mirrors it. A trace that names no unit gets the volume's.
+/// Relevance of the volume, as the window mirrors it. A trace that names no unit gets the volume's.
 MakeRelevance relevance_of(const ReplayCommandOptions& options, Trace& trace, LongWork& work)
 {
     const UnmeasuredSession opened = open_unmeasured_session(options.volume, options.common.settings);

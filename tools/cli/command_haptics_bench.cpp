@@ -1,4 +1,4 @@
-// shvr haptics bench: what a tick costs, and whether this machine keeps the servo's time.
+// shvr haptics bench: the cost of a tick, and whether this machine meets the servo's deadlines.
 
 #include <algorithm>
 #include <chrono>
@@ -22,9 +22,9 @@ struct BenchCommandOptions {
 };
 
 constexpr double SPACING_UM = 10.0;
-constexpr int32_t SIDE = 256;  ///< of the scene, voxels: a winding tube, another beside it, 1 % noise
+constexpr int32_t SIDE = 256;  ///< size of the scene in voxels: a winding tube, another next to it, 1 % noise
 
-/// The same at every place and time.
+/// A deterministic hash.
 uint32_t scattered(uint32_t x)
 {
     x ^= x >> 16, x *= 0x7feb352du, x ^= x >> 15, x *= 0x846ca68bu;
@@ -107,7 +107,7 @@ constexpr Case CASES[] = {{64, 12.0, HapticMode::object},  {64, 12.0, HapticMode
 Json run_case(const std::vector<uint8_t>& scene, const Case& one, LongWork& work, Json& first)
 {
     constexpr size_t TICKS = 1500;
-    constexpr uint32_t EVERY = 2;  // half of the ticks grow anew: far more than a mirror delivers
+    constexpr uint32_t EVERY = 2;  // half of the ticks grow again: far more than a mirror delivers
     const Trace trace = make_trace(one.radius, one.mode, TICKS);
     const MakeRelevance make = [&](const glm::dvec3& point, double, double, RelevancePatch& patch) {
         work.stop_if_asked();

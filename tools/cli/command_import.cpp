@@ -1,4 +1,4 @@
-// shvr import: makes a project of a volume. Needs no Vulkan device.
+// shvr import: imports a volume as a project. Needs no Vulkan device.
 
 #include <sys/resource.h>
 
@@ -20,7 +20,7 @@ struct ImportCommandOptions {
 
 // ---- Numbers of options ---------------------------------------------------------------------------------------------
 
-/// "1,2,3"; nothing if one of them is not a number.
+/// "1,2,3"; null if one of them is not a number.
 template <class Value>
 std::vector<Value> numbers_of(const std::string& text)
 {

@@ -1,4 +1,4 @@
-// shvr info: what a volume, a session or a project is. Needs no Vulkan device.
+// shvr info: describes a volume, a session or a project. Needs no Vulkan device.
 
 #include <iomanip>
 #include <iostream>
@@ -17,7 +17,7 @@ struct InfoCommandOptions {
     bool allows_incomplete = false;
 };
 
-/// How the statistics came about.
+/// How the statistics were obtained.
 std::string measured_text(const VolumeStatistics& statistics)
 {
     if (statistics.sampled_voxels > 0) return sentence("sample of ", statistics.sampled_voxels, " voxels");
@@ -30,7 +30,7 @@ Json to_json(const DescribeResult& described, const std::string& input)
     const VolumeStatistics& statistics = described.statistics;
     const IntensityWindow window = window_for(info.type, statistics);
     const int64_t voxels = voxel_count(info);
-    Json directions = Json::array();  // of x, of y, of z
+    Json directions = Json::array();  // for x, for y, for z
     for (int axis = 0; axis < 3; ++axis) {
         const glm::dvec3& direction = info.directions[axis];
         directions.push_back({direction.x, direction.y, direction.z});

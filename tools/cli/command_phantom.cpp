@@ -1,4 +1,4 @@
-// shvr phantom: writes a synthetic volume, and its truth where that is known, as files. Needs no Vulkan device.
+// shvr phantom: writes a synthetic volume, and its truth if it is known, as files. Needs no Vulkan device.
 
 #include <algorithm>
 #include <bit>
@@ -121,8 +121,8 @@ TraceGraph trace_of(const ProceduralTruth& truth, const VolumeInfo& volume)
     return trace;
 }
 
-/// FOLDER/NAME.nhdr and NAME.raw. The header is opened first, so that an unwritable name fails before the long work;
-/// and committed last, so that no header describes voxels not yet written.
+/// Writes FOLDER/NAME.nhdr and NAME.raw. The header is opened first, so that an unwritable name fails before the long
+/// work; and committed last, so that no header describes voxels not yet written.
 std::string write_volume(const std::filesystem::path& folder, const std::string& name, const VolumeSource& volume,
                          LongWork& work)
 {

@@ -1,5 +1,5 @@
-// shvr haptics devices: what is plugged in and how it can be used; and raw reports of a device, for whoever can say
-// what they mean.
+// shvr haptics devices: which devices are plugged in and how they can be used; and raw reports of a device, for
+// analysing their layout.
 
 #include <chrono>
 #include <iostream>

@@ -1,5 +1,5 @@
 #pragma once
-// What `shvr haptics replay` and `bench` print.
+// The output of `shvr haptics replay` and `bench`.
 
 #include <string>
 #include <vector>
@@ -9,12 +9,12 @@
 
 namespace shvr::cli {
 
-/// {p50, p99, max} in microseconds, of nanoseconds.
+/// {p50, p99, max} in microseconds, from nanoseconds.
 Json quantiles_us(std::vector<uint64_t> nanoseconds);
-/// `unit` of the volume's lengths; micrometres are null where it is no length.
+/// `unit` of the volume's lengths; micrometres are null if it is not a unit of length.
 Json report_of(const ReplayResult& result, const std::string& unit);
 
-/// Speed against error of the proxy, by points and exactly, over sizes of the ball: CSV, and a plot where `svg` is not
+/// Speed against error of the proxy, with sample points and exactly, over ball sizes: CSV, and a plot if `svg` is not
 /// empty. Returns a sentence for each row.
 std::vector<std::string> sweep_proxy(const std::string& csv, const std::string& svg, LongWork& work);
 

@@ -1,4 +1,4 @@
-// shvr haptics bench --sweep: what exact integration costs and how right it is, beside sample points.
+// shvr haptics bench --sweep: cost and accuracy of exact integration, compared with sample points.
 
 #include <algorithm>
 #include <chrono>
@@ -16,8 +16,8 @@ namespace shvr::cli {
 namespace {
 
 constexpr int32_t SIDE = 64;
-constexpr int PLACES = 40;  ///< of the ball
-constexpr int DRAWS = 12;   ///< of random points
+constexpr int PLACES = 40;  ///< positions of the ball
+constexpr int DRAWS = 12;   ///< draws of random points
 constexpr double RADII[] = {6.0, 12.0, 24.0};
 constexpr int COUNTS[] = {300, 1000, 3000, 10'000};
 
@@ -25,8 +25,8 @@ struct Row {
     std::string method;
     double radius = 0.0;        ///< voxels
     int points = 0;             ///< 0: exact
-    double error = 0.0;         ///< RMS, of the radius, against `slow_mean`
-    double microseconds = 0.0;  ///< median of all places
+    double error = 0.0;         ///< RMS, relative to the radius, against `slow_mean`
+    double microseconds = 0.0;  ///< median of all positions
 };
 
 /// A slanted tube through the middle, half as wide as the ball, and 1 % noise.
@@ -48,7 +48,7 @@ void make_scene(double radius, RelevancePatch& patch)
             }
 }
 
-/// The mean of the relevant part of the ball, away from its middle: 36 lines through each voxel, with exact ends.
+/// The mean of the relevant part of the ball, relative to its centre: 36 lines through each voxel, with exact ends.
 glm::dvec3 slow_mean(const RelevancePatch& patch, const glm::dvec3& centre, double radius)
 {
     constexpr int LINES = 6;
@@ -122,7 +122,7 @@ std::vector<Row> sweep(LongWork& work)
             rows.push_back(measured("even", radius, count, truth, [&](const glm::dvec3& at) {
                 return find_sampled_proxy(*patch, at, radius, even);
             }));
-            // One draw may be lucky: the mean square of several.
+            // One draw may be lucky: uses the mean square of several.
             Row all{"random", radius, count};
             for (int draw = 0; draw < DRAWS; ++draw) {
                 const auto drawn = std::span(random).subspan(size_t(draw * count), size_t(count));
@@ -139,7 +139,7 @@ std::vector<Row> sweep(LongWork& work)
     return rows;
 }
 
-/// Time across, error upwards, both by decades; a mark for each row, a colour for each method, a size for each radius.
+/// Time to the right, error upwards, both by decades; one mark per row, one colour per method, one size per radius.
 std::string plot_of(const std::vector<Row>& rows)
 {
     constexpr double WIDTH = 640.0, HEIGHT = 440.0, LEFT = 70.0, BOTTOM = 60.0, TOP = 20.0, RIGHT = 150.0;
@@ -180,7 +180,7 @@ std::string plot_of(const std::vector<Row>& rows)
     for (const Row& row : rows)
         svg << "<circle cx=\"" << x_of(row.microseconds) << "\" cy=\"" << y_of(row.error) << "\" r=\""
             << 2.0 + row.radius / 6.0 << "\" fill=\"" << color_of(row.method) << "\" fill-opacity=\"0.7\"/>\n";
-    // Marks of the same number of points lie together: one label for the three.
+    // Marks with the same number of points are close together: one label for the three.
     for (const Row& row : rows)
         if (row.points > 0 && row.radius == RADII[std::size(RADII) - 1])
             text(x_of(row.microseconds) + 9.0, y_of(row.error) - 6.0, "start", std::to_string(row.points));

@@ -14,7 +14,7 @@ namespace shvr::cli {
 
 namespace {
 
-/// How often the line is renewed where work says nothing.
+/// How often the line is updated while the work reports nothing.
 constexpr std::chrono::milliseconds TICK{250};
 
 double seconds_now()
@@ -22,7 +22,7 @@ double seconds_now()
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// The line, and a thread that keeps its time.
+/// The progress line, and a thread that updates its time.
 class Shown {
 public:
     Shown()
@@ -81,12 +81,12 @@ private:
     std::condition_variable_any stopped_;
     ProgressLine line_;
     bool is_busy_ = false;
-    double fraction_ = -1.0, seconds_left_ = -1.0;  ///< below 0: not known
+    double fraction_ = -1.0, seconds_left_ = -1.0;  ///< below 0: unknown
     std::string detail_;
-    std::jthread ticker_;  ///< last, since it uses all above
+    std::jthread ticker_;  ///< last, since it uses all members above
 };
 
-std::unique_ptr<Shown> shown;  ///< of the LongWork that lives; null if it is quiet
+std::unique_ptr<Shown> shown;  ///< the live LongWork's; null if it is quiet
 
 }  // namespace
 

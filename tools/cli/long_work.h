@@ -1,6 +1,6 @@
 #pragma once
-// What long work of a command has in common: it shows how far it is (engine/base/progress.h), and Ctrl-C ends it in a
-// sentence.
+// Shared by commands with long work: it shows progress
+// (engine/base/progress.h), and Ctrl-C ends it with a sentence.
 
 #include <atomic>
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace shvr::cli {
 
-/// One at a time, on the thread that runs the command. While it lives, the first Ctrl-C (SIGINT) or SIGTERM asks the
-/// command to stop (stop.h), which then ends as after an error: files are whole or not there. A second one ends the
-/// program at once. What takes longer than a second shows a line on standard error, unless `quiet`; so does work that
-/// never says how far it is.
+/// One at a time, on the thread that runs the command. During its lifetime, the first Ctrl-C (SIGINT) or SIGTERM asks
+/// the command to stop (stop.h), which then ends as after an error: files are complete or absent. A second one ends the
+/// program at once. Work longer than a second shows a line on standard error, unless `quiet`; so does work that never
+/// reports progress.
 class LongWork final : public ProgressReporter {
 public:
     explicit LongWork(bool quiet);
@@ -31,9 +31,9 @@ private:
     StopRequest stop_;
 };
 
-/// Takes the line of progress off the terminal until there is more to tell; before anything is printed.
+/// Erases the progress line from the terminal until the next update; call it before anything is printed.
 void clear_progress();
-/// A line on standard error, not across the line of progress.
+/// Prints a line on standard error without mixing it with the progress line.
 void print_beside_progress(const std::string& line);
 
 }  // namespace shvr::cli

@@ -24,7 +24,7 @@ std::string usage_error(const CLI::App& program, const CLI::ParseError& error)
     return text + "; see " + command + " --help";
 }
 
-/// What the first argument is instead of a command.
+/// Describes a first argument that is not a command.
 std::string no_command(const CLI::App& program, const std::string& found)
 {
     std::string known;
@@ -34,7 +34,7 @@ std::string no_command(const CLI::App& program, const std::string& found)
            "; expected one of " + known + "; see shvr --help";
 }
 
-/// No option and no name may be empty: a script with an unset variable would otherwise read or write something else.
+/// Refuses empty options and names: a script with an unset variable would otherwise read or write something else.
 void refuse_empty(int argc, char** argv)
 {
     for (int i = 1; i < argc; ++i) {

@@ -15,7 +15,7 @@ std::atomic<bool> command_listens = false, is_requested = false;
 std::atomic<int> first_signal = 0;
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
-/// Calls only what a signal handler may call.
+/// Calls only async-signal-safe functions.
 extern "C" void stop(int signal_number)
 {
     int none = 0;
@@ -25,7 +25,7 @@ extern "C" void stop(int signal_number)
     const char* const text = signal_number == SIGINT ? "shvr: stopped by Ctrl-C; no file is left half written\n"
                                                      : "shvr: stopped by SIGTERM; no file is left half written\n";
     static_cast<void>(::write(STDERR_FILENO, text, std::strlen(text)) > 0);
-    // Whoever started the program sees that a signal ended it, so a shell's loop ends, too.
+    // The parent process sees that a signal ended the program, so a shell's loop ends, too.
     std::signal(signal_number, SIG_DFL);
     ::raise(signal_number);
 }
@@ -36,7 +36,7 @@ void end_in_words()
 {
     for (const int number : {SIGINT, SIGTERM}) {
         struct sigaction now {};
-        // A signal that whoever started the program ignores stays ignored, as for jobs in the background.
+        // A signal that the parent process ignores stays ignored, as for background jobs.
         if (::sigaction(number, nullptr, &now) == 0 && now.sa_handler == SIG_IGN) continue;
         struct sigaction action {};
         action.sa_handler = stop;

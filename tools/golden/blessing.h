@@ -1,6 +1,6 @@
 #pragma once
-// Accepting a picture as correct: NAME.png with its side-car NAME.blessed.json, which says who drew it and why. Nothing
-// else writes goldens.
+// Accepts a picture as correct: NAME.png with its side-car NAME.blessed.json, which states who drew it and why. No
+// other code writes goldens.
 
 #include <optional>
 #include <span>
@@ -10,23 +10,23 @@
 
 namespace shvr::golden {
 
-/// Who draws: for side-cars and reports.
+/// The machine that draws: for side-cars and reports.
 struct Maker {
     std::string device, driver, processor;
-    std::string instructions;  ///< of the processor, those that change rounding: "avx2 fma"
+    std::string instructions;  ///< instruction sets of the processor that change rounding: "avx2 fma"
 };
-/// Of this machine.
+/// Describes this machine.
 Maker maker_of(Renderer& renderer);
 
-/// What kernels count (shaders/counters.h) by name, as side-cars and --json spell it, summed over passes.
+/// Kernel counters (shaders/counters.h) by name, as spelled in side-cars and --json, summed over passes.
 std::vector<std::pair<std::string, uint64_t>> work_of(std::span<const gpu::PassReport> passes);
 /// Exact work counters of a picture by name, summed over its passes, and how many passes and dispatches there were.
 std::vector<std::pair<std::string, uint64_t>> counters_of(const Picture& picture);
 
-/// What was drawn.
+/// The result of drawing.
 struct Drawn {
     Image8 image;
-    ImageF light;  ///< the same, before it was rounded to 8 bits
+    ImageF light;  ///< the same, before rounding to 8 bits
     Maker maker;
     std::vector<std::pair<std::string, uint64_t>> work;  ///< exact counters by name, summed over passes
     bool work_is_exact = true;                           ///< false: paged, where counters depend on the disk
@@ -34,23 +34,23 @@ struct Drawn {
 /// The first picture of a studio, whose passes also prepare.
 Drawn drawn_by(Studio& studio);
 
-/// Why picture and side-car do not belong together, or one is missing; null if all is well.
+/// Why picture and side-car do not match, or one is missing; null if all is well.
 std::optional<std::string> why_not_blessed(const Golden& golden);
-/// The counters that the side-car lacks, or that differ from its own, in a sentence; null where there are none: also
-/// where bricks are paged, and of those that differ where another driver or another processor's instructions drew it
-/// (rays may end a sample later).
+/// The counters that the side-car lacks, or that differ from its own, in a sentence; null if there are none: also if
+/// bricks are paged, and for counters that differ because another driver or processor instruction set drew it (rays may
+/// end a sample later).
 std::optional<std::string> why_other_work(const Golden& golden, const Drawn& drawn);
 
 struct Blessed {
     std::string name, old_hash, new_hash;   ///< "none", "unchanged"
-    std::optional<PixelDifference> change;  ///< to the picture before, where sizes are equal
+    std::optional<PixelDifference> change;  ///< relative to the previous picture, if sizes are equal
 };
-/// Draws and writes both files, unless picture, counters and class are what they were; a picture that passes is kept as
-/// it is, and the side-car alone is renewed. Fails on any device but
-/// lavapipe, and where the environment's CI is set.
+/// Draws and writes both files, unless picture, counters and class are
+/// unchanged; a picture that passes is kept, and only the side-car is renewed.
+/// Fails on any device but lavapipe, and if the environment's CI is set.
 Blessed bless(const Golden& golden, const std::string& reason, const StudioOptions& options);
 
-/// The command that accepts it.
+/// The command that accepts this golden.
 std::string bless_command(const Golden& golden);
 
 }  // namespace shvr::golden

@@ -1,6 +1,6 @@
 #pragma once
-// How far a driver's own freedom moves each golden: the same pictures on the same device with other vector widths,
-// thread counts, instruction sets and poisoned memory. A class is right where it allows twice the spread.
+// Measures how much a driver's freedom changes each golden: the same pictures on the same device with other vector
+// widths, thread counts, instruction sets and poisoned memory. A class is right if it allows twice the spread.
 
 #include <functional>
 #include <map>
@@ -11,27 +11,27 @@
 
 namespace shvr::golden {
 
-/// A way to run lavapipe; the first of them changes nothing.
+/// A way to run lavapipe; the first variant changes nothing.
 struct Variant {
     std::string name;
     std::vector<std::pair<std::string, std::string>> environment;
 };
 const std::vector<Variant>& variants();
 
-/// Draws the goldens into `output`, in linear light, too, in a process with that environment. Throws where it cannot.
+/// Draws the goldens into `output`, also in linear light, in a process with that environment. Throws if it cannot.
 using DrawAll = std::function<void(const Variant& variant, const std::filesystem::path& output)>;
 
-/// How far a picture is from the first variant's.
+/// The difference of a picture from the first variant's.
 struct Moved {
     PixelDifference pixels;  ///< in 8 bits, of 255
-    double light = 0.0;      ///< at most, in linear light: shows that a variant does change the arithmetic
+    double light = 0.0;      ///< maximum in linear light: shows that a variant does change the arithmetic
 };
 
 struct Spread {
     Golden golden;
-    std::optional<Maker> maker;  ///< who drew the first variant
+    std::optional<Maker> maker;  ///< the machine that drew the first variant
     std::map<std::string, Moved> by_variant;
-    Moved most;                   ///< of each metric
+    Moved most;                   ///< maximum of each metric
     bool holds = false;           ///< the class allows twice as much
     bool could_be_exact = false;  ///< no variant changes an 8-bit picture
 };
@@ -39,7 +39,7 @@ struct Spread {
 std::vector<Spread> calibrate(const std::vector<Golden>& goldens, const std::filesystem::path& output,
                               const DrawAll& draw_all);
 
-/// The spreads as a page of Markdown, for version control. `command`: what makes it.
+/// The spreads as a page of Markdown, for version control. `command`: the command that makes it.
 std::string table_of(const std::vector<Spread>& spreads, const std::string& command);
 
 /// Whether `strictness` allows twice `most`.

@@ -25,7 +25,7 @@ void read_script_lines(Golden& golden, const JsonNode& lines)
     }
 }
 
-/// A text of as many 8-bit levels as a channel of these pixels is apart at most.
+/// The maximum difference of the pixels' channels in 8-bit levels.
 int apart(const Image8& a, const Image8& b, size_t pixel)
 {
     int most = 0;
@@ -34,7 +34,7 @@ int apart(const Image8& a, const Image8& b, size_t pixel)
     return most;
 }
 
-/// `actual` with the pixels that differ most, EDGE_FRACTION of all, as they are in `expected`.
+/// `actual` with the EDGE_FRACTION of pixels that differ most replaced by those of `expected`.
 Image8 without_edges(Image8 actual, const Image8& expected)
 {
     std::vector<std::pair<int, size_t>> differing;

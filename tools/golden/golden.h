@@ -1,6 +1,6 @@
 #pragma once
-// Regression pictures ("goldens"): a folder of NAME.json, each with the session that is drawn, NAME.png as it should
-// be, and NAME.blessed.json, which says who drew that and why. README.md lists the keys. Plain data; any thread.
+// Regression pictures ("goldens"): a folder of NAME.json, each with the session to draw, NAME.png as the expected
+// result, and NAME.blessed.json, which states who drew it and why. README.md lists the keys. Plain data; any thread.
 
 #include <filesystem>
 #include <optional>
@@ -14,11 +14,11 @@
 
 namespace shvr::golden {
 
-/// How exactly a picture must be met.
+/// How exactly a picture must match.
 enum class Strictness {
     exact,  ///< the same bits
     tight,  ///< TIGHT_TOLERANCE: rounding of another driver or processor
-    edge,   ///< tight but for EDGE_FRACTION of the pixels, which may be anything: a silhouette off by a pixel
+    edge,   ///< tight except for EDGE_FRACTION of the pixels, which may be anything: a silhouette off by a pixel
 };
 inline constexpr Spelling<Strictness> STRICTNESSES[] = {
     {Strictness::exact, "exact"}, {Strictness::tight, "tight"}, {Strictness::edge, "edge"}};
@@ -31,10 +31,10 @@ inline constexpr double EDGE_FRACTION = 0.003;
 struct Golden {
     std::string name;
     std::filesystem::path folder;
-    std::string why;       ///< what the picture watches over
+    std::string why;       ///< what the picture guards
     std::string loosened;  ///< why it is no stricter; empty unless `strictness` is edge
     Strictness strictness = Strictness::tight;
-    std::filesystem::path session_path;  ///< of a session, project or volume file; empty: `session_text`
+    std::filesystem::path session_path;  ///< path of a session, project or volume file; empty: `session_text`
     std::string session_text;            ///< JSON; relative paths are relative to `folder`
     std::vector<std::string> settings;   ///< "key=value" on top of the session
     std::vector<ScriptLine> script;      ///< strokes, density strokes and undo
@@ -46,15 +46,15 @@ struct Golden {
     OpenedSession open() const;
 };
 
-/// Fails in a sentence where the file is not as README.md says.
+/// Fails with a sentence if the file does not conform to README.md.
 Golden read_golden(const std::filesystem::path& file);
-/// Those in `folder` whose names match `pattern` ('*', 'tubes_*'), by name. Fails where none does.
+/// The goldens in `folder` whose names match `pattern` ('*', 'tubes_*'), sorted by name. Fails if there are none.
 std::vector<Golden> goldens_in(const std::filesystem::path& folder, const std::string& pattern = "*");
 
 /// Shell patterns: '*', '?', '[ab]'.
 bool matches(const std::string& name, const std::string& pattern);
 
-/// Why `actual` does not pass for `expected`: every limit that is exceeded, with the value found; null if it passes.
+/// Why `actual` does not match `expected`: every limit that is exceeded, with the value found; null if it passes.
 std::optional<std::string> why_different(const Image8& actual, const Image8& expected, Strictness strictness);
 
 /// FNV-1a, 64 bits, of a picture's file, as 16 digits. Protects against mistakes, not against malice.

@@ -28,7 +28,7 @@ ImageF read_light(const std::filesystem::path& path)
     const size_t values = width > 0 && height > 0 ? size_t(width) * size_t(height) * 3 : 0;
     if (magic != "PF" || values == 0 || bytes.size() < values * sizeof(float))
         fail(path.string(), ": is no picture in linear light; expected a portable float map");
-    // Rows from the bottom.
+    // Rows start at the bottom.
     const std::byte* const data = bytes.data() + bytes.size() - values * sizeof(float);
     ImageF image{width, height, std::vector<float>(size_t(width) * size_t(height) * 4, 1.0f)};
     for (size_t i = 0; i < values; ++i) {

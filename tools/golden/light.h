@@ -1,5 +1,6 @@
 #pragma once
-// Pictures in linear light, 32-bit floats, as portable float maps: what `write_pfm` writes (engine/base/image_file.h).
+// Pictures in linear light, 32-bit floats, as portable float maps, as written by `write_pfm`
+// (engine/base/image_file.h).
 
 #include <filesystem>
 
@@ -7,7 +8,7 @@
 
 namespace shvr::golden {
 
-/// Of three channels; alpha is 1. Fails where the file is no such picture.
+/// Reads three channels; alpha is 1. Fails if the file is not such a picture.
 ImageF read_light(const std::filesystem::path& path);
 
 /// The largest difference in any channel of two pictures of one size.

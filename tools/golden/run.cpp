@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 constexpr int64_t MAX_RESULTS_BYTES = int64_t{64} << 20;
 
-/// Everything but how long it took.
+/// Everything except the duration.
 void judge(Result& result, const StudioOptions& options)
 {
     const Golden& golden = result.golden;

@@ -1,6 +1,6 @@
 #pragma once
-// Draws goldens, compares them with what was blessed, and writes what a person or a machine needs to judge: pictures,
-// results.json, junit.xml and report.html. No retries: a picture that differs now and then is a defect.
+// Draws goldens, compares them with the blessed ones, and writes what is needed to judge them: pictures, results.json,
+// junit.xml and report.html. No retries: a picture that differs only sometimes is a defect.
 
 #include <functional>
 
@@ -12,10 +12,10 @@ namespace shvr::golden {
 
 enum class Status {
     passed,
-    failed,      ///< another picture or other work
-    missing,     ///< never blessed, or picture and side-car do not belong together
-    broken,      ///< it could not be drawn
-    informative  ///< another picture, but the device is not lavapipe: its rounding is its own
+    failed,      ///< another picture or other work counters
+    missing,     ///< never blessed, or picture and side-car do not match
+    broken,      ///< could not be drawn
+    informative  ///< another picture, but the device is not lavapipe: its rounding may differ
 };
 inline constexpr Spelling<Status> STATUSES[] = {{Status::passed, "passed"},
                                                 {Status::failed, "failed"},
@@ -31,30 +31,31 @@ constexpr bool is_failure(Status status)
     return status != Status::passed && status != Status::informative;
 }
 
-/// Whether `shvr golden bless` helps: not where nothing was drawn, nor on a device that may not bless.
+/// Whether `shvr golden bless` helps: not if nothing was drawn, nor on a device that may not bless.
 constexpr bool can_be_blessed(Status status)
 {
     return status == Status::failed || status == Status::missing;
 }
 
-/// Of one golden. Pictures are null where there are none.
+/// The result of one golden. Pictures are null if there are none.
 struct Result {
     Golden golden;
     Status status = Status::broken;
     std::string reason;  ///< why it did not pass, in a sentence
     double seconds = 0.0;
     std::optional<Image8> expected, actual;
-    std::optional<ImageF> light;  ///< of the actual picture; not of a run that was read again
+    std::optional<ImageF> light;  ///< the actual picture; null for a run read from disk
     std::optional<ImageDifference> difference;
     std::optional<Maker> maker;
     std::string side_car;  ///< its JSON
 };
 
-/// Draws one and judges it; never throws for what is wrong with the golden.
+/// Draws a golden and judges it; never throws for defects of the golden.
 Result run(const Golden& golden, const StudioOptions& options);
 
-/// All of them. Before the first is drawn, the report says that the run did not end, so that a crash shows. `output` is
-/// made. `tell` is called before each. `keeps_light`: NAME.actual.pfm, too, the picture in 32-bit floats.
+/// Runs all of them. Before the first is drawn, the report says that the run did not end, so that a crash is visible.
+/// `output` is created. `tell` is called before each. `keeps_light`: also writes NAME.actual.pfm, the picture in 32-bit
+/// floats.
 struct Outcome {
     std::vector<Result> results;
     std::vector<std::string> failed;
@@ -63,7 +64,7 @@ struct Outcome {
 Outcome run_all(const std::vector<Golden>& goldens, const std::filesystem::path& output, const StudioOptions& options,
                 const std::function<void(const Golden&, double)>& tell = {}, bool keeps_light = false);
 
-/// The reports again, of a run whose results.json and pictures lie in `output`.
+/// Reads a run whose results.json and pictures are in `output`, to write its reports again.
 Outcome read_run(const std::filesystem::path& output, const std::string& pattern);
 void write_reports(const Outcome& outcome, const std::filesystem::path& output);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Draws goldens, each with a device of its own, so that no picture depends on the ones before.
+// Draws goldens, each on a device of its own, so that no picture depends on earlier ones.
 //
 // One thread.
 
@@ -12,22 +12,22 @@
 
 namespace shvr::golden {
 
-/// Part of the name by which Mesa's lavapipe calls its device.
+/// Part of the name of Mesa's lavapipe device.
 inline constexpr std::string_view LAVAPIPE = "llvmpipe";
 
-/// The environment of every golden, for all that are drawn later in this process: exact sampling in lavapipe (its fast
-/// 8-bit path is off by 1.6 levels) and its device, unless the environment or `device` says otherwise.
+/// Sets the environment for all goldens drawn later in this process: exact sampling in lavapipe (its fast 8-bit path is
+/// off by 1.6 levels) and its device, unless the environment or `device` states another.
 void set_environment(const std::string& device = "");
 
 struct StudioOptions {
     std::string device;  ///< as gpu::DeviceOptions::device
     bool validation = false;
-    uint64_t budget_device = 0;  ///< bytes; 0: as much as there is
+    uint64_t budget_device = 0;  ///< bytes; 0: unlimited
 };
 
 class Studio {
 public:
-    /// Opens the session, loads its volume and annotation, and paints. Fails where a line of the script paints nothing.
+    /// Opens the session, loads its volume and annotation, and paints. Fails if a line of the script paints nothing.
     explicit Studio(const Golden& golden, const StudioOptions& options = {});
 
     Renderer& renderer() { return renderer_; }
@@ -35,18 +35,18 @@ public:
     const Session& session() const { return opened_.session; }
     Camera camera() const;
     bool is_lavapipe();
-    /// Loads the volume and paints anew.
+    /// Loads the volume and paints again.
     void set_up();
 
-    /// Any number of times. Fails where the picture is incomplete or holds a value that is no number.
+    /// May be called repeatedly. Fails if the picture is incomplete or contains NaN or infinities.
     Image8 draw();
     Image8 draw(const Session& session, const Camera& camera);
-    /// As RenderOptions::count_work counts them, by pass.
+    /// Counts as RenderOptions::count_work does, by pass.
     Picture draw_counted();
     Picture picture_of(const Session& session, const Camera& camera, bool counted);
     /// What is painted.
     const Document& document() const { return annotator_->document(); }
-    /// Since the last call; with `validation` any is a failure.
+    /// Messages since the last call; with `validation` any message is a failure.
     std::vector<std::string> take_validation_messages() { return renderer_.device().take_validation_messages(); }
 
 private:

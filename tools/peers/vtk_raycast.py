@@ -55,7 +55,7 @@ def open_volume(vtk, path):
     reader.SetDataScalarType(types[fields["type"]])
     reader.SetDataExtent(0, sizes[0] - 1, 0, sizes[1] - 1, 0, sizes[2] - 1)
     reader.SetDataSpacing(spacing)
-    # `padded` voxels on every side repeat the border, so that the volume reaches its outer faces.
+    # `padded` voxels on every side repeat the border, so that the volume extends to its outer faces.
     padded = int(fields.get("padded", 0))
     reader.SetDataOrigin([(0.5 - padded) * s for s in spacing])
     if fields.get("endian", "little") == "little":

@@ -4,7 +4,8 @@
 namespace shvr::report {
 
 inline constexpr int GLYPH_COLUMNS = 5, GLYPH_ROWS = 7;
-/// Whether the pixel is ink; row 0 is the top, row GLYPH_ROWS the one below the base line. What is not ASCII has none.
+/// Whether the pixel is ink; row 0 is the top, row GLYPH_ROWS the one below the base line. Non-ASCII characters are
+/// blank.
 bool glyph_has(char letter, int column, int row);
 
 }  // namespace shvr::report

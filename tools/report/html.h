@@ -1,5 +1,5 @@
 #pragma once
-// What pages that stand alone are made of: texts that cannot become markup, and pictures inside the page. Any thread.
+// Building blocks of self-contained pages: texts that cannot become markup, and pictures inside the page. Any thread.
 
 #include <cstddef>
 #include <filesystem>
@@ -17,10 +17,10 @@ std::string escaped(std::string_view text);
 std::string base64(std::span<const std::byte> bytes);
 /// A picture as the value of `src`.
 std::string source_of(const Image8& image);
-/// A whole page: head with `title`, the style that all pages have, light or dark as the reader's system is, and `style`
+/// A whole page: head with `title`, the style common to all pages, light or dark like the reader's system, and `style`
 /// after it, then `body`, which is markup. Colours are variables: --ink, --faint, --line, --field, --good, --bad.
 std::string page(std::string_view title, std::string_view style, std::string_view body);
-/// With those above it, where they are missing. Fails in a sentence.
+/// Creates the folder and missing parents. Fails with a sentence.
 void make_folder(const std::filesystem::path& path);
 /// Fails as write_file_atomically does.
 void write_text(const std::filesystem::path& path, std::string_view text);

@@ -23,7 +23,7 @@ constexpr std::array<Color, 7> COLORS{
     {{0, 114, 178}, {230, 159, 0}, {0, 158, 115}, {213, 94, 0}, {204, 121, 167}, {86, 180, 233}, {120, 110, 20}}};
 constexpr int MARKS = 4;  // disc, square, diamond, triangle
 
-/// What a plot is drawn with; y goes down.
+/// The drawing interface of a plot; y points down.
 class Canvas {
 public:
     virtual ~Canvas() = default;
@@ -71,7 +71,7 @@ private:
     }
 };
 
-/// Drawn SCALE times as large and averaged, for smooth edges.
+/// Draws at SCALE times the size and averages, for smooth edges.
 class PixelCanvas final : public Canvas {
 public:
     PixelCanvas(int width, int height)
@@ -107,7 +107,7 @@ public:
                 for (int row = 0; row <= GLYPH_ROWS; ++row) {
                     if (!glyph_has(text[i], column, row)) continue;
                     const double along = double(i) * (GLYPH_COLUMNS + 1) + column - wide, up = GLYPH_ROWS - row;
-                    // A texel of a letter is a pixel, or a little more.
+                    // A texel of a letter is a pixel, or slightly more.
                     constexpr double TEXEL = 1.25;
                     const double px = upright ? x - TEXEL * up : x + TEXEL * along;
                     const double py = upright ? y - TEXEL * along : y - TEXEL * up;
@@ -162,8 +162,8 @@ private:
     std::vector<uint8_t> pixels_;
 };
 
-/// A logarithmic axis from one tick to another, which lie a little inside it: no mark lies on the frame. Ticks are
-/// powers of 10, and below two decades their double and fivefold as well.
+/// A logarithmic axis from one tick to another, which are slightly inside it: no mark lies on the frame. Ticks are
+/// powers of 10, and below two decades also 2 and 5 times these.
 struct Axis {
     double lower = 0.0, upper = 1.0;  ///< exponents of 10
     double begin = 0.0, end = 1.0;    ///< pixels
@@ -174,7 +174,7 @@ struct Axis {
     }
 };
 
-/// The next of 1, 2 and 5 times a power of 10 that is smaller, by a thousandth at least.
+/// The next smaller number of the form 1, 2 or 5 times a power of 10, by at least a thousandth.
 double tick_at_most(double value)
 {
     const double power = std::pow(10.0, std::floor(std::log10(value * 0.999)));
@@ -282,7 +282,7 @@ void draw(Canvas& canvas, const Plot& plot)
     const auto color_of = [&](size_t i) { return plot.series[i].is_other ? INK : COLORS[i % COLORS.size()]; };
     for (size_t i = 0; i < plot.series.size(); ++i)
         if (plot.series[i].is_joined) draw_steps(canvas, plot.series[i], x, y, color_of(i));
-    // Marks that people look for are last: those with a name, of these the first series' on top.
+    // Important marks are drawn last: those with a label, with the first series' on top.
     for (const bool labelled : {false, true})
         for (size_t i = plot.series.size(); i-- > 0;)
             for (const PlotPoint& point : plot.series[i].points) {

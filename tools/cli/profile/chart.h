@@ -1,5 +1,5 @@
 #pragma once
-// Bars along an axis of milliseconds, as SVG inside a page, whose colours of text and lines it takes (html.cpp).
+// Bars along an axis of milliseconds, as SVG inside a page, which supplies the colours of text and lines (html.cpp).
 
 #include <cstdint>
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace shvr::cli {
 
-/// A colour for each pass, the same wherever it is. Up to seven passes have seven, which people with any colour vision
-/// tell apart (Okabe and Ito 2008); of more, those that ran one after the other differ.
+/// A colour per pass, the same everywhere. Up to seven passes have seven colours, distinguishable with any colour
+/// vision (Okabe and Ito 2008); with more, passes that ran one after the other differ.
 class PassColors {
 public:
     /// The names in the order in which passes first ran, each once.
@@ -25,7 +25,7 @@ std::string grouped_text(int64_t number);
 /// "3.4 MiB"
 std::string bytes_text(uint64_t bytes);
 
-/// For the page that a chart is in.
+/// The style for the page that contains a chart.
 inline constexpr const char* CHART_STYLE = R"(.chart{font:12px sans-serif;border:1px solid var(--line)}
 .chart text{fill:var(--ink)}.chart text.on{pointer-events:none}.chart line{stroke:var(--line)}
 .chart rect:hover{stroke:var(--ink);stroke-width:2}
@@ -35,16 +35,17 @@ class Chart {
 public:
     static constexpr double WIDTH = 1400.0, ROW = 22.0;
 
-    /// `left`: room for the names of rows.
+    /// `left`: space for the names of rows.
     Chart(double left, double end_ms);
-    /// Below all rows so far.
+    /// Starts a row below all previous ones.
     void begin_row(const std::string& name);
-    /// In the last row; further lanes are below it. What is said of it is a tooltip and, where it fits, on it.
+    /// Adds a bar to the last row; further lanes are below it. Its description is a tooltip and, if it fits, on the
+    /// bar.
     void bar(double begin_ms, double length_ms, const std::string& color, const std::string& tooltip,
              const std::string& on_it = {}, size_t lane = 0);
-    /// A line of values from 0 to the most, as steps: each holds from its time on.
+    /// A line of values from 0 to the maximum, as steps: each value holds from its time on.
     void line(const std::string& name, const std::vector<std::pair<double, double>>& values, const std::string& most);
-    /// With an axis of ticks that are `least_tick` apart at least.
+    /// With an axis of ticks that are at least `least_tick` apart.
     std::string svg(const std::string& unit = "ms", double least_tick = 0.0) const;
 
 private:

@@ -18,10 +18,10 @@ struct ProfileCommandOptions {
     Common common;
     std::string input, size, camera, trace, csv, graph, html, script;
     int frames = 20;
-    int replays = 1;  ///< of the script
+    int replays = 1;  ///< repetitions of the script
     int warmup = 3;   ///< the first frames compile kernels and wake up the device
     bool serialize = false;
-    std::string a, b;  ///< of diff
+    std::string a, b;  ///< files of diff
 };
 
 void print_text(const std::string& text)
@@ -31,7 +31,7 @@ void print_text(const std::string& text)
     if (!std::cout) fail("standard output: cannot be written");
 }
 
-/// Frames that lack something take less time than they should.
+/// Refuses frames that lack something, since they take less time than complete ones.
 void expect_complete(const Picture& picture, const Opened& opened, const ProfileCommandOptions& options)
 {
     if (picture.complete || *options.common.allows_incomplete) return;

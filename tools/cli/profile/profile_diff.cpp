@@ -28,7 +28,7 @@ const Json* find_pass(const Json& passes, const std::string& name)
     return nullptr;
 }
 
-/// How often; profiles of before this was told had many.
+/// How many times; older profiles that do not state it had many.
 size_t count_of(const Json& object, const char* key)
 {
     const auto count = object.find(key);
@@ -42,7 +42,7 @@ std::optional<Timing> timing_of_pass(const Json* pass, const std::string& prefix
     return pass ? timing_of(*pass, prefix, count_of(*pass, "count"), file) : std::nullopt;
 }
 
-/// Of all passes of both, in the order of A's and then B's own.
+/// Compares all passes of both, in the order of A's and then B's own.
 Json passes_compared(const Json& a, const std::string& a_name, const Json& b, const std::string& b_name,
                      const std::string& prefix)
 {

@@ -1,5 +1,5 @@
 #pragma once
-// What changed from one profile to the next: of frames, or of a session of work (`--script`). JSON in, JSON out.
+// Differences between two profiles: of frames, or of a session of work (`--script`). JSON in, JSON out.
 
 #include "tools/cli/profile/profile_report.h"
 
@@ -8,19 +8,19 @@ namespace shvr::cli {
 /// One run's measurement of something that takes time.
 struct Timing {
     double median = 0.0;
-    std::optional<double> noise;  ///< nothing where it was measured too few times (tools/report/noise.h)
+    std::optional<double> noise;  ///< null if it was measured too few times (tools/report/noise.h)
 };
 
-/// The keys PREFIXmin_ms, PREFIXmedian_ms and PREFIXp95_ms of `object`, measured so many times. Nothing if the run had
-/// no times. Fails, naming the file, where they are no numbers.
+/// The keys PREFIXmin_ms, PREFIXmedian_ms and PREFIXp95_ms of `object`, measured `count` times. Null if the run had no
+/// times. Fails, naming the file, if they are not numbers.
 std::optional<Timing> timing_of(const Json& object, const std::string& prefix, size_t count, const std::string& file);
 
 /// {name, a_ms, b_ms, delta_ms, ratio, noise_ms, verdict}: "faster" or "slower" beyond the noise, "same" within it,
-/// "unknown" where there is no noise to tell.
+/// "unknown" if the noise is not known.
 Json compared_times(const std::string& name, const std::optional<Timing>& a, const std::optional<Timing>& b);
 /// The counters that both have: {name, a, b, delta}.
 Json compared_counts(const Json& a, const Json& b);
-/// Of the section "bytes" of both: {name, a, b, delta}.
+/// The section "bytes" of both: {name, a, b, delta}.
 Json compared_memory(const Json& a, const Json& b);
 
 /// `object[key]`, which must be a number.
@@ -34,7 +34,7 @@ std::string session_difference_text(const Json& difference);
 /// Rows of tables: a comparison of times, of counts.
 std::vector<std::string> time_row(const Json& row);
 std::vector<std::string> count_row(const Json& row);
-/// Says what "unknown" is, if one of these rows is.
+/// Explains "unknown", if one of these rows has it.
 std::string note_on_unknown(const std::vector<const Json*>& lists);
 
 }  // namespace shvr::cli

@@ -141,7 +141,7 @@ std::vector<std::pair<double, double>> recorded_in(const Profile& profile, const
 std::vector<PlacedPass> placed_passes(const Profile& profile)
 {
     std::vector<PlacedPass> placed;
-    std::vector<double> free_from;  // of each lane: spans in one lane must not cross
+    std::vector<double> free_from;  // per lane: spans in one lane must not cross
     for (size_t index = 0; index < profile.frames.size(); ++index) {
         const ProfiledFrame& frame = profile.frames[index];
         const double busy_until = free_from.empty() ? 0.0 : *std::max_element(free_from.begin(), free_from.end());

@@ -1,4 +1,4 @@
-// The memory of a frame, resource by resource: how long each is needed, and what sharing it saves.
+// The memory of a frame, resource by resource: how long each is needed, and how much sharing saves.
 
 #include <algorithm>
 #include <numeric>
@@ -18,7 +18,7 @@ struct Need {
     bool overlaps(const Need& other) const { return first_step <= other.last_step && other.first_step <= last_step; }
 };
 
-/// In order of declaration, without what no living pass touches.
+/// In order of declaration, without resources that no kept pass uses.
 std::vector<Need> needs_of(const FrameGraph& graph, const CompiledGraph& compiled)
 {
     std::vector<std::optional<Need>> found(graph.resources().size());
@@ -26,7 +26,7 @@ std::vector<Need> needs_of(const FrameGraph& graph, const CompiledGraph& compile
         for (const Binding& binding : graph.passes()[compiled.steps[step].pass].bindings) {
             const FrameGraph::ResourceData& data = graph.resources()[binding.resource];
             std::optional<Need>& need = found[binding.resource];
-            // The host fills an upload before the first step, so its bytes are taken from there on.
+            // The host fills an upload before the first step, so its bytes are needed from there on.
             if (!need) need = Need{binding.resource, data.desc.bytes, data.contents.empty() ? step : 0, step};
             need->last_step = step;
         }
@@ -36,11 +36,11 @@ std::vector<Need> needs_of(const FrameGraph& graph, const CompiledGraph& compile
     return needs;
 }
 
-/// The most bytes that any one step needs: no way of sharing needs less.
+/// The maximum bytes that any one step needs: a lower bound for any sharing.
 uint64_t most_at_once(const std::vector<Need>& needs)
 {
     uint64_t most = 0;
-    for (const Need& at : needs) {  // the sum grows only where something begins
+    for (const Need& at : needs) {  // the sum only grows where a resource begins
         uint64_t sum = 0;
         for (const Need& need : needs)
             if (need.first_step <= at.first_step && at.first_step <= need.last_step) sum += need.bytes;
@@ -49,7 +49,7 @@ uint64_t most_at_once(const std::vector<Need>& needs)
     return most;
 }
 
-/// The bytes of one block that holds them all: the largest are placed first, each at the lowest free offset.
+/// The size of one block that holds them all: the largest are placed first, each at the lowest free offset.
 uint64_t packed_bytes(std::vector<Need> needs)
 {
     std::stable_sort(needs.begin(), needs.end(), [](const Need& a, const Need& b) { return a.bytes > b.bytes; });
@@ -77,7 +77,7 @@ Json frame_memory_of(const FrameGraph& graph)
     const CompiledGraph compiled = graph.compile();
     const auto pass_at = [&](size_t step) { return graph.passes()[compiled.steps[step].pass].name; };
     const std::vector<Need> needs = needs_of(graph, compiled);
-    std::vector<size_t> place_of(graph.resources().size());  // in the list
+    std::vector<size_t> place_of(graph.resources().size());  // index in the list
     for (size_t i = 0; i < needs.size(); ++i) place_of[needs[i].resource] = i;
     Json resources = Json::array();
     std::vector<Need> transients;

@@ -37,7 +37,7 @@ PassColors colors_of(const Json& summary)
     return PassColors(names);
 }
 
-/// Some frames, from `begin_ms` of the frames' clock on.
+/// Adds some frames, from `begin_ms` of the frames' clock on.
 void add_frames(Chart& chart, const Profile& profile, const PassColors& colors, size_t first, size_t end,
                 double begin_ms)
 {
@@ -83,7 +83,7 @@ std::string all_frames(const Profile& profile, const PassColors& colors)
     return chart.svg();
 }
 
-/// The frame in the middle, enlarged.
+/// The median frame, enlarged.
 std::string median_frame(const Profile& profile, const PassColors& colors)
 {
     std::vector<size_t> order(profile.frames.size());
@@ -132,7 +132,7 @@ std::string passes_table(const Json& summary, const PassColors& colors)
     return "<table>\n" + rows + "</table>\n";
 }
 
-/// What is done once: uploads, the leap grid, ambient occlusion.
+/// One-time work: uploads, the leap grid, ambient occlusion.
 std::string first_frame_table(const Json& summary)
 {
     std::string rows = "<tr><th>pass</th><th>ms</th></tr>\n";
@@ -151,7 +151,7 @@ std::string pairs_table(const Json& object)
     return "<table>\n" + rows + "</table>\n";
 }
 
-/// A bar for each resource, from its first step to its last.
+/// One bar per resource, from its first step to its last.
 std::string lifetimes_of(const Json& memory)
 {
     const double steps = memory["steps"];
@@ -178,7 +178,7 @@ std::string lifetimes_of(const Json& memory)
                escaped(list), ".</p>\n");
 }
 
-/// The numbers of a memory section, in words.
+/// The totals of a memory section, as text.
 Json totals_of(const Json& summary)
 {
     const Json &bytes = summary["bytes"], &memory = summary["memory"];

@@ -12,7 +12,7 @@
 namespace shvr::cli {
 
 struct ProfiledFrame {
-    double begin_ms = 0.0, end_ms = 0.0;  ///< of the call that rendered it, on the host's clock, from the first frame
+    double begin_ms = 0.0, end_ms = 0.0;  ///< the call that rendered it, on the host's clock, from the first frame
     double wall_ms = 0.0;                 ///< from submission to completion
     uint64_t device_bytes = 0;
     std::vector<gpu::PassReport> passes;
@@ -23,15 +23,15 @@ struct Profile {
     glm::uvec2 size{0};
     int warmup = 0;
     bool serialize = false;
-    std::chrono::steady_clock::time_point measured_from{};  ///< where the frames' clock begins
+    std::chrono::steady_clock::time_point measured_from{};  ///< start of the frames' clock
     std::vector<gpu::PassReport> first_frame;               ///< the frame that also prepares: uploads, leap grid
     std::vector<ProfiledFrame> frames;                      ///< after the warm-up
     std::vector<gpu::PassReport> counted;                   ///< one more frame, with work counters
     Json bytes;
     uint64_t device_budget = 0, host_budget = 0;  ///< bytes
-    FrameGraph graph;                             ///< of the last frame
+    FrameGraph graph;                             ///< the last frame's
     bool complete = true;                         ///< the pictures lack nothing
-    int64_t voxels_not_read = 0;                  ///< which count as the lowest of the volume's type
+    int64_t voxels_not_read = 0;                  ///< they count as the lowest value of the volume's type
     std::vector<std::string> warnings;
 };
 
@@ -39,11 +39,11 @@ struct Profile {
 struct Spread {
     double minimum = 0.0, median = 0.0, p95 = 0.0, maximum = 0.0;
 };
-/// Nothing if there are no values.
+/// Null if there are no values.
 std::optional<Spread> spread_of(std::vector<double> values);
 
-/// The resources of a frame with their lifetimes, and what transients would need if they shared memory. README.md lists
-/// the keys.
+/// The resources of a frame with their lifetimes, and the memory that transients would need if they shared it.
+/// README.md lists the keys.
 Json frame_memory_of(const FrameGraph& graph);
 
 /// README.md lists the keys.
@@ -58,23 +58,23 @@ std::string csv_of(const Profile& profile);
 /// A self-contained page: frames and passes over time, memory over time, passes, work, resources.
 std::string page_of(const Profile& profile);
 
-/// .dot, .svg (by the program `dot`) or .json, by the extension of `path`.
+/// Writes .dot, .svg (through the program `dot`) or .json, by the extension of `path`.
 void write_graph(const std::filesystem::path& path, const FrameGraph& graph);
 
 void write_text(const std::filesystem::path& path, const std::string& text);
 
-/// A timed pass where it is drawn. The clocks of host and device are independent, so passes end with their frame; those
-/// that overlap have lanes of their own.
+/// A timed pass at its position in a drawing. The clocks of host and device are independent, so passes end with their
+/// frame; overlapping ones have lanes of their own.
 struct PlacedPass {
     size_t frame = 0, pass = 0;  ///< indices
-    double begin_ms = 0.0;       ///< of the frames' clock
+    double begin_ms = 0.0;       ///< on the frames' clock
     size_t lane = 0;
-    bool is_first = false;  ///< of its frame
+    bool is_first = false;  ///< the frame's first pass
 };
-/// In the order in which they ran.
+/// In order of execution.
 std::vector<PlacedPass> placed_passes(const Profile& profile);
 
-/// When the host recorded the passes of a frame, and for how long: milliseconds of the frames' clock, one after the
+/// When the host recorded the passes of a frame, and for how long: milliseconds on the frames' clock, one after the
 /// other, within the frame.
 std::vector<std::pair<double, double>> recorded_in(const Profile& profile, const ProfiledFrame& frame);
 

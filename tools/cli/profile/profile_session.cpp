@@ -11,7 +11,7 @@ namespace shvr::cli {
 
 namespace {
 
-/// What is counted; an action's share is the difference of two.
+/// Counters; an action's share is the difference of two.
 struct SessionCounts {
     uint64_t submits = 0, allocations = 0, uploads = 0, evictions = 0;
     int64_t painted = 0;
@@ -33,8 +33,8 @@ bool shows_at_least_a_sketch(ui::Workbench& bench)
     return true;
 }
 
-/// Turns until nothing is left to do, and notes when what was reached. `poll` may throw. What fails ends it, since the
-/// workbench would try it again for ever.
+/// Runs frames until nothing is left to do, and records when each stage was reached. `poll` may throw. A failure ends
+/// it, since the workbench would retry forever.
 void settle(ui::Workbench& bench, ProfiledAction& action, const std::function<double()>& now_ms,
             const std::function<void()>& poll)
 {
@@ -74,17 +74,17 @@ public:
             fail(input.string(), ": is open for writing in ", bench.document().holder,
                  "; expected it to be closed there first");
     }
-    /// Until the picture is there, which is not the first action's.
+    /// Runs until the picture is complete, which does not count for the first action.
     void set_up(const std::function<void()>& poll)
     {
         bench.set_pixels(bench.document().session.render.size);
-        bench.set_hand_down(true);  // the script says where a step of settings ends
+        bench.set_hand_down(true);  // the script states where a step of settings ends
         ProfiledAction opening;
         bench.advance();
         settle(
             bench, opening, [] { return 0.0; }, poll);
     }
-    /// Puts what was done into the journal, and fails where a stroke was not painted or the device was misused.
+    /// Writes the actions to the journal, and fails if a stroke was not painted or the device was misused.
     void finish(const std::string& script)
     {
         const std::string unpainted = bench.finish_stroke();
@@ -121,8 +121,8 @@ ProfiledAction profiled(Stage& stage, int line, const ui::Action& action, const 
     return one;
 }
 
-/// `tell` is given the share of this replay that is done; it and `poll` may throw. `of_copy`: the work is a copy,
-/// without what was done before.
+/// `tell` receives the completed fraction of this replay; it and `poll` may throw. `of_copy`: the work is a copy,
+/// without its earlier history.
 Replayed replay(Stage& stage, const std::string& script, const Lines& lines, bool of_copy,
                 const std::function<void(double)>& tell, const std::function<void()>& poll)
 {
@@ -152,7 +152,7 @@ Replayed replay(Stage& stage, const std::string& script, const Lines& lines, boo
     return done;
 }
 
-/// Files of the work as it is now, one set for each of so many replays.
+/// Copies of the work's files in their present state, one set per replay.
 std::vector<std::filesystem::path> copies_of(const std::string& input, const Common& common,
                                              const std::filesystem::path& folder, int count)
 {
@@ -184,7 +184,7 @@ SessionProfile profile_session(const std::string& input, const std::string& scri
         profile.replays.push_back(replay(stage, script, lines, of_copy, tell, [&] { work.stop_if_asked(); }));
     };
     static_cast<void>(work.begin("opening " + input));
-    // Copies first: a script that fails has then done nothing to the work itself.
+    // Copies first: a script that fails has then not changed the work itself.
     const TemporaryFolder folder("shvr-replays");
     if (replays > 1)
         for (const std::filesystem::path& copy : copies_of(input, common, folder.path, replays - 1)) {

@@ -1,23 +1,24 @@
 #pragma once
-// `shvr profile --script`: a session of work, action by action, on the workbench that the window uses; several times,
-// where the noise is to be known.
+// `shvr profile --script`: a session of work, action by action, on the workbench that the window uses; repeated if the
+// noise is to be measured.
 
 #include "tools/cli/profile/profile_report.h"
 
 namespace shvr::cli {
 
 struct ProfiledAction {
-    int line = 0;                         ///< of the script
+    int line = 0;                         ///< line in the script
     std::string action;                   ///< its key "op"
     double begin_ms = 0.0, end_ms = 0.0;  ///< on the host's clock, from the first action
-    // From the beginning of the action; null where that did not happen before the next action.
-    std::optional<double> paint_ms;       ///< until the voxels that it changed are painted; null: as many are as before
+    // From the beginning of the action; null if the event did not happen before the next action.
+    std::optional<double> paint_ms;       ///< until the voxels that it changed are painted; null: their number is
+                                          ///< unchanged
     std::optional<double> sketch_ms;      ///< until every pane shows at least a sketch of it
     std::optional<double> sharp_ms;       ///< until every pane shows it sharp
-    uint64_t submits = 0;                 ///< of the picture
-    uint64_t allocations = 0;             ///< of device memory
-    uint64_t uploads = 0, evictions = 0;  ///< of bricks, where they are paged
-    int64_t voxels_painted = 0;           ///< more in groups than before; below 0: less
+    uint64_t submits = 0;                 ///< submissions of the picture
+    uint64_t allocations = 0;             ///< allocations of device memory
+    uint64_t uploads = 0, evictions = 0;  ///< paged bricks only
+    int64_t voxels_painted = 0;           ///< increase of the voxels in groups; below 0: decrease
     uint64_t device_bytes = 0;
 };
 using Replayed = std::vector<ProfiledAction>;  ///< the whole script, done once
@@ -30,15 +31,15 @@ struct SessionProfile {
     uint64_t device_budget = 0, host_budget = 0;
 };
 
-/// Of the whole script, in the section "whole", as people read them.
+/// Labels of the times of the whole script, in the section "whole".
 inline constexpr std::pair<const char*, const char*> WHOLE_SCRIPT[] = {{"paint_ms", "to paint, all actions"},
                                                                        {"sketch_ms", "to sketch, all actions"},
                                                                        {"sharp_ms", "to sharp, all actions"},
                                                                        {"session_ms", "from begin to end"}};
 
-/// Does what the script says, as `shvr annotate --actions` does: what it paints is kept in the journal. Of `replays`
-/// all but the last are done on copies of the work, so that each begins with the same. Every one has a device of its
-/// own.
+/// Executes the script, as `shvr annotate --actions` does: its painting is
+/// kept in the journal. All `replays` but the last run on copies of the work,
+/// so that each begins with the same state. Each has a device of its own.
 SessionProfile profile_session(const std::string& input, const std::string& script, int replays, const Common& common);
 
 /// README.md lists the keys.

@@ -1,4 +1,4 @@
-// What changed from one profile of a session of work to the next, action by action and in all.
+// Differences between two profiles of a session of work, action by action and in total.
 
 #include "tools/cli/profile/profile_diff.h"
 
@@ -18,7 +18,7 @@ const Json& member(const Json& object, const char* key, const std::string& file)
     return *found;
 }
 
-/// Of {min, median, p95}, measured in so many replays; nothing where it is null.
+/// The timing from {min, median, p95}, measured in `replays` replays; null if it is null.
 std::optional<Timing> timing_in(const Json& spreads, const char* key, size_t replays, const std::string& file)
 {
     const Json& spread = member(spreads, key, file);
@@ -29,7 +29,7 @@ std::optional<Timing> timing_in(const Json& spreads, const char* key, size_t rep
     return timing_of(times, "", replays, file);
 }
 
-/// Where only one of them has the time, as of paint that the other does not have, that is what changed.
+/// If only one of them has the time, such as that of paint that the other lacks, that is the change.
 Json compared(const char* words, const std::optional<Timing>& a, const std::optional<Timing>& b)
 {
     Json row = compared_times(words, a, b);

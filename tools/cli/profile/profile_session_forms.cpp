@@ -60,7 +60,7 @@ constexpr std::pair<const char*, std::optional<double> ProfiledAction::*> TIMES_
     {"sketch_ms", &ProfiledAction::sketch_ms},
     {"sharp_ms", &ProfiledAction::sharp_ms}};
 
-/// Of an action over all replays: its times, where it has them in each.
+/// An action over all replays: the times that every replay has.
 Json over_replays(const SessionProfile& profile, size_t index)
 {
     Json spreads = Json::object();
@@ -73,7 +73,7 @@ Json over_replays(const SessionProfile& profile, size_t index)
     return spreads;
 }
 
-/// Of the whole script over all replays: times of its actions together, and how long it took.
+/// The whole script over all replays: total times of its actions, and its duration.
 Json whole_of(const SessionProfile& profile)
 {
     Json whole = Json::object();
@@ -96,7 +96,7 @@ Json whole_of(const SessionProfile& profile)
 
 Json summary_of(const SessionProfile& profile)
 {
-    // Counts and places in time are those of the last replay, the input's own; times are medians over all.
+    // Counts and positions in time are those of the last replay, the input's own; times are medians over all.
     const Replayed& own = profile.replays.back();
     Json actions = Json::array();
     for (size_t i = 0; i < own.size(); ++i) {

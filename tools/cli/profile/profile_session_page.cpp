@@ -59,7 +59,7 @@ std::string whole_table(const Json& summary)
     return "<table>\n" + rows + "</table>\n";
 }
 
-/// Of the replay that the work itself saw.
+/// The chart of the replay on the work itself.
 std::string chart_of(const Replayed& replayed)
 {
     Chart chart(190.0, replayed.back().end_ms);

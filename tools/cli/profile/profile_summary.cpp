@@ -9,7 +9,7 @@ namespace shvr::cli {
 
 namespace {
 
-/// All reports of the pass of one name, over the frames. A frame that did not run it has none.
+/// All reports of the passes with one name, over the frames. A frame that did not run it has none.
 struct PassHistory {
     std::vector<double> times, records;
     size_t count = 0;
@@ -70,7 +70,7 @@ std::vector<double> sums_of(const std::vector<ProfiledFrame>& frames)
     return sums;
 }
 
-/// By kernel pass; null where the device does not tell.
+/// By kernel pass; null if the device does not report it.
 Json invocations_of(const std::vector<gpu::PassReport>& passes)
 {
     Json invocations = Json::object();

@@ -1,5 +1,5 @@
 #pragma once
-// A folder that goes with its owner.
+// A folder that is deleted with its owner.
 
 #include <unistd.h>
 
@@ -15,7 +15,7 @@ namespace shvr::cli {
 struct TemporaryFolder {
     std::filesystem::path path;
 
-    /// Among the system's temporary files, with a name that begins so. Fails where it cannot be made.
+    /// Creates a folder among the system's temporary files, with that prefix. Fails if it cannot be created.
     explicit TemporaryFolder(const std::string& begins_with)
     {
         std::string name = (std::filesystem::temp_directory_path() / (begins_with + "-XXXXXX")).string();
