@@ -44,7 +44,7 @@ enum ForceFlag : uint32_t {
 /// if the hand hardly moves, or has been off for less than CLICK_PAUSE_NS: a hand that trembles on a surface feels no
 /// buzz.
 struct ClickMemory {
-    glm::dvec3 peak_n{0.0};  ///< of the pulse in progress
+    glm::dvec3 peak_n{0.0};  ///< peak of the pulse in progress
     uint64_t left_ns = 0;    ///< remaining time of the pulse; 0: there is none
     uint64_t off_ns = 0;     ///< how long nothing has been touched
 };

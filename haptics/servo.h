@@ -57,7 +57,7 @@ struct ServoState {
     ForceStep step;
     DeviceCaps caps;
     TimeHistogram lateness;          ///< how late ticks started
-    TimeHistogram duration;          ///< of the work in each tick
+    TimeHistogram duration;          ///< work time of each tick
     TimeHistogram relevance_age;     ///< age of the patch used, on ticks with assistance
     uint64_t relevance_time_ns = 0;  ///< time of that patch; 0: none yet
 };

@@ -14,7 +14,7 @@ struct Surface {
     vec3 along;       ///< from the first ball to the second
     float radius_to;  ///< neither ball contains the other
     vec3 from_rest;
-    uint number;  ///< of two surfaces at the same length, the lower number is visible
+    uint number;  ///< tie-breaker: of two surfaces at the same length, the lower number is visible
     vec3 color;   ///< linear light
     uint unused;
 };

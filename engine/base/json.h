@@ -78,7 +78,7 @@ public:
     void allow(std::initializer_list<std::string_view> known) const { allow(std::span(known.begin(), known.size())); }
     JsonNode operator[](std::string_view name) const;  ///< missing if this is not an object or lacks the key
     JsonNode required(std::string_view name, const std::string& expected) const;
-    std::vector<std::string> names() const;  ///< of an object's members; fails for anything else
+    std::vector<std::string> names() const;  ///< keys of an object's members; fails for anything else
     /// The elements of an array, at least `least` and at most `most` of them; fails for anything else.
     std::vector<JsonNode> elements(size_t least = 0, size_t most = SIZE_MAX) const;
 

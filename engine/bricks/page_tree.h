@@ -35,7 +35,7 @@ struct PageTree {
     static constexpr uint32_t NO_LEAF = 0xffffffffu;
 
     std::vector<Leaf> leaves;  ///< nearest first
-    int finest_level = 0;      ///< of all leaves; determines the sample distance
+    int finest_level = 0;      ///< the finest of all leaves; determines the sample distance
     int cell_shift = 5;        ///< log2 of the side of a cell of the directory's grid, in voxels
     glm::uvec3 counts{1};      ///< cells of the grid
     int depth = 0;             ///< levels of nodes below the grid

@@ -41,7 +41,7 @@ public:
         int64_t foreground_voxels = 0;  ///< total of all components
         int64_t kept_voxels = 0;
         int64_t largest_voxels = 0;      ///< 0 if there is none
-        std::vector<Component> largest;  ///< of the kept ones, sorted by size, then by order; at most
+        std::vector<Component> largest;  ///< the largest kept ones, sorted by size, then by order; at most
                                          ///< MAX_LARGEST_LISTED
         int64_t provisional = 0;         ///< number of provisional labels
         int64_t peak_bytes = 0;          ///< peak memory while labelling

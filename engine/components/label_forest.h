@@ -20,7 +20,7 @@ public:
     /// The maximum number of labels.
     static constexpr uint64_t MOST = uint64_t{1} << 32;
 
-    /// Adds a new set. The caller ensures that there are no more than MOST.
+    /// Adds a new set. The caller must not exceed MOST labels.
     uint32_t add()
     {
         if (next_ % BLOCK == 0) add_block();

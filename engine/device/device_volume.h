@@ -51,7 +51,7 @@ public:
     struct Place {
         BrickKey key;
         uint32_t slot = 0;         ///< packed
-        BrickTexels::Range range;  ///< of its codes
+        BrickTexels::Range range;  ///< range of its codes
     };
 
     virtual ~DeviceVolume() = default;

@@ -32,7 +32,7 @@ public:
     /// The settings that the values depend on.
     struct Look {
         TransferFunction function;
-        Visibility visibility;             ///< of the same transfer function
+        Visibility visibility;             ///< visibility of the same transfer function
         std::array<double, 256> groups{};  ///< opacities per reference length; 0: hidden
         CutBox cut;                        ///< geometry that is cut away does not block light
         double radius = 16.0;              ///< reference lengths

@@ -89,7 +89,7 @@ PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shar
     pin_coarse_levels();
 }
 
-/// Loads the coarsest level now, or starts to, so that there is something to show at once, and requests the next ones.
+/// Loads the coarsest level now, or starts to, so that a first picture can be shown soon, and requests the next ones.
 void PagedVolume::pin_coarse_levels()
 {
     check_coarsest(info(), levels_, options_.codes, slots_.count());

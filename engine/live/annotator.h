@@ -137,7 +137,7 @@ private:
         bool has_ended = false;
         bool is_recorded = false;  ///< the last command of the history is this stroke's
         StrokeTally tally{brush};
-        StrokeResult result = tally.result();  ///< of the painted part
+        StrokeResult result = tally.result();  ///< the painted part so far
         int failed_tries = 0;                  ///< in a row
     };
     /// The records made from an answer.

@@ -34,7 +34,7 @@ struct RelevanceChoice {
     std::shared_ptr<const Mask> mask{};             ///< with `groups`
     std::optional<std::bitset<256>> groups{};       ///< limits touch to these painted groups
     double threshold = 0.0;                         ///< intensity
-    double radius = 1.0;                            ///< of the ball; physical units
+    double radius = 1.0;                            ///< radius of the ball, physical units
     uint32_t settings = 0;                          ///< counts changes of threshold and groups
     uint64_t voxels = 0;                            ///< counts changes of offsets and mask
     bool has_device = true;                         ///< a caller polls wanted() and offers answers

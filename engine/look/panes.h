@@ -77,9 +77,9 @@ struct Pane {
     enum class Kind { main, left_eye, right_eye, map, slice };
     Kind kind = Kind::main;
     Shot shot;
-    PixelBox box;      ///< in the whole picture
+    PixelBox box;      ///< in a slice: the axis perpendicular to it; otherwise -1
     std::string name;  ///< "top", "slice across z", ...
-    int axis = -1;     ///< of a slice: the axis perpendicular to it
+    int axis = -1;     ///< slices: the axis perpendicular to it
     glm::uvec2 pixels() const { return box.end - box.begin; }
 };
 

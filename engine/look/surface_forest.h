@@ -53,7 +53,7 @@ private:
     size_t max_in_leaf_ = gpu::SURFACES_IN_LEAF;
     std::vector<gpu::SurfaceNode> nodes_;
     std::vector<gpu::Surface> list_;
-    size_t base_nodes_ = 0, base_list_ = 0;  ///< of the large hierarchy, which comes first
+    size_t base_nodes_ = 0, base_list_ = 0;  ///< sizes of the large hierarchy, which comes first
     std::vector<uint64_t> keys_;             ///< keys of its surfaces, in the order of `list_`
     std::vector<uint32_t> leaves_;           ///< their leaf nodes
     /// Keys of the large hierarchy, sorted, with their index in `list_`; GONE: removed.

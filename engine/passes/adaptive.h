@@ -21,7 +21,7 @@ struct AdaptiveInput {
     glm::uvec2 pixel_begin{0}, pixel_end{0};  ///< the part of the picture
     glm::uvec2 target{0};                     ///< texel of the part's first pixel
     double tolerance = 0.0;
-    PixelGroups pixel_groups;  ///< of the passes that draw the blocks
+    PixelGroups pixel_groups;  ///< workgroup layout of the passes that draw the blocks
 };
 
 /// The coarse picture's pixels that a part needs: the first one, and their number along each axis.

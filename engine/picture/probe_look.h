@@ -21,7 +21,7 @@ struct ShellLook {
 /// The drawn parts of the probe: a ball that ends rays, and a shell.
 struct ProbeLook {
     glm::dvec3 center{0.0};     ///< volume space
-    double radius = 1.0;        ///< of the probe's region, physical units
+    double radius = 1.0;        ///< radius of the probe's region, physical units
     glm::dvec3 color{1.0};      ///< linear light
     double ball_share = 1.0;    ///< radius of the ball as a share of `radius`; 0: no ball
     double ball_opacity = 1.0;  ///< opacity of the ball's surface

@@ -101,7 +101,7 @@ public:
     /// drawn as in the picture. Waits for the device.
     struct Seen {
         glm::dvec3 point{0.0};  ///< volume space
-        double opacity = 0.0;   ///< of the whole ray
+        double opacity = 0.0;   ///< total of the ray
     };
     std::optional<Seen> pick(const Look& look, const Camera& camera, const glm::uvec2& pixels, const glm::uvec2& pixel,
                              const std::optional<ProbeLook>& probe = {});

@@ -326,13 +326,13 @@ private:
     }
 
     ImportBox box_;
-    Size3 size_;  ///< of the box
+    Size3 size_;  ///< size of the box
     int64_t factor_;
     size_t pitch_;
     std::array<std::vector<Number<T>>, 3> weights_;
     std::vector<Number<T>> ones_;
 
-    int64_t lower_row_ = 0, upper_row_ = 0;  ///< of the box; those that the planes hold
+    int64_t lower_row_ = 0, upper_row_ = 0;  ///< rows of the box that the planes hold
     int64_t first_plane_ = 0;
     std::deque<Plane<T>> planes_;
     std::vector<Plane<T>> spare_;

@@ -20,9 +20,9 @@ std::optional<std::vector<Size3>> sparse_chunks(const VolumeSource& source);
 
 struct SparseLevelFiles {
     int levels = 1;
-    int64_t chunks = 0;  ///< of all levels
+    int64_t chunks = 0;  ///< number in all levels
     int64_t stored = 0;  ///< that have a file
-    int64_t bytes = 0;   ///< of these files
+    int64_t bytes = 0;   ///< total size of these files
 };
 /// Writes chunks and metadata of all levels into a folder; a voxel of a coarser level is the most frequent label of
 /// those below it. `info`: as stated in the files; `progress` reports the completed fraction of `chunks`.

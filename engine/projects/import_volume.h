@@ -30,7 +30,7 @@ public:
 };
 
 struct ImportProgress {
-    double fraction = 0.0;           ///< of the voxels, including those of earlier runs
+    double fraction = 0.0;           ///< fraction of the voxels, including those of earlier runs
     double voxels_per_second = 0.0;  ///< of this run, of level 0; 0 before anything is written
     double seconds_left = 0.0;
 };

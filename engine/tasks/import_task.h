@@ -30,7 +30,7 @@ void fields(Fields& f, ImportTask& task);
 struct ImportResult {
     ImportReport report;
     double seconds = 0.0;
-    double megabytes_per_second = 0.0;  ///< of the project's voxels
+    double megabytes_per_second = 0.0;  ///< in the project's voxels
 };
 
 /// Refuses options that contradict each other; reads nothing.

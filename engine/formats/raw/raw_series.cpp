@@ -80,7 +80,7 @@ std::vector<fs::path> slices_in(const fs::path& folder, const RawLayout& layout,
 }
 
 /// One file per slice, counting on from the last number in the name of the first file, which holds `bytes`; none if
-/// that name has no number.
+/// that name contains no digits.
 std::vector<fs::path> slices_from(const fs::path& first, int64_t count, int64_t bytes)
 {
     const std::string name = first.filename().string();

@@ -35,7 +35,7 @@ public:
     /// True if the chunk is not stored. False if that cannot be determined.
     bool is_missing(std::span<const int64_t> chunk) const;
     /// Calls `take` with the indices of every stored chunk that matches `at` (null: any), in no particular order. Stops
-    /// and returns false as soon as there are more than `most`, or so many other names that listing would take much
+    /// and returns false as soon as there are more than `most`, or enough other names that listing would take much
     /// longer than for `most` chunks. Reads names and the indices of shards, and never probes for missing chunks. Fails
     /// if those cannot be read.
     bool list(std::span<const std::optional<int64_t>> at, int64_t most,

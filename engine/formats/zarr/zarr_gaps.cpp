@@ -66,7 +66,7 @@ bool any_in(Codes codes, const Size3& corner, int bits, const VoxelBox& box)
 /// What is known of a level. The mutex must be held for any access.
 struct ZarrGaps::Level {
     std::mutex mutex{};
-    std::optional<std::vector<uint64_t>> codes{};     ///< of all stored chunks, ascending
+    std::optional<std::vector<uint64_t>> codes{};     ///< codes of all stored chunks, ascending
     int64_t more_than = 0;                            ///< a lower bound of the stored chunks, if there were too many to
                                                       ///< list
     bool is_unlistable = false;                       ///< a name or the index of a shard cannot be read

@@ -15,7 +15,7 @@
 namespace shvr {
 namespace {
 
-constexpr uint64_t HEADER_BYTES = 30;  ///< of a local header, without name and extra fields
+constexpr uint64_t HEADER_BYTES = 30;  ///< size of a local header, without name and extra fields
 constexpr uint32_t HEADER_MARK = 0x04034b50;
 /// The maximum that a byte of deflate can decode to (zlib's technical notes).
 constexpr uint64_t MAX_OUT_OF_A_BYTE = 1032;

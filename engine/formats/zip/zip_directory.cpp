@@ -9,7 +9,7 @@
 namespace shvr {
 namespace {
 
-constexpr uint64_t END_BYTES = 22;      ///< of the end record, without its comment
+constexpr uint64_t END_BYTES = 22;      ///< size of the end record, without its comment
 constexpr uint64_t LOCATOR_BYTES = 20;  ///< of zip64's locator, right before the end record
 constexpr uint64_t END64_BYTES = 56;    ///< of zip64's end record, without extensions
 constexpr uint64_t ENTRY_BYTES = 46;    ///< without name, extra fields and comment

@@ -20,7 +20,7 @@ struct ZipEntry {
     uint64_t header = 0;      ///< offset of its local header in the archive
     uint64_t stored_bytes = 0;
     uint64_t bytes = 0;  ///< decoded
-    uint32_t crc = 0;    ///< of the decoded bytes
+    uint32_t crc = 0;    ///< CRC-32 of the decoded bytes
     uint16_t method = 0;
     uint16_t flags = 0;
 };
