@@ -29,7 +29,7 @@ SHARED_CONST uint SHELL_BALL = 1u;
 SHARED_CONST uint SHELL_BOX = 2u;
 
 /// The specialization constant PICK: the target's first row is the answer; between blocks the other rows hold the state
-/// of the runs so far. A rise of less than LEAST_SEEN does not count as visible.
+/// of the runs so far. A rise below the second constant does not count as visible.
 SHARED_CONST uint PICK_ROWS = 3u;
 SHARED_CONST float LEAST_SEEN = 0.015625f;
 

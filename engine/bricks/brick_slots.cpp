@@ -59,7 +59,7 @@ std::optional<uint32_t> BrickSlots::next_evictable(BrickNeed below)
     if (std::exchange(evictable_is_stale_, false)) list_evictable(BrickNeed::picture);
     if (evictable_.empty() && below > BrickNeed::picture) {
         list_evictable(below);
-        evictable_is_stale_ = true;  // then it contains bricks that the picture needs
+        evictable_is_stale_ = true;  // as it now contains bricks that the picture needs
     }
     if (evictable_.empty()) return std::nullopt;
     const uint32_t slot = evictable_.back().slot;

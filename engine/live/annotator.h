@@ -92,7 +92,7 @@ public:
     void drop_queries();
     /// Shows changes for which memory was too short, paints a finished answer of the first stroke and submits the next
     /// query. Returns the voxels that may look different. If the driver is out of memory it throws MemoryError and
-    /// retries when called again, up to MOST_TRIES times in a row; if a stroke cannot continue (retries exhausted, a
+    /// retries when called again, up to the limit above; if a stroke cannot continue (retries exhausted, a
     /// brush that is too large, bricks or the journal fail), it throws another error, drops the rest of the stroke, and
     /// says so.
     std::optional<VoxelBox> advance();

@@ -27,7 +27,7 @@ constexpr int READ_TIMEOUT_MS = 10;  ///< so that shutdown never has to interrup
 constexpr milliseconds REOPEN_EVERY{15};
 constexpr milliseconds LOOK_EVERY{5};             ///< checks whether the link is to end
 constexpr int MAX_REPORTS_A_DRAIN = 256;          ///< a device that floods us must not delay the newest report
-constexpr uint64_t LONGEST_STEP_NS = 20'000'000;  ///< of rate control: no jump after a pause
+constexpr uint64_t LONGEST_STEP_NS = 20'000'000;  ///< of rate control: after a pause it does not leap
 // A hand without motors yields to a force like the mouse's: 75 N/m, settled within some 10 ms.
 constexpr double GIVE_WAY = 75.0;
 constexpr double SETTLE_S = 0.01;

@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 constexpr int64_t MAX_BENCH_BYTES = int64_t{64} << 20;
 constexpr int SCHEMA = 1;
 constexpr double ERROR_MARGIN = 1.01;
-constexpr double LEAST_ERROR = 1e-7;  // resolution of a float
+constexpr double LEAST_ERROR = 1e-7;  // of a float
 
 Json json_of(const Measured& run)
 {

@@ -10,7 +10,7 @@ namespace shvr::report {
 constexpr size_t FEWEST_TIMES = 3;
 
 /// The noise of the median of `count` times: half the distance from their minimum to their 95th percentile, and more if
-/// they are few, since few values spread less than many. Null if there are fewer than FEWEST_TIMES.
+/// they are few, since few values spread less than many. Null if there are too few.
 std::optional<double> noise_of(double minimum, double p95, size_t count);
 
 /// The root of the sum of both squares. In a thousand pairs of equal work with ordinary noise, the medians of about one
