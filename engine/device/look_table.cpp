@@ -47,7 +47,7 @@ void append_depths_of_steps(std::vector<glm::vec4>& texels, std::span<const floa
         }
 }
 
-/// The smallest number of parts that divide each of `parts` equally and give at least the minimum number of entries.
+/// The smallest multiple of `parts` that is at least MIN_TABLE_ENTRIES - 1: a table has one entry more than parts.
 uint32_t parts_of_at_least(uint32_t parts)
 {
     return parts * ((MIN_TABLE_ENTRIES - 2) / parts + 1);
