@@ -36,6 +36,21 @@ std::unique_ptr<VolumeSource> open_as_told(const ImportTask& task)
     return open_raw(volume, layout);
 }
 
+/// A project that is replaced is removed with all annotations in it, so it cannot be what is imported, nor hold it, by
+/// whatever path.
+void refuse_own_source(const ImportTask& task)
+{
+    std::error_code error;
+    std::filesystem::path path = std::filesystem::canonical(task.volume, error);
+    for (; !error; path = path.parent_path()) {
+        if (std::filesystem::equivalent(path, task.project, error))
+            fail(task.project.string(), ": holds the volume to import, ", task.volume.string(),
+                 "; expected another name for the new project, since --overwrite removes this one with its annotation");
+        if (path == path.parent_path()) return;
+        error.clear();  // no project is there yet
+    }
+}
+
 /// Two stages if voxels are reversed, as their range is found first; otherwise one.
 class ImportListener {
 public:
@@ -142,6 +157,7 @@ ImportResult run(const ImportTask& task, ProgressReporter& reporter)
     // Replacing a project also deletes its annotation, so no process may be writing it.
     const std::filesystem::path session = task.project / "shvr" / "session.json";
     const std::shared_ptr<Hold> hold = task.overwrite ? Hold::take(journal_beside(session), task.program) : nullptr;
+    if (task.overwrite) refuse_own_source(task);
     const Clock::time_point begin = Clock::now();
     const std::unique_ptr<VolumeSource> source = open_as_told(task);
     ImportListener listener(task, source->info().type, reporter);

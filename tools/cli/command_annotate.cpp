@@ -149,6 +149,16 @@ std::shared_ptr<Hold> hold_of(const std::string& project)
     return session.empty() ? nullptr : Hold::take(journal_beside(session), "shvr annotate");
 }
 
+/// A script's work on a volume without a project would be kept nowhere.
+[[noreturn]] void refuse_bare_volume(const std::string& project)
+{
+    const std::filesystem::path volume = std::filesystem::path(project).lexically_normal();
+    std::filesystem::path suggested = volume.has_filename() ? volume : volume.parent_path();
+    suggested = suggested.extension().empty() ? suggested += "-project" : suggested.replace_extension();
+    fail(project, ": is a volume, and annotation is kept only in projects; expected one, as made by: shvr import ",
+         in_quotes(project), " ", in_quotes(suggested.string()));
+}
+
 void run_annotate(const AnnotateCommandOptions& options)
 {
     const std::shared_ptr<Hold> hold = hold_of(options.project);  // refused before any work
@@ -158,6 +168,7 @@ void run_annotate(const AnnotateCommandOptions& options)
     Opened opened = open(
         options.project, options.common, work,
         {.start = options.fresh ? Work::Start::fresh : Work::Start::as_left, .hold = hold, .program = "shvr annotate"});
+    if (opened.project.empty()) refuse_bare_volume(options.project);
     check_radii(script, name, opened.source->info());
     ui::Workbench bench(*opened.renderer, {.has_servo = false, .is_script = true});
     const std::filesystem::path session = opened.project;

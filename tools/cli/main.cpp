@@ -98,6 +98,7 @@ int report(const char* message, Exit status)
 
 int main(int argc, char** argv)
 {
+    shvr::cli::open_standard_streams();
     shvr::cli::end_in_words();
     try {
         return run(argc, argv);

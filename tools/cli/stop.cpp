@@ -1,5 +1,6 @@
 #include "tools/cli/stop.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -31,6 +32,14 @@ extern "C" void stop(int signal_number)
 }
 
 }  // namespace
+
+void open_standard_streams()
+{
+    int descriptor = 0;
+    do descriptor = ::open("/dev/null", O_RDWR);
+    while (descriptor >= 0 && descriptor <= STDERR_FILENO);
+    if (descriptor > STDERR_FILENO) ::close(descriptor);
+}
 
 void end_in_words()
 {

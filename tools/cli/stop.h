@@ -7,7 +7,11 @@
 
 namespace shvr::cli {
 
-/// Installs the signal handlers that end the program with a sentence. Call it first.
+/// Opens /dev/null on those of the descriptors 0 to 2 that are closed: a file opened later would otherwise be taken for
+/// standard input or output, and printed into. Call it before anything else opens a file.
+void open_standard_streams();
+
+/// Installs the signal handlers that end the program with a sentence. Call it before any command runs.
 void end_in_words();
 
 /// During its lifetime the command is asked to end instead, once; a second Ctrl-C ends the program at once.
