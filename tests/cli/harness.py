@@ -7,13 +7,14 @@ import random
 import re
 import struct
 import subprocess
+import sys
 import tempfile
 import unittest
 from collections import deque
 from pathlib import Path
 
 SHVR = os.environ.get("SHVR", "build/dev/shvr")
-TIMEOUT_S = 120
+TIMEOUT_S = 500  # of one start; ctest ends a file after 600
 
 # A line of progress on standard error, which any command has that takes longer than a second.
 PROGRESS = re.compile(r": (\d+ %(, [\d.]+ MB/s)?(, (\d+ (h|min|s) ?)+ left)?|(\d+ (h|min|s) ?)+ so far)$")
@@ -21,11 +22,50 @@ PROGRESS = re.compile(r": (\d+ %(, [\d.]+ MB/s)?(, (\d+ (h|min|s) ?)+ left)?|(\d
 # A person's own preferences are neither read nor changed by tests.
 CONFIGURATION = tempfile.TemporaryDirectory(prefix="shvr-config-")
 
-# Any message of the Vulkan validation layer makes a command fail; of hazards between submissions, too.
+# SHVR_SLOW=1 repeats each proof on every input; the everyday run repeats it on a selection that covers all cases.
+IS_SLOW = os.environ.get("SHVR_SLOW") == "1"
+
+# The file whose starts of a command the Vulkan validation layer watches every day: the layer costs a third of a start.
+# Any message of it makes the command fail. SHVR_SLOW=1 watches every start of every file.
+VALIDATED = {"annotate": "test_annotate.py", "bench": "test_bench.py", "compare": "test_compare.py",
+             "evaluate": "test_evaluate.py", "export": "test_export.py", "golden": "test_golden.py",
+             "haptics": "test_haptics.py", "import": "test_import.py", "info": "test_info.py",
+             "label": "test_label.py", "phantom": "test_phantom.py", "profile": "test_profile.py",
+             "render": "test_render.py", "view": "test_view.py"}
+IS_VALIDATED = IS_SLOW or Path(sys.argv[0]).name in VALIDATED.values()
+
+# The environment of every start. Hazards are validated between submissions, too. All files share the shaders that Mesa
+# compiled, while the program's own cache is new for each file.
+BUILD = Path(SHVR).resolve().parent
 ENVIRONMENT = {"VK_LAYER_ENABLES": "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT",
-               "VK_ADD_LAYER_PATH": str(Path(SHVR).resolve().parent / "layers"),
-               **os.environ, "SHVR_VALIDATION": "1", "LC_ALL": "C", "XDG_CONFIG_HOME": CONFIGURATION.name,
-               "XDG_CACHE_HOME": CONFIGURATION.name}
+               "VK_ADD_LAYER_PATH": str(BUILD / "layers"), "MESA_SHADER_CACHE_DIR": str(BUILD / "cache"),
+               **os.environ, "SHVR_VALIDATION": "1" if IS_VALIDATED else "", "LC_ALL": "C",
+               "XDG_CONFIG_HOME": CONFIGURATION.name, "XDG_CACHE_HOME": CONFIGURATION.name}
+
+
+def commands(*command):
+    """The names of the program's commands, or of those of a command, as --help lists them."""
+    listed = run(*command, "--help").stdout.partition("\nSubcommands:\n")[2].partition("\n\n")[0]
+    return re.findall(r"^  (\w+) ", listed, re.M)
+
+
+def covering(*factors):
+    """Tuples of a value from each factor, such that every pair of values of two factors is in one of them.
+
+    Greedy, and the same in every run: each tuple takes, factor by factor, the value that adds the most new pairs."""
+    pairs = {(i, a, j, b) for i, j in itertools.combinations(range(len(factors)), 2)
+             for a in range(len(factors[i])) for b in range(len(factors[j]))}
+    chosen = []
+    while pairs:
+        i, a, j, b = min(pairs)
+        row = {i: a, j: b}
+        for k in range(len(factors)):
+            if k not in row:
+                row[k] = max(range(len(factors[k])), key=lambda value, k=k: sum(
+                    (min((k, value), other) + max((k, value), other)) in pairs for other in row.items()))
+        pairs -= {(*one, *other) for one, other in itertools.combinations(sorted(row.items()), 2)}
+        chosen.append(tuple(factors[k][row[k]] for k in range(len(factors))))
+    return chosen
 
 
 def run(*arguments, environment=None):
