@@ -93,11 +93,23 @@ def grouped(number):
 
 
 class Profile(CliTest):
+    @classmethod
+    def setUpClass(cls):
+        """One profile, and all its files."""
+        folder = tempfile.TemporaryDirectory(prefix="shvr-profile-")
+        cls.addClassCleanup(folder.cleanup)
+        one = cls("test_keys_and_counts")
+        one.folder = Path(folder.name)
+        cls.paths = {option: one.folder / name for option, name in
+                     (("trace", "trace.json"), ("csv", "times.csv"), ("graph", "graph.json"), ("html", "profile.html"))}
+        cls.whole = one.profile(*(word for option, path in cls.paths.items() for word in (f"--{option}", path)))
+
     def profile(self, *arguments):
         return self.check_json("profile", self.write_session(), "--frames", FRAMES, *arguments)
 
     def test_keys_and_counts(self):
-        profile = self.profile()
+        profile = self.whole
+        self.assertEqual(sorted(profile["written"]), sorted(map(str, self.paths.values())))
         self.assert_keys(profile, KEYS)
         self.assertEqual(profile["frames"], FRAMES)
         for one in profile["passes"]:
@@ -112,7 +124,7 @@ class Profile(CliTest):
         self.assertGreater(profile["bytes"]["device"], 0)
 
     def test_a_pass_that_a_frame_does_not_run_has_no_value_there(self):
-        profile = self.profile()
+        profile = self.whole
         first = [one["name"] for one in profile["first_frame"]]
         steady = [one["name"] for one in profile["passes"]]
         self.assertIn("leap_occupancy", first)
@@ -131,10 +143,7 @@ class Profile(CliTest):
         self.assertIs(profile["serialize"], True)
 
     def test_the_page_shows_every_pass_of_every_frame(self):
-        path = self.folder / "profile.html"
-        profile = self.profile("--html", path)
-        self.assertEqual(profile["written"], [str(path)])
-        page = path.read_text()
+        profile, page = self.whole, self.paths["html"].read_text()
         self.assertNotRegex(page, r'(src|href)="(?!data:)')
         # In the chart of all frames and, enlarged, in that of the median one.
         for one in profile["passes"]:
@@ -177,13 +186,10 @@ class Profile(CliTest):
     def test_counters_are_those_of_render(self):
         session = self.write_session()
         picture = self.check_json("render", session, "-o", self.folder / "a.png")
-        self.assertEqual(self.profile()["counters"], picture["counters"])
+        self.assertEqual(self.whole["counters"], picture["counters"])
 
     def test_the_trace_is_one_that_perfetto_reads(self):
-        path = self.folder / "trace.json"
-        profile = self.profile("--trace", path)
-        self.assertEqual(profile["written"], [str(path)])
-        trace = json.loads(path.read_text())
+        profile, trace = self.whole, json.loads(self.paths["trace"].read_text())
         self.assertEqual(trace_errors(trace), [])
         events = trace["traceEvents"]
         self.assertEqual({event["ph"] for event in events}, {"M", "X", "C", "s", "f"})
@@ -200,9 +206,8 @@ class Profile(CliTest):
         self.assertEqual(sum(event["ph"] == "s" for event in events), FRAMES)
 
     def test_recording_is_timed_beside_the_device(self):
-        path = self.folder / "times.csv"
-        profile = self.profile("--csv", path)
-        with open(path, newline="") as file:
+        profile = self.whole
+        with open(self.paths["csv"], newline="") as file:
             rows = list(csv.DictReader(file))
         for one in profile["passes"]:
             self.assertGreater(one["record_min_ms"], 0)
@@ -240,9 +245,7 @@ class Profile(CliTest):
         self.assertAlmostEqual(whole, 2 + 3 * 96 + 300, places=3)  # less than the sum of 1790
 
     def test_a_trace_that_is_wrong_is_found_to_be(self):
-        path = self.folder / "trace.json"
-        self.profile("--trace", path)
-        good = json.loads(path.read_text())
+        good = json.loads(self.paths["trace"].read_text())
 
         def broken(change):
             trace = json.loads(json.dumps(good))
@@ -264,9 +267,8 @@ class Profile(CliTest):
         self.assertTrue(broken(lambda events: of(events, "C").update(args={"bytes": "many"})))
 
     def test_the_table_has_a_row_per_frame_and_pass(self):
-        path = self.folder / "times.csv"
-        profile = self.profile("--csv", path)
-        with open(path, newline="") as file:
+        profile = self.whole
+        with open(self.paths["csv"], newline="") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual(len(rows), FRAMES * len(profile["passes"]))
         for one in profile["passes"]:
@@ -276,9 +278,7 @@ class Profile(CliTest):
             self.assertAlmostEqual(times[-1], one["max_ms"], places=6)
 
     def test_the_graph_as_json_holds_the_passes_that_ran(self):
-        path = self.folder / "graph.json"
-        profile = self.profile("--graph", path)
-        graph = json.loads(path.read_text())
+        profile, graph = self.whole, json.loads(self.paths["graph"].read_text())
         alive = [one["name"] for one in graph["passes"] if one["alive"]]
         self.assertEqual(alive, [one["name"] for one in profile["passes"]])
         resources = {one["name"]: one for one in graph["resources"]}
@@ -485,7 +485,8 @@ class SessionOfWork(CliTest):
 
     def test_a_diff_of_sessions_tells_what_changed_beyond_the_noise(self):
         project, script = self.write_work()
-        profile = self.check_json("profile", project, "--script", script, "--replays", 3)
+        # As of three replays, each of which takes the times that `with_times` gives.
+        profile = {**self.check_json("profile", project, "--script", script), "replays": 3}
         before, after, almost = (self.with_times(profile, name, ms)
                                  for name, ms in (("before", 10), ("after", 20), ("almost", 11)))
         diff = self.check_json("profile", "diff", before, after)
