@@ -4,6 +4,7 @@ import os
 import re
 import shutil
 import subprocess
+import tempfile
 import unittest
 import xml.etree.ElementTree
 from pathlib import Path
@@ -31,12 +32,25 @@ def calibrated(text):
 
 
 class Golden(CliTest):
+    @classmethod
+    def setUpClass(cls):
+        temporary = tempfile.TemporaryDirectory(prefix="shvr-golden-")
+        cls.addClassCleanup(temporary.cleanup)
+        cls.accepted = Path(temporary.name) / "golden"
+
     def setUp(self):
         super().setUp()
         (self.folder / "golden").mkdir()
         for name, text in blocks("json").items():
             (self.folder / name).write_text(text)
         self.write_session("scan.json", annotation={})
+
+    def begin_blessed(self):
+        """The pictures and side-cars that the first test to call this got by blessing."""
+        if not self.accepted.exists():
+            self.bless()
+            shutil.copytree(self.folder / "golden", self.accepted)
+        shutil.copytree(self.accepted, self.folder / "golden", dirs_exist_ok=True)
 
     def golden(self, *arguments, status=0, **environment):
         """Runs in the test's folder; the JSON object that was printed, or None."""
@@ -95,14 +109,13 @@ class Golden(CliTest):
         self.assertEqual(list((self.folder / "golden").glob("*.png")), [])
 
     def test_a_picture_without_its_side_car_fails(self):
-        self.bless("spheres")
-        self.bless("overview")
+        self.begin_blessed()
         shutil.copy(self.folder / "golden/overview.png", self.folder / "golden/spheres.png")
         result = self.golden("run", "spheres", status=3)
         self.assertIn("its side-car says", result["goldens"][0]["reason"])
 
     def test_other_work_fails_although_the_picture_is_the_same(self):
-        self.bless("spheres")
+        self.begin_blessed()
         golden = json.loads((self.folder / "golden/spheres.json").read_text())
         golden["session"]["render"]["skip_empty_space"] = False
         self.write_json("golden/spheres.json", golden)
@@ -111,7 +124,7 @@ class Golden(CliTest):
         self.assertRegex(one["reason"], r"other work: .*samples \d+ \(recorded: \d+\)")
 
     def test_a_counter_that_the_side_car_lacks_fails_with_the_command_that_records_it(self):
-        self.bless("spheres")
+        self.begin_blessed()
         path = self.folder / "golden/spheres.blessed.json"
         side_car = json.loads(path.read_text())
         for lacks in (["samples"], ["samples", "density_reads"], list(side_car["work"])):
@@ -131,7 +144,7 @@ class Golden(CliTest):
         self.assertEqual((self.folder / "golden/spheres.png").read_bytes(), before)
 
     def test_the_report_holds_everything_itself(self):
-        self.bless()
+        self.begin_blessed()
         self.write_session("scan.json", annotation={}, light={"ambient": 0.9})
         golden = json.loads((self.folder / "golden/overview.json").read_text())
         golden["why"] = "<script>alert(1)</script> & more"
@@ -157,7 +170,7 @@ class Golden(CliTest):
         self.assertEqual((self.folder / "golden-results/report.html").read_text(), page)
 
     def test_failed_alone_are_blessed_with_failed(self):
-        self.bless()
+        self.begin_blessed()
         self.write_session("scan.json", annotation={}, light={"ambient": 0.9})
         self.golden("run", status=3)
         self.assertEqual([row["name"] for row in self.bless("--failed")["blessed"]], ["overview"])

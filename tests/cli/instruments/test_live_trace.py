@@ -53,10 +53,11 @@ CALLS = """    const shvr::gpu::TraceSpan span(name);
 
 
 class LiveTrace(unittest.TestCase):
-    def setUp(self):
+    @classmethod
+    def setUpClass(cls):
         folder = tempfile.TemporaryDirectory(prefix="shvr-trace-")
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = Path(folder.name)
 
     def compiled(self, text, *options, output="program"):
         source = self.folder / "source.cpp"
@@ -67,7 +68,10 @@ class LiveTrace(unittest.TestCase):
         return self.folder / output
 
     def told(self, **environment):
-        program = self.compiled(PROGRAM, *TRACED, ROOT / "engine/gpu/live_trace.cpp", STUB / "TracyClient.cpp")
+        program = self.folder / "traced"
+        if not program.exists():
+            self.compiled(PROGRAM, *TRACED, ROOT / "engine/gpu/live_trace.cpp", STUB / "TracyClient.cpp",
+                          output="traced")
         done = subprocess.run([program], capture_output=True, text=True, timeout=20, check=True,
                               env={**os.environ, **environment})
         return [json.loads(line) for line in done.stdout.splitlines()]
