@@ -6,7 +6,7 @@ import struct
 import unittest
 
 import placed_files as files
-from harness import CliTest
+from harness import IS_SLOW, CliTest
 from placed_files import Place
 from test_label import read_by_zarr
 
@@ -95,10 +95,13 @@ class PlaceTest(CliTest):
             self.assert_at(middle, true, (what, path.suffix))
 
     def test_labels_of_every_file_lie_where_it_says(self):
-        for name, arguments, place in self.inputs():
+        # Every day each reader meets one writer, in turn; the readers of NRRD, whose axes differ most, meet all.
+        forms = ("nrrd", "tif", "zarr")
+        for number, (name, arguments, place) in enumerate(self.inputs()):
             with self.subTest(name=name):
                 true = place.at(files.MARK_INDEX)
-                for form in ("nrrd", "tif", "zarr"):
+                before = self.check_json("info", *arguments)
+                for form in forms if IS_SLOW or name in ("nrrd left", "nrrd oblique") else [forms[number % 3]]:
                     path = self.folder / f"{name.replace(' ', '_')}_labels.{form}"
                     self.check("label", *arguments, "--threshold", 200, "-o", path, "--quiet")
                     if form == "nrrd":
@@ -108,7 +111,6 @@ class PlaceTest(CliTest):
                         self.assert_mark(values, size, files.place_of_tiff(lines), true, (name, form))
                     # What we read of what we wrote.
                     info = self.check_json("info", path)
-                    before = self.check_json("info", *arguments)
                     for key in ("size", "unit", "frame"):
                         self.assertEqual(info[key], before[key], (name, form, key))
                     # Oblique steps of an NRRD are products, rounded.
@@ -120,10 +122,12 @@ class PlaceTest(CliTest):
                         self.assertEqual(exact(direction), exact(expected), (name, form))
 
     def test_projects_and_their_exports_lie_on_the_file_they_were_made_of(self):
-        for name, arguments, place in self.inputs():
-            for preparation, options in PREPARATIONS.items():
+        # Every day each reader meets one preparation, in turn; axes that are read backwards or run aslant meet all.
+        for number, (name, arguments, place) in enumerate(self.inputs()):
+            is_whole = IS_SLOW or name in ("nrrd left", "nrrd oblique")
+            for preparation in PREPARATIONS if is_whole else [list(PREPARATIONS)[number % len(PREPARATIONS)]]:
                 with self.subTest(name=name, preparation=preparation):
-                    self.check_project(name, arguments, place.at(files.MARK_INDEX), options)
+                    self.check_project(name, arguments, place.at(files.MARK_INDEX), PREPARATIONS[preparation])
 
     def check_project(self, name, arguments, true, options):
         project = self.folder / "project"
