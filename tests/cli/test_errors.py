@@ -1,24 +1,87 @@
-"""Every command's reaction to wrong usage and to unexpected files."""
+"""Every command's reaction to wrong usage and to unexpected files; --help lists the commands."""
 import json
 import os
 import subprocess
 import unittest
+from pathlib import Path
 
-from harness import ENVIRONMENT, SHVR, CliTest, Volume, run
+from harness import ENVIRONMENT, SHVR, VALIDATED, CliTest, Volume, commands, run
 
-COMMANDS = [["info"], ["render"], ["annotate"], ["compare"], ["profile"], ["profile", "diff"], ["phantom"], ["view"],
-            ["bench"],
-            *(["golden", part] for part in ("run", "bless", "calibrate", "report"))]
+PARTS = {command: commands(command) for command in commands()}  # the commands of each command
+GROUPS = [command for command in PARTS if " SUBCOMMAND\n" in run(command, "--help").stdout]  # do nothing themselves
+COMMANDS = [[command] for command in PARTS if command not in GROUPS] + \
+           [[command, part] for command, parts in PARTS.items() for part in parts]
+# Run elsewhere: in a window, or for seconds.
+ELSEWHERE = {("view",): "tests/window/test_view.py", ("golden", "calibrate"): "tests/cli/instruments/test_golden.py",
+             ("haptics", "bench"): "tests/cli/test_haptics.py"}
+# Further arguments of commands that read a file, which is not there.
+READS = {("info",): [], ("import",): ["project"], ("render",): ["-o", "a.png"], ("annotate",): ["--script", "s.jsonl"],
+         ("export",): [], ("evaluate",): ["--mask", "a.mask"], ("label",): ["--threshold", "1"],
+         ("compare",): ["a.png"], ("profile",): [], ("profile", "diff"): ["missing.nhdr"],
+         ("haptics", "replay"): ["--volume", "a.nhdr"], ("bench",): ["-o", "bench"]}
+# The argument that a command without any names first.
+NEEDS = {("info",): "INPUT", ("import",): "VOLUME", ("render",): "INPUT", ("annotate",): "PROJECT",
+         ("export",): "PROJECT", ("evaluate",): "--truth-mask", ("label",): "VOLUME", ("compare",): "A",
+         ("profile",): "INPUT", ("profile", "diff"): "A", ("golden", "bless"): "--reason", ("bench",): "--output",
+         ("phantom",): "KIND", ("haptics", "replay"): "TRACE"}
 
 
-class Usage(CliTest):
+class ErrorTest(CliTest):
+    def works(self):
+        """What each command needs to do its work, in an order in which each finds what those before it made."""
+        session, folder = self.write_session(), self.folder
+        script = self.write_script("s.jsonl", [{"op": "expect", "nodes": 0}, {"op": "save"}])
+        trace = self.write_script("t.trace", [{"shvr_stylus_trace": 1}, {"at": [0, 0, 0]}])
+        (folder / "golden").mkdir()
+        self.write_json("golden/sphere.json", {"why": "the smallest", "session": "../session.json"})
+        golden = ["--folder", folder / "golden"]
+        return {("info",): [session], ("render",): [session, "-o", folder / "a.png"],
+                ("annotate",): [session, "--script", script], ("compare",): [folder / "a.png", folder / "a.png"],
+                ("phantom",): ["tubes", "--size", "8", "-o", folder],
+                ("import",): [folder / "tubes.nhdr", folder / "project"],
+                ("label",): [folder / "tubes.nhdr", "--threshold", "100", "-o", folder / "labels.nrrd"],
+                ("evaluate",): ["--truth-mask", folder / "labels.nrrd", "--mask", folder / "labels.nrrd"],
+                ("export",): [session, "--mask", folder / "a.mask"],
+                ("profile",): [session, "--frames", "3", "--set", "render.step_voxels=1"],
+                ("profile", "diff"): [folder / "profile", folder / "profile"],
+                ("golden", "bless"): [*golden, "--reason", "first picture"],
+                ("golden", "run"): [*golden, "-o", folder / "results"],
+                ("golden", "report"): [*golden, "-o", folder / "results"],
+                ("bench",): ["--scenes", session, "--quick", "--size", "8,8", "--rounds", "1", "--peer", "none", "-o",
+                             folder / "bench"],
+                ("haptics", "replay"): [trace, "--volume", session], ("haptics", "devices"): []}
+
+
+class Usage(ErrorTest):
     def test_help_shows_an_example(self):
-        for command in COMMANDS:
+        for command in COMMANDS + [[group] for group in GROUPS]:
             with self.subTest(command=command):
                 text = self.check(*command, "--help").stdout
                 self.assertIn(f"Example:\n  shvr {' '.join(command)} ", text)
-                self.assertIn("--json", text)
-                self.assertIn("--quiet", text)
+                if command[0] not in GROUPS or len(command) == 2:
+                    self.assertIn("--json", text)
+                    self.assertIn("--quiet", text)
+
+    def test_every_command_is_validated_in_one_file(self):
+        self.assertEqual(sorted(VALIDATED), sorted(PARTS))
+        tests = Path(__file__).resolve().parents[1]
+        for command, name in VALIDATED.items():
+            [file] = [*tests.glob(f"cli/**/{name}"), *tests.glob(f"window/{name}")]
+            self.assertIn(f'"{command}"', file.read_text(), name)
+
+    def test_an_unknown_option_is_status_2_and_names_the_help(self):
+        needed = {**self.works(), **dict.fromkeys(ELSEWHERE, [])}
+        for command in COMMANDS:
+            with self.subTest(command=command):
+                self.check_refused(*command, *needed[tuple(command)], "--sise", status=2,
+                                   says=["--sise", f"see shvr {command[0]} --help"])
+
+    def test_a_command_that_is_given_nothing_names_what_it_needs(self):
+        for command, needs in NEEDS.items():
+            with self.subTest(command=command):
+                self.check_refused(*command, status=2, says=[needs])
+        for group in GROUPS:
+            self.check_refused(group, status=2, says=[f"see shvr {group} --help"])
 
     def test_wrong_usage_is_status_2(self):
         session = self.write_session()
@@ -34,9 +97,6 @@ class Usage(CliTest):
     def test_an_unknown_command_is_named_beside_the_known_ones(self):
         self.check_refused("reander", "a", status=2, says=['"reander" is an unknown command', "render", "view"])
         self.check_refused("--sise", "1", status=2, says=['"--sise" is an unknown option', "see shvr --help"])
-
-    def test_wrong_usage_names_the_help_of_its_command(self):
-        self.check_refused("render", "a", "-o", "a.png", "--sise", "1", status=2, says=["--sise", "see shvr render --help"])
 
     def test_an_empty_name_is_wrong_usage(self):
         session, picture = self.write_session(), self.folder / "a.png"
@@ -54,8 +114,8 @@ class Usage(CliTest):
     def test_the_version_is_told(self):
         told = self.check("--version").stdout
         self.assertRegex(told, r"^shvr \d+\.\d+\.\d+\n$")
-        for command in COMMANDS:
-            self.assertEqual(self.check(command[0], "--version").stdout, told)
+        for command in PARTS:
+            self.assertEqual(self.check(command, "--version").stdout, told)
 
     def test_budgets_are_numbers(self):
         session = self.write_session()
@@ -144,11 +204,13 @@ class World(CliTest):
 
     def test_what_is_not_there(self):
         missing = self.folder / "missing.nhdr"
-        self.check_refused("info", missing, says=["missing.nhdr"])
-        self.check_refused("render", missing, *self.outputs(), says=["missing.nhdr"])
-        self.check_refused("profile", missing, says=["missing.nhdr"])
+        before = {("evaluate",): ["--truth-mask"], ("bench",): ["--scenes"]}
+        for command, more in READS.items():
+            with self.subTest(command=command):
+                more = [word if word.startswith("-") or word == "1" else self.folder / word for word in more]
+                self.check_refused(*command, *before.get(command, []), missing, *more, says=["missing.nhdr"])
+        self.assertEqual(list(self.folder.iterdir()), [])
         self.check_refused("annotate", self.write_session(), "--script", missing, says=["missing.nhdr"])
-        self.check_refused("annotate", missing, "--script", self.write_script("s.jsonl", []), says=["missing.nhdr"])
         self.check_refused("info", self.folder, says=["shvr/session.json"])
 
     def test_remote_stores_are_refused_in_words(self):
@@ -208,17 +270,18 @@ class World(CliTest):
         self.assertEqual(sorted(os.listdir(self.folder)), before)
 
 
-class Output(CliTest):
+class Output(ErrorTest):
     def test_json_is_the_only_thing_on_standard_output(self):
-        session = self.write_session()
-        script = self.write_script("s.jsonl", [{"op": "expect", "nodes": 0}, {"op": "save"}])
-        self.check("render", session, "-o", self.folder / "a.png")
-        for command in (["info", session], ["render", session, "-o", self.folder / "a.png"],
-                        ["annotate", session, "--script", script],
-                        ["compare", self.folder / "a.png", self.folder / "a.png"],
-                        ["profile", session, "--frames", "1"]):
-            with self.subTest(command=command[0]):
-                self.check_json(*command)  # parses as a whole
+        works = self.works()
+        self.assertEqual(sorted([*works, *ELSEWHERE]), sorted(map(tuple, COMMANDS)))
+        for command, arguments in works.items():
+            with self.subTest(command=command):
+                result = run(*command, *arguments, "--json", "--quiet", environment={"CI": ""})
+                self.assertEqual((result.returncode, result.stderr), (0, ""), result.stdout)
+                self.assertIsInstance(json.loads(result.stdout), dict)  # as a whole
+                (self.folder / command[-1]).write_text(result.stdout) if command == ("profile",) else None
+        for command, file in ELSEWHERE.items():
+            self.assertIn(f'"{command[-1]}"', (Path(__file__).resolve().parents[2] / file).read_text())
 
     def test_quiet_keeps_standard_error_empty(self):
         header = Volume.noise((8, 8, 8), seed=1).write(self.folder)
