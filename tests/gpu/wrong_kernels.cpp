@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
@@ -66,13 +67,27 @@ std::pair<fs::path, std::string> source_of(const std::string& kernel, const fs::
     return found;
 }
 
-std::vector<uint32_t> compiled(const std::string& kernel, const fs::path& shaders)
+/// Adds the files that `file` is made of to `names`, relative to `shaders`.
+void add_included(const std::string& file, const fs::path& shaders, std::set<std::string>& names)
 {
-    const auto [source, macros] = source_of(kernel, shaders);
+    if (!names.insert(file).second) return;
+    const std::string text = read_text(shaders / file, MAX_SHADER_BYTES);
+    constexpr std::string_view INCLUDE = "#include \"";
+    for (size_t at = text.find(INCLUDE); at != std::string::npos; at = text.find(INCLUDE, at + 1)) {
+        const size_t begin = at + INCLUDE.size();
+        const std::string name = text.substr(begin, text.find('"', begin) - begin);
+        // Beside the file that includes it, or else below shaders/.
+        const fs::path beside = (fs::path(file).parent_path() / name).lexically_normal();
+        add_included(fs::exists(shaders / beside) ? beside.string() : name, shaders, names);
+    }
+}
+
+std::vector<uint32_t> compiled(const fs::path& source, const std::string& macros, const fs::path& shaders)
+{
     const fs::path binary = shaders / "made.spv";
     const std::string command = sentence("glslangValidator --quiet -V --target-env vulkan1.3 -I", shaders.string(),
                                          macros, " ", source.string(), " -o ", binary.string());
-    if (std::system(command.c_str()) != 0) fail(kernel, ": does not compile with the mistake: ", command);
+    if (std::system(command.c_str()) != 0) fail(source.string(), " does not compile with the mistake: ", command);
     const std::vector<std::byte> bytes = read_file(binary, MAX_SHADER_BYTES * 16);
     std::vector<uint32_t> words(bytes.size() / 4);
     std::memcpy(words.data(), bytes.data(), bytes.size());
@@ -90,7 +105,11 @@ WrongKernels::WrongKernels(const Mistake& mistake, std::span<const std::string> 
     const std::span<const EmbeddedKernel> own = __real__ZN4shvr3gpu16embedded_kernelsEv();
     std::vector<EmbeddedKernel> made(own.begin(), own.end());
     for (const std::string& kernel : kernels) {
-        std::vector<uint32_t> words = compiled(kernel, folder);
+        const auto [source, macros] = source_of(kernel, folder);
+        std::set<std::string> files;
+        add_included(fs::relative(source, folder).string(), folder, files);
+        if (!files.contains(mistake.file)) continue;
+        std::vector<uint32_t> words = compiled(source, macros, folder);
         const auto is_it = [&](const EmbeddedKernel& each) { return each.name == kernel; };
         const auto place = std::find_if(made.begin(), made.end(), is_it);
         if (place == made.end()) fail(kernel, " is no kernel");
