@@ -7,6 +7,8 @@
 #include "engine/live/annotator.h"
 #include "engine/picture/picture_job.h"
 #include "tests/support/gpu.h"
+#include "tests/support/slow.h"
+#include "tests/support/stored_volume.h"
 
 using namespace shvr;
 using namespace shvr::test;
@@ -72,13 +74,14 @@ Picture picture_of(const Source& source, const Scenery& scenery, uint64_t device
     return picture;
 }
 
+/// Every day under the first budget, the one that is most of a challenge.
 void check_budgets(const char* name, const Source& source, const Scenery& scenery,
                    const std::vector<uint64_t>& device_mib)
 {
     CAPTURE(std::string(name));
     const Picture expected = picture_of(source, scenery, LARGE_MIB);
     CHECK(expected.complete);
-    for (const uint64_t mib : device_mib) {
+    for (const uint64_t mib : std::span(device_mib).first(repeats(size_t{1}, device_mib.size()))) {
         CAPTURE(mib);
         const Picture seen = picture_of(source, scenery, mib);
         for (const std::string& warning : seen.warnings) FAIL_CHECK(warning);
@@ -91,14 +94,14 @@ void check_budgets(const char* name, const Source& source, const Scenery& scener
 
 TEST_CASE("pictures larger than a device's budget have the bits of those under a large one")
 {
-    const Source source = open_procedural({.kind = "tubes", .size = {128, 128, 128}, .seed = 3});
-    check_budgets("a megapixel", source, scenery_of(source->info(), {1024, 1024}), {16, 32});
+    const Source source = stored_volume("tubes", {128, 128, 128}, 3);
+    check_budgets("a megapixel", source, scenery_of(source->info(), {1024, 1024}), {32, 16});
     check_budgets("wide", source, scenery_of(source->info(), {3000, 300}), {64});
 }
 
 TEST_CASE("every kind of picture has the same bits under every budget")
 {
-    const Source source = open_procedural({.kind = "tubes", .size = {128, 128, 128}, .seed = 3});
+    const Source source = stored_volume("tubes", {128, 128, 128}, 3);
     const Scenery plain = scenery_of(source->info(), {240, 200});
     const std::pair<const char*, std::function<void(Scenery&)>> kinds[] = {
         {"slices", [](Scenery& s) { s.session.view.arrangement = Arrangement::slices; }},
@@ -125,12 +128,12 @@ TEST_CASE("every kind of picture has the same bits under every budget")
 TEST_CASE("a volume that a budget does not hold is drawn as fine as one that is resident")
 {
     // 1000 bricks: 80 MB.
-    const Source source = open_procedural({.kind = "tubes", .size = {320, 320, 320}, .seed = 3});
+    const Source source = stored_volume("tubes", {320, 320, 320}, 3);
     Scenery scenery = scenery_of(source->info(), {96, 80});
     check_budgets("from afar", source, scenery, {16, 64});
     Scenery lit = scenery;
     lit.session.light.occlusion = {.strength = 0.8, .radius = 6.0, .rays = 8};
-    check_budgets("with ambient occlusion", source, lit, {16, 24, 64});
+    check_budgets("with ambient occlusion", source, lit, {24, 16, 64});
     scenery.document.mask = painted_mask(source->info().size, 6);  // 5.4 MB
     check_budgets("painted", source, scenery, {16, 24});
 }
@@ -138,7 +141,7 @@ TEST_CASE("a volume that a budget does not hold is drawn as fine as one that is 
 TEST_CASE("a ray passes more bricks than there is room for")
 {
     // 232 bricks along x, each of which shows something; a budget of 16 MiB has room for 199.
-    const Source source = open_procedural({.kind = "fog", .size = {7424, 34, 20}, .seed = 5});
+    const Source source = stored_volume("fog", {7424, 34, 20}, 5);
     Scenery plain = scenery_of(source->info(), {4, 3});
     plain.session.light.shaded = false;
     plain.session.transfer_function = TransferFunction({{50.0, glm::dvec3(0.9, 0.2, 0.1), 1e-4},
@@ -185,7 +188,7 @@ TEST_CASE("a ray passes more bricks than there is room for")
 TEST_CASE("light that comes from more bricks than there is room for is told, and the picture is drawn without it")
 {
     // 125 bricks, all of them within two of the middle one.
-    const Source source = open_procedural({.kind = "fog", .size = {160, 160, 160}, .seed = 5});
+    const Source source = stored_volume("fog", {160, 160, 160}, 5);
     Scenery scenery = scenery_of(source->info(), {12, 10});
     scenery.session.light.occlusion = {.strength = 1.0, .radius = 40.0, .rays = 2};
     const Picture picture = picture_of(source, scenery, 16);
@@ -218,7 +221,7 @@ TEST_CASE("what no budget of this size draws is refused before a voxel is read")
 
 TEST_CASE("paint that a budget does not hold is refused in one sentence with a remedy")
 {
-    const Source source = open_procedural({.kind = "tubes", .size = {320, 320, 320}, .seed = 3});
+    const Source source = stored_volume("tubes", {320, 320, 320}, 3);
     Scenery scenery = scenery_of(source->info(), {16, 16});
     scenery.document.mask = painted_mask(source->info().size, 1);
     try {
@@ -239,7 +242,7 @@ TEST_CASE("paint that a budget does not hold is refused in one sentence with a r
 
 TEST_CASE("bands of rows have the bits of a picture drawn whole, lines over them included")
 {
-    const Source source = open_procedural({.kind = "tubes", .size = {48, 48, 48}, .seed = 3});
+    const Source source = stored_volume("tubes", {48, 48, 48}, 3);
     Scenery scenery = scenery_of(source->info(), {600, 301});
     scenery.options = {.probe = probe_at({24.0, 20.0, 24.0}), .outlines_probe = true};
     scenery.options.probe->preview = nullptr;

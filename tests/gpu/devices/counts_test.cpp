@@ -15,6 +15,7 @@
 
 #include "engine/live/view.h"
 #include "tests/support/gpu.h"
+#include "tests/support/stored_volume.h"
 
 using namespace shvr;
 using namespace shvr::test;
@@ -43,7 +44,7 @@ private:
 
 struct Worked {
     Session session;
-    std::shared_ptr<const VolumeSource> source = open_procedural({.kind = "tubes", .size = {96, 64, 64}, .seed = 3});
+    std::shared_ptr<const VolumeSource> source = stored_volume("tubes", {96, 64, 64}, 3);
     Mask mask{source->info().size};
     Renderer renderer;
     View view{renderer, {}};
@@ -249,8 +250,7 @@ TEST_CASE("a picture that nobody times makes no query and reads none")
     const auto queries_of = [](bool timestamps, bool statistics) {
         std::map<std::string, int64_t> calls = calls_in([&] {
             Renderer renderer({.device = {}, .budget = {256 * MIB, 0}, .threads = 1});
-            const std::shared_ptr<const VolumeSource> source =
-                open_procedural({.kind = "tubes", .size = {64, 64, 64}, .seed = 3});
+            const std::shared_ptr<const VolumeSource> source = stored_volume("tubes", {64, 64, 64}, 3);
             Session session;
             session.render.size = {64, 48};
             renderer.load(source, BYTES, session.render);

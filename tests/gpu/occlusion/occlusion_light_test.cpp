@@ -10,6 +10,7 @@
 
 #include "engine/volume/source_procedural.h"
 #include "tests/support/occlusion.h"
+#include "tests/support/slow.h"
 
 using namespace shvr;
 using namespace shvr::test;
@@ -133,6 +134,13 @@ Found look_at(OnDevice& device, const Case& c)
     return {found.mean / count, found.defined / count, std::sqrt(squares / count), found.worst};
 }
 
+/// A quarter of all combinations, in which any two of the choices stand together.
+bool is_in_cover(size_t scene, Sampling sampling, Paging paging, int variant)
+{
+    return (scene + size_t(variant)) % 2 == size_t(sampling == Sampling::hardware) &&
+           (scene + size_t(variant / 2)) % 2 == size_t(paging == Paging::always);
+}
+
 }  // namespace
 
 TEST_CASE_FIXTURE(OnDevice,
@@ -221,6 +229,7 @@ TEST_CASE_FIXTURE(OnDevice, "leaping over empty space changes no bit of a pictur
         for (const Sampling sampling : {Sampling::exact, Sampling::hardware})
             for (const Paging paging : {Paging::never, Paging::always})
                 for (int variant = 0; variant < 4; ++variant) {
+                    if (!is_slow() && !is_in_cover(i, sampling, paging, variant)) continue;
                     CAPTURE(i);
                     CAPTURE(variant);
                     CAPTURE(int(sampling));
@@ -251,5 +260,5 @@ TEST_CASE_FIXTURE(OnDevice, "leaping over empty space changes no bit of a pictur
                     session.light.occlusion.strength = 0.0;
                     lit += different_bits(all.image, renderer().render(session, camera).image);
                 }
-    CHECK(lit > 30000);
+    CHECK(lit > repeats<size_t>(5000, 30000));
 }

@@ -12,6 +12,7 @@
 
 #include "engine/live/view.h"
 #include "tests/support/gpu.h"
+#include "tests/support/stored_volume.h"
 
 namespace shvr::test {
 
@@ -20,7 +21,7 @@ constexpr VolumeStatistics BYTES{.minimum = 0.0, .maximum = 255.0};
 
 inline Source tubes(const Size3& size)
 {
-    return open_procedural({.kind = "tubes", .size = size, .seed = 3});
+    return stored_volume("tubes", size, 3);
 }
 
 /// Finest bricks everywhere, exact samples.
