@@ -1,5 +1,5 @@
-// Kills the program at random moments of its work, 200 times in the same folder: it finds its state after some step,
-// and only the steps of the last moments are lost.
+// Kills the program at random moments of its work, again and again in the same folder: it finds its state after some
+// step, and only the steps of the last moments are lost.
 
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -16,6 +16,7 @@
 #include <doctest/doctest.h>
 
 #include "tests/durability/desk.h"
+#include "tests/support/slow.h"
 #include "tests/support/volume_files.h"
 
 using namespace shvr;
@@ -112,7 +113,7 @@ private:
 
 }  // namespace
 
-TEST_CASE("200 kills lose at most what was done in the last moments, and never half of a step")
+TEST_CASE("kills lose at most what was done in the last moments, and never half of a step")
 {
     const TemporaryFolder folder;
     const WorkFiles files = files_in(folder.path);
@@ -123,7 +124,8 @@ TEST_CASE("200 kills lose at most what was done in the last moments, and never h
     Model model;
     size_t lost = 0, steps = 0, wrong = 0, wrong_views = 0, reverts = 0, kept_before = 0, opened_with_loss = 0;
     int64_t longest_lost_ns = 0, longest_opening_ns = 0;
-    for (uint32_t round = 0; round < 200; ++round) {
+    const uint32_t rounds = repeats(40, 200);
+    for (uint32_t round = 0; round < rounds; ++round) {
         told->steps = 0;
         const pid_t child = ::fork();
         REQUIRE(child >= 0);
@@ -170,12 +172,13 @@ TEST_CASE("200 kills lose at most what was done in the last moments, and never h
     ::munmap(told, sizeof(Told));
     CHECK(wrong == 0);
     CHECK(wrong_views == 0);
-    CHECK(reverts > 50);  // of 200 rounds, those after the first
-    CHECK(steps >= 200);  // the exact number depends on the machine
-    MESSAGE(steps, " steps, ", lost, " lost in ", opened_with_loss, " of 200 kills, at most of the last ",
+    CHECK(reverts > rounds / 4);  // every round after the first
+    CHECK(steps >= rounds);       // the exact number depends on the machine
+    MESSAGE(steps, " steps, ", lost, " lost in ", opened_with_loss, " of ", rounds, " kills, at most of the last ",
             double(longest_lost_ns) * 1e-6, " ms; opened in at most ", double(longest_opening_ns) * 1e-6, " ms");
-    // The guarantee is 250 ms; the rest is slack for a stalled machine.
-    CHECK(longest_lost_ns < 2'000'000'000);
+    // The guarantee is 250 ms; the rest is slack for a stalled machine, and only a slow run, which has the machine to
+    // itself, judges by a clock.
+    if (is_slow()) CHECK(longest_lost_ns < 2'000'000'000);
     for (const fs::directory_entry& entry : fs::directory_iterator(folder.path))
         CHECK_FALSE(contains(entry.path().filename().string(), ".old"));
 }
