@@ -52,7 +52,12 @@ class Stability(unittest.TestCase):
             measured_page = Path(CASES) / "STABILITY.md"
             self.assertEqual(result.stdout, f"{page} and {measured_page} are written\n")
             # No case is lost and none is new: a change of cases or bounds comes with a new page.
-            self.assertEqual(page.read_text().splitlines(), self.committed.splitlines())
+            written, committed = rows_of(page.read_text(), 4), rows_of(self.committed, 4)
+            if os.environ.get("SHVR_SLOW") == "1":  # the page is that of the everyday run; a slow one tries more inputs
+                self.assertEqual([(row, values[0]) for row, values in written.items()],
+                                 [(row, values[0]) for row, values in committed.items()])
+            else:
+                self.assertEqual(page.read_text().splitlines(), self.committed.splitlines())
         measured = rows_of(measured_page.read_text(), 6)
         self.assertEqual(list(measured), list(rows_of(self.committed, 4)))
         for row, (bound, _, error, worst) in measured.items():

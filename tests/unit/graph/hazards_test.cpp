@@ -11,7 +11,10 @@
 
 #include <doctest/doctest.h>
 
+#include "tests/support/slow.h"
+
 using namespace shvr;
+using namespace shvr::test;
 
 namespace {
 
@@ -230,18 +233,20 @@ TEST_CASE("the checker of hazards finds a hazard in each simple graph without it
     CHECK(count_hazards({{{}, {write}}, {order, {}}, {from_transfer, {read}}}) == 1);
 }
 
-TEST_CASE("no hazard is left in 3000 random sequences of frames")
+TEST_CASE("no hazard is left in random sequences of frames")
 {
-    for (uint32_t seed = 0; seed < 3000; ++seed) {
+    const uint32_t seeds = repeats(600, 3000);
+    for (uint32_t seed = 0; seed < seeds; ++seed) {
         CAPTURE(seed);
         Generator generator(seed, seed % 4 == 0);
         REQUIRE(count_hazards(run_frames(generator, 1 + seed % 3)) == 0);
     }
 }
 
-TEST_CASE("among compute passes, leaving out any barrier of 2000 random frames leaves a hazard")
+TEST_CASE("among compute passes, leaving out any barrier of random frames leaves a hazard")
 {
-    for (uint32_t seed = 0; seed < 2000; ++seed) {
+    const uint32_t seeds = repeats(400, 2000);
+    for (uint32_t seed = 0; seed < seeds; ++seed) {
         CAPTURE(seed);
         Generator generator(seed, true);
         std::vector<Event> events = run_frames(generator, 1);
@@ -257,7 +262,8 @@ TEST_CASE("among compute passes, leaving out any barrier of 2000 random frames l
 TEST_CASE("with copies among the passes, few barriers could be left out")
 {
     size_t barriers = 0, spare = 0;
-    for (uint32_t seed = 0; seed < 1000; ++seed) {
+    const uint32_t seeds = repeats(300, 1000);
+    for (uint32_t seed = 0; seed < seeds; ++seed) {
         Generator generator(seed, false);
         std::vector<Event> events = run_frames(generator, 1 + seed % 3);
         for (Event& event : events) {

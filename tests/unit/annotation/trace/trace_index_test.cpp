@@ -7,7 +7,10 @@
 
 #include <doctest/doctest.h>
 
+#include "tests/support/slow.h"
+
 using namespace shvr;
+using namespace shvr::test;
 
 namespace {
 
@@ -107,6 +110,10 @@ TEST_CASE("the nearest of 100 000 points takes far less than going through them,
         const uint32_t found = index.nearest(at).value();
         const auto middle = Clock::now();
         sum += found;
+        if (i % 400 == 0) {
+            const auto to = [&](const glm::dvec3& p) { return glm::distance(p, at); };
+            CHECK(to(points[found]) == to(*std::ranges::min_element(points, {}, to)));
+        }
         const auto moved = uint32_t(random() % points.size());
         index.set(moved, points[moved] = at);
         edited_us += microseconds(Clock::now() - middle);
@@ -123,7 +130,8 @@ TEST_CASE("the nearest of 100 000 points takes far less than going through them,
     MESSAGE("100 000 points: added in " << build_us / 1000.0 << " ms, asked in " << asked_us / TIMES << " us, moved in "
                                         << edited_us / TIMES << " us; all gone through in " << all_us << " us (sum "
                                         << sum << ")");
-    // Paired in one run: an eighth and less on an idle machine.
+    // Paired in one run: an eighth and less on an idle machine. A clock judges in a slow run alone.
+    if (!is_slow()) return;
     CHECK(asked_us / TIMES < all_us);
     CHECK(edited_us / TIMES < all_us);
 }
