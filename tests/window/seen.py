@@ -9,17 +9,29 @@ import time
 from pathlib import Path
 
 from harness import ENVIRONMENT, SHVR
-from test_view import PATIENCE_S, SIDE_PANEL, WINDOW, Window
+from window import PATIENCE_S, SIDE_PANEL, WINDOW, Window
 
-KEYS_FILE = Path("ui/workbench/bindings/KEYS.md")
 KEY_NAMES = {",": "comma", ".": "period", "/": "slash", "=": "equal", "-": "minus", "[": "bracketleft",
              "]": "bracketright", "PageUp": "Prior", "PageDown": "Next", "Space": "space", "Enter": "Return"}
+
+PANELS = {"transfer_function": "Transfer function", "groups": "Colour groups", "probe": "Brush and probe",
+          "touch": "Touch and guidance", "trace": "Tracing", "trace_list": "Tracing list", "light": "Light and depth",
+          "occlusion": "Ambient occlusion", "cuts": "Cutting planes", "quality": "Render quality",
+          "aids": "What is shown", "views": "Views", "history": "History"}   # with their titles
+
+
+def keys_file():
+    """The table of shortcuts, in whichever room of the program its bindings are."""
+    found = [path for room in ("engine", "ui") for path in Path(room).rglob("KEYS.md")]
+    if len(found) != 1:
+        raise FileNotFoundError(f"KEYS.md: {len(found)} files below engine and ui; expected one, run from the tree's root")
+    return found[0]
 
 
 def shortcut_rows():
     """The table of shortcuts: [{id, does, today, thesis, action}], in order."""
     found = []
-    for line in KEYS_FILE.read_text().splitlines():
+    for line in keys_file().read_text().splitlines():
         cells = [cell.strip() for cell in line.strip()[1:-1].split("|")]
         if line.startswith("| `") and len(cells) == 5:
             found.append(dict(zip(["id", "does", "today", "thesis", "action"],
@@ -72,7 +84,15 @@ def read_xwd(data):
     return width, height, rows
 
 
+def only_panel(unfolded):
+    """Preferences in which it is the only panel that is unfolded."""
+    folds = {name: {"folded": name != unfolded} for name in PANELS}
+    return {"layout": {"panels": folds}, "hints_seen": 3}
+
+
 class Seen(Window):
+    last_seen = (-1, 0.0)   # number of a frame, and when it was seen first
+
     def view(self, *arguments, preferences=None, environment=None):
         """Starts the window with a configuration of its own, a log, and its words in a file."""
         self.log, self.words = self.folder / "log.jsonl", self.folder / "words.json"
@@ -81,6 +101,8 @@ class Seen(Window):
         if preferences is not None:
             text = json.dumps({"shvr_preferences": 1, **preferences})
             (self.configuration / "preferences.json").write_text(text)
+        for before in (self.log, self.words):   # left by a window that was closed
+            before.unlink(missing_ok=True)
         self.start(*arguments, "--log", self.log,
                    environment={"XDG_CONFIG_HOME": self.configuration.parent, "SHVR_SCREEN_TEXTS": self.words,
                                 **(environment or {})})
@@ -139,12 +161,75 @@ class Seen(Window):
             if seen["box"] == before["box"]:
                 return seen
 
+    def see_frames(self, count=2):
+        """Waits for frames that begin from now on: they show what was sent before. A key without a meaning keeps them
+        coming."""
+        last = self.frame()["frame"] + count
+
+        def are_drawn():
+            nonlocal last
+            now = self.drawn_number()
+            last = min(last, now + count)   # a device that is started again counts from 0
+            return now >= last
+        self.until(are_drawn, f"frame {last}")
+
+    def drawn_number(self):
+        """The number of the frame that was drawn last. At rest, a key without a meaning asks for more frames."""
+        now = time.monotonic()
+        number = self.frame()["frame"]
+        if number != self.last_seen[0]:
+            self.last_seen = number, now
+        elif now - self.last_seen[1] > 0.2:
+            self.last_seen = number, now
+            self.do("key", "Shift_L", pause_s=0)
+        return number
+
+    def see_picture(self):
+        """Waits for the picture that what was sent before leads to, with nothing left to be refined."""
+        self.see_frames()
+        self.until(lambda: self.frame()["sharp"], "sharp picture")
+
+    def probe_rests(self):
+        """Waits until the probe has come to where the pointer leads it: its label stands still over three frames, of
+        those that begin from now on."""
+        first, places = self.frame()["frame"] + 2, {}
+
+        def stands_still():
+            self.drawn_number()
+            frame = self.frame()
+            if frame["frame"] >= first:
+                places[frame["frame"]] = [seen["box"] for seen in frame["texts"]
+                                          if seen["window"] == "##Background" and seen["text"].endswith(" deep")]
+            last = list(places.values())[-3:]
+            return len(last) == 3 and all(place and place == last[0] for place in last)
+        self.until(stands_still, "probe at rest")
+
+    def lead_probe(self, x, y):
+        """Moves the pointer, and waits until the probe has followed it."""
+        self.do("mousemove", x, y, pause_s=0)
+        self.probe_rests()
+
+    def open(self, path):
+        """By the menu, as a user does."""
+        self.click_on("File", "##MainMenuBar")
+        self.click_on("Open...", "##Menu_00")
+        self.see_at_rest("Hidden")
+        self.do("key", "ctrl+a", "type", "--delay", 30, path, pause_s=0)
+        self.see(str(path), "Open a volume")
+        self.check_key("Enter", "open")
+
     def see_no_more(self, text, window=None):
         self.until(lambda: not self.seen(text, window), f"screen without '{text}'")
 
     def open_scan(self, session, *arguments, **others):
         self.view(session, *arguments, **others)
         self.until(lambda: self.frame()["sharp"] and self.rests(), "sharp picture")
+
+    @staticmethod
+    def stays(measure, seconds):
+        before = measure()
+        time.sleep(seconds)
+        return measure() == before
 
     def rests(self):
         """No frame is drawn any more: the window has its size, and its panels their places."""
@@ -162,9 +247,11 @@ class Seen(Window):
         """With the mouse, where the words are; the pointer rests and the button is held for some frames, as by a
         hand."""
         x, y = self.middle_of(self.see_at_rest(text, window))
-        for step in (["mousemove", x - 2, y, "mousemove", x, y], ["mousedown", button], ["mouseup", button]):
+        self.do("mousemove", x - 2, y, "mousemove", x, y, pause_s=0)
+        self.see_frames()   # headings of panels take a press only where the frame before had the pointer over them
+        for step in ("mousedown", "mouseup"):
             before = self.frame()["frame"]
-            self.do(*step, pause_s=0)
+            self.do(step, button, pause_s=0)
             self.until(lambda: self.program.poll() is not None or self.frame()["frame"] > before, "a frame")
 
     def pixels(self):
@@ -196,6 +283,11 @@ class Seen(Window):
         finally:
             self.program.send_signal(signal.SIGCONT)
 
+    def unfold(self, panel, instead_of):
+        """Folds the panel that only_panel() left open, and unfolds this one."""
+        for each in (instead_of, panel):
+            self.check_follows(lambda: self.click_on(PANELS[each], "Side panel"), "prefer")
+
     # ---- What was done
 
     def done(self, since=0):
@@ -205,13 +297,47 @@ class Seen(Window):
         lines = self.log.read_text().split("\n")[:-1]
         return [json.loads(line) for line in lines[since:]]
 
-    def what_follows(self, cause, wanted, patience_s=20):
+    def what_follows(self, cause, wanted, patience_s=PATIENCE_S):
         """Calls `cause`, and waits until one of the actions that it leads to is `wanted`; returns what was logged."""
         before = len(self.done())
         cause()
         end = time.monotonic() + patience_s
         while True:
             found = [in_short(action) for action in self.done(before)]
-            if wanted in found or time.monotonic() > end:
+            if wanted in found or time.monotonic() > end or self.program.poll() is not None:
                 return found
             time.sleep(0.02)
+
+    def check_follows(self, cause, wanted):
+        """Calls `cause`, which must lead to the action `wanted`."""
+        found = self.what_follows(cause, wanted)
+        self.assertIn(wanted, found, f"awaited for {PATIENCE_S} s, with the program ended: {self.program.poll()}")
+
+    def check_key(self, chord, wanted):
+        self.check_follows(lambda: self.press(chord), wanted)
+
+    def press_first(self, chord, wanted):
+        """Presses what prepares something else; what it prepares may be so already: then it leads to another action, or
+        to none."""
+        before = len(self.done())
+        self.press(chord)
+        last = self.frame()["frame"] + 3
+
+        def is_answered():
+            return wanted in map(in_short, self.done(before)) or self.drawn_number() >= last
+        self.until(is_answered, f"answer to {chord}")
+
+    def check_probe(self, x, y):
+        """Puts the probe onto what is seen there."""
+        self.check_follows(lambda: self.put_probe(x, y, pause_s=0), "probe_onto")
+
+    def check_stroke(self, *places, **others):
+        """Paints along these places by the key that paints."""
+        self.check_follows(lambda: self.stroke(*places, pause_s=0, **others), "paint_here")
+
+    def saved(self, session):
+        """The session as the file has it once it was saved; something in it must have changed."""
+        before = session.read_text()
+        self.check_key("Ctrl+S", "save")
+        self.until(lambda: session.read_text() != before, "saved session")
+        return json.loads(session.read_text())

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from harness import ENVIRONMENT, SHVR
 from seen import Seen
-from test_view import PATIENCE_S, WINDOW
+from window import PATIENCE_S, WINDOW
 
 
 class Faults(Seen):

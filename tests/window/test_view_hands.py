@@ -4,7 +4,7 @@ import re
 import time
 import unittest
 
-from test_view import PATIENCE_S, WINDOW, Window
+from window import PATIENCE_S, WINDOW, Window
 
 
 class Hands(Window):

@@ -4,7 +4,7 @@ import time
 import unittest
 
 from seen import Seen, in_short
-from test_view import PATIENCE_S
+from window import PATIENCE_S
 
 
 class Open(Seen):

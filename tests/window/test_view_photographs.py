@@ -10,7 +10,7 @@ from pathlib import Path
 
 from harness import SHVR
 from seen import Seen
-from test_view import Display
+from window import Display
 
 FOLDER = Path(SHVR).resolve().parent / "photographs"
 LONG = "Leitbündel des mittleren Blütenstiels mit seinem Nebenast"

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from harness import SHVR
 from seen import Seen, pressed, shortcut_rows
-from test_view import SIDE_PANEL
+from window import SIDE_PANEL
 
 EVENTS = 200
 SIZE = (680, 420)   # small, since replaying draws it for every action

@@ -6,7 +6,7 @@ import unittest
 from pathlib import Path
 
 from harness import ENVIRONMENT, read_png_header
-from test_view import SIDE_PANEL, WINDOW, Window
+from window import SIDE_PANEL, WINDOW, Window
 
 MENU, TOOLS = 20, 31          # heights in pixels, at a scale of 1
 TOOL, FIRST_TOOL = 31, 20     # from tool to tool, and the middle of the first

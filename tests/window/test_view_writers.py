@@ -6,7 +6,7 @@ import time
 import unittest
 
 from harness import ENVIRONMENT, SHVR
-from test_view import PATIENCE_S, WINDOW, Window
+from window import PATIENCE_S, WINDOW, Window
 
 DAB = {"op": "paint", "brush": "fill", "region": "ball", "path": [[32, 32, 32]], "radius": 5, "threshold": 0, "group": 3}
 
