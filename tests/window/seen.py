@@ -181,7 +181,7 @@ class Seen(Window):
             self.last_seen = number, now
         elif now - self.last_seen[1] > 0.2:
             self.last_seen = number, now
-            self.do("key", "Shift_L", pause_s=0)
+            self.do("key", "Menu", pause_s=0)
         return number
 
     def see_picture(self):
@@ -326,6 +326,20 @@ class Seen(Window):
         def is_answered():
             return wanted in map(in_short, self.done(before)) or self.drawn_number() >= last
         self.until(is_answered, f"answer to {chord}")
+
+    def check_drag(self, begin, way, wanted):
+        """From a place over others, with the left button; frames see the pointer at rest, the button held, and each
+        place."""
+        def drag():
+            self.do("mousemove", *begin, pause_s=0)
+            self.see_frames()
+            self.do("mousedown", 1, pause_s=0)
+            for place in way:
+                self.see_frames()
+                self.do("mousemove", *place, pause_s=0)
+            self.see_frames()
+            self.do("mouseup", 1, pause_s=0)
+        self.check_follows(drag, wanted)
 
     def check_probe(self, x, y):
         """Puts the probe onto what is seen there."""

@@ -1,31 +1,46 @@
 """The window, driven by real key and mouse events on a virtual display (Xvfb, xdotool)."""
 import json
 import signal
-import time
 import unittest
 
 from harness import Volume, read_png_header
-from window import WINDOW, Window
+from seen import Seen, only_panel
+from window import WINDOW
 
 
-class View(Window):
-    def test_a_scan_is_looked_at_painted_saved_and_photographed(self):
-        session = self.write_ball()
-        self.start(session)
-        self.wait_for_window("sphere.* - SHVR")
+class View(Seen):
+    def open_ball(self, *arguments, panel=None, environment=None, **keys):
+        """The session of a ball, opened; the pointer is over its middle. `panel`: only this one is unfolded."""
+        session = self.write_ball(**keys)
+        self.open_scan(session, *arguments, environment=environment,
+                       preferences=only_panel(panel) if panel else {"hints_seen": 3})
         x, y = self.middle()
+        self.do("mousemove", x, y, pause_s=0)
+        return session, x, y
+
+    def photograph(self, session, number=1):
+        self.check_key("F12", "screenshot")
+        path = self.folder / f"{session.stem}-view-{number}.png"
+        self.wait_for_file(path)
+        return path
+
+    def turn(self, x, y):
+        self.check_follows(lambda: self.do("mousemove", x, y, "mousedown", 1, "mousemove", x + 40, y + 15, "mousemove",
+                                           x + 80, y + 20, "mouseup", 1, pause_s=0), "orbit")
+
+    def test_a_scan_is_looked_at_painted_saved_and_photographed(self):
+        session, x, y = self.open_ball()
         # Look from elsewhere, then put the probe onto the ball and paint a stroke.
-        self.do("mousemove", x, y, "mousedown", 1, "mousemove", x + 40, y + 15, "mousemove", x + 80, y + 20, "mouseup", 1)
-        self.put_probe(x, y, pause_s=1)
-        self.do("mousedown", 3, pause_s=0.1)
-        self.do("mousemove", x + 10, y, "mousemove", x + 20, y + 5, "mouseup", 3, pause_s=1)
-        self.do("key", "7", pause_s=0)
-        self.stroke((x + 20, y + 5), (x - 30, y - 10))
-        self.do("key", "ctrl+z", pause_s=0.5)
-        self.do("key", "ctrl+s", pause_s=0.5)
-        self.do("key", "F12")
-        photograph = self.folder / "session-view-1.png"
-        self.wait_for_file(photograph)
+        self.turn(x, y)
+        self.check_probe(x, y)
+        self.check_follows(lambda: self.do("mousedown", 3, pause_s=0), "paint_here")
+        self.check_follows(lambda: self.do("mousemove", x + 10, y, "mousemove", x + 20, y + 5, "mouseup", 3, pause_s=0),
+                           "paint_here")
+        self.check_key("7", "set probe.group")
+        self.check_stroke((x + 20, y + 5), (x - 30, y - 10))
+        self.check_key("Ctrl+Z", "undo")
+        self.saved(session)
+        photograph = self.photograph(session)
         report = self.finish()
 
         self.assertGreater(report["voxels_in_group"].get("3", 0), 50, report["messages"])
@@ -40,29 +55,29 @@ class View(Window):
         self.check_photograph(session, photograph)
 
     def test_the_window_is_divided_and_its_parts_are_used(self):
-        session = self.write_ball()
-        self.start(session)
-        self.wait_for_window("sphere.* - SHVR")
-        x, y = self.middle()
+        session, x, y = self.open_ball()
         right, below = x + 140, y + 120   # well inside the quarters beside and below the first
-        for number, key in enumerate(["F9", "shift+F11", "F6"], 1):
-            self.do("mousemove", x - 100, y - 100, "key", key, pause_s=1)
+        for number, key in enumerate(["F9", "Shift+F11", "F6"], 1):
+            self.do("mousemove", x - 100, y - 100, pause_s=0)
+            self.check_key(key, "set view.arrangement")
+            self.see_picture()
             if key == "F9":   # a map: drag and wheel move the camera
-                self.do("mousemove", right, y - 100, "mousedown", 1, "mousemove", right + 20, y - 90,
-                        "mousemove", right + 40, y - 80, "mouseup", 1, "click", 4, pause_s=1)
+                self.check_follows(lambda: self.do(
+                    "mousemove", right, y - 100, "mousedown", 1, "mousemove", right + 20, y - 90, "mousemove",
+                    right + 40, y - 80, "mouseup", 1, pause_s=0), "drag_in_map")
+                self.check_follows(lambda: self.do("click", 4, pause_s=0), "move_view")
             if key == "F6":   # the slice across z: the wheel moves it by a voxel
-                self.do("mousemove", right, y - 100, pause_s=0.5)
-                self.do("key", "ctrl+s", pause_s=1)
-                before = json.loads(session.read_text())["probe"]["voxel"]
-                self.do("click", "--repeat", 3, "--delay", 60, 4, pause_s=1)
-            self.do("key", "F12")
-            self.wait_for_file(self.folder / f"session-view-{number}.png")
-        self.do("key", "ctrl+s", pause_s=0.5)
+                self.lead_probe(right, y - 100)
+                before = self.saved(session)["probe"]["voxel"]
+                for _ in range(3):
+                    self.check_follows(lambda: self.do("click", 4, pause_s=0), "push_probe")
+            self.see_picture()
+            self.photograph(session, number)
+        saved = self.saved(session)
         report = self.finish()
         for said in ["Overview", "Two eyes: side by side", "Slices through the probe"]:
             self.assertTrue(any(line.startswith(said) for line in report["messages"]), report["messages"])
         self.assertEqual(report["messages"].count(""), 0)
-        saved = json.loads(session.read_text())
         self.assertEqual(saved["view"]["arrangement"], "slices")
         for axis, way in enumerate([0, 0, -3]):   # away from the viewer, who looks from the top
             self.assertAlmostEqual(saved["probe"]["voxel"][axis], before[axis] + way, places=3)
@@ -70,14 +85,11 @@ class View(Window):
         self.check_photograph(session, self.folder / "session-view-3.png")
 
     def test_a_large_screenshot_is_the_picture_of_render(self):
-        session = self.write_ball(interaction={"screenshot_scale": 2, "resolution": 1, "frames_per_second": 60})
-        self.start(session)
-        self.wait_for_window("sphere.* - SHVR")
-        x, y = self.middle()
-        self.do("mousemove", x, y, "key", "shift+F12")
+        session, _, _ = self.open_ball(interaction={"screenshot_scale": 2, "resolution": 1, "frames_per_second": 60})
+        self.check_key("Shift+F12", "screenshot")
         photograph = self.folder / "session-view-1.png"
         self.wait_for_file(photograph)
-        self.do("key", "ctrl+s", pause_s=0.5)
+        self.check_key("Ctrl+S", "save")
         self.finish()
         width, height = read_png_header(photograph)[:2]
         self.assertGreater(width, WINDOW[0])
@@ -86,42 +98,34 @@ class View(Window):
         self.assertEqual(self.check_json("compare", photograph, picture)["max_abs"], 0)
 
     def test_assistance_guides_the_probe_and_the_servo_keeps_time(self):
-        self.start(self.write_ball())
-        self.wait_for_window("sphere.* - SHVR")
-        x, y = self.middle()
-        self.put_probe(x, y, pause_s=0.5)
-        self.do("key", "space", pause_s=0.5)
+        _, x, y = self.open_ball()
+        self.check_probe(x, y)
+        self.check_key("Space", "set probe.guided")
         for step in range(20):
             self.do("mousemove", x + 2 * step, y + step, pause_s=0.03)
-        self.do("key", "Page_Up", "key", "End", "key", "Home", pause_s=0.5)
+        self.check_key("PageUp", "scale_probe")
+        self.check_key("End", "set probe.brush")
+        self.check_key("Home", "fit_view")
+        self.see_picture()
         report = self.finish()
         self.assertGreater(report["servo"]["ticks"], 300)
         self.assertGreater(report["servo"]["relevance_age"]["count"], 100)
         self.assertTrue(any("Guidance on" in line for line in report["messages"]), report["messages"])
 
     def test_a_control_point_is_dragged(self):
-        session, log = self.write_ball(), self.folder / "log.jsonl"
-        self.start(session, "--log", log)
-        self.wait_for_window("sphere.* - SHVR")
+        session, _, _ = self.open_ball()
         before = json.loads(session.read_text())["transfer_function"]
-        # The widget's upper edge holds the points of opacity 1; the last lies in its right corner. From below, since
-        # there are buttons above.
-        for y in range(480, 100, -6):
-            self.do("mousemove", WINDOW[0] - 31, y, "sleep", 0.1, "mousedown", 1, "sleep", 0.1, "mousemove",
-                    WINDOW[0] - 60, y + 10, "sleep", 0.1, "mouseup", 1, pause_s=0.2)
-            if "transfer_function" in log.read_text():
-                break
-        self.do("key", "ctrl+s", pause_s=0.5)
+        # The widget's upper edge holds the points of opacity 1; the last lies in its right corner. The word of a
+        # threshold begins a quarter of the letters' height below that edge.
+        x, y = WINDOW[0] - 31, round(self.see_at_rest("paint", "Side panel")["box"][1] - 14 / 4)
+        self.check_drag((x, y), [(x - 29, y + 10)], "set transfer_function.points")
+        self.assertNotEqual(self.saved(session)["transfer_function"], before)
         self.finish()
-        self.assertNotEqual(json.loads(session.read_text())["transfer_function"], before)
 
     def test_paint_that_was_not_saved_is_saved_when_the_window_closes(self):
-        session = self.write_ball()
-        self.start(session)
-        self.wait_for_window("sphere.* - SHVR")
-        x, y = self.middle()
-        self.put_probe(x, y)
-        self.do("click", 3, pause_s=1)
+        session, x, y = self.open_ball()
+        self.check_probe(x, y)
+        self.check_follows(lambda: self.do("click", 3, pause_s=0), "paint_here")
         report = self.finish()
         painted = report["voxels_in_group"]["3"]
         again = self.check_json("annotate", session, "--script", self.write_script("s.jsonl", [
@@ -129,24 +133,22 @@ class View(Window):
         self.assertEqual(again["commands"], 1)
 
     def test_three_nodes_are_traced_linked_moved_deleted_undone_and_saved(self):
-        session = self.write_ball()
-        self.start(session)
-        self.wait_for_window("sphere.* - SHVR")
-        x, y = self.middle()
-        self.do("mousemove", x, y, "key", "x", pause_s=0.4)
+        session, x, y = self.open_ball()
+        self.check_key("X", "set probe.tool")
         for at in [(x - 60, y), (x, y - 60), (x + 60, y)]:
-            self.do("mousemove", *at, pause_s=0.4)
-            self.do("key", "n", pause_s=0.3)
-        self.do("mousemove", x - 55, y, pause_s=0.4)   # the last node is selected, the first one near
-        self.do("key", "comma", pause_s=0.3)
-        self.do("keydown", "m", "mousemove", x + 40, y + 20, pause_s=0.4)
-        self.do("mousemove", x + 60, y + 60, pause_s=0.4)
-        self.do("keyup", "m", pause_s=0.4)
-        self.do("mousemove", x, y - 55, pause_s=0.4)
-        self.do("key", "period", "key", "ctrl+5", "key", "equal", pause_s=0.4)
-        self.do("key", "Delete", pause_s=0.3)
-        self.do("key", "ctrl+z", pause_s=0.4)
-        self.do("key", "ctrl+s", pause_s=0.7)
+            self.lead_probe(*at)
+            self.check_key("N", "node")
+        self.lead_probe(x - 55, y)   # the last node is selected, the first one near
+        self.check_key(",", "link")
+        self.check_follows(lambda: self.do("keydown", "m", pause_s=0), "drag_node")
+        self.lead_probe(x + 40, y + 20)
+        self.lead_probe(x + 60, y + 60)
+        self.check_follows(lambda: self.do("keyup", "m", pause_s=0), "drag_node")
+        self.lead_probe(x, y - 55)
+        for key, action in ((".", "select"), ("Ctrl+5", "group"), ("=", "radius"), ("Delete", "delete"),
+                            ("Ctrl+Z", "undo")):
+            self.check_key(key, action)
+        saved = self.saved(session)
         report = self.finish()
         said = "\n".join(report["messages"])
         for line in ["Node 0 added", "Node 2 added, linked with node 1", "Node 2 is linked with the nearest node",
@@ -155,7 +157,6 @@ class View(Window):
             self.assertIn(line, said)
         self.assertEqual((report["undoable"], report["redoable"]), (7, 1))
 
-        saved = json.loads(session.read_text())
         traced = self.folder / "traced.graphml"
         self.assertEqual(saved["annotation"]["trace"], "paint.graphml")
         self.check("export", session, "--trace", traced, "--metrics", self.folder / "metrics.csv")
@@ -170,11 +171,8 @@ class View(Window):
         swc = self.folder / "old.swc"
         swc.write_text("1 3 10 32 32 2 -1\n2 3 30 32 32 2 1\n")
         before = swc.read_text()
-        session = self.write_ball(annotation={"mask": "paint.mask", "trace": "old.swc"})
-        self.start(session)
-        self.wait_for_window("sphere.* - SHVR")
-        x, y = self.middle()
-        self.do("mousemove", x, y, "key", "n", pause_s=0.5)
+        session, _, _ = self.open_ball(annotation={"mask": "paint.mask", "trace": "old.swc"})
+        self.check_key("N", "node")
         report = self.finish()   # closing saves
         self.assertIn("Node 2 added", "\n".join(report["messages"]))
         self.assertEqual(swc.read_text(), before)
@@ -182,13 +180,11 @@ class View(Window):
         self.assertEqual((self.folder / "old.graphml").read_text().count("<node "), 3)
 
     def test_the_preview_tells_what_painting_then_changes(self):
-        session = self.write_ball()
-        self.start(session)
-        self.wait_for_window("sphere.* - SHVR")
-        x, y = self.middle()
-        self.put_probe(x, y)
-        self.do("key", "F5", pause_s=3)
-        self.do("click", 3, pause_s=1)
+        session, x, y = self.open_ball(panel="probe")
+        self.check_probe(x, y)
+        self.check_key("F5", "set probe.preview")
+        self.until(lambda: any(seen["text"].endswith("voxels would change") for seen in self.seen()), "preview")
+        self.check_follows(lambda: self.do("click", 3, pause_s=0), "paint_here")
         report = self.finish()
         self.assertGreater(report["previewed_voxels"], 50, report["messages"])
         self.assertEqual(report["previewed_voxels"], report["voxels_in_group"].get("3"))
@@ -196,95 +192,89 @@ class View(Window):
 
     # ---- Nothing is lost
 
-    def saved(self, session):
+    @staticmethod
+    def in_file(session):
         return json.loads(session.read_text())
 
     def test_what_was_set_without_painting_is_saved_when_the_window_closes(self):
-        session = self.write_ball()
-        self.start(session)
-        self.wait_for_window("sphere.* - SHVR")
-        x, y = self.middle()
+        session, _, _ = self.open_ball()
         # A group, the brush's radius, a cutting plane, shading: settings, not paint.
-        self.do("mousemove", x, y, "key", "7", "key", "bracketright", "key", "ctrl+shift+Right", pause_s=0.5)
-        self.do("key", "F9", pause_s=0.5)
+        self.do("key", "7", "key", "bracketright", "key", "ctrl+shift+Right", pause_s=0)
+        self.check_key("F9", "set view.arrangement")
         self.finish()
-        self.assertEqual(self.saved(session)["probe"]["group"], 7)
-        self.assertEqual(self.saved(session)["view"]["arrangement"], "overview")
+        self.assertEqual(self.in_file(session)["probe"]["group"], 7)
+        self.assertEqual(self.in_file(session)["view"]["arrangement"], "overview")
 
     def test_what_was_set_without_painting_is_saved_when_another_scan_is_opened(self):
-        session = self.write_ball()
         other = self.write_ball(name="other.json")
-        self.start(session)
-        self.wait_for_window("sphere.* - SHVR")
-        self.do("mousemove", *self.middle(), "key", "7", pause_s=0.5)
+        session, _, _ = self.open_ball()
+        self.check_key("7", "set probe.group")
         self.open(other)
+        self.see("Opened ", "Status")
         report = self.finish()
         self.assertIn(f"Opened {other}", report["messages"])
-        self.assertEqual(self.saved(session)["probe"]["group"], 7)
+        self.assertEqual(self.in_file(session)["probe"]["group"], 7)
 
     def test_what_was_set_survives_a_kill_and_is_undone_in_order_with_paint(self):
-        session = self.write_ball()
         keys = self.with_keys(near_x_in="Y", near_y_in="U")
-        self.start(session, environment=keys)
-        self.wait_for_window("sphere.* - SHVR")
-        x, y = self.middle()
-        self.put_probe(x, y)
-        self.do("click", 3, pause_s=1)
-        # A cutting plane while its key is held, then the transfer function's preset: a step each.
-        self.do("keydown", "y", "sleep", 0.3, "keyup", "y", pause_s=0.7)
-        self.do("keydown", "u", "sleep", 0.3, "keyup", "u", pause_s=0.7)
+        session = self.write_ball()
+        self.view(session, environment=keys)
+        self.until(lambda: self.frame()["sharp"], "sharp picture")
+        self.check_probe(*self.middle())
+        self.check_follows(lambda: self.do("click", 3, pause_s=0), "paint_here")
+        self.see("Painted", "Status")
+        journal = session.with_suffix(".journal")
+        # Two cutting planes, each while its key is held: a step each, once the hand has rested.
+        for key, axis in (("y", "x"), ("u", "y")):
+            size = journal.stat().st_size
+            self.check_follows(lambda: self.do("keydown", key, "sleep", 0.3, "keyup", key, pause_s=0), "end_step")
+            self.until(lambda: journal.stat().st_size > size, f"cut across {axis} in the journal")
+        self.until(lambda: self.stays(lambda: journal.stat().st_size, 1.0), "rest of the journal")
         self.program.kill()
         self.program.communicate()
         self.assertNotIn("lower", json.loads(session.read_text()).get("cut", {}))
 
-        self.start(session, environment=keys)
-        self.wait_for_window("sphere.* - SHVR")
-        self.do("key", "ctrl+z", pause_s=0.7)
+        self.view(session, environment=keys)
+        self.until(lambda: self.frame()["sharp"], "sharp picture")
+        self.check_key("Ctrl+Z", "undo")
         report = self.finish()
         self.assertIn("none of them is lost", " ".join(report["messages"]))
         self.assertTrue(any(message.startswith("Undone: cut: lower") for message in report["messages"]), report["messages"])
         self.assertGreater(report["voxels_in_group"]["3"], 0)
-        kept = self.saved(session)["cut"]["lower"]
+        kept = self.in_file(session)["cut"]["lower"]
         self.assertGreater(kept[0], 0.0)
         self.assertEqual(kept[1], 0.0)
 
     def test_where_it_was_looked_at_from_is_kept_where_there_is_a_session(self):
-        session = self.write_ball()
-        x, y = self.middle()
-        look = ["mousemove", x, y, "mousedown", 1, "mousemove", x + 40, y + 15, "mousemove", x + 80, y + 20, "mouseup", 1]
-        self.start(session)
-        self.wait_for_window("sphere.* - SHVR")
-        self.do(*look)
+        session, x, y = self.open_ball()
+        self.turn(x, y)
         self.assertNotIn("Saved", "\n".join(self.finish()["messages"]))
-        self.assertEqual(self.saved(session)["camera"], "window")
+        self.assertEqual(self.in_file(session)["camera"], "window")
         # Just looking at a bare volume creates no file.
         volume = Volume.noise((24, 24, 24), 1).write(self.folder, "bare")
         before = sorted(self.folder.iterdir())
-        self.start(volume)
-        self.wait_for_window("bare.* - SHVR")
-        self.do(*look)
+        self.open_scan(volume, preferences={"hints_seen": 3})
+        self.turn(x, y)
         self.finish()
         self.assertEqual(sorted(self.folder.iterdir()), before)
 
     def test_a_session_that_cannot_be_saved_is_left_only_by_closing_again(self):
-        session = self.write_ball()
-        self.start(session)
-        self.wait_for_window("sphere.* - SHVR")
-        self.do("mousemove", *self.middle(), "key", "7", pause_s=0.5)
+        session, _, _ = self.open_ball()
+        self.check_key("7", "set probe.group")
         session.unlink()
         session.mkdir()   # no file can be written there
-        self.do("key", "ctrl+q", pause_s=1.0)
+        self.press("Ctrl+Q")
+        self.see("Error: The window stays open", "Status")
         self.assertIsNone(self.program.poll())
         report = self.finish()
         self.assertIn("close it again to leave without saving", "\n".join(report["messages"]))
 
     def test_a_stroke_whose_bricks_are_on_their_way_is_finished_and_saved(self):
-        session = self.write_ball(volume={"procedural": "sphere", "size": [256, 256, 256]}, render={"paging": "always"},
-                                  probe={"radius_voxels": 12, "group": 3, "paint_threshold": 1, "brush": "fill"})
-        self.start(session, "--budget-device", 16, "--threads", 1)
-        self.wait_for_window("sphere.* - SHVR")
-        x, y = self.middle()
-        self.put_probe(x - 150, y, pause_s=2.5)
+        session, x, y = self.open_ball(
+            "--budget-device", 16, "--threads", 1, volume={"procedural": "sphere", "size": [256, 256, 256]},
+            render={"paging": "always"}, probe={"radius_voxels": 12, "group": 3, "paint_threshold": 1, "brush": "fill"})
+        self.check_follows(lambda: self.put_probe(x - 150, y, pause_s=0), "probe_onto")
+        self.see_picture()
         # All in one turn of the loop: the bricks of the stroke were never requested.
         self.program.send_signal(signal.SIGSTOP)
         self.stroke((x, y), (x + 40, y - 20), before_end=("key", "ctrl+s"), pause_s=0.3)
@@ -298,24 +288,24 @@ class View(Window):
     # ---- Failures are reported, and everything else continues
 
     def test_a_window_that_grows_over_the_budget_says_so_and_recovers(self):
-        session = self.write_ball()
         # Validation (1.3.239) of barriers between submissions falls over, on a busy machine, in the vkDeviceWaitIdle
         # before a new swapchain is made: a segmentation fault of the layer's own, once in about 60 times.
-        self.start(session, "--budget-device", 12, environment={"VK_LAYER_ENABLES": ""})
-        self.wait_for_window("sphere.* - SHVR")
+        self.open_ball("--budget-device", 12, environment={"VK_LAYER_ENABLES": ""})
         window = self.display.do("search", "--name", "sphere.* - SHVR").split()[0]
-        self.do("windowsize", window, 3000, 2400, pause_s=3)
-        self.do("windowsize", window, *WINDOW, pause_s=4)
-        self.do("key", "7", pause_s=4)
+        self.do("windowsize", window, 3000, 2400, pause_s=0)
+        self.until(lambda: any("device memory" in seen["text"] for seen in self.seen()), "failure that is said")
+        self.do("windowsize", window, *WINDOW, pause_s=0)
+        self.see_picture()
+        self.check_key("7", "set probe.group")
+        self.see_picture()
         report = self.finish()
         said = "\n".join(report["messages"])
         self.assertIn("device memory", said)
         self.assertTrue(report["view_complete"], said)
 
     def test_what_cannot_be_opened_is_said_over_the_start_page(self):
-        self.start(self.folder / "missing.nhdr")
-        self.wait_for_window("SHVR")
-        time.sleep(1.5)
+        self.view(self.folder / "missing.nhdr")
+        self.see("Error: ", "Status")
         report = self.finish()
         self.assertIn("missing.nhdr", "\n".join(report["messages"]))
 
