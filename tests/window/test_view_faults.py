@@ -11,20 +11,21 @@ from window import PATIENCE_S, WINDOW
 
 class Faults(Seen):
     def start_with_faults(self, session):
-        self.now, self.faults_log, self.log = (self.folder / name for name in ("faults", "faults.log", "log.jsonl"))
-        self.log.unlink(missing_ok=True)
+        self.now, self.faults_log = self.folder / "faults", self.folder / "faults.log"
         # Without hazards between submissions: after one that failed, that part of the validation layer (1.3.239)
         # follows what is gone, and crashes where the program waits for the device.
-        self.start(session, "--log", self.log,
-                   environment={"VK_LAYER_ENABLES": "", "VK_INSTANCE_LAYERS": "VK_LAYER_SHVR_faults",
-                                "SHVR_FAULTS_NOW": self.now, "SHVR_FAULTS_LOG": self.faults_log})
-        self.wait_for_window("sphere.* - SHVR")
+        self.open_scan(session, preferences={"hints_seen": 3},
+                       environment={"VK_LAYER_ENABLES": "", "VK_INSTANCE_LAYERS": "VK_LAYER_SHVR_faults",
+                                    "SHVR_FAULTS_NOW": self.now, "SHVR_FAULTS_LOG": self.faults_log})
         return self.middle()
+
+    def fired(self):
+        return self.faults_log.read_text().count("fired") if self.faults_log.exists() else 0
 
     def let_fail(self, *faults, meanwhile=lambda: None):
         """From now on; returns once the first of them has fired, while the pointer moves as a hand does. `meanwhile`:
         done once they may fire."""
-        before = self.faults_log.read_text().count("fired") if self.faults_log.exists() else 0
+        before = self.fired()
         written = self.folder / "faults.new"
         written.write_text(" ".join(faults))
         written.rename(self.now)
@@ -32,11 +33,16 @@ class Faults(Seen):
         x, y = self.middle()
         end = time.monotonic() + PATIENCE_S
         step = 0
-        while not self.faults_log.exists() or self.faults_log.read_text().count("fired") == before:
+        while self.fired() == before:
             self.assertLess(time.monotonic(), end, f"{faults} did not fire")
             step += 1
-            self.do("mousemove", x + 60 + step % 7, y + 60, pause_s=0.1)
-        self.do("mousemove", x + 60, y + 60, pause_s=1)
+            self.do("mousemove", x + 60 + step % 7, y + 60, pause_s=0.05)
+        self.do("mousemove", x + 60, y + 60, pause_s=0)
+
+    def recover_from(self, *faults, **others):
+        """Lets them fail, and waits until the whole picture is on the screen again."""
+        self.let_fail(*faults, **others)
+        self.see_picture()
 
     def tell_of(self, *calls):
         """Each is logged when it is first called from now on, and goes on as ever."""
@@ -45,45 +51,38 @@ class Faults(Seen):
         written.rename(self.now)
         end = time.monotonic() + PATIENCE_S
         while self.now.exists():   # until any call has been made
-            self.assertLess(time.monotonic(), end)
+            self.assertLess(time.monotonic(), end, f"no call was made since {self.now} was written")
             self.do("mousemove_relative", 1, 0, pause_s=0.1)
 
     def paint_at(self, x, y, group):
-        self.do("key", str(group), pause_s=0.2)   # it may be that one already
-        self.lead_to("probe_onto", lambda: self.put_probe(x, y, pause_s=0))
-        self.paint((x, y), (x + 8, y + 4))
+        self.press_first(str(group), "set probe.group")   # it may be that one already
+        self.check_probe(x, y)
+        self.check_stroke((x, y), (x + 8, y + 4))
 
-    def paint(self, *places):
-        self.lead_to("paint_here", lambda: self.stroke(*places, pause_s=0))
-
-    def lead_to(self, wanted, cause):
-        """Once more where it was not heeded: a device that is started again may take the moment of a click."""
-        for _ in range(3):
-            if wanted in self.what_follows(cause, wanted, patience_s=PATIENCE_S / 3):
-                return
-            self.assertIsNone(self.program.poll())
-        self.fail(f"{wanted} did not follow")
+    def photograph(self, session):
+        """After a save; returns its file."""
+        self.check_key("Ctrl+S", "save")
+        self.check_key("F12", "screenshot")
+        path = self.folder / f"{session.stem}-view-1.png"
+        self.wait_for_file(path)
+        return path
 
     def test_a_lost_device_is_made_anew_and_nothing_is_lost(self):
         session = self.write_ball()
         x, y = self.start_with_faults(session)
         self.paint_at(x, y, 3)
-        self.do("key", "ctrl+s", pause_s=1)
+        self.check_key("Ctrl+S", "save")
         self.paint_at(x - 25, y - 15, 5)            # not saved
         for call in ["vkQueueSubmit2", "vkWaitForFences", "vkGetFenceStatus", "vkQueuePresentKHR"]:
-            self.let_fail(f"{call}:3:device_lost")
-            time.sleep(1.5)
+            self.recover_from(f"{call}:3:device_lost")
         # A stroke that is under way goes on with the new device.
-        self.do("key", "6", pause_s=0.2)
-        self.lead_to("probe_onto", lambda: self.put_probe(x - 10, y + 20, pause_s=0))
-        self.do("keydown", "f", "mousemove_relative", 6, -4)
-        self.let_fail("vkQueueSubmit2:3:device_lost")
-        self.lead_to("paint_here", lambda: self.do("keyup", "f"))
+        self.check_key("6", "set probe.group")
+        self.check_probe(x - 10, y + 20)
+        self.check_follows(lambda: self.do("keydown", "f", "mousemove_relative", 6, -4, pause_s=0), "paint_here")
+        self.recover_from("vkQueueSubmit2:3:device_lost")
+        self.check_follows(lambda: self.do("keyup", "f", pause_s=0), "paint_here")
         self.paint_at(x + 20, y - 20, 7)
-        self.do("key", "ctrl+s", pause_s=1)
-        self.do("key", "F12")
-        photograph = self.folder / "session-view-1.png"
-        self.wait_for_file(photograph)
+        photograph = self.photograph(session)
         report = self.finish()
         said = "\n".join(report["messages"])
         self.assertEqual(said.count("was started again"), 5, said)
@@ -98,11 +97,12 @@ class Faults(Seen):
 
         def work(step):
             self.display.do("windowsize", window, WINDOW[0] - 9 * step, WINDOW[1] - 7 * step)
-            self.do("mousemove", x, y, "mousedown", 1, "mousemove", x + 20 + step, y + 9, "mouseup", 1, pause_s=0.2)
-            self.stroke((x, y), (x + 6, y + 2), pause_s=0.3)
+            self.see_frames()
+            self.check_follows(lambda: self.do("mousemove", x, y, "mousedown", 1, "mousemove", x + 20 + step, y + 9,
+                                               "mouseup", 1, pause_s=0), "orbit")
+            self.check_stroke((x, y), (x + 6, y + 2))
 
-        self.do("key", "3", pause_s=0.2)
-        self.put_probe(x, y)
+        self.check_probe(x, y)
         work(0)
         self.tell_of("vkDeviceWaitIdle", "vkQueueWaitIdle")
         for step in [*range(1, 9), *range(8, -1, -1)]:
@@ -110,7 +110,8 @@ class Faults(Seen):
         # Dragged by an edge: a swapchain for each frame, none of which is drawn in twice.
         for step in range(40):
             self.do("windowsize", window, WINDOW[0] - 3 * step, WINDOW[1] - 2 * step, pause_s=0.03)
-        self.do("mousemove", x + 3, y + 3, pause_s=1)
+        self.do("mousemove", x + 3, y + 3, pause_s=0)
+        self.see_picture()
         self.assertFalse(self.faults_log.exists(), "something waited for the device")
         self.assertEqual(sorted(self.finish()["voxels_in_group"]), ["3"])
         log = self.faults_log.read_text()
@@ -125,7 +126,7 @@ class Faults(Seen):
         for fault in ["vkQueuePresentKHR:1:surface_lost", "vkAcquireNextImageKHR:1:surface_lost",
                       "vkAcquireNextImageKHR:1:out_of_date", "vkQueuePresentKHR:1:out_of_date",
                       "vkQueuePresentKHR:1+:suboptimal"]:
-            self.let_fail(fault)
+            self.recover_from(fault)
         self.paint_at(x, y, 3)
         report = self.finish()
         said = "\n".join(report["messages"])
@@ -144,9 +145,10 @@ class Faults(Seen):
                 x, y = self.start_with_faults(session)
                 self.paint_at(x, y, 3)
                 self.let_fail(fault)
-                self.lead_to("set probe.group", lambda: self.do("key", "5", pause_s=0))
-                self.paint((x + 12, y + 8), (x - 8, y + 4))
-                time.sleep(2)   # frames that fail
+                self.check_key("5", "set probe.group")
+                self.check_stroke((x + 12, y + 8), (x - 8, y + 4))
+                for group in (6, 7) * 5:   # after each another frame fails
+                    self.check_key(str(group), "set probe.group")
                 report = self.finish()
                 self.assertEqual(sorted(report["voxels_in_group"]), ["3", "5"], report["messages"])
                 log = self.faults_log.read_text()
@@ -160,13 +162,9 @@ class Faults(Seen):
         for call, error in [("vkEndCommandBuffer", "out_of_device_memory"), ("vkQueueSubmit2", "out_of_host_memory"),
                             ("vkResetFences", "out_of_device_memory"), ("vkBeginCommandBuffer", "out_of_device_memory"),
                             ("vkAllocateDescriptorSets", "out_of_device_memory")]:
-            self.let_fail(f"{call}:1:{error}", f"{call}:2:{error}")
-            time.sleep(1)
+            self.recover_from(f"{call}:1:{error}", f"{call}:2:{error}")
         self.paint_at(x + 20, y - 20, 5)
-        self.do("key", "ctrl+s", pause_s=1)
-        self.do("key", "F12")
-        photograph = self.folder / "session-view-1.png"
-        self.wait_for_file(photograph)
+        photograph = self.photograph(session)
         report = self.finish()
         self.assertEqual(sorted(report["voxels_in_group"]), ["3", "5"], report["messages"])
         self.check_photograph(session, photograph)
@@ -186,20 +184,15 @@ class Faults(Seen):
                             ((820, 640), "vkGetPhysicalDeviceSurfaceCapabilitiesKHR:1:surface_lost"),
                             ((900, 600), "vkCreateSwapchainKHR:1:device_lost")]:
             with self.subTest(fault):
-                self.let_fail(fault, meanwhile=lambda: self.do("windowsize", self.window(), *size, pause_s=0.3))
-                time.sleep(1)
+                self.recover_from(fault, meanwhile=lambda: self.do("windowsize", self.window(), *size, pause_s=0))
                 self.assertIsNone(self.program.poll())
         # Out of sight nothing is lost, and in sight again the work goes on.
         hidden = self.window()
-        self.let_fail("vkQueueSubmit2:1:device_lost", meanwhile=lambda: self.do(
-            "key", "5", "keydown", "f", "mousemove_relative", 8, 4, "windowunmap", hidden, "sleep", 0.5, "windowmap", hidden,
-            "keyup", "f", pause_s=1))
-        time.sleep(1.5)
+        self.recover_from("vkQueueSubmit2:1:device_lost", meanwhile=lambda: self.do(
+            "key", "5", "keydown", "f", "mousemove_relative", 8, 4, "windowunmap", hidden, "sleep", 0.5, "windowmap",
+            hidden, "keyup", "f", pause_s=0))
         self.paint_at(x + 20, y - 20, 7)
-        self.do("key", "ctrl+s", pause_s=1)
-        self.do("key", "F12")
-        photograph = self.folder / "session-view-1.png"
-        self.wait_for_file(photograph)
+        photograph = self.photograph(session)
         report = self.finish()
         self.assertLessEqual({"3", "7"}, set(report["voxels_in_group"]), report["messages"])
         self.check_photograph(session, photograph)
@@ -211,11 +204,9 @@ class Memory(Seen):
     def ask_for(self, path):
         self.press("Ctrl+O")
         self.see_at_rest("Hidden")
-        self.do("key", "ctrl+a", "type", "--delay", 30, path)
+        self.do("key", "ctrl+a", "type", "--delay", 30, path, pause_s=0)
+        self.see(str(path), "Open a volume")
         self.press("Enter")
-
-    def paint(self, *places):
-        self.assertIn("paint_here", self.what_follows(lambda: self.stroke(*places), "paint_here"))
 
     def test_a_scan_that_host_memory_is_too_short_for_is_refused_in_words_and_the_work_goes_on(self):
         stub = Path(SHVR).resolve().parent / "stubs" / "libshort_memory.so"
@@ -242,9 +233,8 @@ class Memory(Seen):
                          % (side, side, side) + bytes(range(256)) * (side ** 3 // 256))
         self.open_scan(self.write_ball(), preferences={"hints_seen": 3}, environment=environment)
         x, y = self.middle()
-        self.do("key", "3", pause_s=0.2)
-        self.put_probe(x, y)
-        self.paint((x, y), (x + 8, y + 4))
+        self.check_probe(x, y)
+        self.check_stroke((x, y), (x + 8, y + 4))
 
         short.touch()
         self.ask_for(scan)
@@ -254,8 +244,8 @@ class Memory(Seen):
         # The chooser stays, and what was open is painted in as before.
         self.press("Escape")
         self.see_no_more("Hidden")
-        self.assertIn("set probe.group", self.what_follows(lambda: self.do("key", "5"), "set probe.group"))
-        self.paint((x - 12, y - 8), (x - 20, y - 4))
+        self.check_key("5", "set probe.group")
+        self.check_stroke((x - 12, y - 8), (x - 20, y - 4))
 
         short.unlink()
         self.ask_for(scan)
