@@ -1,6 +1,5 @@
 """Opening by the file chooser, with real keys: a window that was started without anything."""
 import json
-import time
 import unittest
 
 from seen import Seen, in_short
@@ -8,9 +7,10 @@ from window import PATIENCE_S
 
 
 class Open(Seen):
-    def keys(self, *keys):
-        for key in keys:
-            self.do("keydown", key, "sleep", 0.1, "keyup", key, pause_s=0.4)
+    def open_nothing(self, environment=None):
+        self.view(preferences={"hints_seen": 3}, environment=environment)
+        self.see("Open the example")
+        self.do("mousemove", *self.middle(), pause_s=0)
 
     def begin(self):
         """A folder `scans` with a session in it and a file that is none, and a window that shows nothing."""
@@ -18,20 +18,32 @@ class Open(Seen):
         (self.folder / "scans" / "deep").mkdir(parents=True)
         (self.folder / "ball.json").rename(self.folder / "scans" / "deep" / "ball.json")
         (self.folder / "scans" / "deep" / "broken.nrrd").write_text("no header")
-        self.start()
-        self.wait_for_window("SHVR")
-        self.do("mousemove", *self.middle(), pause_s=1.5)
+        self.open_nothing()
 
-    def ask(self, folder):
-        self.keys("ctrl+o")
-        self.do("type", "--delay", 40, folder)
-        self.keys("Return")
+    def choose_path(self, path):
+        self.press("Ctrl+O")
+        self.see_at_rest("Hidden")
+        self.do("type", "--delay", 40, path, pause_s=0)
+        self.see(str(path), "Open a volume")
+        self.press("Enter")
+
+    def press_and_see(self, key, text):
+        self.press(key)
+        self.see_at_rest(text)
 
     def test_a_scan_is_found_with_keys_and_opened(self):
         self.begin()
-        self.ask(self.folder / "scans")
+        self.choose_path(self.folder / "scans")
         # The folder in it, by its letter; into it; out of it, and in again; then the first file.
-        self.keys("d", "Return", "BackSpace", "Down", "Return", "b", "Return")
+        self.see_at_rest("deep")
+        self.press("D")
+        self.press_and_see("Enter", "ball.json")
+        self.press_and_see("BackSpace", "deep")
+        self.see_no_more("ball.json")
+        self.press("Down")
+        self.press_and_see("Enter", "ball.json")
+        self.press("B")
+        self.press("Enter")
         self.wait_for_window("sphere.* - SHVR")
         messages = self.finish()["messages"]
         self.assertTrue(any(line.startswith(f"Opened {self.folder}/scans/deep/ball.json") for line in messages), messages)
@@ -40,14 +52,21 @@ class Open(Seen):
 
     def test_what_cannot_be_opened_says_why_and_the_chooser_is_where_it_was(self):
         self.begin()
-        self.ask(f"{self.folder}/gone.nrrd")
+        self.choose_path(f"{self.folder}/gone.nrrd")
         # The chooser says so and keeps the path; the rest of another is typed over it.
-        self.keys("ctrl+a")
-        self.do("type", "--delay", 40, f"{self.folder}/scans/deep/br")
-        self.keys("Tab", "Return")
-        time.sleep(1)
+        self.until(lambda: any("no such" in seen["text"] for seen in self.seen(window="Open a volume")), "refusal")
+        self.press("Ctrl+A")
+        self.do("type", "--delay", 40, f"{self.folder}/scans/deep/", pause_s=0)
+        self.see("broken.nrrd")
+        self.do("type", "--delay", 40, "br", pause_s=0)
+        self.see(f"{self.folder}/scans/deep/br", "Open a volume")
+        self.press_and_see("Tab", f"{self.folder}/scans/deep/broken.nrrd")
+        self.press("Enter")
+        self.until(lambda: any("broken.nrrd: " in seen["text"] for seen in self.seen()), "reason")
         # Open again, it shows the same folder and the same name, and the one above it opens.
-        self.keys("ctrl+o", "Up", "Return")
+        self.press_and_see("Ctrl+O", "broken.nrrd")
+        self.press("Up")
+        self.press("Enter")
         self.wait_for_window("sphere.* - SHVR")
         messages = self.finish()["messages"]
         self.assertTrue(any("broken.nrrd: " in line for line in messages), messages)
@@ -55,14 +74,17 @@ class Open(Seen):
         self.assertTrue(any(line.startswith(f"Opened {self.folder}/scans/deep/ball.json") for line in messages), messages)
 
     def test_escape_closes_it_and_keys_mean_again_what_they_did(self):
-        self.begin()
-        self.keys("ctrl+o", "Escape", "ctrl+q")
+        self.open_nothing()
+        self.press_and_see("Ctrl+O", "Hidden")
+        self.press("Escape")
+        self.see_no_more("Hidden")
+        self.press("Ctrl+Q")
         self.program.communicate(timeout=PATIENCE_S)
         self.assertEqual(self.program.returncode, 0)
 
     def test_what_is_typed_before_a_field_is_there_is_typed_into_it_and_behind_it_keys_are_shortcuts(self):
         self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
-        self.do("mousemove", *self.middle())
+        self.do("mousemove", *self.middle(), pause_s=0)
         path = f"{self.folder}/5f8s"
         self.at_once("key", "ctrl+o", "type", "--delay", 1, path)
         self.see(path, "Open a volume")
@@ -88,22 +110,21 @@ class Open(Seen):
         (self.folder / "scans").mkdir()
         (self.folder / "scans" / "near.nrrd").write_text("no header")
         answers, log = self.folder / "answers", self.folder / "hung.log"
-        self.view(preferences={"hints_seen": 3}, environment=self.hung_disk(answers, log))
-        self.do("mousemove", *self.middle(), pause_s=1.5)
+        self.open_nothing(self.hung_disk(answers, log))
         self.press("Ctrl+O")
         self.see("Hidden")
-        self.do("type", "--delay", 40, f"{self.folder}/hung/")
+        self.do("type", "--delay", 40, f"{self.folder}/hung/", pause_s=0)
         self.see(f"Waiting for {self.folder}/hung")
         before = self.frame()["frame"]
         self.until(lambda: self.frame()["frame"] > before + 5, "frames beside it")
         # Elsewhere all is as ever.
         self.press("Ctrl+A")
-        self.do("type", "--delay", 40, f"{self.folder}/scans/")
+        self.do("type", "--delay", 40, f"{self.folder}/scans/", pause_s=0)
         self.see("near.nrrd")
         self.see_no_more("Waiting")
         # What is typed to the end and accepted is waited for, too, until it answers.
         self.press("Ctrl+A")
-        self.do("type", "--delay", 40, f"{self.folder}/hung/deep")
+        self.do("type", "--delay", 40, f"{self.folder}/hung/deep", pause_s=0)
         self.press("Enter")
         self.see(f"Waiting for {self.folder}/hung/deep")
         answers.write_text("")
@@ -120,7 +141,7 @@ class Open(Seen):
         scan.write_bytes(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 16 16 16\nencoding: raw\n\n" +
                          bytes(range(256)) * 16)
         self.open_scan(scan, preferences={"hints_seen": 3})
-        self.do("mousemove", *self.middle())
+        self.do("mousemove", *self.middle(), pause_s=0)
         self.what_follows(lambda: self.press("F2"), "set view.volume")
         self.press("Ctrl+S")
         session = self.folder / "scan.session.json"
@@ -130,16 +151,15 @@ class Open(Seen):
         saved["render"]["step_voxels"] = 0.7   # in no journal
         session.write_text(json.dumps(saved))
 
-        self.view(preferences={"hints_seen": 3})
-        self.do("mousemove", *self.middle(), pause_s=1.5)
+        self.open_nothing()
         self.press("Ctrl+O")
         self.see("Hidden")
-        self.do("type", "--delay", 40, f"{self.folder}/")
+        self.do("type", "--delay", 40, f"{self.folder}/", pause_s=0)
         self.see("scan.nrrd")   # without Enter
-        self.do("type", "--delay", 40, "scan.nrrd")
+        self.do("type", "--delay", 40, "scan.nrrd", pause_s=0)
         self.press("Enter")
         self.wait_for_window("scan.* - SHVR")
-        self.do("mousemove", *self.middle())
+        self.do("mousemove", *self.middle(), pause_s=0)
         self.what_follows(lambda: self.press("F2"), "set view.volume")
         self.press("Ctrl+S")
         self.until(lambda: any(seen["text"].startswith("Saved") for seen in self.seen()), "Saved")
