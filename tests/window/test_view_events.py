@@ -2,15 +2,13 @@
 import json
 import unittest
 
-from seen import Seen
-from test_view_photographs import PANELS
+from seen import Seen, only_panel
 
 
 class Events(Seen):
     def open_with(self, panel, **keys):
-        folds = {name: {"folded": name != panel} for name in PANELS}
         self.session = self.write_ball(**keys)
-        self.open_scan(self.session, preferences={"layout": {"panels": folds}, "hints_seen": 3})
+        self.open_scan(self.session, preferences=only_panel(panel))
 
     def test_density_is_painted_undone_and_saved(self):
         # What is at the threshold is not visible yet.
@@ -19,9 +17,9 @@ class Events(Seen):
         self.until(lambda: any(action.get("values", {}).get("probe", {}).get("density") for action in self.done()),
                    "density painting")
         x, y = self.middle()
-        self.put_probe(x, y)
+        self.check_probe(x, y)
         for way in (0, 16):
-            self.stroke((x + way, y), (x + way + 12, y + 4))
+            self.check_stroke((x + way, y), (x + way + 12, y + 4))
         self.until(lambda: self.frame()["sharp"], "sharp picture")
         self.press("Ctrl+z")
         self.press("Ctrl+s")
@@ -41,25 +39,25 @@ class Events(Seen):
         left, top, _, bottom = self.see_at_rest("Light from")["box"]
         height = bottom - top
         x, y = left - 3 * height, top + 2 * height
-        self.do("mousemove", x, y, "sleep", 0.1, "mousedown", 1, "sleep", 0.1, "mousemove", x - 8, y + 6, "sleep", 0.1,
-                "mouseup", 1)
+        self.check_drag((x, y), [(x - 8, y + 6)], "set light.direction")
+        self.see_frames()
         directions = [action["values"]["light"]["direction"] for action in self.done() if "light" in
                       action.get("values", {})]
         self.assertTrue(directions and directions[-1] is not None, self.done())
-        self.do("click", "--repeat", 2, "--delay", 60, 1)
+        self.do("click", "--repeat", 2, "--delay", 60, 1, pause_s=0)
         self.until(lambda: {"op": "set", "values": {"light": {"direction": None}}} in self.done(), "light put back")
         self.finish()
 
     def test_a_window_that_is_unmapped_works_on_and_is_drawn_when_it_is_back(self):
         self.open_with("probe")
         x, y = self.middle()
-        self.put_probe(x, y)
+        self.check_probe(x, y)
         window = self.display.do("search", "--name", "sphere.* - SHVR").split()[0]
         for _ in range(3):
             self.do("windowunmap", window, pause_s=0.4)
             self.do("windowmap", window, pause_s=0.4)
         before = self.frame()["frame"]
-        self.stroke((x, y), (x + 12, y + 4))
+        self.check_stroke((x, y), (x + 12, y + 4))
         self.until(lambda: self.frame()["frame"] > before and self.frame()["sharp"], "frame after the window is back")
         report = self.finish()
         self.assertEqual(sorted(report["voxels_in_group"]), ["3"])
