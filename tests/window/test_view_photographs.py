@@ -9,14 +9,12 @@ import zlib
 from pathlib import Path
 
 from harness import SHVR
-from seen import Seen
+from seen import PANELS, Seen
 from window import Display
 
 FOLDER = Path(SHVR).resolve().parent / "photographs"
 LONG = "Leitbündel des mittleren Blütenstiels mit seinem Nebenast"
 SCRIPTS = ["维管束与细胞壁的边界", "Проводящий пучок", "Αγγειακή δέσμη"]
-PANELS = ["transfer_function", "groups", "probe", "touch", "trace", "trace_list", "light", "occlusion", "cuts", "quality",
-          "aids", "views", "history"]
 # A minute each: the others are taken when somebody wants to look at them.
 ALL = unittest.skipUnless(os.environ.get("SHVR_ALL_PHOTOGRAPHS"), "SHVR_ALL_PHOTOGRAPHS=1 takes all of them")
 SLACK = 1.5   # pixels by which boxes of ink may touch

@@ -1,31 +1,34 @@
 """Keys of the thesis and widgets of the side panel, by real events: what they ask for is in the log of actions."""
 import json
 import unittest
-from pathlib import Path
 
-from harness import ENVIRONMENT
-from seen import Seen
-from test_view import WINDOW
-from test_view_photographs import PANELS
+from seen import Seen, only_panel
+from window import WINDOW
 
 
 class Widgets(Seen):
-    def view_ball(self, *arguments):
-        self.log = self.folder / "log.jsonl"
-        self.start(self.write_ball(), "--log", self.log, *arguments)
-        self.wait_for_window("sphere.* - SHVR")
-        self.do("mousemove", *self.middle())
+    def view_ball(self, *arguments, **preferences):
+        self.open_scan(self.write_ball(), *arguments, preferences={"hints_seen": 3, **preferences})
+        self.do("mousemove", *self.middle(), pause_s=0)
 
     def settings(self):
         """What was set, in order."""
         lines = [json.loads(line) for line in self.log.read_text().splitlines()]
         return [line["values"] for line in lines if line["op"] == "set"]
 
+    def hold(self, *keys):
+        """Until the workspace has been scaled by several steps."""
+        before = len(self.settings())
+        self.do(*[word for key in keys for word in ("keydown", key)], pause_s=0)
+        self.until(lambda: len(self.settings()) >= before + 3, f"three steps by {keys}")
+        self.do(*[word for key in reversed(keys) for word in ("keyup", key)], pause_s=0)
+
     def test_keys_switch_what_is_shown_and_scale_the_workspace(self):
         self.view_ball()
-        for key in ("F2", "F3", "F2", "F3", "shift+F1"):
-            self.do("key", key, pause_s=0.5)
-        self.do("keydown", "F7", "sleep", 0.4, "keyup", "F7", pause_s=0.5)
+        for key, setting in (("F2", "view.volume"), ("F3", "view.meshes"), ("F2", "view.volume"), ("F3", "view.meshes"),
+                             ("Shift+F1", "probe.arrow")):
+            self.check_key(key, f"set {setting}")
+        self.hold("F7")
         report = self.finish()
         self.assertEqual(self.settings()[:5], [{"view": {"volume": False}}, {"view": {"meshes": False}},
                                                {"view": {"volume": True}}, {"view": {"meshes": True}},
@@ -35,13 +38,9 @@ class Widgets(Seen):
         self.assertIn("The volume is not drawn, except in slices", report["messages"])
 
     def test_the_thesis_keys_are_those_that_it_prints(self):
-        preferences = Path(ENVIRONMENT["XDG_CONFIG_HOME"]) / "shvr" / "preferences.json"
-        preferences.parent.mkdir(parents=True, exist_ok=True)
-        preferences.write_text(json.dumps({"shvr_preferences": 1, "key_set": "thesis"}))
-        self.addCleanup(preferences.unlink, missing_ok=True)
-        self.view_ball()
-        self.do("key", "F1", pause_s=0.5)
-        self.do("keydown", "ctrl", "keydown", "F7", "sleep", 0.4, "keyup", "F7", "keyup", "ctrl", pause_s=0.5)
+        self.view_ball(key_set="thesis")
+        self.check_key("F1", "set probe.arrow")
+        self.hold("ctrl", "F7")
         report = self.finish()
         self.assertEqual(self.settings()[0], {"probe": {"arrow": False}})
         self.assertLess(self.settings()[-1]["interaction"]["workspace_scale"], 1.0)
@@ -49,15 +48,16 @@ class Widgets(Seen):
 
     def test_the_wheel_over_the_curve_shifts_all_points_and_slowly_with_shift(self):
         self.view_ball()
-        points = []
-        for y in range(110, 580, 20):  # wherever the curve is; elsewhere the panel is scrolled, which sets nothing
-            self.do("mousemove", WINDOW[0] - 160, y, "sleep", 0.2, "click", 4, pause_s=0.4)
-            points = [values["transfer_function"]["points"] for values in self.settings() if "transfer_function" in values]
-            if points:
-                self.do("keydown", "shift", "sleep", 0.1, "click", 4, "sleep", 0.2, "keyup", "shift", pause_s=0.6)
-                break
+        x, y = WINDOW[0] - 160, round(self.see_at_rest("paint", "Side panel")["box"][3] + 3 * self.FONT)
+        self.do("mousemove", x, y, pause_s=0)
+        self.see_frames()
+        self.check_follows(lambda: self.do("click", 4, pause_s=0), "set transfer_function.points")
+        self.see_frames()
+        self.do("keydown", "shift", pause_s=0)
+        self.see_frames()
+        self.check_follows(lambda: self.do("click", 4, pause_s=0), "set transfer_function.points")
+        self.do("keyup", "shift", pause_s=0)
         self.finish()
-        self.assertTrue(points, "no place where the wheel shifts the points")
         shifted = [values["transfer_function"]["points"] for values in self.settings() if "transfer_function" in values]
         self.assertEqual([p["intensity"] for p in shifted[0]], [103, 163, 258])  # a hundredth of 255, in whole numbers
         self.assertEqual([p["intensity"] for p in shifted[-1]], [104, 164, 259])
@@ -68,18 +68,19 @@ class Widgets(Seen):
     HEIGHT = 150 - 1.3 * FONT    # of the curve's axes, from opacity 0 to 1
 
     def open_panel(self, panel, **keys):
-        folds = {name: {"folded": name != panel} for name in PANELS}
-        self.open_scan(self.write_ball(**keys), preferences={"layout": {"panels": folds}, "hints_seen": 3})
+        self.open_scan(self.write_ball(**keys), preferences=only_panel(panel))
 
     def drag(self, begin, by, *, finely=False, tail=()):
         """By so many pixels, with Shift where it is to be fine."""
-        way = [word for step in range(1, 6)
-               for word in ("mousemove", begin[0] + by[0] * step // 5, begin[1] + by[1] * step // 5, "sleep", 0.04)]
-        keys = (["keydown", "shift", "sleep", 0.1], ["keyup", "shift"]) if finely else ([], [])
+        way = [(begin[0] + by[0] * step // 5, begin[1] + by[1] * step // 5) for step in range(1, 6)]
         before = len(self.done())
-        self.do("mousemove", *begin, "sleep", 0.2, "mousedown", 1, "sleep", 0.1, *keys[0], *way, *tail, "sleep", 0.1,
-                "mouseup", 1, *keys[1], pause_s=0)
-        self.until(lambda: len(self.done()) > before and self.rests(), "what was dragged in the log")
+        for event in (["mousemove", *begin], ["mousedown", 1], ["keydown", "shift"] if finely else [],
+                      *(["mousemove", *place] for place in way), tail, ["mouseup", 1],
+                      ["keyup", "shift"] if finely else []):
+            if event:
+                self.do(*event, pause_s=0)
+                self.see_frames()
+        self.until(lambda: len(self.done()) > before, "what was dragged in the log")
 
     def last(self, *keys):
         """The value that was set last."""
@@ -119,7 +120,7 @@ class Widgets(Seen):
         self.assertAlmostEqual(twice["intensity"] - once["intensity"], 2 * per_pixel, delta=0.3)
         self.assertAlmostEqual(once["opacity"] ** 0.5 - twice["opacity"] ** 0.5, 1 / self.HEIGHT, delta=0.003)
         # Shift may be let go of on the way: nothing jumps.
-        self.drag((point[0] + 22, point[1] + 11), (20, 0), finely=True, tail=("keyup", "shift", "sleep", 0.2))
+        self.drag((point[0] + 22, point[1] + 11), (20, 0), finely=True, tail=("keyup", "shift"))
         self.assertAlmostEqual(self.last("transfer_function", "points")[1]["intensity"] - twice["intensity"],
                                2 * per_pixel, delta=0.3)
         self.finish()
