@@ -1,7 +1,6 @@
 """What is done in the window can be replayed without one, and comes back after the program was killed."""
 import json
 import signal
-import time
 import unittest
 
 from seen import Seen
@@ -13,18 +12,20 @@ class Log(Seen):
         again = self.folder / "again" / "session.json"
         again.parent.mkdir()
         again.write_text(session.read_text())
-        log = self.folder / "log.jsonl"
-        self.start(session, "--log", log, environment=self.with_keys(near_y_in="U"))
-        self.wait_for_window("sphere.* - SHVR")
+        self.open_scan(session, environment=self.with_keys(near_y_in="U"))
+        log = self.log
         x, y = self.middle()
-        self.put_probe(x, y)
-        self.stroke((x, y), (x + 12, y + 4), (x + 30, y + 10))
-        self.do("key", "5", "keydown", "u", "sleep", 0.3, "keyup", "u", pause_s=0.5)
-        self.put_probe(x - 30, y - 20)
-        self.stroke((x - 30, y - 20), (x - 20, y - 35))
-        self.do("key", "x", "key", "n", pause_s=0.3)
-        self.do("mousemove", x + 20, y, pause_s=0.7)   # in the tool that traces the probe follows what is seen
-        self.do("key", "n", "key", "ctrl+z", "key", "ctrl+y", pause_s=0.5)
+        self.check_probe(x, y)
+        self.check_stroke((x, y), (x + 12, y + 4), (x + 30, y + 10))
+        self.check_key("5", "set probe.group")
+        self.check_follows(lambda: self.do("keydown", "u", "sleep", 0.3, "keyup", "u", pause_s=0), "move_cut")
+        self.check_probe(x - 30, y - 20)
+        self.check_stroke((x - 30, y - 20), (x - 20, y - 35))
+        self.check_key("X", "set probe.tool")
+        self.check_key("N", "node")
+        self.lead_probe(x + 20, y)   # in the tool that traces the probe follows what is seen
+        for key, action in (("N", "node"), ("Ctrl+Z", "undo"), ("Ctrl+Y", "redo")):
+            self.check_key(key, action)
         report = self.finish()
         self.assertEqual(sorted(report["voxels_in_group"]), ["3", "5"])
         lines = [json.loads(line) for line in log.read_text().splitlines()]
@@ -42,35 +43,29 @@ class Log(Seen):
         self.check_refused("annotate", session, "--actions", log, says=["log.jsonl:2: key on is missing"])
         self.assertFalse(session.with_suffix(".journal").exists())
 
-    @staticmethod
-    def stays(measure, seconds):
-        before = measure()
-        time.sleep(seconds)
-        return measure() == before
-
     def test_the_window_that_opens_after_a_kill_is_the_one_that_was_there(self):
         session = self.write_ball()
         self.open_scan(session)
         x, y = self.middle()
-        self.assertIn("probe_onto", self.what_follows(lambda: self.put_probe(x, y), "probe_onto"))
-        self.assertIn("paint_here", self.what_follows(lambda: self.stroke((x, y), (x + 10, y)), "paint_here"))
+        self.check_probe(x, y)
+        self.check_stroke((x, y), (x + 10, y))
         # Other view, panes, brush and tool; none of it is saved.
-        self.do("mousemove", x, y, "mousedown", 1, "mousemove", x + 60, y + 20, "mouseup", 1)
+        self.check_follows(lambda: self.do("mousemove", x, y, "mousedown", 1, "mousemove", x + 60, y + 20, "mouseup", 1,
+                                           pause_s=0), "orbit")
         journal = session.with_suffix(".journal")
         self.until(lambda: journal.exists(), "journal")
         size = journal.stat().st_size
         keys = ["F6", "7", "End", "x"]
-        self.assertIn("set probe.tool", self.what_follows(lambda: self.do(*[word for key in keys for word in ("key", key)]),
-                                                          "set probe.tool"))
+        self.check_follows(lambda: self.do(*[word for key in keys for word in ("key", key)], pause_s=0),
+                           "set probe.tool")
         # What was set reaches the journal when the hand has rested for a while.
         self.until(lambda: journal.stat().st_size > size, "setting in the journal")
         self.until(lambda: self.stays(lambda: journal.stat().st_size, 2.0), "rest of the journal")
         self.program.send_signal(signal.SIGKILL)
         self.program.communicate(timeout=30)
         self.assertNotIn("window", json.loads(session.read_text()).get("cameras", {}))
-        self.start(session)
-        self.wait_for_window("sphere.* - SHVR")
-        self.do("key", "ctrl+s", pause_s=1)
+        self.open_scan(session)
+        self.check_key("Ctrl+S", "save")
         report = self.finish()
         self.assertEqual(list(report["voxels_in_group"]), ["3"])
         saved = json.loads(session.read_text())
