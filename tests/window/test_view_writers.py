@@ -2,16 +2,16 @@
 import json
 import signal
 import subprocess
-import time
 import unittest
 
 from harness import ENVIRONMENT, SHVR
-from window import PATIENCE_S, WINDOW, Window
+from seen import Seen
+from window import PATIENCE_S
 
 DAB = {"op": "paint", "brush": "fill", "region": "ball", "path": [[32, 32, 32]], "radius": 5, "threshold": 0, "group": 3}
 
 
-class Writers(Window):
+class Writers(Seen):
     def annotate(self, session, operations, *arguments, status=0):
         script = self.write_script("script.jsonl", operations)
         return self.check("annotate", session, "--script", script, *arguments, status=status).stderr
@@ -25,28 +25,29 @@ class Writers(Window):
         self.wait_for_file(session.with_suffix(".journal.lock"))
         return program
 
-    def view(self, session):
-        self.start(session)
-        self.wait_for_window("sphere.* - SHVR")
-        x, y = self.middle()
-        self.put_probe(x, y)
+    def open_project(self, session):
+        self.open_scan(session, preferences={"hints_seen": 3})
+        self.check_probe(*self.middle())
 
     def paint(self):
         x, y = self.middle()
-        self.stroke((x, y), (x + 20, y))
+        self.check_stroke((x, y), (x + 20, y))
 
     def files(self):
+        """What is in the project's folder, but for what tests and locks leave there."""
         return {path.name: path.read_bytes() for path in self.folder.iterdir()
-                if path.is_file() and path.suffix not in (".lock", ".jsonl")}
+                if path.is_file() and path.suffix not in (".lock", ".jsonl") and path.name != "words.json"}
 
     def test_the_second_window_is_read_only_says_so_and_closes(self):
         session = self.write_ball()
         self.annotate(session, [DAB])  # not saved: the window would save it when it closes
         before = self.files()
         holder = self.writer(session)
-        self.view(session)
-        self.paint()
-        self.do("key", "7", "key", "ctrl+s", pause_s=0.7)
+        self.open_project(session)
+        x, y = self.middle()
+        self.stroke((x, y), (x + 20, y), pause_s=0)
+        self.do("key", "7", "key", "ctrl+s", pause_s=0)
+        self.see_frames()
         report = self.finish()  # by one key
         said = "\n".join(report["messages"])
         self.assertIn(f"read only, for it is open for writing in shvr annotate, process {holder.pid} on ", said)
@@ -56,18 +57,18 @@ class Writers(Window):
         _, errors = holder.communicate('{"op":"save"}\n', PATIENCE_S)
         self.assertEqual(holder.returncode, 0, errors)
 
-    def click(self, x, y):
-        self.do("mousemove", x, y, "sleep", 0.3, "mousedown", 1, "sleep", 0.2, "mouseup", 1, pause_s=3)
-
     def test_a_copy_is_worked_on_while_the_project_is_held(self):
         session = self.write_ball()
         self.annotate(session, [DAB, {"op": "save"}])
         before = self.files()
         self.writer(session)
-        self.view(session)
-        self.click(63, 67)  # "Work on a copy"
-        self.wait_for_file(self.folder / "session-copy.json")
-        self.do("key", "7", pause_s=0.5)
+        self.open_project(session)
+        self.click_on("Work on a copy")
+        self.see("Opened ", "Status")
+        self.see_no_more("Work on a copy")
+        self.see_picture()
+        self.check_probe(*self.middle())
+        self.check_key("7", "set probe.group")
         self.paint()
         report = self.finish()
         said = "\n".join(report["messages"])
@@ -80,11 +81,14 @@ class Writers(Window):
     def test_a_window_that_is_read_only_tries_again(self):
         session = self.write_ball()
         holder = self.writer(session)
-        self.view(session)
+        self.open_project(session)
         elsewhere = {**DAB, "path": [[32, 54, 54]]}  # not where the window paints
         holder.communicate(json.dumps(elsewhere) + '\n{"op":"save"}\n', PATIENCE_S)
-        self.click(158, 67)  # "Try again"
-        self.do("key", "7", pause_s=0.5)
+        self.click_on("Try again")
+        self.see_no_more("Try again")
+        self.see_picture()
+        self.check_probe(*self.middle())
+        self.check_key("7", "set probe.group")
         self.paint()
         report = self.finish()
         self.assertEqual(sorted(report["voxels_in_group"]), ["3", "7"], report["messages"])
@@ -92,10 +96,13 @@ class Writers(Window):
 
     def test_a_window_holds_what_it_has_open_and_lets_go_of_it(self):
         session = self.write_ball()
-        self.view(session)
+        self.open_project(session)
         self.check_refused("annotate", session, "--script", self.write_script("s.jsonl", [DAB]),
                            says=["is open for writing in shvr view", str(self.program.pid)])
         self.open(session)  # the same once more, in the same window
+        self.see("Opened ", "Status")
+        self.see_picture()
+        self.check_probe(*self.middle())
         self.paint()
         report = self.finish()
         self.assertNotIn("read only", "\n".join(report["messages"]))
@@ -108,10 +115,11 @@ class Writers(Window):
         session = self.write_ball()
         self.annotate(session, [DAB])
         session.with_suffix(".journal.lock").mkdir()
-        self.view(session)
+        self.open_project(session)
         self.annotate(session, [{**DAB, "group": 5, "path": [[20, 20, 20]]}, {"op": "save"}])
         before = self.files()
-        self.do("key", "ctrl+q", pause_s=1.0)
+        self.press("Ctrl+Q")
+        self.see("Error: The window stays open", "Status")
         self.assertIsNone(self.program.poll())
         said = "\n".join(self.finish()["messages"])
         self.assertIn("all paint is in the journal: close it again to leave it there", said)
@@ -125,21 +133,22 @@ class Writers(Window):
         mask.write_bytes(voxels)
         before = self.files()
         # Closed without an answer, nothing has changed.
-        self.view(session)
-        self.paint()
+        self.open_scan(session, preferences={"hints_seen": 3})
+        x, y = self.middle()
+        self.put_probe(x, y, pause_s=0)
+        self.stroke((x, y), (x + 20, y), pause_s=0)
+        self.see_frames()
         report = self.finish()
         self.assertNotIn("9", report["voxels_in_group"])
         after = self.files()
         self.assertEqual({name: after[name] for name in before if name != "session.json"},
                          {name: before[name] for name in before if name != "session.json"})
-        # "Take the files": in the middle of the window, below the text.
-        self.view(session)
-        for y in range(WINDOW[1] // 2 - 60, WINDOW[1] // 2 + 90, 12):
-            self.do("mousemove", WINDOW[0] // 2 - 150, y, "sleep", 0.1, "mousedown", 1, "sleep", 0.1, "mouseup", 1,
-                    pause_s=0.2)
-            if (self.folder / "session.journal").read_bytes() != before["session.journal"]:
-                break
-        self.do("key", "ctrl+z", "key", "ctrl+s", pause_s=1)
+        self.open_scan(session, preferences={"hints_seen": 3})
+        self.click_on("Take the files")
+        journal = self.folder / "session.journal"
+        self.until(lambda: journal.read_bytes() != before["session.journal"], "step in the journal")
+        self.check_key("Ctrl+Z", "undo")
+        self.check_key("Ctrl+S", "save")
         report = self.finish()
         said = "\n".join(report["messages"])
         self.assertIn("the file is taken, as a step that undo takes back", said)
@@ -149,9 +158,10 @@ class Writers(Window):
 
     def test_a_session_that_others_write_meanwhile_is_kept(self):
         session = self.write_ball()
-        self.view(session)
+        self.open_project(session)
         session.write_text('{"what": "another program wrote"}')
-        self.do("key", "7", "key", "ctrl+s", pause_s=1)
+        self.check_key("7", "set probe.group")
+        self.check_key("Ctrl+S", "save")
         said = "\n".join(self.finish()["messages"])
         self.assertIn("session.json: was written by another program since it was opened; it is kept as", said)
         self.assertEqual((self.folder / "session.json.old").read_text(), '{"what": "another program wrote"}')
@@ -160,7 +170,7 @@ class Writers(Window):
     def test_a_signal_closes_the_window_as_its_button_does(self):
         session = self.write_ball()
         for number in (signal.SIGINT, signal.SIGTERM):
-            self.view(session)
+            self.open_project(session)
             self.paint()
             self.program.send_signal(number)
             output, errors = self.program.communicate(timeout=PATIENCE_S)
