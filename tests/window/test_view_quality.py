@@ -4,8 +4,7 @@ import json
 import re
 import unittest
 
-from seen import Seen
-from test_view_photographs import PANELS
+from seen import Seen, only_panel
 
 
 def merged(patch, onto):
@@ -41,8 +40,7 @@ class Quality(Seen):
         session = self.write_ball()
         names = self.names_of_command_line(session)
         self.assertEqual(names, ["draft", "interactive", "good", "reference"])
-        folds = {name: {"folded": name != "quality"} for name in [*PANELS, "touch"]}
-        self.open_scan(session, preferences={"layout": {"panels": folds}, "hints_seen": 3})
+        self.open_scan(session, preferences=only_panel("quality"))
         self.see("Quality")
         shown, render, pictures = "interactive", {}, {}
         for name in [*names, "draft"]:  # at last from the most exact to the fastest: every key comes back
