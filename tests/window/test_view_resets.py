@@ -2,8 +2,7 @@
 may fall into one frame."""
 import unittest
 
-from seen import Seen
-from test_view_photographs import PANELS
+from seen import Seen, only_panel
 
 # Panel (its key in the preferences), words before the slider, its key in the session.
 SLIDERS = [
@@ -43,9 +42,9 @@ class Resets(Seen):
         return next(seen for seen in self.seen(label) if seen["text"] == label)
 
     def values(self, key, op="set"):
-        """What was set there, in order."""
+        """What was set there since `self.begun`, in order."""
         found = []
-        for action in self.done():
+        for action in self.done(self.begun):
             value = action.get("values") if action["op"] == op else None
             for part in key.split("."):
                 value = value.get(part, "none") if isinstance(value, dict) else "none"
@@ -54,21 +53,30 @@ class Resets(Seen):
         return found
 
     def check_slider(self, panel, label, key, delay_ms):
-        folds = {name: {"folded": name != panel} for name in PANELS}
-        self.open_scan(self.write_ball(), preferences={"layout": {"panels": folds}, "hints_seen": 3})
-        self.until(lambda: self.seen(label), f"slider {label}", 10)
+        self.begin(panel, label)
         ships = self.number(label)
         x0, y0, _, y1 = self.number_of(label)["box"]
-        self.do("mousemove", x0 - PIXELS_LEFT_OF_THE_NUMBER, (y0 + y1) / 2, pause_s=0.3)
+        self.do("mousemove", x0 - PIXELS_LEFT_OF_THE_NUMBER, (y0 + y1) / 2, pause_s=0)
+        self.see_frames()
         self.do("click", "--repeat", 2, "--delay", delay_ms, 1, pause_s=0)
-        self.until(lambda: None in self.values(key), f"reset of {key}; set were {self.values(key)}", 5)
+        self.until(lambda: None in self.values(key), f"reset of {key}; set were {self.values(key)}")
         self.assertEqual(len(self.values(key)), 2, "one value by the first click, one reset by the second")
         self.assertIsNone(self.values(key)[-1])
-        self.until(lambda: self.number(label) == ships, f"{ships} on {label}", 5)
-        self.do("mousemove_relative", "--", -10, 0, pause_s=0.3)
+        self.until(lambda: self.number(label) == ships, f"{ships} on {label}")
+        self.move_on()
         self.assertEqual(len(self.values(key)), 2, "the slider follows the mouse after the reset")
-        self.finish()
 
+    def begin(self, panel, label):
+        """The panel alone is unfolded, and at rest."""
+        if panel != self.unfolded:
+            self.unfold(panel, self.unfolded)
+            self.unfolded = panel
+        self.see_at_rest(label, "Side panel")
+        self.begun = len(self.done())
+
+    def move_on(self):
+        self.do("mousemove_relative", "--", -10, 0, pause_s=0)
+        self.see_frames()
 
     def double_click(self):
         """As a hand does it: each press lasts for some frames."""
@@ -83,41 +91,50 @@ class Resets(Seen):
         return min(on_row, key=lambda seen: seen["box"][0])
 
     def check_field(self, panel, label, key, left):
-        folds = {name: {"folded": name != panel} for name in PANELS}
-        self.open_scan(self.write_ball(), preferences={"layout": {"panels": folds}, "hints_seen": 3})
-        self.until(lambda: self.seen(label), f"field {label}", 10)
+        self.begin(panel, label)
         x0, y0, x1, y1 = self.number_after(label)["box"]
-        self.do("mousemove", x0 - left if left else (x0 + x1) / 2, (y0 + y1) / 2, pause_s=0.3)
+        self.do("mousemove", x0 - left if left else (x0 + x1) / 2, (y0 + y1) / 2, pause_s=0)
+        self.see_frames()
         self.double_click()
-        self.until(lambda: None in self.values(key), f"reset of {key}; set were {self.values(key)}", 5)
-        self.do("mousemove_relative", "--", -10, 0, pause_s=0.3)
+        self.until(lambda: None in self.values(key), f"reset of {key}; set were {self.values(key)}")
+        self.move_on()
         self.assertEqual(self.values(key).count(None), 1)
         self.assertIsNone(self.values(key)[-1], "the field follows the mouse after the reset")
+
+    def open_with(self, panel):
+        self.open_scan(self.write_ball(), preferences=only_panel(panel))
+        self.unfolded = panel
+
+    def test_sliders_of_all_panels(self):
+        self.open_with(SLIDERS[0][0])
+        for panel, label, key in SLIDERS:
+            with self.subTest(panel=panel, label=label):
+                self.check_slider(panel, label, key, delay_ms=5)
+        with self.subTest("clicks in two frames"):
+            self.check_slider(*SLIDERS[2], delay_ms=120)
+        self.finish()
+
+    def test_other_fields(self):
+        self.open_with(FIELDS[0][0])
+        for panel, label, key, left in FIELDS:
+            with self.subTest(panel=panel, label=label):
+                self.check_field(panel, label, key, left)
         self.finish()
 
     def test_preferences(self):
+        self.begun = 0
         self.open_scan(self.write_ball(), preferences={"font_pixels": 15, "hints_seen": 3})
         self.press("Ctrl+,")
-        self.see("Text", "Preferences")
+        self.see_at_rest("Text", "Preferences")
         x0, y0, _, y1 = self.number_after("Text", "Preferences")["box"]
-        self.do("mousemove", x0 - 30, (y0 + y1) / 2, pause_s=0.3)
+        self.do("mousemove", x0 - 30, (y0 + y1) / 2, pause_s=0)
+        self.see_frames()
         self.double_click()
-        self.until(lambda: None in self.values("font_pixels", "prefer"), "reset of the height of letters", 5)
-        self.do("mousemove_relative", "--", -10, 0, pause_s=0.5)
+        self.until(lambda: None in self.values("font_pixels", "prefer"), "reset of the height of letters")
+        self.move_on()
         self.assertIsNone(self.values("font_pixels", "prefer")[-1], self.values("font_pixels", "prefer"))
         self.finish()
 
-
-def add_test(panel, label, key, delay_ms):
-    name = f"test_{panel}_{label.lower()}_after_{delay_ms}_ms"
-    setattr(Resets, name, lambda self: self.check_slider(panel, label, key, delay_ms))
-
-
-for slider in SLIDERS:
-    add_test(*slider, 5)
-add_test(*SLIDERS[2], 120)
-for field in FIELDS:
-    setattr(Resets, f"test_field_{field[2].replace('.', '_')}", lambda self, field=field: self.check_field(*field))
 
 if __name__ == "__main__":
     unittest.main()
