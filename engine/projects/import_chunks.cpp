@@ -7,7 +7,7 @@
 #include "engine/base/atomic_writer.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
-#include "engine/formats/zarr/v3/crc32c.h"
+#include "engine/formats/zarr/crc32c.h"
 #include "engine/formats/zarr/zarr_codec.h"
 #include "engine/projects/import_files.h"
 #include "engine/projects/part_folder.h"

@@ -11,7 +11,7 @@
 #include "engine/formats/zarr/ome_place.h"
 #include "engine/formats/zarr/ome_zarr.h"
 #include "engine/formats/zarr/project.h"
-#include "engine/formats/zarr/zarr_json.h"
+#include "engine/formats/zarr/store/zarr_json.h"
 #include "engine/projects/import_pyramid.h"
 
 namespace shvr {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "engine/formats/zarr/metadata/zarr_metadata.h"
 #include "engine/formats/zarr/ome_zarr.h"
-#include "engine/formats/zarr/zarr_metadata.h"
 #include "engine/volume/source.h"
 
 namespace shvr {

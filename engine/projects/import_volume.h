@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "engine/base/error.h"
+#include "engine/formats/zarr/metadata/zarr_metadata.h"
 #include "engine/formats/zarr/ome_zarr.h"
-#include "engine/formats/zarr/zarr_metadata.h"
 #include "engine/projects/import_prepare.h"
 #include "engine/volume/halving.h"
 #include "engine/volume/source.h"

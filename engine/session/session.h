@@ -17,7 +17,7 @@
 #include "engine/look/settings.h"
 #include "engine/look/surface_tree.h"
 #include "engine/look/transfer_function.h"
-#include "engine/volume/source_procedural.h"
+#include "engine/volume/procedural/source_procedural.h"
 
 namespace shvr {
 

@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "engine/formats/zarr/v3/crc32c.h"
+#include "engine/formats/zarr/crc32c.h"
 #include "tests/fuzz/support/input_folder.h"
 #include "tests/fuzz/support/volume_input.h"
 

@@ -16,7 +16,7 @@
 #include "engine/base/error.h"
 #include "engine/device/trace_surfaces.h"
 #include "engine/live/annotator.h"
-#include "engine/volume/source_procedural.h"
+#include "engine/volume/procedural/source_procedural.h"
 
 namespace shvr {
 

@@ -9,7 +9,7 @@
 #include "engine/base/atomic_writer.h"
 #include "engine/base/text.h"
 #include "engine/volume/grid.h"
-#include "engine/volume/source_procedural.h"
+#include "engine/volume/procedural/source_procedural.h"
 #include "engine/volume/voxel_walk.h"
 #include "tools/cli/cli.h"
 

@@ -7,7 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
-#include "engine/formats/zarr/zarr_json.h"
+#include "engine/formats/zarr/store/zarr_json.h"
 #include "engine/volume/unit.h"
 
 namespace shvr {

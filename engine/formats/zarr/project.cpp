@@ -12,8 +12,8 @@
 #include "engine/base/file.h"
 #include "engine/base/text.h"
 #include "engine/formats/open_volume.h"
+#include "engine/formats/zarr/store/zarr_json.h"
 #include "engine/formats/zarr/store/zarr_store.h"
-#include "engine/formats/zarr/zarr_json.h"
 #include "engine/volume/grid.h"
 
 namespace shvr {

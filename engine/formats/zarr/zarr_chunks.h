@@ -14,8 +14,8 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/formats/zarr/chunk_cache.h"
-#include "engine/formats/zarr/zarr_metadata.h"
+#include "engine/formats/zarr/metadata/zarr_metadata.h"
+#include "engine/formats/zarr/store/chunk_cache.h"
 
 namespace shvr {
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "engine/base/error.h"
-#include "engine/formats/zarr/v3/crc32c.h"
+#include "engine/formats/zarr/crc32c.h"
 
 namespace shvr {
 namespace {

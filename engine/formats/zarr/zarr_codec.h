@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/formats/zarr/zarr_metadata.h"
+#include "engine/formats/zarr/metadata/zarr_metadata.h"
 
 namespace shvr {
 

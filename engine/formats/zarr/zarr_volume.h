@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/formats/zarr/chunk_cache.h"
+#include "engine/formats/zarr/store/chunk_cache.h"
 #include "engine/formats/zarr/zarr_chunks.h"
 #include "engine/volume/grid.h"
 

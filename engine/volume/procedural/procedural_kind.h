@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "engine/volume/source_procedural.h"
+#include "engine/volume/procedural/source_procedural.h"
 
 namespace shvr {
 

@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/volume/source_procedural.h"
+#include "engine/volume/procedural/source_procedural.h"
 #include "tests/support/occlusion.h"
 #include "tests/support/slow.h"
 

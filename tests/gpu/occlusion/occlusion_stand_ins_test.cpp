@@ -5,7 +5,7 @@
 
 #include "engine/base/image_metrics.h"
 #include "engine/live/view.h"
-#include "engine/volume/source_procedural.h"
+#include "engine/volume/procedural/source_procedural.h"
 #include "tests/support/gpu.h"
 
 using namespace shvr;

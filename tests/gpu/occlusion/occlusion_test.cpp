@@ -12,7 +12,7 @@
 #include "engine/base/image_metrics.h"
 #include "engine/live/annotator.h"
 #include "engine/live/view.h"
-#include "engine/volume/source_procedural.h"
+#include "engine/volume/procedural/source_procedural.h"
 #include "tests/support/occlusion.h"
 
 using namespace shvr;

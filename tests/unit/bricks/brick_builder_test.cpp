@@ -9,7 +9,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/bricks/code_rows.h"
-#include "engine/volume/source_procedural.h"
+#include "engine/volume/procedural/source_procedural.h"
 #include "tests/support/volume_files.h"
 
 using namespace shvr;

@@ -1,4 +1,4 @@
-#include "engine/volume/source_procedural.h"
+#include "engine/volume/procedural/source_procedural.h"
 
 #include <algorithm>
 #include <array>

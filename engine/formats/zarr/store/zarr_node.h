@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/formats/zarr/zarr_json.h"
+#include "engine/formats/zarr/store/zarr_json.h"
 
 namespace shvr {
 

@@ -12,7 +12,7 @@
 #include "engine/base/file.h"
 #include "engine/base/text.h"
 #include "engine/formats/open_volume.h"
-#include "engine/formats/zarr/chunk_cache.h"
+#include "engine/formats/zarr/store/chunk_cache.h"
 #include "engine/formats/zip/zip_archive.h"
 
 namespace shvr {

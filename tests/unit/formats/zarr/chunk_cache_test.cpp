@@ -1,4 +1,4 @@
-#include "engine/formats/zarr/chunk_cache.h"
+#include "engine/formats/zarr/store/chunk_cache.h"
 
 #include <atomic>
 #include <chrono>

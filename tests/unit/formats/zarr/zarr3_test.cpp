@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/formats/open_volume.h"
+#include "engine/formats/zarr/crc32c.h"
 #include "engine/formats/zarr/ome_zarr_labels.h"
-#include "engine/formats/zarr/v3/crc32c.h"
 #include "engine/formats/zarr/zarr_chunks.h"
 #include "tests/support/volume_files.h"
 

@@ -1,4 +1,4 @@
-#include "engine/formats/zarr/zarr_fields.h"
+#include "engine/formats/zarr/metadata/zarr_fields.h"
 
 #include <bit>
 #include <charconv>

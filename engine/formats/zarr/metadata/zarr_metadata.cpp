@@ -1,13 +1,13 @@
-#include "engine/formats/zarr/zarr_metadata.h"
+#include "engine/formats/zarr/metadata/zarr_metadata.h"
 
 #include <bit>
 
 #include <nlohmann/json.hpp>
 
 #include "engine/base/error.h"
-#include "engine/formats/zarr/v3/zarr_v3.h"
-#include "engine/formats/zarr/zarr_fields.h"
-#include "engine/formats/zarr/zarr_json.h"
+#include "engine/formats/zarr/metadata/zarr_fields.h"
+#include "engine/formats/zarr/metadata/zarr_v3.h"
+#include "engine/formats/zarr/store/zarr_json.h"
 
 namespace shvr {
 namespace {

@@ -1,4 +1,4 @@
-#include "engine/formats/zarr/v3/crc32c.h"
+#include "engine/formats/zarr/crc32c.h"
 
 #include <array>
 

@@ -1,7 +1,7 @@
 // Reads the core of the specification, and the codecs that other programs write: bytes, transpose, blosc, gzip, zstd,
 // zlib (as numcodecs.zlib), crc32c and sharding_indexed. Anything unsupported is refused by name.
 
-#include "engine/formats/zarr/v3/zarr_v3.h"
+#include "engine/formats/zarr/metadata/zarr_v3.h"
 
 #include <algorithm>
 #include <numeric>
@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/base/error.h"
+#include "engine/formats/zarr/metadata/zarr_fields.h"
 #include "engine/formats/zarr/store/zarr_node.h"
-#include "engine/formats/zarr/zarr_fields.h"
 
 namespace shvr {
 namespace {

@@ -1,12 +1,12 @@
 #pragma once
-// Metadata fields common to both versions of Zarr. For zarr_metadata.cpp and v3/. Any thread.
+// Metadata fields common to both versions of Zarr. For zarr_metadata.cpp and zarr_v3.cpp. Any thread.
 
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
 #include "engine/base/json.h"
-#include "engine/formats/zarr/zarr_metadata.h"
+#include "engine/formats/zarr/metadata/zarr_metadata.h"
 
 namespace shvr {
 

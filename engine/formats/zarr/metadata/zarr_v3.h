@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "engine/formats/zarr/zarr_metadata.h"
+#include "engine/formats/zarr/metadata/zarr_metadata.h"
 
 namespace shvr {
 

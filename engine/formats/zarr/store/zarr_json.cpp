@@ -1,4 +1,4 @@
-#include "engine/formats/zarr/zarr_json.h"
+#include "engine/formats/zarr/store/zarr_json.h"
 
 #include <cerrno>
 
