@@ -9,7 +9,7 @@
 namespace shvr::gpu {
 
 struct EmbeddedKernel {
-    const char* name;       ///< "raycast" for shaders/raycast.comp
+    const char* name;       ///< "raycast" for shaders/rays/raycast.comp
     const uint32_t* words;  ///< SPIR-V, names of variables included
     size_t word_count;
 };

@@ -23,7 +23,7 @@ struct VariantChoice {
 };
 
 struct KernelVariants {
-    std::string_view kernel;                   ///< "raycast" for shaders/raycast.comp
+    std::string_view kernel;                   ///< "raycast" for shaders/rays/raycast.comp
     std::span<const std::string_view> macros;  ///< in the kernel's order; empty where it has no variants
 };
 /// The tables of all kernels that have variants.

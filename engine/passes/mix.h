@@ -1,5 +1,5 @@
 #pragma once
-// Mixes two pictures (shaders/mix.comp).
+// Mixes two pictures (shaders/picture/mix.comp).
 
 #include "engine/graph/frame_graph.h"
 #include "shaders/mix.h"

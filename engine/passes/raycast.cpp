@@ -102,8 +102,49 @@ Choice choice_of(const VolumeBinding& volume, const RaycastInput& input, bool is
                                   : gpu::KEPT_NOTHING};
 }
 
+using Constants = std::vector<std::pair<std::string, uint32_t>>;
+
+KernelVariant with(KernelVariant kernel, const Constants& constants)
+{
+    kernel.second.insert(kernel.second.end(), constants.begin(), constants.end());
+    return kernel;
+}
+
+/// How a step is classified, for rays that march.
+Constants constants_of_steps(const Choice& choice, const RaycastInput& input)
+{
+    Constants constants{{"GROUP_WIDTH", input.pixel_groups.width},
+                        {"PREINTEGRATED", input.preintegrated ? input.params.opaque_map > 0 ? 2 : 1 : 0}};
+    if (!choice.is_paged && !choice.is_filtered) constants.emplace_back("HAS_SAMPLE_BITS", choice.has_sample_bits);
+    if (choice.is_masked) constants.emplace_back("SMOOTH_BORDERS", input.smooth_borders);
+    return constants;
+}
+
+KernelVariant slice_kernel(const Choice& choice, const RaycastInput& input)
+{
+    KernelVariant kernel{
+        variant_of("slice",
+                   {{"PAGED", choice.is_paged}, {"FILTERED", choice.is_filtered}, {"MASKED", choice.is_masked}}),
+        choice.of_codes};
+    if (choice.is_paged) kernel = with(kernel, {{"FEEDBACK", choice.feedback}, {"KEPT", choice.kept}});
+    return with(kernel,
+                {{"GROUP_WIDTH", input.pixel_groups.width}, {"DISTANCE_BLEND", input.params.blend_size > 0.0f}});
+}
+
+KernelVariant pick_kernel(const Choice& choice, const RaycastInput& input)
+{
+    const KernelVariant kernel{
+        variant_of("pick",
+                   {{"PAGED", choice.is_paged}, {"FILTERED", choice.is_filtered}, {"MASKED", choice.is_masked}}),
+        choice.of_codes};
+    return with(with(kernel, constants_of_steps(choice, input)), {{"HAS_SURFACES", choice.is_surfaced}});
+}
+
+/// The kernel that draws: colours along rays, one sample of each, or where a person points.
 KernelVariant kernel_of(const Choice& choice, const RaycastInput& input)
 {
+    if (input.slice) return slice_kernel(choice, input);
+    if (choice.picks) return pick_kernel(choice, input);
     const bool is_shelled = choice.shell != gpu::SHELL_NONE;
     KernelVariant kernel{variant_of("raycast", {{"PAGED", choice.is_paged},
                                                 {"FILTERED", choice.is_filtered},
@@ -112,21 +153,14 @@ KernelVariant kernel_of(const Choice& choice, const RaycastInput& input)
                                                 {"SURFACED", choice.is_surfaced},
                                                 {"SHELLED", is_shelled}}),
                          choice.of_codes};
+    kernel = with(kernel, constants_of_steps(choice, input));
     const auto constant = [&](const char* name, uint32_t value) { kernel.second.emplace_back(name, value); };
-    if (choice.is_paged)
-        constant("FEEDBACK", choice.feedback);
-    else if (!choice.is_filtered)
-        constant("HAS_SAMPLE_BITS", choice.has_sample_bits);
+    if (choice.is_paged) constant("FEEDBACK", choice.feedback);
     constant("SHADED", choice.is_shaded);
     if (choice.is_shaded) constant("SHININESS_SQUARINGS", shininess_squarings(input.params.shininess));
     constant("COUNT_WORK", input.count_work);
-    constant("GROUP_WIDTH", input.pixel_groups.width);
     constant("BLOCKS_ALONE", choice.blocks_alone);
-    constant("SLICE", input.slice);
-    constant("PREINTEGRATED", input.preintegrated ? input.params.opaque_map > 0 ? 2 : 1 : 0);
     if (is_shelled) constant("SHELL", choice.shell);
-    constant("PICK", choice.picks);
-    if (choice.is_masked) constant("SMOOTH_BORDERS", input.smooth_borders);
     if (choice.is_occluded) constant("OCCLUSION_MAPPED", !input.occlusion->segments.empty());
     constant("DISTANCE_BLEND", input.params.blend_size > 0.0f);
     if (choice.is_paged || is_shelled) constant("KEPT", choice.kept);
@@ -186,6 +220,47 @@ std::vector<Area> areas_of(const RaycastInput& input, bool is_shelled)
     return areas;
 }
 
+/// Binds what all rays read: bricks, and the paint in them.
+void bind_volume(Pass& pass, VolumeBinding& volume, const RaycastInput& input)
+{
+    pass.block("params_block", std::span(&input.params, 1));
+    if (volume.pages) {
+        pass.read("directory", volume.pages->directory);
+        pass.read("cell_leap", volume.pages->cell_leap);
+        volume.pages->reached = pass.modify("reached", volume.pages->reached);
+    } else {
+        pass.read("leap", volume.leap);
+    }
+    bind_atlas(pass, volume);
+    if (input.mask) {
+        pass.read("mask", input.mask->mask);
+        pass.read("mask_table", input.mask->mask_table);
+        pass.read("groups", input.groups);
+    }
+}
+
+/// Binds what rays read that march.
+void bind_steps(Pass& pass, const VolumeBinding& volume, const RaycastInput& input)
+{
+    pass.read("table", input.table);
+    if (!volume.pages && !volume.is_filtered())
+        pass.read("sample_bits", volume.sample_bits.value_or(volume.leap));  // a stand-in is never read
+    if (input.pick)
+        pass.read("surfaces", input.surfaces.value_or(input.table));  // likewise
+    else if (input.surfaces)
+        pass.read("surfaces", *input.surfaces);
+}
+
+/// Binds what rays keep from one block to the next; one texel where they keep nothing.
+void bind_rays(FrameGraph& graph, Pass& pass, const RaycastInput& input, std::optional<Resource>& rays, bool is_begun)
+{
+    const bool is_first = input.params.first_step == 0;
+    if (!rays)
+        static_cast<void>(pass.write("rays", graph.create("rays", picture_desc(Format::rgba32_float, {1, 1}))));
+    else
+        rays = is_first && (!is_begun || !input.waiting) ? pass.write("rays", *rays) : pass.modify("rays", *rays);
+}
+
 /// `is_begun`: other pixels of the target, and of `rays`, have been drawn before.
 Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, bool is_shelled,
                        Resource target, std::optional<Resource>& rays, bool is_begun)
@@ -194,40 +269,18 @@ Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastIn
     const KernelVariant kernel = kernel_of(choice_of(volume, input, is_shelled, rays.has_value()), input);
     Pass pass = graph.compute(kernel.first, input.name);
     for (const auto& [name, value] : kernel.second) pass.constant(name, value);
-    pass.block("params_block", std::span(&input.params, 1));
-    pass.read("table", input.table);
-    if (volume.pages) {
-        pass.read("directory", volume.pages->directory);
-        pass.read("cell_leap", volume.pages->cell_leap);
-        volume.pages->reached = pass.modify("reached", volume.pages->reached);
-    } else {
-        pass.read("leap", volume.leap);
-        if (!volume.is_filtered())
-            pass.read("sample_bits", volume.sample_bits.value_or(volume.leap));  // the stand-in is never read
-    }
-    bind_atlas(pass, volume);
+    bind_volume(pass, volume, input);
+    if (!input.slice) bind_steps(pass, volume, input);
     if (is_shelled) pass.read("cell_ranges", volume.cell_ranges);
-    if (input.mask) {
-        pass.read("mask", input.mask->mask);
-        pass.read("mask_table", input.mask->mask_table);
-        pass.read("groups", input.groups);
-    }
-    if (input.occlusion) {
+    const bool is_lit = !input.slice && !input.pick;
+    if (is_lit && input.occlusion) {
         pass.read("occlusion", input.occlusion->values);
         const std::vector<std::byte> look = bytes_of(*input.occlusion);
         pass.block("occlusion_look", std::span(look));
     }
-    if (input.surfaces) pass.read("surfaces", *input.surfaces);
-    if (volume.pages || is_shelled) {
-        const bool is_first = input.params.first_step == 0;
-        if (!rays) {
-            static_cast<void>(pass.write("rays", graph.create("rays", picture_desc(Format::rgba32_float, {1, 1}))));
-        } else {
-            rays = is_first && (!is_begun || !input.waiting) ? pass.write("rays", *rays) : pass.modify("rays", *rays);
-        }
-    }
+    if (!input.pick && (volume.pages || is_shelled)) bind_rays(graph, pass, input, rays, is_begun);
     if (!input.blocks) pixel_groups(pass, pixels, input.pixel_groups);
-    listed_groups(pass, input.blocks);
+    if (is_lit) listed_groups(pass, input.blocks);
     // Waiting rays keep their accumulated values elsewhere.
     const bool continues = input.params.first_step > 0 && !input.waiting;
     return continues || is_begun ? pass.modify("color", target) : pass.write("color", target);

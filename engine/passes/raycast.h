@@ -1,5 +1,6 @@
 #pragma once
-// Emission-absorption ray-casting of a bricked volume (shaders/raycast.comp).
+// Emission-absorption ray-casting of a bricked volume (shaders/rays/raycast.comp), slices through it (slice.comp) and
+// the place that a person points at (pick.comp).
 
 #include <optional>
 #include <span>

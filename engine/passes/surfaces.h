@@ -1,5 +1,5 @@
 #pragma once
-// Opaque surfaces along the rays of a picture (shaders/surfaces.comp).
+// Opaque surfaces along the rays of a picture (shaders/rays/surfaces.comp).
 
 #include <optional>
 

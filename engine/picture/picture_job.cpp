@@ -26,7 +26,9 @@ void append(std::vector<gpu::PassReport>& sum, std::vector<gpu::PassReport> pass
         known->submissions += pass.submissions;
         known->dispatches += pass.dispatches;
         known->tiles += pass.tiles;
-        for (size_t i = 0; i < known->counters.size(); ++i) known->counters[i] += pass.counters[i];
+        // Kernels of one pass may count or not (slice.comp does not).
+        known->counters.resize(std::max(known->counters.size(), pass.counters.size()));
+        for (size_t i = 0; i < pass.counters.size(); ++i) known->counters[i] += pass.counters[i];
         known->invocations = known->invocations && pass.invocations
                                  ? std::optional(*known->invocations + *pass.invocations)
                                  : std::nullopt;

@@ -1,4 +1,4 @@
-// Finds bricks in the directory of pages.h. Needs `params`, SLICE and KEPT; declares its own bindings.
+// Finds bricks in the directory of pages.h. Needs KEPT; declares its own bindings.
 
 layout(binding = 1, scalar) readonly buffer Directory { uint entries[]; } directory;
 layout(binding = 8, r8ui) uniform readonly uimage3D cell_leap;
@@ -16,7 +16,8 @@ struct Place {
     bool is_missing;  // a ray waits here
 };
 
-Place place_at(const RaycastParams params, vec3 position)
+// The brick, without the cells in it: any of its samples may be visible, and painted.
+Place brick_at(const RaycastParams params, vec3 position)
 {
     const uvec3 voxel = uvec3(position);
     Place place;
@@ -39,8 +40,14 @@ Place place_at(const RaycastParams params, vec3 position)
     place.slot = entry & PAGE_PAYLOAD_MASK;
     place.level = entry >> PAGE_LEVEL_SHIFT & 0xfu;
     place.is_missing = KEPT == KEPT_ALL && place.distance == 0u && place.level == PAGE_MISSING;
-    if (place.distance == 0u && SLICE == 0u) {
-        const uvec3 cell = voxel >> place.level + 2u & BRICK_CELLS - 1u;
+    return place;
+}
+
+Place place_at(const RaycastParams params, vec3 position)
+{
+    Place place = brick_at(params, position);
+    if (place.distance == 0u) {
+        const uvec3 cell = uvec3(position) >> place.level + 2u & BRICK_CELLS - 1u;
         place.box_shift = place.cell_shift;
         place.cell_shift = place.level + 2u;
         const uint found = imageLoad(cell_leap, ivec3(BRICK_CELLS * unpack_slot(place.slot) + cell)).x;

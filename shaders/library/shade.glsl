@@ -1,4 +1,5 @@
 // Local illumination.
+#include "blend.glsl"
 
 // x^shininess. Powers of two, which most sessions use, are computed by squaring: exp2 and log2 took a tenth of a shaded
 // picture's time on a CPU. The floor keeps intermediate values out of the denormal range, which is even slower.
@@ -39,13 +40,4 @@ vec3 shade(const RaycastParams params, float ambient, vec3 color, vec3 slope, ve
     const float surface = square > 0.0 ? square / (square + fade) : 0.0;
     const vec3 normal = square > 0.0 ? -slope * inversesqrt(square) : vec3(0.0);
     return lit(params, ambient, color, normal, surface, half_way);
-}
-
-// Distance colour blending (Rheingans and Ebert 2001, Volume illustration): mixes in a colour with growing distance.
-vec3 blended(const RaycastParams params, vec3 color, vec3 position)
-{
-    const float depth = clamp(dot(params.depth_plane.xyz, position) + params.depth_plane.w, 0.0, 1.0);
-    // pow() leaves 0^0 undefined; it is 1.
-    const float grown = params.blend_rate == 0.0 ? 1.0 : depth <= 0.0 ? 0.0 : exp2(params.blend_rate * log2(depth));
-    return mix(color, params.blend_color, min(params.blend_size * grown, 1.0));
 }

@@ -235,18 +235,18 @@ vec2 shell_range(const RaycastParams params, const Ray ray)
     return middle + vec2(-half_chord, half_chord);
 }
 
-// `begin`, `end`: of the ray; `limit`: of its part that is followed now. `kept`, `is_inside`: the state left by an
-// earlier part (raycast.h).
-Shell begin_shell(const RaycastParams params, const Ray ray, float begin, float end, float limit, vec4 kept,
+// `limit`: the end of the ray's part that is followed now. `kept`, `is_inside`: as an earlier part left them
+// (raycast.h).
+Shell begin_shell(const RaycastParams params, const Ray ray, const Lattice lattice, float limit, vec2 kept,
                   bool is_inside)
 {
     const vec2 range = shell_range(params, ray);
-    const float start = max(begin, range.x);
+    const float start = max(lattice.begin, range.x);
     Shell shell;
     shell.next = kept.x;
     shell.from = kept.y;
     shell.known = kept.y < 0.0 ? start : kept.y;
-    shell.end = min(end, range.y);
+    shell.end = min(lattice.end, range.y);
     shell.limit = min(limit, shell.end);
     shell.is_inside = is_inside;
     shell.waits = false;

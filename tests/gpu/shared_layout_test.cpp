@@ -175,7 +175,8 @@ TEST_CASE("members of shared structs lie where C++ puts them")
          {"raycast", "raycast_masked", "raycast_filtered", "raycast_filtered_masked", "raycast_paged",
           "raycast_paged_masked", "raycast_paged_filtered", "raycast_paged_filtered_masked", "raycast_occluded",
           "raycast_surfaced", "raycast_paged_filtered_masked_occluded",
-          "raycast_paged_filtered_masked_occluded_surfaced"})
+          "raycast_paged_filtered_masked_occluded_surfaced", "slice", "slice_paged_masked", "pick",
+          "pick_paged_masked"})
         check_members(kernel, "params_block", raycast_params());
     for (const char* kernel : {"raycast_occluded", "raycast_paged_filtered_masked_occluded"})
         check_members(kernel, "occlusion_look",

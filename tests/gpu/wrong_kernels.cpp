@@ -48,7 +48,7 @@ void put_mistake(const fs::path& file, const Mistake& mistake)
     std::ofstream(file) << text;
 }
 
-/// "raycast_paged_masked" -> shaders/raycast.comp and PAGED, MASKED: the longest file name that begins it.
+/// "raycast_paged_masked" -> shaders/rays/raycast.comp and PAGED, MASKED: the longest file name that begins it.
 std::pair<fs::path, std::string> source_of(const std::string& kernel, const fs::path& shaders)
 {
     std::pair<fs::path, std::string> found;

@@ -136,7 +136,7 @@ inline const std::vector<Feature> FEATURES{
      {"anaglyph"},
      {"left eye", "right eye"}},
     {"overview", [](Scenery& s) { s.session.view.arrangement = Arrangement::overview; }, {}},
-    {"slices", [](Scenery& s) { s.session.view.arrangement = Arrangement::slices; }, {}}};
+    {"slices", [](Scenery& s) { s.session.view.arrangement = Arrangement::slices; }, {"slice"}}};
 
 class Everything {
 public:

@@ -7,8 +7,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "raycast.h"
-#include "surfaces.h"
+#include "../raycast.h"
+#include "../surfaces.h"
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 
@@ -17,8 +17,8 @@ layout(binding = 1, scalar) readonly buffer Scene { SurfaceParams data; } surfac
 layout(binding = 5, r32ui) uniform uimage2D surface_tiles;
 
 const uint GROUP_WIDTH = 8u;   // tiles
-#include "library/rays.glsl"
-#include "library/surface_list.glsl"
+#include "../library/rays.glsl"
+#include "../library/surface_list.glsl"
 
 // Normals are off by a few ulps, over distances that the slack of boxes allows for; and tiles extend half a pixel
 // beyond their rays.

@@ -5,7 +5,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "brick_unpack.h"
+#include "../brick_unpack.h"
 
 layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
 layout(binding = 0, scalar) readonly buffer Staged { uint words[]; } staged;

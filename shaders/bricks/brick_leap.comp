@@ -6,7 +6,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_control_flow_attributes : require
-#include "pages.h"
+#include "../pages.h"
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 layout(push_constant, scalar) uniform Push { BrickLeapParams params; };
@@ -19,15 +19,15 @@ layout(binding = 4, r8ui) uniform readonly uimage3D mask;
 layout(binding = 5, scalar) readonly buffer VisibleGroups { uint bits[]; } visible_groups;
 #define MASK_TABLE_BINDING 6
 #define MASK_TABLE_HASHED
-#include "library/mask.glsl"
+#include "../library/mask.glsl"
 #endif
 
-#include "library/occupancy.glsl"
+#include "../library/occupancy.glsl"
 
 shared uint distances[2][BRICK_CELLS * BRICK_CELLS * BRICK_CELLS];
 
 #ifdef MASKED
-#include "library/cell_paint.glsl"
+#include "../library/cell_paint.glsl"
 
 CellPaint paint_of(const BrickLeapJob job, uvec3 cell)
 {

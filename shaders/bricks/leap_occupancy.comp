@@ -6,7 +6,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_control_flow_attributes : require
-#include "leap.h"
+#include "../leap.h"
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 layout(push_constant, scalar) uniform Push { OccupancyParams params; };
@@ -19,12 +19,12 @@ layout(binding = 4, r8ui) uniform readonly uimage3D mask;
 #define MASK_TABLE_BINDING 5
 layout(binding = 6, scalar) readonly buffer VisibleGroups { uint bits[]; } visible_groups;
 
-#include "library/mask.glsl"
+#include "../library/mask.glsl"
 #endif
-#include "library/occupancy.glsl"
+#include "../library/occupancy.glsl"
 
 #ifdef MASKED
-#include "library/cell_paint.glsl"
+#include "../library/cell_paint.glsl"
 #endif
 
 void main()

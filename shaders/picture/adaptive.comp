@@ -7,7 +7,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_control_flow_attributes : require
-#include "adaptive.h"
+#include "../adaptive.h"
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 layout(push_constant, scalar) uniform Push

@@ -15,9 +15,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "raycast.h"
-#include "adaptive.h"
-#include "surfaces.h"
+#include "../raycast.h"
+#include "../adaptive.h"
+#include "../surfaces.h"
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 layout(constant_id = 0) const uint GROUP_WIDTH = 8u;
@@ -31,15 +31,15 @@ layout(binding = 1, scalar) readonly buffer Scene { SurfaceParams data; } surfac
 layout(binding = 2, rgba32f) uniform image2D surfaces;
 #ifdef LISTED
 layout(binding = 5, r32ui) uniform readonly uimage2D surface_tiles;
-#include "library/surface_list.glsl"
+#include "../library/surface_list.glsl"
 #endif
 
-#include "library/counters.glsl"
-#include "library/rays.glsl"
+#include "../library/counters.glsl"
+#include "../library/rays.glsl"
 #define LISTED_BLOCKS_BINDING 20
-#include "library/listed_blocks.glsl"
-#include "library/round_cone.glsl"
-#include "library/shade.glsl"
+#include "../library/listed_blocks.glsl"
+#include "../library/round_cone.glsl"
+#include "../library/shade.glsl"
 
 struct Hit {
     float at;       // length along the line
@@ -131,6 +131,43 @@ Hit unpacked_hit(const vec4 packed)
 }
 #endif
 
+#ifdef LISTED
+// Meets the surfaces of a tile's list.
+void meet_listed(const SurfaceParams scene, const Line line, float begin, uvec2 in_part, uint end_of_tile,
+                 inout Hit hit)
+{
+    const uvec2 tile = in_part / SURFACE_TILE;
+    const uint block = surface_block(in_part);
+    uint next = next_in_block(tile, block, 0u, end_of_tile);
+    if (next < end_of_tile) do {
+        meet(scene, line, begin, listed_word(tile, next) & (1u << SURFACE_BLOCK) - 1u, hit);
+        next = next_in_block(tile, block, next + 1u, end_of_tile);
+    } while (next < end_of_tile);
+}
+#endif
+
+// The lit colour of what a line meets.
+vec3 look_of(const RaycastParams params, const SurfaceParams scene, const Line line, const Hit hit)
+{
+    const vec3 at = line.origin + hit.at * line.direction;
+    vec3 normal = at - scene.probe_center;
+    vec3 color = scene.probe_color;
+#ifdef LISTED
+    if (hit.index != PROBE_INDEX) {
+        const Surface surface = surface_at(hit.index);
+        // As in surface_range: from the line's point nearest to the surface.
+        const vec3 from = from_origin(scene, surface) - line.origin;
+        const float shift = dot(from + 0.5 * surface.along, line.direction);
+        const vec3 point = (hit.at - shift) * line.direction - (from - shift * line.direction);
+        normal = surface_normal(surface, point);
+        color = surface.color;
+    }
+#endif
+    normal = hit.is_inside ? -line.direction : normalize(normal);
+    const vec3 seen = lit(params, params.ambient, color, normal, 1.0, half_way(params.light, -line.direction));
+    return DISTANCE_BLEND != 0u ? blended(params, seen, (at + scene.origin) * params.inverse_spacing) : seen;
+}
+
 void main()
 {
     const RaycastParams params = params_block.data;
@@ -151,8 +188,7 @@ void main()
 
     Hit hit = Hit(end, false, 0u, PROBE_INDEX);  // nothing is nearer than the far plane itself
 #ifdef LISTED
-    const uvec2 tile = in_part / SURFACE_TILE;
-    const uint count = imageLoad(surface_tiles, ivec2(surface_tile_texel(tile, 0u))).x;
+    const uint count = imageLoad(surface_tiles, ivec2(surface_tile_texel(in_part / SURFACE_TILE, 0u))).x;
     const bool is_listed = count <= SURFACES_IN_TILE;
     if (is_listed && scene.is_last_block == 0u) return;
     const bool is_first = is_listed || scene.first_node == 0u;
@@ -164,13 +200,7 @@ void main()
                  PROBE_INDEX, hit);
 #ifdef LISTED
     if (!is_first) hit = unpacked_hit(imageLoad(surfaces, ivec2(in_part)));
-    const uint end_of_tile = is_listed ? count : 0u;
-    const uint block = surface_block(in_part);
-    uint next = next_in_block(tile, block, 0u, end_of_tile);
-    if (next < end_of_tile) do {
-        meet(scene, line, begin, listed_word(tile, next) & (1u << SURFACE_BLOCK) - 1u, hit);
-        next = next_in_block(tile, block, next + 1u, end_of_tile);
-    } while (next < end_of_tile);
+    meet_listed(scene, line, begin, in_part, is_listed ? count : 0u, hit);
     search(scene, line, begin, is_listed ? scene.end_node : scene.first_node, hit);
     if (scene.is_last_block == 0u) {
         imageStore(surfaces, ivec2(in_part), packed_hit(hit));
@@ -182,22 +212,6 @@ void main()
         return;
     }
 
-    const vec3 at = line.origin + hit.at * line.direction;
-    vec3 normal = at - scene.probe_center;
-    vec3 color = scene.probe_color;
-#ifdef LISTED
-    if (hit.index != PROBE_INDEX) {
-        const Surface surface = surface_at(hit.index);
-        // As in surface_range: from the line's point nearest to the surface.
-        const vec3 from = from_origin(scene, surface) - line.origin;
-        const float shift = dot(from + 0.5 * surface.along, line.direction);
-        const vec3 point = (hit.at - shift) * line.direction - (from - shift * line.direction);
-        normal = surface_normal(surface, point);
-        color = surface.color;
-    }
-#endif
-    normal = hit.is_inside ? -line.direction : normalize(normal);
-    vec3 seen = lit(params, params.ambient, color, normal, 1.0, half_way(params.light, -line.direction));
-    if (DISTANCE_BLEND != 0u) seen = blended(params, seen, (at + scene.origin) * params.inverse_spacing);
+    const vec3 seen = look_of(params, scene, line, hit);
     imageStore(surfaces, ivec2(in_part), vec4(seen, hit.at + scene.middle * length_to_far));
 }

@@ -5,7 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_control_flow_attributes : require
-#include "leap.h"
+#include "../leap.h"
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 layout(push_constant, scalar) uniform Push { SampleBitsParams params; };
@@ -13,7 +13,7 @@ layout(binding = 0, r32ui) uniform readonly uimage3D leap;
 layout(binding = 1, r32ui) uniform readonly uimage3D atlas;
 layout(binding = 2, r32ui) uniform writeonly uimage3D sample_bits;
 
-#include "library/atlas.glsl"
+#include "../library/atlas.glsl"
 
 const uint ALL = 0xffffffffu;
 // For the codes of four voxels from `x` on, where a word begins, and of the one before: bits for not below the visible

@@ -1,0 +1,35 @@
+// Where the texels around a position are. Needs density_*.glsl and Place.
+
+struct Texels {
+    vec3 lattice;    // of voxel centres of the brick's level
+    uvec3 brick;
+    ivec3 corner;
+    vec3 fraction;   // between the corner and the next texels
+    ivec3 to_atlas;
+    uint slot;
+};
+
+// Cell and fraction come from the global position, and only the integer part is moved into the brick: a bricked volume
+// gives the same bits as one in a single texture. If there is no brick, the values read are not used.
+Texels texels_at(vec3 position, const Place place)
+{
+    Texels texels;
+#ifdef PAGED
+    texels.lattice = position * uintBitsToFloat(127u - place.level << 23) - 0.5;   // times 2^-level, exactly
+    texels.brick = uvec3(position) >> place.level + 5u;
+    texels.slot = place.distance > 0u || place.is_missing ? NO_SLOT : place.slot;
+#else
+    texels.lattice = position - 0.5;
+    texels.brick = uvec3(position) / BRICK_SIZE;
+    texels.slot = place.slot;
+#endif
+    const vec3 corner = floor(texels.lattice);
+    texels.corner = ivec3(corner);
+    texels.fraction = texels.lattice - corner;
+#ifdef PAGED
+    texels.to_atlas = place_in_slot(texels.slot) - ivec3(texels.brick * BRICK_SIZE);
+#else
+    texels.to_atlas = place_of_first();
+#endif
+    return texels;
+}

@@ -1,0 +1,239 @@
+// Marching along a ray: samples lie in the middle of steps of equal length, on a lattice that starts where the ray
+// enters the drawn box; the last, shorter step has its own sample. Leaps go from lattice point to lattice point, so
+// pictures with and without skipping have the same bits. The number of steps is not limited: a long ray is drawn in
+// blocks of steps, one dispatch each, because some devices end a thread's loops after 65535 turns, without a word.
+//
+// Needs volume.glsl, ray.glsl, the constants SHADED, COUNT_WORK, FEEDBACK, PREINTEGRATED, SMOOTH_BORDERS and
+// DISTANCE_BLEND, where SHADED may be 1 library/shade.glsl. PICKS: how the opacity rises is noted on the way.
+#ifdef PICKS
+#include "../library/pick.glsl"
+#endif
+
+#if !defined(PAGED) && !defined(FILTERED)
+#define BITTED
+layout(constant_id = 12) const uint HAS_SAMPLE_BITS = 0u;
+layout(binding = 14, r32ui) uniform readonly uimage3D sample_bits;   // leap.h
+#endif
+// linear RGB (PREINTEGRATED: times opacity), opacity of a full step; then optical depths (raycast.h)
+layout(binding = 3, rgba32f) uniform readonly image2D table;
+
+// Limit of a leap in steps: from the last step (library/lattice.glsl) it still ends at a number of 32 bits.
+const float MAX_LEAP = 2147483648.0;
+const float NO_SHELL = 1e30;   // a length along a ray
+// Lanes that have seen nothing in this many consecutive samples search for the next visible one: soon if the previous
+// search was long, late if nearly every sample is visible, since all lanes wait while one searches.
+const uint AWAY_FROM_SEEN = 64u;
+const uint SAMPLES_OF_LEAP = 8u;   // counted as unseen
+const uint LITTLE_PATIENCE = 2u;
+const uint MUCH_PATIENCE = 64u;
+
+struct Work {
+    uint samples, shaded, leaps, bricks, turns;
+    uint last_slot;
+    uint last_entry;
+};
+
+Work no_work()
+{
+    return Work(0u, 0u, 0u, 0u, 0u, 0u, 0xffffffffu);
+}
+
+#include "../library/sample.glsl"
+#include "../library/lattice.glsl"
+
+void note_sample(const Place place, inout Work work)
+{
+    ++work.samples;
+    work.bricks += uint(place.slot != work.last_slot);
+    work.last_slot = place.slot;
+}
+
+// Counts a sample, which is also shaded if any is.
+void note_taken(const Place place, inout Work work)
+{
+    note_sample(place, work);
+    work.shaded += uint(SHADED != 0u);
+}
+
+// The number of whole steps from `position` that stay inside the empty cube around its cell.
+uint steps_to_leave(const RaycastParams params, const Ray ray, vec3 position, const Place place)
+{
+    const float reach = float(place.distance);
+#ifdef PAGED
+    const vec3 cell = vec3(uvec3(position) >> place.cell_shift);
+    const vec3 box = vec3(uvec3(position) >> place.box_shift);
+    const float cell_size = float(1u << place.cell_shift), box_size = float(1u << place.box_shift);
+    // A brick's data is valid only inside that brick.
+    const vec3 bound = clamp(cell_size * (cell + mix(vec3(1.0 - reach), vec3(reach), ray.ahead)), box_size * box,
+                             box_size * (box + 1.0));
+#else
+    const vec3 cell = vec3(uvec3(position) / CELL_SIZE);
+    const vec3 bound = float(CELL_SIZE) * (cell + mix(vec3(1.0 - reach), vec3(reach), ray.ahead));
+#endif
+    const vec3 lengths = (bound - position) * ray.inverse;
+    const float exit = min(lengths.x, min(lengths.y, lengths.z));
+    // The guard keeps rays from leaping over a sample that rounding puts on the border.
+    const float steps = exit / params.step - 0.01;
+    return 1u + (steps > 0.0 && steps < MAX_LEAP ? uint(steps) : 0u);   // not for NaN
+}
+
+void note(const Place place, inout Work work)
+{
+#ifdef PAGED
+    const bool is_wanted = KEPT != KEPT_ALL || place.is_missing;
+    if (FEEDBACK != 0u && is_wanted && place.entry != work.last_entry) {
+        note_reached(place);
+        work.last_entry = place.entry;
+    }
+#endif
+}
+
+void accumulate(inout vec4 sum, vec4 look)
+{
+    const float weight = (1.0 - sum.a) * look.a;
+    sum.rgb += weight * look.rgb;
+    sum.a += weight;
+}
+
+#include "../library/search.glsl"
+
+// A ray's accumulated state, and its position.
+struct March {
+    uint i;        // the next step: the whole ones, then the rest; beyond that, none
+    vec4 sum;
+#ifdef PICKS
+    Rises rises;
+#endif
+    uint unseen;   // consecutive samples that showed nothing
+    bool waits;    // for a brick
+    bool has_rest;
+    Sample rest;   // the sample found there, not added yet
+};
+
+// At a step, with what earlier dispatches have gathered.
+March march_from(uint step, vec4 sum)
+{
+    March march;
+    march.i = step;
+    march.sum = sum;
+#ifdef PICKS
+    march.rises = Rises(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+#endif
+    march.unseen = AWAY_FROM_SEEN;
+    march.waits = march.has_rest = false;
+    march.rest = Sample(vec4(0.0), 0.0, 0u);
+    return march;
+}
+
+void add(vec4 look, float middle, inout March march)
+{
+#ifdef PICKS
+    note_rise(march.rises, (1.0 - march.sum.a) * look.a, look.a, middle);
+#endif
+    accumulate(march.sum, look);
+}
+
+// Adds samples from step `march.i` on, up to `until`, a length along the ray, or to `end_step`; the rest of the ray
+// after its whole steps counts as a step, and is found here and added by the caller: its opacity takes loads that no
+// whole step needs.
+//
+// SIMD devices run both sides of a branch for all their lanes, so the cheap part, the search for a visible sample, and
+// the costly part are separate loops, in which lanes stay together as long as it pays.
+void take_samples(const RaycastParams params, const Ray ray, const Lattice lattice, uint end_step, float until,
+                  inout March march, inout Work work)
+{
+    const uint first = march.i;   // always taken, whatever rounding makes of `until`
+    bool is_behind = false;
+    bool searches_on = march.i < end_step && march.sum.a < params.opacity_limit && !march.waits;
+    if (searches_on) do {
+        const uint step_before = march.i;
+        search_sample(params, ray, lattice.begin, min(end_step, lattice.whole), march.i, march.unseen, work);
+        const uint patience = march.unseen >= AWAY_FROM_SEEN ? LITTLE_PATIENCE : MUCH_PATIENCE;
+#ifdef PICKS
+        if (march.i > step_before) march.rises.trough = 0.0;
+#endif
+        march.unseen = 0u;
+        // A step's density at its beginning is that at the end of the previous one, if that is in a brick of its level.
+        const uint run = march.i;
+        float front = 0.0;
+        uint level = 0u;
+        if (PREINTEGRATED != 0u) {
+            const vec3 position = position_at(params, ray, middle_of(params, lattice, run));
+            const Place place = place_at(params, position);
+            front = value_at_end(params, ray, step_begin(params, lattice.begin, run), texels_at(position, place),
+                                 place);
+        }
+        bool goes_on;
+        do {
+            const float middle = middle_of(params, lattice, march.i);
+            const vec3 position = position_at(params, ray, middle);
+            const Place place = place_at(params, position);
+            note(place, work);
+            if (COUNT_WORK != 0u) ++work.turns;
+#ifdef SHELLED
+            is_behind = is_behind || (march.i != first && middle > until);
+#endif
+            goes_on = place.distance == 0u && march.i < end_step && march.sum.a < params.opacity_limit && !is_behind;
+#ifdef PAGED
+            level = march.i == run ? place.level : level;
+            goes_on = goes_on && (PREINTEGRATED == 0u || place.level == level);
+#endif
+            march.waits = march.waits || (goes_on && place.is_missing && march.sum.a < params.opacity_limit);
+            if (goes_on && !march.waits) {
+                const bool is_rest = march.i == lattice.whole;
+                vec2 ends = vec2(front, 0.0);
+                if (PREINTEGRATED != 0u)
+                    ends.y = value_at_end(params, ray, end_of(params, lattice, march.i), texels_at(position, place),
+                                          place);
+                front = ends.y;
+                const float part = is_rest ? lattice.part : 1.0;
+                const Sample found = sample_at(params, ray, position, part, place, ends);
+                if (COUNT_WORK != 0u) note_taken(place, work);
+                if (is_rest) {
+                    march.rest = found;
+                    march.has_rest = true;
+                } else {
+                    add(found.look, middle, march);
+                    march.unseen = found.look.a > 0.0 ? 0u : march.unseen + 1u;
+                }
+                ++march.i;
+            }
+            goes_on = goes_on && !march.waits && march.i < end_step && march.unseen < patience &&
+                      march.sum.a < params.opacity_limit;
+        } while (goes_on);
+        // Drivers may round positions in one loop differently from the other, and the two then disagree about a border.
+        march.i += uint(march.i == step_before && !march.waits && !is_behind);
+        if (COUNT_WORK != 0u) ++work.turns;
+        searches_on = march.i < end_step && march.sum.a < params.opacity_limit && !march.waits && !is_behind;
+    } while (searches_on);
+}
+
+// Adds what take_samples() has found behind the whole steps.
+void add_rest(const RaycastParams params, const Lattice lattice, inout March march)
+{
+    if (march.has_rest) {
+        const float opacity = opacity_of_rest(params, march.rest, lattice.part);
+        add(vec4(march.rest.look.rgb, opacity), lattice.rest_middle, march);
+    }
+}
+
+// The steps that a dispatch takes of a ray.
+struct Block {
+    uint first, end;
+    bool is_last;
+};
+
+Block block_of(const RaycastParams params, const Lattice lattice)
+{
+    Block block = Block(min(params.first_step, lattice.whole), min(params.end_step, lattice.whole),
+                        params.is_last_block != 0u);
+    if (block.is_last && block.end == lattice.whole) block.end = step_count(lattice);
+    return block;
+}
+
+// Whether the device has ended the loop before its end, as nothing else does; the last block may end before the ray.
+bool is_cut_short(const RaycastParams params, const Lattice lattice, const Block block, const March march)
+{
+    return march.i < (block.is_last ? step_count(lattice) : block.end) && march.sum.a < params.opacity_limit &&
+           !march.waits;
+}
