@@ -18,19 +18,29 @@ struct Reader {
     const char* name;
     std::unique_ptr<VolumeSource> (*open)(const std::filesystem::path& path, const OpenOptions& options);
     bool reads_folders = false;                 ///< others are not tried on folders
+    bool states_size = true;                    ///< otherwise a side-car does, or the person
     std::array<std::string_view, 4> endings{};  ///< of names, in lower case
 };
 
 /// In this order: headers are tried before the raw voxels that they may describe.
 constexpr Reader READERS[] = {
-    {"OME-Zarr", open_ome_zarr, true, {".ozx", ".zip"}},
-    {"TIFF", open_tiff, true, {".tif", ".tiff"}},
-    {"NRRD", open_nrrd, false, {".nrrd", ".nhdr"}},
-    {"MetaImage", open_mhd, false, {".mhd", ".mha"}},
-    {"NIfTI", open_nifti, false, {".nii", ".nii.gz", ".hdr", ".hdr.gz"}},
-    {"DICOM", open_dicom, true, {".dcm", ".ima"}},
-    {"RAW with a side-car", open_raw_with_side_car, false, {".raw", ".vol", ".bin", ".dat"}},
+    {"OME-Zarr", open_ome_zarr, true, true, {".ozx", ".zip"}},
+    {"TIFF", open_tiff, true, true, {".tif", ".tiff"}},
+    {"NRRD", open_nrrd, false, true, {".nrrd", ".nhdr"}},
+    {"MetaImage", open_mhd, false, true, {".mhd", ".mha"}},
+    {"NIfTI", open_nifti, false, true, {".nii", ".nii.gz", ".hdr", ".hdr.gz"}},
+    {"DICOM", open_dicom, true, true, {".dcm", ".ima"}},
+    {"RAW with a side-car", open_raw_with_side_car, false, false, {".raw", ".vol", ".bin", ".dat"}},
 };
+
+const Reader* reader_of_name(std::string_view name)
+{
+    const std::string lower = lower_case(name);
+    for (const Reader& reader : READERS)
+        for (const std::string_view ending : reader.endings)
+            if (!ending.empty() && lower.size() > ending.size() && lower.ends_with(ending)) return &reader;
+    return nullptr;
+}
 
 void check_spacing(const std::filesystem::path& path, const VolumeInfo& info)
 {
@@ -112,11 +122,29 @@ bool is_address(std::string_view path)
 
 std::string_view format_of_name(std::string_view name)
 {
-    const std::string lower = lower_case(name);
+    const Reader* const reader = reader_of_name(name);
+    return reader ? reader->name : std::string_view();
+}
+
+bool name_states_size(std::string_view name)
+{
+    const Reader* reader = reader_of_name(name);
+    if (!reader && lower_case(name).ends_with(".gz")) reader = reader_of_name(name.substr(0, name.size() - 3));
+    return reader && reader->states_size;
+}
+
+std::string format_names(std::string_view conjunction)
+{
+    std::vector<std::string_view> names;
     for (const Reader& reader : READERS)
-        for (const std::string_view ending : reader.endings)
-            if (!ending.empty() && lower.size() > ending.size() && lower.ends_with(ending)) return reader.name;
-    return {};
+        if (reader.states_size) names.push_back(reader.name);
+    std::string text;
+    for (size_t i = 0; i < names.size(); ++i) {
+        const bool is_last = i + 1 == names.size();
+        text += i == 0 ? "" : is_last ? " " + std::string(conjunction) + " " : ", ";
+        text += names[i];
+    }
+    return text;
 }
 
 std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path, const OpenOptions& options)

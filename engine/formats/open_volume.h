@@ -1,6 +1,7 @@
 #pragma once
 // Opens a volume file by trying each reader in turn.
 
+#include <string>
 #include <string_view>
 
 #include "engine/volume/source.h"
@@ -40,6 +41,11 @@ inline bool is_volume_name(std::string_view name)
 {
     return !format_of_name(name).empty();
 }
+
+/// Whether files of that name, gzipped or not, state the size of their volume, which raw voxels do not. Reads nothing.
+bool name_states_size(std::string_view name);
+/// The formats that state it, for dialogs: "OME-Zarr, TIFF, NRRD, MetaImage, NIfTI and DICOM", with `conjunction` "and".
+std::string format_names(std::string_view conjunction);
 
 /// Fails if no reader knows the file (listing the formats tried), or if a reader knows it and finds it broken.
 std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path, const OpenOptions& options = {});

@@ -143,6 +143,55 @@ private:
     std::unique_ptr<RelevancePatch> now_, next_;
 };
 
+/// Sums up the steps of a replay.
+class Tally {
+public:
+    explicit Tally(ReplayResult& result) : result_(result) { result_.hash = FNV_BASIS; }
+
+    /// Another device: its first force follows none.
+    void swap()
+    {
+        ++result_.swaps;
+        last_force_ = glm::dvec3(0.0);
+        has_last_ = false;
+    }
+
+    void add(const TraceTick& tick, const DeviceState& state, const ForceStep& step)
+    {
+        // The force of the last tick acted during this motion.
+        if (has_last_ && is_finite(state.position_m))
+            result_.energy_j += glm::dot(last_force_, state.position_m - last_position_);
+        has_last_ = is_finite(state.position_m);
+        last_position_ = state.position_m;
+        result_.largest_step_n = std::max(result_.largest_step_n, glm::distance(step.force_n, last_force_));
+        last_force_ = step.force_n;
+        result_.largest_force_n = std::max(result_.largest_force_n, glm::length(last_force_));
+        for (int axis = 0; axis < 3; ++axis) add_bits(last_force_[axis], result_.hash);
+        if (tick.force_n) {
+            ++result_.told;
+            result_.told_equal += same_bits(*tick.force_n, last_force_);
+        }
+        if (step.in_contact) {
+            const glm::dvec3 away = step.proxy - step.probe;
+            squares_ += glm::dot(away, away);
+            ++result_.contact_ticks;
+        }
+        result_.objects = step.objects;
+    }
+
+    /// Root mean square of the distances between proxy and probe in contact.
+    double proxy_rms() const
+    {
+        return result_.contact_ticks > 0 ? std::sqrt(squares_ / double(result_.contact_ticks)) : 0.0;
+    }
+
+private:
+    ReplayResult& result_;
+    glm::dvec3 last_force_{0.0}, last_position_{0.0};
+    bool has_last_ = false;
+    double squares_ = 0.0;
+};
+
 }  // namespace
 
 bool replays_relevance(const Trace& trace, const ReplayOptions& options)
@@ -163,11 +212,8 @@ ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, cons
     auto growth = std::make_unique<GrowthMemory>();
     const uint64_t period_ns = 1'000'000'000 / trace.rate_hz;
     ReplayResult result;
-    result.hash = FNV_BASIS;
+    Tally tally(result);
     result.tick_ns.reserve(trace.ticks.size());
-    glm::dvec3 last_force(0.0), last_position(0.0);
-    bool has_last = false;
-    double squares = 0.0;
     auto settings = trace.settings.begin();
     auto swap = trace.swaps.begin();
     DeviceState state;
@@ -178,14 +224,12 @@ ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, cons
         const bool is_swapped = swap != trace.swaps.end() && *swap == i;
         if (is_swapped) {
             ++swap;
-            ++result.swaps;
+            tally.swap();
             player.swap();
             recorded.swap();
             memory = {};
             growth = std::make_unique<GrowthMemory>();
             state = {};
-            last_force = glm::dvec3(0.0);
-            has_last = false;
         }
         if (i > 0 && !is_swapped && tick.now_ns > trace.ticks[i - 1].now_ns + 2 * period_ns) ++result.late;
 
@@ -198,33 +242,14 @@ ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, cons
             step(force_settings, player.caps(i), read, state, patch, tick.now_ns, memory, *growth);
         result.tick_ns.push_back(uint64_t(std::chrono::nanoseconds(Clock::now() - begin).count()));
         player.write(step_now);
-
-        // The force of the last tick acted during this motion.
-        if (has_last && is_finite(state.position_m))
-            result.energy_j += glm::dot(last_force, state.position_m - last_position);
-        has_last = is_finite(state.position_m);
-        last_position = state.position_m;
-        result.largest_step_n = std::max(result.largest_step_n, glm::distance(step_now.force_n, last_force));
-        last_force = step_now.force_n;
-        result.largest_force_n = std::max(result.largest_force_n, glm::length(last_force));
-        for (int axis = 0; axis < 3; ++axis) add_bits(last_force[axis], result.hash);
-        if (tick.force_n) {
-            ++result.told;
-            result.told_equal += same_bits(*tick.force_n, last_force);
-        }
-        if (step_now.in_contact) {
-            const glm::dvec3 away = step_now.proxy - step_now.probe;
-            squares += glm::dot(away, away);
-            ++result.contact_ticks;
-        }
-        result.objects = step_now.objects;
+        tally.add(tick, state, step_now);
         if (keep_steps) result.steps.push_back(step_now);
     }
     result.is_recorded = is_recorded;
     result.ticks = trace.ticks.size();
     result.patches = is_recorded ? recorded.read() : mirror.made();
     result.energy_j = player.work_j().value_or(result.energy_j);
-    if (result.contact_ticks > 0) result.proxy_rms = std::sqrt(squares / double(result.contact_ticks));
+    result.proxy_rms = tally.proxy_rms();
     return result;
 }
 

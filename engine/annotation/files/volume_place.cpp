@@ -1,6 +1,5 @@
 #include "engine/annotation/files/volume_place.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "engine/base/error.h"
@@ -20,11 +19,8 @@ constexpr double SPACING_TOLERANCE = 1e-5;
 bool states_its_size(const std::filesystem::path& path)
 {
     std::error_code ignored;
-    std::string name = lower_case(path.filename().string());
-    if (name.ends_with(".gz")) name.resize(name.size() - 3);
-    constexpr const char* FORMS[] = {".nrrd", ".nhdr", ".mhd", ".mha", ".nii", ".tif", ".tiff"};
     return std::filesystem::is_directory(path, ignored) || is_in_archive(path) ||
-           std::ranges::any_of(FORMS, [&](const char* form) { return name.ends_with(form); });
+           name_states_size(path.filename().string());
 }
 
 bool is_in_archive(const std::filesystem::path& path)

@@ -173,18 +173,9 @@ private:
     std::map<std::string, uint32_t> numbers_;  ///< id of a node -> its number
 };
 
-}  // namespace
-
-std::string write_trace_graphml(const TraceWriting& writing)
+/// Declares the attributes that the elements below have.
+void add_keys(pugi::xml_node& root)
 {
-    const TraceGraph& trace = writing.trace;
-    const TraceSpace& space = writing.space;
-    pugi::xml_document document;
-    pugi::xml_node declaration = document.append_child(pugi::node_declaration);
-    declaration.append_attribute("version") = "1.0";
-    declaration.append_attribute("encoding") = "UTF-8";
-    pugi::xml_node root = document.append_child("graphml");
-    root.append_attribute("xmlns") = "http://graphml.graphdrawing.org/xmlns";
     constexpr const char* KEYS[][3] = {{"x", "node", "double"},
                                        {"y", "node", "double"},
                                        {"z", "node", "double"},
@@ -209,9 +200,13 @@ std::string write_trace_graphml(const TraceWriting& writing)
         key.append_attribute("attr.name") = name;
         key.append_attribute("attr.type") = type;
     }
-    pugi::xml_node graph = root.append_child("graph");
-    graph.append_attribute("id") = "trace";
-    graph.append_attribute("edgedefault") = "undirected";
+}
+
+/// Adds what is true of the whole graph.
+void add_statements(pugi::xml_node& graph, const TraceWriting& writing)
+{
+    const TraceGraph& trace = writing.trace;
+    const TraceSpace& space = writing.space;
     add_data(graph, "positions", in_words(space, writing.positions));
     for (const auto& [name, value] : statements_of(space, writing.positions)) add_data(graph, name, value);
     add_data(graph, "unit", space.unit);
@@ -223,7 +218,11 @@ std::string write_trace_graphml(const TraceWriting& writing)
     add_data(graph, "internode_radii", radii);
     add_data(graph, "next_node", std::to_string(trace.next_node()));
     add_data(graph, "next_internode", std::to_string(trace.next_internode()));
-    for (const auto& [number, node] : trace.nodes()) {
+}
+
+void add_nodes(pugi::xml_node& graph, const TraceWriting& writing)
+{
+    for (const auto& [number, node] : writing.trace.nodes()) {
         pugi::xml_node element = graph.append_child("node");
         element.append_attribute("id") = ("n" + std::to_string(number)).c_str();
         add_data(element, "x", digits_of(node.position.x));
@@ -234,8 +233,12 @@ std::string write_trace_graphml(const TraceWriting& writing)
         // Positions that a reader computes from the above lack the last bits.
         if (!writing.exact) continue;
         const glm::dvec3& exact = writing.exact->node(number).position;
-        if (position_of(space, node.position) != exact) add_data(element, "volume_position", digits_of(exact));
+        if (position_of(writing.space, node.position) != exact) add_data(element, "volume_position", digits_of(exact));
     }
+}
+
+void add_edges(pugi::xml_node& graph, const TraceGraph& trace)
+{
     for (const auto& [number, internode] : trace.internodes()) {
         pugi::xml_node element = graph.append_child("edge");
         element.append_attribute("id") = ("e" + std::to_string(number)).c_str();
@@ -243,6 +246,25 @@ std::string write_trace_graphml(const TraceWriting& writing)
         element.append_attribute("target") = ("n" + std::to_string(internode.b)).c_str();
         add_data(element, "group", std::to_string(internode.group));
     }
+}
+
+}  // namespace
+
+std::string write_trace_graphml(const TraceWriting& writing)
+{
+    pugi::xml_document document;
+    pugi::xml_node declaration = document.append_child(pugi::node_declaration);
+    declaration.append_attribute("version") = "1.0";
+    declaration.append_attribute("encoding") = "UTF-8";
+    pugi::xml_node root = document.append_child("graphml");
+    root.append_attribute("xmlns") = "http://graphml.graphdrawing.org/xmlns";
+    add_keys(root);
+    pugi::xml_node graph = root.append_child("graph");
+    graph.append_attribute("id") = "trace";
+    graph.append_attribute("edgedefault") = "undirected";
+    add_statements(graph, writing);
+    add_nodes(graph, writing);
+    add_edges(graph, writing.trace);
     StringWriter writer;
     document.save(writer, " ");
     return std::move(writer.text);
