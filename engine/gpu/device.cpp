@@ -338,6 +338,22 @@ std::optional<uint64_t> Device::heap_bytes_left() const
     return budget.heapBudget[heap_] - std::min(budget.heapBudget[heap_], budget.heapUsage[heap_]);
 }
 
+namespace {
+
+/// Fails where the device lacks a feature that kernels depend on.
+void check_features(const DeviceTraits& traits, const VkPhysicalDeviceFeatures2& has,
+                    const VkPhysicalDeviceVulkan12Features& has12)
+{
+    // Scalar layout is optional in 1.3, but every desktop driver and lavapipe have it; the shared headers depend on it.
+    if (!has12.scalarBlockLayout)
+        fail("device ", traits.name,
+             ": the Vulkan feature scalarBlockLayout is missing; expected a driver that has it");
+    if (!traits.storage_r16 || !has.features.shaderStorageImageExtendedFormats)
+        fail("device ", traits.name, ": R16_UNORM storage images cannot be read; expected a driver that can read them");
+}
+
+}  // namespace
+
 void Device::create_device(const DeviceOptions& options)
 {
     VkPhysicalDeviceVulkan13Features has13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
@@ -345,14 +361,7 @@ void Device::create_device(const DeviceOptions& options)
                                            .pNext = &has13};
     VkPhysicalDeviceFeatures2 has{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &has12};
     vkGetPhysicalDeviceFeatures2(physical_, &has);
-    // Scalar layout is optional in 1.3, but every desktop driver and lavapipe support it; the shared headers depend on
-    // it.
-    if (!has12.scalarBlockLayout)
-        fail("device ", traits_.name,
-             ": the Vulkan feature scalarBlockLayout is missing; expected a driver that has it");
-    if (!traits_.storage_r16 || !has.features.shaderStorageImageExtendedFormats)
-        fail("device ", traits_.name,
-             ": R16_UNORM storage images cannot be read; expected a driver that can read them");
+    check_features(traits_, has, has12);
     if (const auto why = why_too_limited(what_it_has(physical_, traits_))) fail("device ", traits_.name, ": ", *why);
 
     // Every device has both. Robust image access makes out-of-bounds reads 0: word_at(-1) of density_exact.glsl at the

@@ -80,20 +80,26 @@ void Submission::Frame::wait() const
     executor.device_.note_done(number);
 }
 
+std::vector<std::vector<std::byte>> Submission::Frame::copy_read_backs() const
+{
+    std::vector<std::vector<std::byte>> copies(read_backs.size());
+    for (const Step& step : compiled.steps) {
+        const PassData& data = pass(step);
+        if (data.kind != PassData::Kind::read_back) continue;
+        const uint64_t size = graph.resources()[data.bindings[0].resource].desc.bytes;
+        const std::span<const std::byte> bytes = read_backs[data.read_back]->mapped().first(size);
+        copies[data.read_back].assign(bytes.begin(), bytes.end());
+    }
+    return copies;
+}
+
 FrameResult Submission::Frame::collect()
 {
     if (number == 0) return {};  // no step, nothing submitted
     wait();
     const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - started;
     FrameResult result{.wall_ms = wall.count()};
-    result.read_backs.resize(read_backs.size());
-    for (const Step& step : compiled.steps) {
-        const PassData& data = pass(step);
-        if (data.kind != PassData::Kind::read_back) continue;
-        const uint64_t size = graph.resources()[data.bindings[0].resource].desc.bytes;
-        const std::span<const std::byte> bytes = read_backs[data.read_back]->mapped().first(size);
-        result.read_backs[data.read_back].assign(bytes.begin(), bytes.end());
-    }
+    result.read_backs = copy_read_backs();
     const DeviceTraits& traits = executor.device_.traits();
     std::vector<uint64_t> ticks(compiled.steps.size() * 2);
     const auto results_of = [&](VkQueryPool queries, std::vector<uint64_t>& results) {

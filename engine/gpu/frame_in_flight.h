@@ -104,6 +104,8 @@ struct Submission::Frame {
     Memory::Object& object(uint32_t resource) const { return executor.memory_.object(object_id(resource)); }
 
     bool counts_work() const;
+    void take_counters(uint64_t bytes, bool are_copied);
+    void take_objects();
     void prepare();
     void write_descriptors(const PassData& pass, const Prepared& step, uint64_t& block_offset) const;
     void begin_chunk();
@@ -127,6 +129,7 @@ struct Submission::Frame {
     void submit();
     bool done() const;
     void wait() const;
+    std::vector<std::vector<std::byte>> copy_read_backs() const;
     FrameResult collect();
 };
 

@@ -38,6 +38,26 @@ Storage& Submission::Frame::take_resource(const FrameGraph::ResourceData& resour
     return storage;
 }
 
+/// `are_copied`: kernels count in the device's memory, otherwise in the host's.
+void Submission::Frame::take_counters(uint64_t bytes, bool are_copied)
+{
+    counters = &take("counters", buffer_desc(bytes), Placement::download, !are_copied);
+    if (are_copied)
+        work_counters = &take("work counters", counters->desc(), Placement::device);
+    else
+        std::memset(counters->mapped().data(), 0, counters->mapped().size());
+}
+
+void Submission::Frame::take_objects()
+{
+    if (executor.idle_objects_.empty()) {
+        objects = std::make_unique<FrameObjects>(executor.device_);
+    } else {
+        objects = std::move(executor.idle_objects_.back());
+        executor.idle_objects_.pop_back();
+    }
+}
+
 void Submission::Frame::prepare()
 {
     const auto& resources = graph.resources();
@@ -78,20 +98,9 @@ void Submission::Frame::prepare()
         ++needs.sets;
     }
     if (block_bytes) blocks = &take("blocks", buffer_desc(block_bytes), placement_of(block_bytes));
-    if (all_counter_bytes) {
-        counters = &take("counters", buffer_desc(all_counter_bytes), Placement::download, !are_copied);
-        if (are_copied)
-            work_counters = &take("work counters", counters->desc(), Placement::device);
-        else
-            std::memset(counters->mapped().data(), 0, counters->mapped().size());
-    }
+    if (all_counter_bytes) take_counters(all_counter_bytes, are_copied);
 
-    if (executor.idle_objects_.empty()) {
-        objects = std::make_unique<FrameObjects>(executor.device_);
-    } else {
-        objects = std::move(executor.idle_objects_.back());
-        executor.idle_objects_.pop_back();
-    }
+    take_objects();
     objects->renew(needs);
     uint64_t block_offset = 0;
     for (size_t i = 0; i < compiled.steps.size(); ++i) {

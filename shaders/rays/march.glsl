@@ -133,6 +133,37 @@ void add(vec4 look, float middle, inout March march)
     accumulate(march.sum, look);
 }
 
+// The density at the beginning of a step.
+float value_at_begin(const RaycastParams params, const Ray ray, const Lattice lattice, uint step)
+{
+    const vec3 position = position_at(params, ray, middle_of(params, lattice, step));
+    const Place place = place_at(params, position);
+    return value_at_end(params, ray, step_begin(params, lattice.begin, step), texels_at(position, place), place);
+}
+
+// Takes the sample of step `march.i`, whose middle is at `position`. `front` is the density at its beginning, and
+// becomes that at its end.
+void take_sample(const RaycastParams params, const Ray ray, const Lattice lattice, vec3 position, const Place place,
+                 inout float front, inout March march, inout Work work)
+{
+    const bool is_rest = march.i == lattice.whole;
+    vec2 ends = vec2(front, 0.0);
+    if (PREINTEGRATED != 0u)
+        ends.y = value_at_end(params, ray, end_of(params, lattice, march.i), texels_at(position, place), place);
+    front = ends.y;
+    const float part = is_rest ? lattice.part : 1.0;
+    const Sample found = sample_at(params, ray, position, part, place, ends);
+    if (COUNT_WORK != 0u) note_taken(place, work);
+    if (is_rest) {
+        march.rest = found;
+        march.has_rest = true;
+    } else {
+        add(found.look, middle_of(params, lattice, march.i), march);
+        march.unseen = found.look.a > 0.0 ? 0u : march.unseen + 1u;
+    }
+    ++march.i;
+}
+
 // Adds samples from step `march.i` on, up to `until`, a length along the ray, or to `end_step`; the rest of the ray
 // after its whole steps counts as a step, and is found here and added by the caller: its opacity takes loads that no
 // whole step needs.
@@ -155,14 +186,8 @@ void take_samples(const RaycastParams params, const Ray ray, const Lattice latti
         march.unseen = 0u;
         // A step's density at its beginning is that at the end of the previous one, if that is in a brick of its level.
         const uint run = march.i;
-        float front = 0.0;
+        float front = PREINTEGRATED != 0u ? value_at_begin(params, ray, lattice, run) : 0.0;
         uint level = 0u;
-        if (PREINTEGRATED != 0u) {
-            const vec3 position = position_at(params, ray, middle_of(params, lattice, run));
-            const Place place = place_at(params, position);
-            front = value_at_end(params, ray, step_begin(params, lattice.begin, run), texels_at(position, place),
-                                 place);
-        }
         bool goes_on;
         do {
             const float middle = middle_of(params, lattice, march.i);
@@ -180,23 +205,7 @@ void take_samples(const RaycastParams params, const Ray ray, const Lattice latti
 #endif
             march.waits = march.waits || (goes_on && place.is_missing && march.sum.a < params.opacity_limit);
             if (goes_on && !march.waits) {
-                const bool is_rest = march.i == lattice.whole;
-                vec2 ends = vec2(front, 0.0);
-                if (PREINTEGRATED != 0u)
-                    ends.y = value_at_end(params, ray, end_of(params, lattice, march.i), texels_at(position, place),
-                                          place);
-                front = ends.y;
-                const float part = is_rest ? lattice.part : 1.0;
-                const Sample found = sample_at(params, ray, position, part, place, ends);
-                if (COUNT_WORK != 0u) note_taken(place, work);
-                if (is_rest) {
-                    march.rest = found;
-                    march.has_rest = true;
-                } else {
-                    add(found.look, middle, march);
-                    march.unseen = found.look.a > 0.0 ? 0u : march.unseen + 1u;
-                }
-                ++march.i;
+                take_sample(params, ray, lattice, position, place, front, march, work);
             }
             goes_on = goes_on && !march.waits && march.i < end_step && march.unseen < patience &&
                       march.sum.a < params.opacity_limit;
