@@ -116,7 +116,6 @@ public:
         return exists() ? whole(lower, upper) : fallback;
     }
     bool flag(bool fallback) const { return exists() ? flag() : fallback; }
-    std::string text_or(const std::string& fallback) const { return exists() ? text() : fallback; }
     glm::dvec3 vector(const glm::dvec3& fallback, const NumberRange& range) const
     {
         return exists() ? vector(range) : fallback;

@@ -176,7 +176,6 @@ void PageLister::collect()
     if (!made) return;
     is_busy_ = false;
     if (made->failure) std::rethrow_exception(made->failure);
-    ++lists_made_;
     if (made->outdated == outdated_) keep(std::move(made->list));
 }
 

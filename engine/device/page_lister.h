@@ -120,8 +120,7 @@ public:
     /// Marks all lists as out of date, because the source or the paint has changed.
     void forget();
 
-    /// Number of lists made, and of calls of take() that had to wait.
-    uint64_t lists_made() const { return lists_made_; }
+    /// Number of calls of take() that had to wait for a list.
     uint64_t waits() const { return waits_; }
 
 private:
@@ -149,7 +148,7 @@ private:
     uint64_t outdated_ = 0;                        ///< calls of forget()
     std::deque<std::shared_ptr<PageList>> lists_;  ///< most recent last
     bool is_busy_ = false;
-    uint64_t lists_made_ = 0, waits_ = 0;
+    uint64_t waits_ = 0;
 
     KnownBricks known_;  ///< owned by the lister's thread
 

@@ -86,7 +86,6 @@ public:
     std::unique_ptr<Scene> show(std::unique_ptr<Scene> scene) { return std::exchange(scene_, std::move(scene)); }
     /// Fails if the sizes alone imply that load() would; reads no voxels.
     void check_sizes(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion);
-    bool has_scene() const { return scene_ != nullptr; }
     Scene& scene() const;
     DeviceVolume& volume() const { return scene().volume(); }
     const VolumeStatistics& statistics() const { return scene().statistics(); }

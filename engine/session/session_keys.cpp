@@ -61,9 +61,7 @@ const About PATH{.meaning = "the file", .allowed = "path", .standard = "required
 const About RAW{
     .meaning =
         "for bare voxels: `\"256x256x108:int16:little:0\"`, size, type, byte order and bytes to skip; the last "
-        "two "
-        "may be "
-        "left out. `volume.path` may then be the first of numbered files with a slice each, or their folder",
+        "two may be left out. `volume.path` may then be the first of numbered files with a slice each, or their folder",
     .allowed = "text",
     .standard = "none"};
 

@@ -18,8 +18,7 @@ namespace {
 constexpr int64_t MAX_JSON_BYTES = int64_t{16} << 20;
 constexpr const char* EXPECTED =
     "; expected a volume, a session, a project, a mask, density offsets, a trace, a transfer function or a picture "
-    "that "
-    "was made here";
+    "that was made here";
 
 std::string first_bytes(const fs::path& path)
 {

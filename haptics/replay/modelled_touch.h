@@ -46,7 +46,6 @@ public:
     /// Gives it a velocity, to throw it at objects.
     void set_velocity(const glm::dvec3& velocity) { velocity_ = velocity; }
     const glm::dvec3& true_position_m() const { return position_m_; }
-    const glm::dvec3& true_velocity() const { return velocity_; }
     /// Work done by the device's force on hand and arm, in J: the energy they gained from it.
     double work_j() const { return work_j_; }
 

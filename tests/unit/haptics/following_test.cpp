@@ -1,4 +1,4 @@
-// Guidance along a tube (haptics.md 4.4): how much closer to its middle line a hand and a mouse stay with assistance
+// Guidance along a tube: how much closer to its middle line a hand and a mouse stay with assistance
 // than without, alone, in noise, beside a neighbour and beside one that touches.
 
 #include <algorithm>
