@@ -77,7 +77,7 @@ void search_bits(const RaycastParams params, const Ray ray, float begin, uint en
             const Place place = place_at(params, position);
             const bool asks = searches && found != 0u && from + next < end_step && place.distance == 0u;
             const bool is_seen = asks && may_be_seen(params, position, place);
-            if (COUNT_WORK != 0u && asks && !is_seen) note_sample(place, work);
+            if (COUNT_WORK != 0u) note_sample(asks && !is_seen, place, work);
             passed = is_seen ? next : passed;
             searches = searches && !is_seen;
             found &= found - 1u;
@@ -131,7 +131,8 @@ void search_sample(const RaycastParams params, const Ray ray, float begin, uint 
                 if (!is_found) note(place, work);
                 is_found = is_found || (place.distance == 0u && (place.is_missing ||
                                                                  may_be_seen(params, position, place)));
-                if (COUNT_WORK != 0u && !is_found && i + k < end_step && place.distance == 0u) note_sample(place, work);
+                const bool is_asked = !is_found && i + k < end_step && place.distance == 0u;
+                if (COUNT_WORK != 0u) note_sample(is_asked, place, work);
                 passed += is_found ? 0u : 1u;
             }
             i = min(i + passed, end_step);

@@ -207,11 +207,11 @@ void search_shell(const RaycastParams params, const Ray ray, inout Shell shell)
         }
         const bool is_found = goes_on && found != NO_SHELL && !cell.is_missing;
         const float at = shell.from + found * extent;
-        shell.next = is_found ? at : NO_SHELL;
+        shell.next = is_found ? at : shell.next;
         shell.is_inside = is_found ? !shell.is_inside : shell.is_inside;
         shell.from = !goes_on || cell.is_missing ? shell.from : is_found ? at + hair_at(at) : to;
         shell.known = shell.from;
-        shell.waits = goes_on && cell.is_missing;
+        shell.waits = shell.waits || (goes_on && cell.is_missing);
         searches = !is_found && shell.from < shell.limit && !shell.waits && shell.turns < MAX_TURNS;
     } while (searches);
 }

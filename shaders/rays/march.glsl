@@ -41,17 +41,19 @@ Work no_work()
 #include "../library/sample.glsl"
 #include "../library/lattice.glsl"
 
-void note_sample(const Place place, inout Work work)
+// Counts a sample if it is taken. The slot is carried, not set in a branch: SwiftShader loses what a
+// lane sets in a branch of a loop that it leaves before others.
+void note_sample(bool is_taken, const Place place, inout Work work)
 {
-    ++work.samples;
-    work.bricks += uint(place.slot != work.last_slot);
-    work.last_slot = place.slot;
+    work.samples += uint(is_taken);
+    work.bricks += uint(is_taken && place.slot != work.last_slot);
+    work.last_slot = is_taken ? place.slot : work.last_slot;
 }
 
 // Counts a sample, which is also shaded if any is.
 void note_taken(const Place place, inout Work work)
 {
-    note_sample(place, work);
+    note_sample(true, place, work);
     work.shaded += uint(SHADED != 0u);
 }
 
@@ -80,11 +82,9 @@ uint steps_to_leave(const RaycastParams params, const Ray ray, vec3 position, co
 void note(const Place place, inout Work work)
 {
 #ifdef PAGED
-    const bool is_wanted = KEPT != KEPT_ALL || place.is_missing;
-    if (FEEDBACK != 0u && is_wanted && place.entry != work.last_entry) {
-        note_reached(place);
-        work.last_entry = place.entry;
-    }
+    const bool is_wanted = (KEPT != KEPT_ALL || place.is_missing) && place.entry != work.last_entry;
+    if (FEEDBACK != 0u && is_wanted) note_reached(place);
+    work.last_entry = is_wanted ? place.entry : work.last_entry;   // carried, as the slot
 #endif
 }
 
