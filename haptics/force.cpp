@@ -11,7 +11,7 @@ namespace {
 
 constexpr double VELOCITY_CUTOFF_HZ = 100.0;
 /// Fades treat a longer pause of the servo as one of this length.
-constexpr uint64_t LONGEST_TICK_NS = 10'000'000;
+constexpr uint64_t MAX_TICK_NS = 10'000'000;
 /// Interval at which the thesis's damping, which has no interval, equals `damping`.
 constexpr double THESIS_TICK_S = 0.001;
 
@@ -266,7 +266,7 @@ ForceStep step(const ForceSettings& settings, const DeviceCaps& stated, ReadResu
     clear_fault(settings.reset, memory);
     const uint64_t dt_ns = memory.last_tick_ns == 0 || now_ns < memory.last_tick_ns
                                ? 0
-                               : std::min(now_ns - memory.last_tick_ns, LONGEST_TICK_NS);
+                               : std::min(now_ns - memory.last_tick_ns, MAX_TICK_NS);
     const double dt_s = double(dt_ns) * 1e-9;
     memory.last_tick_ns = now_ns;
     add_heat(memory.force_n, dt_s, memory.heat);  // the force of the last tick, which ends now

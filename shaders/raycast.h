@@ -31,7 +31,7 @@ SHARED_CONST uint SHELL_BOX = 2u;
 /// The specialization constant PICK: the target's first row is the answer; between blocks the other rows hold the state
 /// of the runs so far. A rise below the second constant does not count as visible.
 SHARED_CONST uint PICK_ROWS = 3u;
-SHARED_CONST float LEAST_SEEN = 0.015625f;
+SHARED_CONST float MIN_SEEN = 0.015625f;
 
 /// The specialization constant KEPT: the state that a ray leaves in `rays` between two dispatches, in addition to the
 /// colour accumulated in its pixel. Upper half, x: length at the next iso-surface; y: length from which the search

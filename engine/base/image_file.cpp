@@ -24,10 +24,10 @@ namespace {
 using Bytes = std::span<const std::byte>;
 
 // The largest pictures hold 1 GiB of pixels, which do not compress if they are noise.
-constexpr int64_t LARGEST_PNG_FILE = int64_t{2} << 30;
+constexpr int64_t MAX_PNG_BYTES = int64_t{2} << 30;
 
 // The maximum expansion of a deflate stream.
-constexpr int64_t LARGEST_DEFLATE_RATIO = 1032;
+constexpr int64_t MAX_DEFLATE_RATIO = 1032;
 
 constexpr size_t SIGNATURE_BYTES = 8;
 constexpr size_t CHUNK_FRAME_BYTES = 12;  // length, type and checksum around the data
@@ -86,7 +86,7 @@ void check_file(Bytes file, std::string_view name)
     check_size(width, height, name);
     const auto bits = bits_of_pixel(file);
     if (!bits) fail(name, ": the colour type is ", std::to_integer<int>(file[25]), "; expected 0, 2, 3, 4 or 6");
-    if (width * height * *bits / 8 / LARGEST_DEFLATE_RATIO > int64_t(file.size())) {
+    if (width * height * *bits / 8 / MAX_DEFLATE_RATIO > int64_t(file.size())) {
         fail(name, ": holds ", file.size(), " bytes, too few for the ", width, " x ", height,
              " pixels that its header tells of");
     }
@@ -305,7 +305,7 @@ std::vector<std::byte> encode_png(const Image8& image, std::string_view name)
 
 Image8 read_png(const std::filesystem::path& path)
 {
-    return decode_png(read_file(path, LARGEST_PNG_FILE), path.string());
+    return decode_png(read_file(path, MAX_PNG_BYTES), path.string());
 }
 
 namespace {

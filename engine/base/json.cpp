@@ -14,15 +14,15 @@ namespace {
 
 using nlohmann::json;
 
-constexpr size_t LONGEST_QUOTE = 60;
-constexpr size_t LONGEST_REASON = 200;
-constexpr double LARGEST_WHOLE = 9007199254740992.0;  // 2^53: above it, doubles cannot represent every whole number
+constexpr size_t MAX_QUOTE_BYTES = 60;
+constexpr size_t MAX_REASON_BYTES = 200;
+constexpr double MAX_WHOLE = 9007199254740992.0;  // 2^53: above it, doubles cannot represent every whole number
 
-/// At most LONGEST_QUOTE bytes, never cutting a UTF-8 character.
+/// At most MAX_QUOTE_BYTES bytes, never cutting a UTF-8 character.
 std::string shortened(std::string text)
 {
-    if (text.size() <= LONGEST_QUOTE) return text;
-    size_t end = LONGEST_QUOTE - 3;
+    if (text.size() <= MAX_QUOTE_BYTES) return text;
+    size_t end = MAX_QUOTE_BYTES - 3;
     while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0u) == 0x80u) --end;
     return text.substr(0, end) + "...";
 }
@@ -48,7 +48,7 @@ std::string reason_of(const json::exception& error)
     std::string reason = error.what();
     if (const size_t bracket = reason.find("] "); bracket != std::string::npos) reason.erase(0, bracket + 2);
     reason = reason.substr(0, reason.find("; expected"));
-    if (reason.size() > LONGEST_REASON) reason = reason.substr(0, LONGEST_REASON) + "...";
+    if (reason.size() > MAX_REASON_BYTES) reason = reason.substr(0, MAX_REASON_BYTES) + "...";
     std::ranges::replace_if(
         reason, [](char c) { return c < ' ' || c > '~'; }, '?');
     return reason;
@@ -294,7 +294,7 @@ int64_t JsonNode::whole(int64_t lower, int64_t upper) const
         if (fits) whole = value_->get<int64_t>();
     } else if (is_number()) {
         const double value = value_->get<double>();
-        if (value == std::floor(value) && std::abs(value) <= LARGEST_WHOLE) whole = int64_t(value);
+        if (value == std::floor(value) && std::abs(value) <= MAX_WHOLE) whole = int64_t(value);
     }
     if (whole && *whole >= lower && *whole <= upper) return *whole;
     refuse(lower == upper ? sentence(lower) : sentence("a whole number from ", lower, " to ", upper));

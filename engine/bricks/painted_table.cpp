@@ -8,17 +8,17 @@ namespace shvr {
 
 namespace {
 
-constexpr size_t FEWEST_ENTRIES = 16;
+constexpr size_t MIN_ENTRIES = 16;
 /// Cuckoo insertion: a brick whose place is taken moves the occupant to its other place, and so on. If half of the
 /// entries are free, few insertions move more than a dozen bricks.
-constexpr int MOST_MOVES = 500;
+constexpr int MAX_MOVES = 500;
 
 /// Inserts `brick` into `entries`; false if it and the bricks it would move find no place.
 bool insert(std::vector<PaintedBrick>& entries, PaintedBrick brick)
 {
     const uint32_t last = uint32_t(entries.size() - 1);
     uint32_t at = gpu::mask_places(brick.brick).x & last;
-    for (int moves = 0; moves < MOST_MOVES; ++moves) {
+    for (int moves = 0; moves < MAX_MOVES; ++moves) {
         std::swap(entries[at], brick);
         if (brick.slot == gpu::NO_SLOT) return true;
         const glm::uvec2 places = gpu::mask_places(brick.brick) & last;
@@ -32,7 +32,7 @@ bool insert(std::vector<PaintedBrick>& entries, PaintedBrick brick)
 std::vector<uint32_t> painted_table(std::span<const PaintedBrick> bricks)
 {
     std::vector<PaintedBrick> entries;
-    for (size_t count = std::bit_ceil(2 * bricks.size() + FEWEST_ENTRIES);; count *= 2) {
+    for (size_t count = std::bit_ceil(2 * bricks.size() + MIN_ENTRIES);; count *= 2) {
         entries.assign(count, {});
         if (std::ranges::all_of(bricks, [&](const PaintedBrick& brick) { return insert(entries, brick); })) break;
     }

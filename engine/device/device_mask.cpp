@@ -191,8 +191,8 @@ std::vector<uint32_t> DeviceMask::hashed_table(const Mask& mask) const
 
 void DeviceMask::submit(FrameGraph graph)
 {
-    constexpr size_t MOST_IN_FLIGHT = 4;  // each holds an upload
-    if (in_flight_.size() >= MOST_IN_FLIGHT) in_flight_.front().wait();
+    constexpr size_t MAX_IN_FLIGHT = 4;  // each holds an upload
+    if (in_flight_.size() >= MAX_IN_FLIGHT) in_flight_.front().wait();
     std::erase_if(in_flight_, [](const gpu::Submission& submission) { return submission.done(); });
     in_flight_.push_back(executor_.submit(std::move(graph), {.timestamps = false}));
 }

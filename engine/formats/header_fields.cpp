@@ -101,11 +101,11 @@ Size3 HeaderFields::size(const char* name) const
 std::vector<int64_t> HeaderFields::sizes(const char* name, size_t count) const
 {
     const std::string expected =
-        sentence(count == 3 ? "three" : std::to_string(count), " whole numbers from 1 to ", LARGEST_SIDE);
+        sentence(count == 3 ? "three" : std::to_string(count), " whole numbers from 1 to ", MAX_SIDE);
     std::vector<int64_t> sides;
     for (const std::string_view word : words_of(required(name, expected.c_str()))) {
         const std::optional<int64_t> side = whole_of(word);
-        if (!side || *side < 1 || *side > LARGEST_SIDE) refuse(name, expected);
+        if (!side || *side < 1 || *side > MAX_SIDE) refuse(name, expected);
         sides.push_back(*side);
     }
     if (sides.size() != count) refuse(name, expected);

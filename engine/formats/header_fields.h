@@ -15,10 +15,10 @@
 namespace shvr {
 
 /// The maximum length of a header.
-inline constexpr size_t LONGEST_HEADER = size_t{1} << 20;
+inline constexpr size_t MAX_HEADER_BYTES = size_t{1} << 20;
 
 /// The first bytes of a file, at most `max_bytes`. Fails if it is not a regular file or cannot be read.
-std::string read_head(const std::filesystem::path& path, size_t max_bytes = LONGEST_HEADER);
+std::string read_head(const std::filesystem::path& path, size_t max_bytes = MAX_HEADER_BYTES);
 
 /// The fields of one header. Names are case-insensitive.
 class HeaderFields {

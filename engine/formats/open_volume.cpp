@@ -82,7 +82,7 @@ RawLayout parse_raw_layout(const std::string& text)
     for (int axis = 0; axis < 3; ++axis) {
         const std::optional<int64_t> side = whole_of(sides[size_t(axis)]);
         if (!side) refuse_layout(text);
-        if (*side < 1 || *side > LARGEST_SIDE) {
+        if (*side < 1 || *side > MAX_SIDE) {
             throw UsageError(sentence("raw layout ", in_quotes(text), ": size along ", "xyz"[axis], " is ", *side,
                                       "; expected 1 to ", int64_t{1} << 20));
         }

@@ -243,7 +243,7 @@ std::optional<VoxelBox> Annotator::advance_first_stroke()
         strokes_.front().query.drop();
         const bool is_of_budget = dynamic_cast<const gpu::BudgetError*>(&error) != nullptr;  // a budget does not change
                                                                                              // by waiting
-        if (!is_of_budget && ++strokes_.front().failed_tries < MOST_TRIES) throw;
+        if (!is_of_budget && ++strokes_.front().failed_tries < MAX_TRIES) throw;
         drop_first_stroke();
         fail(error.what(), CUT);
     } catch (const Error& error) {  // what cannot be recorded is not painted
@@ -326,7 +326,7 @@ void Annotator::catch_up()
     try {
         renderer_.scene().catch_up(document());
     } catch (const gpu::BudgetError&) {
-        tries_to_show_ = MOST_TRIES;  // it stays behind until something changes
+        tries_to_show_ = MAX_TRIES;  // it stays behind until something changes
         throw;
     }
     ++revision_;

@@ -37,7 +37,7 @@ WorkFiles with_kept_settings(WorkFiles files, const Session& session, const std:
 class Annotator {
 public:
     /// Number of attempts after running out of memory: with the pauses of a user's window, for 5 s.
-    static constexpr int MOST_TRIES = 20;
+    static constexpr int MAX_TRIES = 20;
 
     /// The volume must be loaded; the mask starts unpainted.
     explicit Annotator(Renderer& renderer);
@@ -97,7 +97,7 @@ public:
     /// says so.
     std::optional<VoxelBox> advance();
     /// Whether the picture lags behind the annotation after a failed update, which `advance` retries.
-    bool is_behind() const { return renderer_.scene().is_behind() && tries_to_show_ < MOST_TRIES; }
+    bool is_behind() const { return renderer_.scene().is_behind() && tries_to_show_ < MAX_TRIES; }
     /// Retries at once; fails if that is not possible.
     void catch_up();
     /// Number of interactive strokes painted to their end.

@@ -21,9 +21,9 @@ public:
     /// Records that a graph of `units` units took `graph_ms`.
     void learn(double graph_ms, double units)
     {
-        constexpr double LEAST_MS = 1e-7;
+        constexpr double MIN_MS = 1e-7;
         if (!(units > 0.0)) return;
-        last_[count_++ % GRAPHS] = std::max(graph_ms / units, LEAST_MS);
+        last_[count_++ % GRAPHS] = std::max(graph_ms / units, MIN_MS);
     }
     /// How many units fit into `budget_ms`.
     double affords(double budget_ms) const { return budget_ms / ms(); }

@@ -15,7 +15,7 @@ namespace {
 constexpr double FIT_FOV_DEGREES = 30.0;
 constexpr double FIT_MARGIN = 1.05;
 /// Sine of the smallest angle between `up` and the view at which `up` is still meaningful.
-constexpr double SMALLEST_UP_SINE = 1e-6;
+constexpr double MIN_UP_SINE = 1e-6;
 /// In finest spacings; see `ray_planes`.
 constexpr double NEAR_HAIR = 1e-3;
 
@@ -61,7 +61,7 @@ std::optional<Axes> frame_of(const Camera& camera)
     const glm::dvec3 forward = view / view_length;
     const glm::dvec3 right = glm::cross(forward, camera.up / up_length);
     const double sine = glm::length(right);
-    if (!(sine >= SMALLEST_UP_SINE)) return {};
+    if (!(sine >= MIN_UP_SINE)) return {};
     return Axes{right / sine, glm::cross(right / sine, forward), forward};
 }
 

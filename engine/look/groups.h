@@ -36,7 +36,7 @@ struct ColorGroup {
 
 /// The minimum CIEDE2000 difference between any two of the ten colours, and between one of them and the default
 /// transfer function or white, in normal vision and simulated protanopia, deuteranopia and tritanopia (Machado 2009).
-inline constexpr double LEAST_GROUP_DIFFERENCE = 13.0;
+inline constexpr double MIN_GROUP_DIFFERENCE = 13.0;
 /// Ten distinguishable colours, repeated. Group 0 (unpainted) is fully transparent.
 ColorGroup default_group(uint8_t group);
 ColorGroup group_of(const Groups& groups, uint8_t group);

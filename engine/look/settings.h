@@ -109,7 +109,7 @@ struct RenderSettings {
 /// The six cutting planes: the part of the volume that is drawn, in voxels.
 struct CutBox {
     glm::dvec3 lower{0.0};
-    glm::dvec3 upper{double(LARGEST_SIDE)};
+    glm::dvec3 upper{double(MAX_SIDE)};
     bool operator==(const CutBox&) const = default;
 };
 

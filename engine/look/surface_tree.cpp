@@ -14,8 +14,7 @@ namespace shvr {
 
 namespace {
 
-constexpr double NEAREST = -double(LARGEST_SIDE), FARTHEST = 2.0 * double(LARGEST_SIDE),
-                 LARGEST_RADIUS = double(LARGEST_SIDE);
+constexpr double NEAREST = -double(MAX_SIDE), FARTHEST = 2.0 * double(MAX_SIDE), MAX_RADIUS = double(MAX_SIDE);
 /// If a ball contains the other except for this share of their difference, only the larger one is drawn.
 constexpr double CONTAINED = 1e-5;
 
@@ -59,9 +58,9 @@ void check(const SurfaceLook& surface, uint64_t key, double reference_length)
             fail(name_of(key), ": an end is at (", point.x, ", ", point.y, ", ", point.z, "); expected ",
                  NEAREST * reference_length, " ... ", FARTHEST * reference_length, " along each axis");
     for (const double radius : {surface.radius_from, surface.radius_to})
-        if (!(radius > 0.0 && radius / reference_length <= LARGEST_RADIUS))
+        if (!(radius > 0.0 && radius / reference_length <= MAX_RADIUS))
             fail(name_of(key), ": a radius is ", radius, "; expected more than 0 and at most ",
-                 LARGEST_RADIUS * reference_length);
+                 MAX_RADIUS * reference_length);
     if (!is_finite(surface.color)) fail(name_of(key), ": its colour is not finite; expected three finite numbers");
 }
 

@@ -251,7 +251,7 @@ private:
             return numbers.empty() ? ones_.data() : numbers.data() + pitch_ * size_t(row);
         };
         const size_t pairs = weights_[2].size() - 1;
-        constexpr size_t MOST = 4 * size_t(LARGEST_SIGMA) + 1;
+        constexpr size_t MOST = 4 * size_t(MAX_SIGMA) + 1;
         const Number<T>* before[MOST];
         const Number<T>* after[MOST];
         for (size_t k = 0; k < pairs; ++k) {

@@ -86,9 +86,9 @@ std::unique_ptr<Preparation> make_preparation(const VolumeSource& source, const 
              info.size.x, ",", info.size.y, ",", info.size.z);
     }
     const glm::dvec3& sigma = options.blur_sigma_voxels;
-    SHVR_CHECK(options.downscale >= 1 && options.downscale <= LARGEST_DOWNSCALE, options.downscale);
+    SHVR_CHECK(options.downscale >= 1 && options.downscale <= MAX_DOWNSCALE, options.downscale);
     SHVR_CHECK(glm::all(glm::greaterThanEqual(sigma, glm::dvec3(0.0))) &&
-               glm::all(glm::lessThanEqual(sigma, glm::dvec3(LARGEST_SIGMA))));
+               glm::all(glm::lessThanEqual(sigma, glm::dvec3(MAX_SIGMA))));
     VolumeInfo after = info_after(source, options, box);
     const ImportBox taken(source, box, options.reverse, progress);
     if (sigma != glm::dvec3(0.0) || options.downscale != 1) return make_filter(std::move(after), taken, options);

@@ -29,8 +29,8 @@ struct PreparationOptions {
     int downscale = 1;
     bool operator==(const PreparationOptions&) const = default;
 };
-inline constexpr double LARGEST_SIGMA = 100.0;
-inline constexpr int LARGEST_DOWNSCALE = 64;
+inline constexpr double MAX_SIGMA = 100.0;
+inline constexpr int MAX_DOWNSCALE = 64;
 
 /// "cropped to ..., reversed": describes `options`; empty if they change nothing.
 std::string to_text(const PreparationOptions& options);

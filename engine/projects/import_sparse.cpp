@@ -23,7 +23,7 @@ Size3 chunk_counts(const Size3& size)
 }
 
 /// The bits of x, y and z interleaved (Morton 1966): chunks below one of a coarser level are adjacent. Chunks of
-/// LARGEST_SIDE voxels have 14 bits a side.
+/// MAX_SIDE voxels have 14 bits a side.
 uint64_t interleaved(const Size3& chunk)
 {
     uint64_t key = 0;

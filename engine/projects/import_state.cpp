@@ -14,7 +14,7 @@ namespace {
 constexpr char MAGIC[] = "SHVRIMP1";
 constexpr size_t MAGIC_BYTES = 8;
 constexpr size_t HEADER_BYTES = MAGIC_BYTES + 2 * sizeof(uint64_t);  ///< the content's length and its hash follow
-constexpr int64_t LARGEST_STATE = int64_t{1} << 40;
+constexpr int64_t MAX_STATE_BYTES = int64_t{1} << 40;
 /// Zstd's smallest block is four bytes long, and decodes to at most 128 KiB.
 constexpr uint64_t MAX_OUT_OF_A_BYTE = uint64_t{32} << 10;
 
@@ -43,14 +43,14 @@ void StateWriter::write(const std::filesystem::path& file) const
 
 StateReader::StateReader(const std::filesystem::path& file) : file_(file)
 {
-    const std::vector<std::byte> content = read_file(file, LARGEST_STATE);
+    const std::vector<std::byte> content = read_file(file, MAX_STATE_BYTES);
     if (content.size() < HEADER_BYTES || std::memcmp(content.data(), MAGIC, MAGIC_BYTES) != 0) refuse();
     uint64_t header[2];
     std::memcpy(header, content.data() + MAGIC_BYTES, sizeof(header));
     const std::byte* const frame = content.data() + HEADER_BYTES;
     const size_t frame_bytes = content.size() - HEADER_BYTES;
     // The frame's own length must agree before memory is allocated.
-    if (ZSTD_getFrameContentSize(frame, frame_bytes) != header[0] || header[0] > uint64_t{LARGEST_STATE}) refuse();
+    if (ZSTD_getFrameContentSize(frame, frame_bytes) != header[0] || header[0] > uint64_t{MAX_STATE_BYTES}) refuse();
     if (header[0] / MAX_OUT_OF_A_BYTE > frame_bytes) refuse();
     bytes_.resize(header[0]);
     const size_t made = ZSTD_decompress(bytes_.data(), bytes_.size(), frame, frame_bytes);

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int64_t LARGEST_SESSION_FILE = int64_t{16} << 20;
+constexpr int64_t MAX_SESSION_BYTES = int64_t{16} << 20;
 
 bool is_session_file(const fs::path& path)
 {
@@ -124,7 +124,7 @@ std::pair<JsonDocument, UnmeasuredSession> open_unmeasured(const fs::path& path,
     JsonDocument document = picture                ? session_document(picture->text, path.string())
                             : session_file.empty() ? document_for_volume(path)
                             : fs::exists(fs::symlink_status(file, ignored))
-                                ? session_document(read_text(file, LARGEST_SESSION_FILE), file.string())
+                                ? session_document(read_text(file, MAX_SESSION_BYTES), file.string())
                                 : document_for_project(file, opened.losses);
     apply_settings(document, settings);
     Session& session = opened.session;

@@ -91,7 +91,7 @@ void procedural_fields(Fields& f, ProceduralSpec& spec)
     const std::vector<std::string> kinds = procedural_kinds();
     f.choice("procedural", spec.kind, {kinds.begin(), kinds.end()}, PROCEDURAL);
     std::vector<int64_t> size{spec.size.x, spec.size.y, spec.size.z};
-    f.wholes("size", size, 1, LARGEST_SIDE, {"with `procedural`", "voxels"});
+    f.wholes("size", size, 1, MAX_SIDE, {"with `procedural`", "voxels"});
     spec.size = {size[0], size[1], size[2]};
     f.whole("seed", spec.seed, 0, std::numeric_limits<uint32_t>::max(), {"with `procedural`"});
     std::vector<std::string_view> types;
@@ -331,7 +331,7 @@ void fields(Fields& f, ProbeSettings& probe)
     f.check("connectivity", brush.connectivity == 6 || brush.connectivity == 26, "6 or 26");
     f.flag("only_unpainted", brush.only_unpainted,
            {"true: it paints unpainted voxels alone, and takes none from any group; offsets are changed all the same"});
-    f.vector("voxel", probe.voxel, {-double(LARGEST_SIDE), 2.0 * double(LARGEST_SIDE)},
+    f.vector("voxel", probe.voxel, {-double(MAX_SIDE), 2.0 * double(MAX_SIDE)},
              {.meaning = "where the probe is", .unit = "voxels", .standard = "the volume's middle"});
     f.number("paint_threshold", brush.threshold, INTENSITY,
              {.meaning = "voxels at or above it are painted",

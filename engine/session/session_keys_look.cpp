@@ -207,7 +207,7 @@ void fields(Fields& f, SliceSettings& slices)
 {
     f.number("paint_share", slices.paint_share, SHARE, {"how much of a painted voxel's colour is its group's"});
     f.number("zoom", slices.zoom, above_zero(1e-3, 1e3), {"of the slices; 1: the whole volume fits"});
-    f.vector("center", slices.center, {-double(LARGEST_SIDE), 2.0 * double(LARGEST_SIDE)},
+    f.vector("center", slices.center, {-double(MAX_SIDE), 2.0 * double(MAX_SIDE)},
              {.meaning = "what the slices have in their middle",
               .unit = "voxels",
               .standard = "the volume's, or of slices that are enlarged the probe"});
@@ -263,7 +263,7 @@ void fields(Fields& f, InteractionSettings& interaction)
 
 void fields(Fields& f, CutBox& cut)
 {
-    const NumberRange voxel{0.0, double(LARGEST_SIDE)};
+    const NumberRange voxel{0.0, double(MAX_SIDE)};
     f.vector("lower", cut.lower, voxel, {"lower corner of the part of the volume that is drawn", "voxels"});
     f.vector("upper", cut.upper, voxel, {"its upper corner", "voxels"});
     f.check("", !glm::any(glm::greaterThan(cut.lower, cut.upper)), "a lower corner that is not above the upper one");

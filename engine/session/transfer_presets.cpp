@@ -13,8 +13,8 @@ namespace shvr {
 
 namespace {
 
-constexpr int64_t LARGEST_FILE = 1 << 20;
-constexpr double LARGEST_PLACE = 1e6;
+constexpr int64_t MAX_FILE_BYTES = 1 << 20;
+constexpr double MAX_PLACE = 1e6;
 constexpr size_t MAX_NAME_BYTES = 100;
 
 std::vector<std::filesystem::path> preset_files(const std::filesystem::path& folder)
@@ -36,11 +36,11 @@ TransferPreset parse_transfer_preset(const std::string& text, const std::string&
     document.allow({"note", "points", "extends"});
     TransferPreset preset{.name = name, .note = document["note"].text("a sentence"), .points = {}};
     preset.extends = document["extends"].flag(true);
-    double last = -LARGEST_PLACE;
+    double last = -MAX_PLACE;
     for (const JsonNode& element : document["points"].elements()) {
         element.allow({"at", "color", "opacity"});
         ControlPoint point;
-        point.intensity = element["at"].number({last, LARGEST_PLACE});
+        point.intensity = element["at"].number({last, MAX_PLACE});
         point.color = read_color(element["color"]);
         point.opacity = element["opacity"].number(SHARE);
         last = point.intensity;
@@ -61,7 +61,7 @@ std::vector<TransferPreset> transfer_presets()
 
 TransferPreset read_transfer_preset(const std::filesystem::path& file)
 {
-    return parse_transfer_preset(read_text(file, LARGEST_FILE), file.stem().string(), file.string());
+    return parse_transfer_preset(read_text(file, MAX_FILE_BYTES), file.stem().string(), file.string());
 }
 
 std::vector<TransferPreset> own_transfer_presets(const std::filesystem::path& folder,
@@ -99,7 +99,7 @@ TransferPreset preset_of(const TransferFunction& function, const std::string& na
         fail("the transfer function has ", preset.points.size(), " points; expected at least two");
     for (ControlPoint& point : preset.points) {
         point.intensity = (point.intensity - tissue.lower) / (tissue.upper - tissue.lower);
-        if (!(std::abs(point.intensity) <= LARGEST_PLACE))
+        if (!(std::abs(point.intensity) <= MAX_PLACE))
             fail("the transfer function has a point too far from the volume's intensities to be kept; expected one ",
                  "within a million times the range of its tissue");
     }
@@ -116,7 +116,7 @@ std::string text_of(const TransferPreset& preset)
                             f.items("points", written.points.size(), SIZE_MAX,
                                     [&](Fields& point, size_t index, size_t) {
                                         ControlPoint& each = written.points[index];
-                                        point.number("at", each.intensity, {-LARGEST_PLACE, LARGEST_PLACE}, {});
+                                        point.number("at", each.intensity, {-MAX_PLACE, MAX_PLACE}, {});
                                         point.color("color", each.color, {});
                                         point.number("opacity", each.opacity, SHARE, {});
                                     },

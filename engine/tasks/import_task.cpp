@@ -17,7 +17,7 @@ void crop_fields(Fields& f, VoxelBox& crop)
 {
     const auto corner = [&](const char* name, Size3& voxel, const About& about) {
         std::vector<int64_t> numbers{voxel.x, voxel.y, voxel.z};
-        f.wholes(name, numbers, 0, LARGEST_SIDE, about);
+        f.wholes(name, numbers, 0, MAX_SIDE, about);
         voxel = {numbers[0], numbers[1], numbers[2]};
     };
     corner("lower", crop.lower, {"first voxel of the box", "voxels"});
@@ -100,8 +100,8 @@ void fields(Fields& f, ImportTask& task)
     }
     f.flag("reverse", task.reverse,
            {"dark and bright are swapped: the whole volume's smallest plus largest value, minus the voxel"});
-    f.vector("blur", task.blur_voxels, {0.0, LARGEST_SIGMA}, {"sigma of a Gaussian blur, along x, y and z", "voxels"});
-    f.whole("downscale", task.downscale, 1, LARGEST_DOWNSCALE, {"how many times smaller, along every axis"});
+    f.vector("blur", task.blur_voxels, {0.0, MAX_SIGMA}, {"sigma of a Gaussian blur, along x, y and z", "voxels"});
+    f.whole("downscale", task.downscale, 1, MAX_DOWNSCALE, {"how many times smaller, along every axis"});
     f.flag("labels", task.labels,
            {"the voxels are labels: coarser levels hold the most frequent one instead of a mean"});
     f.text("raw", task.raw,
@@ -134,12 +134,11 @@ void check(const ImportTask& task)
                                   name("unit"), " um"));
     for (int axis = 0; axis < 3; ++axis) {
         const double sigma = task.blur_voxels[axis];
-        if (!(sigma >= 0.0 && sigma <= LARGEST_SIGMA))
-            throw UsageError(
-                sentence(name("blur"), " is ", sigma, "; expected sigmas of 0 to ", LARGEST_SIGMA, " voxels"));
+        if (!(sigma >= 0.0 && sigma <= MAX_SIGMA))
+            throw UsageError(sentence(name("blur"), " is ", sigma, "; expected sigmas of 0 to ", MAX_SIGMA, " voxels"));
     }
-    if (task.downscale < 1 || task.downscale > LARGEST_DOWNSCALE)
-        throw UsageError(sentence(name("downscale"), " is ", task.downscale, "; expected 1 to ", LARGEST_DOWNSCALE));
+    if (task.downscale < 1 || task.downscale > MAX_DOWNSCALE)
+        throw UsageError(sentence(name("downscale"), " is ", task.downscale, "; expected 1 to ", MAX_DOWNSCALE));
     if (task.shards && task.version != OmeZarrVersion::v0_5)
         throw UsageError(
             task.names == OptionNames::command_line

@@ -9,7 +9,7 @@ namespace shvr {
 /// Voxels along one side of a brick.
 inline constexpr int64_t BRICK_SIDE = gpu::BRICK_SIZE;
 /// The largest accepted side of a volume, in voxels.
-inline constexpr int64_t LARGEST_SIDE = int64_t{1} << 20;
+inline constexpr int64_t MAX_SIDE = int64_t{1} << 20;
 
 /// Bricks along each axis of a volume of `size` voxels.
 inline Size3 brick_grid(const Size3& size)

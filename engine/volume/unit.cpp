@@ -28,8 +28,8 @@ std::string plain_unit(std::string_view unit)
     for (const char* plain : {"um", "mm", "nm", "cm"}) {
         if (lower == plain) return plain;
     }
-    constexpr size_t LONGEST_UNIT = 60;
-    return printable(bare.substr(0, LONGEST_UNIT));
+    constexpr size_t MAX_UNIT_BYTES = 60;
+    return printable(bare.substr(0, MAX_UNIT_BYTES));
 }
 
 std::optional<double> micrometres_in(const std::string& unit)

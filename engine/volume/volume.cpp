@@ -12,8 +12,8 @@
 namespace shvr {
 namespace {
 
-constexpr double LARGEST_CODE = 65535.0;
-constexpr double LARGEST_END = 0.5 * std::numeric_limits<double>::max() / 1.001;
+constexpr double MAX_CODE = 65535.0;
+constexpr double MAX_END = 0.5 * std::numeric_limits<double>::max() / 1.001;
 
 /// Every spelling in lower case, with single spaces between words, without MetaImage's "MET_".
 constexpr std::pair<const char*, VoxelType> SPELLINGS[] = {
@@ -138,8 +138,8 @@ int64_t voxel_count(const VolumeInfo& info)
     int64_t count = 1;
     for (int axis = 0; axis < 3; ++axis) {
         const int64_t side = info.size[axis];
-        if (side < 1 || side > LARGEST_SIDE) {
-            fail(info.name, ": size along ", "xyz"[axis], " is ", side, "; expected 1 to ", LARGEST_SIDE);
+        if (side < 1 || side > MAX_SIDE) {
+            fail(info.name, ": size along ", "xyz"[axis], " is ", side, "; expected 1 to ", MAX_SIDE);
         }
         if (__builtin_mul_overflow(count, side, &count)) {
             fail(info.name, ": size ", info.size.x, "x", info.size.y, "x", info.size.z,
@@ -172,13 +172,13 @@ IntensityWindow window_for(VoxelType type, double minimum, double maximum)
     if (!is_float(type)) {
         const double lower = std::floor(minimum);
         const double range = std::ceil(maximum) - lower;
-        const bool is_exact = range <= LARGEST_CODE || type == VoxelType::uint16 || type == VoxelType::int16;
-        if (is_exact) return {lower, std::floor(LARGEST_CODE / std::clamp(range, 1.0, LARGEST_CODE))};
+        const bool is_exact = range <= MAX_CODE || type == VoxelType::uint16 || type == VoxelType::int16;
+        if (is_exact) return {lower, std::floor(MAX_CODE / std::clamp(range, 1.0, MAX_CODE))};
     }
     // Doubles may be so far apart that their difference is infinite, or so close that its inverse is.
-    const double lower = std::clamp(minimum, -LARGEST_END, LARGEST_END);
-    const double range = std::clamp(maximum, -LARGEST_END, LARGEST_END) - lower;
-    return {lower, range > 0.0 ? std::min(LARGEST_CODE / range, LARGEST_END) : LARGEST_CODE};
+    const double lower = std::clamp(minimum, -MAX_END, MAX_END);
+    const double range = std::clamp(maximum, -MAX_END, MAX_END) - lower;
+    return {lower, range > 0.0 ? std::min(MAX_CODE / range, MAX_END) : MAX_CODE};
 }
 
 IntensityWindow window_for(VoxelType type, const VolumeStatistics& statistics)

@@ -25,9 +25,9 @@ using std::chrono::milliseconds;
 
 constexpr int READ_TIMEOUT_MS = 10;  ///< so that shutdown never has to interrupt a read
 constexpr milliseconds REOPEN_EVERY{15};
-constexpr milliseconds LOOK_EVERY{5};             ///< checks whether the link is to end
-constexpr int MAX_REPORTS_A_DRAIN = 256;          ///< a device that floods us must not delay the newest report
-constexpr uint64_t LONGEST_STEP_NS = 20'000'000;  ///< of rate control: after a pause it does not leap
+constexpr milliseconds LOOK_EVERY{5};         ///< checks whether the link is to end
+constexpr int MAX_REPORTS_A_DRAIN = 256;      ///< a device that floods us must not delay the newest report
+constexpr uint64_t MAX_STEP_NS = 20'000'000;  ///< of rate control: after a pause it does not leap
 // A hand without motors yields to a force like the mouse's: 75 N/m, settled within some 10 ms.
 constexpr double GIVE_WAY = 75.0;
 constexpr double SETTLE_S = 0.01;
@@ -175,7 +175,7 @@ private:
         const bool rests = now - motion.heard_ns > uint64_t{profile_.rate->rest_ms} * 1'000'000;
         if (rests) motion.heard.rate = motion.heard.turn_rate = glm::dvec3(0.0);
         const uint64_t passed = now > motion.time_ns ? now - motion.time_ns : 0;
-        const double dt = motion.time_ns == 0 ? 0.0 : double(std::min(passed, LONGEST_STEP_NS)) * 1e-9;
+        const double dt = motion.time_ns == 0 ? 0.0 : double(std::min(passed, MAX_STEP_NS)) * 1e-9;
         motion.time_ns = now;
 
         const DeviceCaps limits = caps();

@@ -76,5 +76,5 @@ void main()
         }
         accumulate(march.sum, vec4(surface.rgb, 1.0));
     }
-    imageStore(color, texel, march.rises.most >= LEAST_SEEN ? vec4(seen, march.sum.a) : vec4(0.0));
+    imageStore(color, texel, march.rises.most >= MIN_SEEN ? vec4(seen, march.sum.a) : vec4(0.0));
 }

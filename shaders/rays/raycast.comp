@@ -73,7 +73,7 @@ layout(binding = 12, rgba32f) uniform readonly image2D surfaces;   // linear RGB
 
 // A target's alpha is never negative; between blocks its sign says whether the ray is inside the iso-surface. Smaller
 // values count as 0, whose sign devices may lose.
-const float LEAST_ALPHA = 1e-30;
+const float MIN_ALPHA = 1e-30;
 
 // What earlier dispatches have left of a ray.
 Kept resume(const RaycastParams params, uvec2 in_part, ivec2 texel)
@@ -86,7 +86,7 @@ Kept resume(const RaycastParams params, uvec2 in_part, ivec2 texel)
         kept.sum = imageLoad(color, texel);
         kept.is_inside = kept.sum.a < 0.0;
         kept.is_done = false;
-        kept.sum.a = abs(kept.sum.a) > LEAST_ALPHA ? abs(kept.sum.a) : 0.0;
+        kept.sum.a = abs(kept.sum.a) > MIN_ALPHA ? abs(kept.sum.a) : 0.0;
     }
     return kept;
 }
@@ -204,7 +204,7 @@ void main()
     if (KEPT != KEPT_NOTHING) keep(params, in_part, left);
 #endif
     if (!block.is_last && KEPT != KEPT_ALL) {
-        if (left.is_inside) march.sum.a = -max(march.sum.a, LEAST_ALPHA);
+        if (left.is_inside) march.sum.a = -max(march.sum.a, MIN_ALPHA);
         imageStore(color, texel, march.sum);
         return;
     }

@@ -4,7 +4,7 @@
 #include <map>
 #include <tuple>
 
-#include "engine/volume/source_procedural.h"
+#include "engine/volume/procedural/source_procedural.h"
 #include "tests/support/volume_files.h"
 
 namespace shvr::test {

@@ -12,7 +12,7 @@ namespace shvr::bench {
 
 namespace {
 
-constexpr double LARGEST_CODE = 65535.0;
+constexpr double MAX_CODE = 65535.0;
 // Directions for the definition of ambient occlusion, which is far closer to its limit with these than pictures are
 // (tests/gpu/occlusion/occlusion_test.cpp).
 constexpr uint32_t OCCLUSION_DIRECTIONS = 128;
@@ -31,7 +31,7 @@ std::vector<double> densities(const VolumeSource& source, const IntensityWindow&
     for (int64_t z = 0; z < info.size.z; ++z) {
         source.read({{0, 0, z}, {info.size.x, info.size.y, z + 1}}, voxels);
         rows.convert(voxels, codes);
-        for (const uint16_t code : codes) density.push_back(code / LARGEST_CODE);
+        for (const uint16_t code : codes) density.push_back(code / MAX_CODE);
     }
     return density;
 }
@@ -177,7 +177,7 @@ reference::Shading light_of(const Session& session, const Camera& camera, double
             .diffuse = session.light.diffuse,
             .specular = session.light.specular,
             .shininess = session.light.shininess,
-            .fade = session.light.gradient_fade * range / LARGEST_CODE,
+            .fade = session.light.gradient_fade * range / MAX_CODE,
             .to_light = to_light(session.light.direction, camera)};
 }
 
@@ -197,7 +197,7 @@ ReferenceScene reference_scene_of(const Session& session, const VolumeSource& so
                         .balls = {}};
     reference::Scene& scene = made.scene;
     for (const ControlPoint& point : session.transfer_function.points())
-        scene.points.push_back({window.code_of(point.intensity) / LARGEST_CODE, point.color, point.opacity});
+        scene.points.push_back({window.code_of(point.intensity) / MAX_CODE, point.color, point.opacity});
     if (mask) {
         scene.labels = labels_of(*mask, info.size);
         for (size_t i = 1; i < scene.groups.size(); ++i) {

@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 constexpr int64_t MAX_BENCH_BYTES = int64_t{64} << 20;
 constexpr int SCHEMA = 1;
 constexpr double ERROR_MARGIN = 1.01;
-constexpr double LEAST_ERROR = 1e-7;  // of a float
+constexpr double MIN_ERROR = 1e-7;  // of a float
 
 Json json_of(const Measured& run)
 {
@@ -127,7 +127,7 @@ void compare_runs(const SceneResult& of_a, const Measured& a, const SceneResult&
         if (from != to) changes.push_back({of_a.name, a.name, what, from, to, 0.0, is_worse});
     };
     const auto error = [&](const char* what, double from, double to) {
-        if (to > from * ERROR_MARGIN + LEAST_ERROR || from > to * ERROR_MARGIN + LEAST_ERROR)
+        if (to > from * ERROR_MARGIN + MIN_ERROR || from > to * ERROR_MARGIN + MIN_ERROR)
             add(what, from, to, to > from);
     };
     error("rmse", a.error.rmse, b.error.rmse);
@@ -266,10 +266,10 @@ Comparison compare(const Results& a, const Results& b, bool with_times)
                   .b_rounds = size_t(std::max(b.rounds, 0)),
                   .at_work = a.driver == b.driver && a.instructions == b.instructions,
                   .at_times = with_times};
-    if (with_times && std::min(looked.a_rounds, looked.b_rounds) < report::FEWEST_TIMES) {
+    if (with_times && std::min(looked.a_rounds, looked.b_rounds) < report::MIN_TIMES) {
         looked.at_times = false;
         found.beside.push_back(
-            sentence("times are not compared: fewer than ", report::FEWEST_TIMES, " rounds tell no noise (--rounds)"));
+            sentence("times are not compared: fewer than ", report::MIN_TIMES, " rounds tell no noise (--rounds)"));
     }
     for (const SceneResult& scene : a.scenes) {
         const auto other = std::ranges::find(b.scenes, scene.name, &SceneResult::name);

@@ -56,10 +56,10 @@ std::optional<VoxelBox> parse_crop(const std::string& text)
 glm::dvec3 parse_blur(const std::string& text)
 {
     const std::string expected =
-        sentence("one sigma or three, X,Y,Z, in voxels, each 0 to ", LARGEST_SIGMA, ", as in 1.5 or 1.5,1.5,0.5");
+        sentence("one sigma or three, X,Y,Z, in voxels, each 0 to ", MAX_SIGMA, ", as in 1.5 or 1.5,1.5,0.5");
     const std::vector<double> sigmas = numbers_of<double>(text);
     for (const double sigma : sigmas) {
-        if (!(sigma >= 0.0 && sigma <= LARGEST_SIGMA)) refuse("--blur", text, expected);
+        if (!(sigma >= 0.0 && sigma <= MAX_SIGMA)) refuse("--blur", text, expected);
     }
     if (sigmas.size() == 1) return glm::dvec3(sigmas[0]);
     if (sigmas.size() != 3) refuse("--blur", text, expected);
@@ -132,7 +132,7 @@ void add_import(CLI::App& program)
         ->type_name("S|SX,SY,SZ");
     command->add_option("--downscale", options->task.downscale, "Make it N times smaller along every axis")
         ->type_name("N")
-        ->check(CLI::Range(1, LARGEST_DOWNSCALE));
+        ->check(CLI::Range(1, MAX_DOWNSCALE));
     command->add_flag("--labels", options->task.labels,
                       "The voxels are labels: coarser levels hold the most frequent one instead of a mean");
     command->add_option("--raw", options->task.raw, "How a file of bare voxels is laid out")

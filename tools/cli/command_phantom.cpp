@@ -36,9 +36,9 @@ Size3 parse_volume_size(const std::string& text)
     const int numbers = std::sscanf(text.c_str(), "%7dx%7dx%7d%c", &size.x, &size.y, &size.z, &end);
     if (numbers == 1 && text.find_first_not_of("0123456789") == std::string::npos) size = glm::ivec3(size.x);
     if ((numbers != 1 && numbers != 3) || glm::any(glm::lessThan(size, glm::ivec3(1))) ||
-        glm::any(glm::greaterThan(size, glm::ivec3(int{LARGEST_SIDE}))))
-        throw UsageError(sentence("--size is ", in_quotes(text), "; expected N or WIDTHxHEIGHTxDEPTH, each from 1 to ",
-                                  LARGEST_SIDE));
+        glm::any(glm::greaterThan(size, glm::ivec3(int{MAX_SIDE}))))
+        throw UsageError(
+            sentence("--size is ", in_quotes(text), "; expected N or WIDTHxHEIGHTxDEPTH, each from 1 to ", MAX_SIDE));
     return size;
 }
 

@@ -143,11 +143,11 @@ std::vector<Row> sweep(LongWork& work)
 std::string plot_of(const std::vector<Row>& rows)
 {
     constexpr double WIDTH = 640.0, HEIGHT = 440.0, LEFT = 70.0, BOTTOM = 60.0, TOP = 20.0, RIGHT = 150.0;
-    constexpr double LEAST_US = 1.0, MOST_US = 1000.0, LEAST = 1e-5, MOST = 1e-1;
+    constexpr double MIN_US = 1.0, MAX_US = 1000.0, LEAST = 1e-5, MOST = 1e-1;
     const auto share = [](double value, double least, double most) {
         return std::log(std::clamp(value, least, most) / least) / std::log(most / least);
     };
-    const auto x_of = [&](double us) { return LEFT + (WIDTH - LEFT - RIGHT) * share(us, LEAST_US, MOST_US); };
+    const auto x_of = [&](double us) { return LEFT + (WIDTH - LEFT - RIGHT) * share(us, MIN_US, MAX_US); };
     const auto y_of = [&](double error) {
         return HEIGHT - BOTTOM - (HEIGHT - BOTTOM - TOP) * share(error, LEAST, MOST);
     };
@@ -164,7 +164,7 @@ std::string plot_of(const std::vector<Row>& rows)
     const auto text = [&](double x, double y, const char* anchor, const std::string& words) {
         svg << "<text x=\"" << x << "\" y=\"" << y << "\" text-anchor=\"" << anchor << "\">" << words << "</text>\n";
     };
-    for (double us = LEAST_US; us <= MOST_US; us *= 10.0) {
+    for (double us = MIN_US; us <= MAX_US; us *= 10.0) {
         line(x_of(us), TOP, x_of(us), HEIGHT - BOTTOM);
         text(x_of(us), HEIGHT - BOTTOM + 18.0, "middle", std::to_string(int(std::lround(us))));
     }

@@ -16,8 +16,8 @@ constexpr double FOR_FEW[] = {5.8, 2.9, 2.0, 1.55, 1.35, 1.15};
 
 std::optional<double> noise_of(double minimum, double p95, size_t count)
 {
-    if (count < FEWEST_TIMES) return std::nullopt;
-    const size_t row = count - FEWEST_TIMES;
+    if (count < MIN_TIMES) return std::nullopt;
+    const size_t row = count - MIN_TIMES;
     return 0.5 * (p95 - minimum) * (row < std::size(FOR_FEW) ? FOR_FEW[row] : 1.0);
 }
 

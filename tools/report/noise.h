@@ -7,7 +7,7 @@
 namespace shvr::report {
 
 /// The minimum number of times from which noise can be estimated.
-constexpr size_t FEWEST_TIMES = 3;
+constexpr size_t MIN_TIMES = 3;
 
 /// The noise of the median of `count` times: half the distance from their minimum to their 95th percentile, and more if
 /// they are few, since few values spread less than many. Null if there are too few.

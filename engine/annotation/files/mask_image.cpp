@@ -13,7 +13,7 @@ namespace shvr {
 
 namespace {
 
-constexpr int64_t LARGEST_RECORD = int64_t{1} << 16;
+constexpr int64_t MAX_RECORD_BYTES = int64_t{1} << 16;
 constexpr int VERSION = 1;
 
 std::optional<uint64_t> number_of_hex(const std::string& digits)
@@ -73,7 +73,7 @@ std::optional<MaskJournal> journal_of_mask(const std::filesystem::path& mask)
         }
         const std::filesystem::path path = mask_image_path(mask);
         if (!std::filesystem::exists(path, ignored)) return std::nullopt;
-        const JsonDocument document = read_zarr_json(path, LARGEST_RECORD);
+        const JsonDocument document = read_zarr_json(path, MAX_RECORD_BYTES);
         return named_by(document.root()["journal"]);
     } catch (const Error&) {
         return std::nullopt;
@@ -90,7 +90,7 @@ void check_mask_image(const std::filesystem::path& mask, const std::string& cont
         const std::filesystem::path path = mask_image_path(mask);
         std::error_code ignored;
         if (is_folder(mask) || !std::filesystem::exists(path, ignored)) return;
-        document.emplace(read_zarr_json(path, LARGEST_RECORD));
+        document.emplace(read_zarr_json(path, MAX_RECORD_BYTES));
     }
     const JsonNode record = is_label_image ? node->attributes()["shvr"] : document->root();
     if (is_label_image && !record.exists()) return;

@@ -10,7 +10,7 @@ namespace shvr {
 
 namespace {
 
-constexpr double GREATEST_PRECISION = 1e-9;
+constexpr double MAX_PRECISION = 1e-9;
 
 /// A part of an internode of the trace.
 struct Part {
@@ -38,7 +38,7 @@ void search(const Part& whole, const TraceCourse& truth, double& greatest)
     while (!parts.empty()) {
         const Part part = parts.back();
         parts.pop_back();
-        if (upper_bound(part, truth) <= greatest * (1.0 + GREATEST_PRECISION) + truth.rounding()) continue;
+        if (upper_bound(part, truth) <= greatest * (1.0 + MAX_PRECISION) + truth.rounding()) continue;
         const glm::dvec3 middle = 0.5 * part.a.position + 0.5 * part.b.position;
         if (middle == part.a.position || middle == part.b.position) continue;  // limit of floating-point resolution
         const Part::End between{middle, truth.nearest_to(middle).value()};

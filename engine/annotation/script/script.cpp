@@ -16,7 +16,7 @@ namespace shvr {
 
 namespace {
 
-constexpr int64_t LARGEST_SCRIPT = int64_t{256} << 20;
+constexpr int64_t MAX_SCRIPT_BYTES = int64_t{256} << 20;
 constexpr int64_t MAX_COUNT = int64_t{1} << 62;
 /// Far beyond any volume, and far below where squares overflow.
 const NumberRange COORDINATE{-1e12, 1e12};
@@ -281,8 +281,8 @@ std::string read_stream(const std::filesystem::path& path, const std::string& na
         if (count < 0) fail(name, ": cannot be read: ", reason_of(errno));
         if (count == 0) return text;
         text.append(piece.data(), size_t(count));
-        if (text.size() > size_t(LARGEST_SCRIPT))
-            fail(name, ": holds more than ", LARGEST_SCRIPT, " bytes; expected at most that");
+        if (text.size() > size_t(MAX_SCRIPT_BYTES))
+            fail(name, ": holds more than ", MAX_SCRIPT_BYTES, " bytes; expected at most that");
     }
 }
 
@@ -311,7 +311,7 @@ void for_each_line(const std::filesystem::path& path, const std::function<void(c
     const std::string name = name_of_script(path);
     std::error_code ignored;
     const bool is_pipe = path == "-" || std::filesystem::is_fifo(path, ignored);
-    std::istringstream text(is_pipe ? read_stream(path, name) : read_text(path, LARGEST_SCRIPT));
+    std::istringstream text(is_pipe ? read_stream(path, name) : read_text(path, MAX_SCRIPT_BYTES));
     std::string line;
     for (int number = 1; std::getline(text, line); ++number) {
         const size_t start = line.find_first_not_of(" \t\r");

@@ -109,8 +109,8 @@ Size3 TraceReader::size(const std::string& where, std::string_view text) const
     const std::vector<std::string_view> words = words_of(text);
     Size3 size{0};
     for (int axis = 0; axis < 3 && words.size() == 3; ++axis) size[axis] = whole_of(words[size_t(axis)]).value_or(0);
-    if (glm::any(glm::lessThan(size, Size3(1))) || glm::any(glm::greaterThan(size, Size3(LARGEST_SIDE))))
-        fail(where, ": size is ", in_quotes(text), "; expected three whole numbers from 1 to ", LARGEST_SIDE);
+    if (glm::any(glm::lessThan(size, Size3(1))) || glm::any(glm::greaterThan(size, Size3(MAX_SIDE))))
+        fail(where, ": size is ", in_quotes(text), "; expected three whole numbers from 1 to ", MAX_SIDE);
     return size;
 }
 

@@ -11,7 +11,7 @@ namespace shvr {
 
 namespace {
 
-constexpr int64_t LARGEST_SAMPLE = (int64_t{1} << 31) - 1;
+constexpr int64_t MAX_SAMPLE_NUMBER = (int64_t{1} << 31) - 1;
 
 struct Sample {
     int line;
@@ -67,9 +67,9 @@ void read_trace_swc(TraceReader& reader, std::string_view text)
         const std::vector<std::string_view> words = words_of(line);
         if (words.size() < 7) fail(where, ": is ", in_quotes(line), "; expected n type x y z radius parent");
         const std::optional<int64_t> sample = whole_of(words[0]), parent = whole_of(words[6]);
-        if (!sample || *sample < 0 || *sample > LARGEST_SAMPLE)
-            fail(where, ": n is ", in_quotes(words[0]), "; expected a whole number from 0 to ", LARGEST_SAMPLE);
-        if (!parent || *parent < -1 || *parent > LARGEST_SAMPLE)
+        if (!sample || *sample < 0 || *sample > MAX_SAMPLE_NUMBER)
+            fail(where, ": n is ", in_quotes(words[0]), "; expected a whole number from 0 to ", MAX_SAMPLE_NUMBER);
+        if (!parent || *parent < -1 || *parent > MAX_SAMPLE_NUMBER)
             fail(where, ": parent is ", in_quotes(words[6]), "; expected -1 or the number of a sample");
         const uint32_t node =
             reader.add_node(where, {{reader.coordinate(where, "x", words[2]), reader.coordinate(where, "y", words[3]),

@@ -80,7 +80,7 @@ Shape shape_of(const std::string& file, const NiftiHeader& header)
 {
     const int64_t count = header.dim[0];
     if (count < 1 || count > 7) fail(file, ": dim[0] is ", count, "; expected 1 to 7 axes");
-    const int64_t most = header.version == 1 ? 32767 : LARGEST_SIDE;
+    const int64_t most = header.version == 1 ? 32767 : MAX_SIDE;
     for (size_t i = 1; i <= size_t(count); ++i) {
         const int64_t side = header.dim[i];
         if (side >= 1 && side <= most && (i <= 5 || side == 1)) continue;

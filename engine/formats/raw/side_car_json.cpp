@@ -26,7 +26,7 @@ SideCar read_json_side_car(const JsonDocument& document, const std::filesystem::
         spacing = node.vector({SMALLEST, LARGEST, "a finite number above 0"});
     std::optional<std::string> unit;
     if (const JsonNode node = root["unit"]; node.exists()) unit = node.any_text();
-    found.info.size = root["size"].size(LARGEST_SIDE);
+    found.info.size = root["size"].size(MAX_SIDE);
     found.info.type =
         root["type"].parsed([](const std::string& name) { return voxel_type_of(name); }, VOXEL_TYPE_NAMES);
     apply_spacing(found.info, spacing, unit, "voxel");

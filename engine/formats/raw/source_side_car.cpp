@@ -39,7 +39,7 @@ fs::path with_suffix(fs::path path, const char* suffix)
 /// Null if the document is something else (a session, another program's settings).
 std::optional<JsonDocument> parse_json(const fs::path& path)
 {
-    JsonDocument document = read_json(path, LONGEST_HEADER, {.depth = 64, .expected = "size and type"});
+    JsonDocument document = read_json(path, MAX_HEADER_BYTES, {.depth = 64, .expected = "size and type"});
     if (!document.root().is_object() || document.root()["shvr_session"].exists()) return {};
     return document;
 }

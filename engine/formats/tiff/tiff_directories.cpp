@@ -285,13 +285,13 @@ private:
 
     static void check_side(const TiffFile& file, size_t page, const char* name, const std::optional<uint64_t>& side)
     {
-        if (side && *side >= 1 && *side <= uint64_t{LARGEST_SIDE}) return;
+        if (side && *side >= 1 && *side <= uint64_t{MAX_SIDE}) return;
         const bool is_there = side && *side != OUTSIDE;
         fail(file.path().string(), ": page ", page, ": ", name, " is ",
              is_there ? std::to_string(*side)
              : side   ? "not within the file"
                       : "missing",
-             "; expected 1 to ", LARGEST_SIDE);
+             "; expected 1 to ", MAX_SIDE);
     }
 
     std::string fields_;

@@ -11,7 +11,7 @@ namespace shvr {
 namespace {
 
 /// Limited because a block is decoded as a whole.
-constexpr int64_t LARGEST_BLOCK = int64_t{1} << 31;
+constexpr int64_t MAX_BLOCK_BYTES = int64_t{1} << 31;
 
 struct Compression {
     int scheme;
@@ -80,8 +80,8 @@ const char* name_of_byte_counts(const TiffLayout& layout)
 
 int64_t checked_side(const TiffPage& page, const char* name, uint32_t side)
 {
-    if (side < 1 || side > LARGEST_SIDE) {
-        fail(page.subject(), ": ", name, " is ", side, "; expected 1 to ", LARGEST_SIDE);
+    if (side < 1 || side > MAX_SIDE) {
+        fail(page.subject(), ": ", name, " is ", side, "; expected 1 to ", MAX_SIDE);
     }
     return side;
 }
@@ -227,9 +227,9 @@ void check_is_supported(const TiffPage& page, const TiffLayout& layout)
              ", rows and columns exchanged; expected 1 to 4: save it again without rotation");
     }
     const int64_t block_bytes = layout.block_row_bytes() * layout.rows_of_block(0);
-    if (!layout.is_bare() && block_bytes > LARGEST_BLOCK) {
+    if (!layout.is_bare() && block_bytes > MAX_BLOCK_BYTES) {
         fail(page.subject(), ": has ", name_of_block(layout), "sizes of ", block_bytes,
-             " bytes, compressed; expected at most ", LARGEST_BLOCK);
+             " bytes, compressed; expected at most ", MAX_BLOCK_BYTES);
     }
 }
 

@@ -13,7 +13,7 @@ namespace shvr {
 namespace {
 
 /// Limited because the parser takes several times as much memory.
-constexpr size_t LONGEST_XML = size_t{16} << 20;
+constexpr size_t MAX_XML_BYTES = size_t{16} << 20;
 
 /// The name without its namespace: "OME:Image" -> "Image".
 std::string_view name_of(const pugi::xml_node& node)
@@ -46,7 +46,8 @@ public:
 
     TiffDescription read(std::string_view text)
     {
-        if (text.size() > LONGEST_XML) fail(subject_, " has ", text.size(), " bytes; expected at most ", LONGEST_XML);
+        if (text.size() > MAX_XML_BYTES)
+            fail(subject_, " has ", text.size(), " bytes; expected at most ", MAX_XML_BYTES);
         pugi::xml_document document;
         const pugi::xml_parse_result result = document.load_buffer(text.data(), text.size());
         const pugi::xml_node root = first_child(document, "OME");

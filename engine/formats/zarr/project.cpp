@@ -23,11 +23,11 @@ using OrderedJson = nlohmann::ordered_json;
 using Path = std::filesystem::path;
 
 constexpr int VERSION = 1;
-constexpr int64_t LARGEST_RECORD = int64_t{1} << 20;
+constexpr int64_t MAX_RECORD_BYTES = int64_t{1} << 20;
 constexpr size_t HEADER_BYTES = 64;
 constexpr char MAGIC[] = "SHVRTAB1";
 /// Enough for the ranges of 10^13 voxels.
-constexpr int64_t LARGEST_TABLE = int64_t{2} << 30;
+constexpr int64_t MAX_TABLE_BYTES = int64_t{2} << 30;
 /// Zstd's smallest block is four bytes long, and decodes to at most 128 KiB.
 constexpr int64_t MAX_OUT_OF_A_BYTE = int64_t{32} << 10;
 
@@ -38,7 +38,7 @@ OrderedJson list_of(const glm::dvec3& vector)
     return {vector.x, vector.y, vector.z};
 }
 
-constexpr int64_t LARGEST_COUNT = std::numeric_limits<int64_t>::max();
+constexpr int64_t MAX_COUNT = std::numeric_limits<int64_t>::max();
 
 glm::dmat3 read_matrix(const JsonNode& node)
 {
@@ -58,14 +58,14 @@ VolumeStatistics read_statistics(const JsonNode& node)
     VolumeStatistics statistics{.minimum = node["min"].number(any_number()),
                                 .maximum = node["max"].number(any_number()),
                                 .mean = node["mean"].number(any_number()),
-                                .not_finite = node["not_finite"].whole(0, LARGEST_COUNT)};
+                                .not_finite = node["not_finite"].whole(0, MAX_COUNT)};
     for (const JsonNode& bin : node["histogram"].elements(256, 256))
-        statistics.histogram.push_back(bin.whole(0, LARGEST_COUNT));
+        statistics.histogram.push_back(bin.whole(0, MAX_COUNT));
     if (!(statistics.minimum <= statistics.maximum)) node["max"].refuse("at least min");
     if (const JsonNode bulk = node["bulk"]; bulk.exists()) {
         statistics.bulk = {bulk["min"].number(any_number()), bulk["max"].number(any_number())};
         if (!(statistics.bulk->lower <= statistics.bulk->upper)) bulk["max"].refuse("at least min");
-        statistics.beyond_bulk = bulk["beyond"].whole(0, LARGEST_COUNT);
+        statistics.beyond_bulk = bulk["beyond"].whole(0, MAX_COUNT);
     }
     return statistics;
 }
@@ -103,8 +103,8 @@ int64_t bytes_of_table(const Path& file, const ProjectTable& table)
 {
     auto bytes = int64_t(table.element_bytes);
     for (int axis = 0; axis < 3; ++axis) {
-        if (__builtin_mul_overflow(bytes, table.counts[axis], &bytes) || bytes > LARGEST_TABLE) {
-            fail(file.string(), ": would hold more than ", LARGEST_TABLE >> 20, " MiB; expected a smaller volume");
+        if (__builtin_mul_overflow(bytes, table.counts[axis], &bytes) || bytes > MAX_TABLE_BYTES) {
+            fail(file.string(), ": would hold more than ", MAX_TABLE_BYTES >> 20, " MiB; expected a smaller volume");
         }
     }
     return bytes;
@@ -155,7 +155,7 @@ std::string to_text(const ProjectRecord& record)
 
 ProjectRecord read_project_record(const Path& file)
 {
-    const JsonDocument document = read_zarr_json(file, LARGEST_RECORD);
+    const JsonDocument document = read_zarr_json(file, MAX_RECORD_BYTES);
     const JsonNode root = document.root();
     root["shvr_volume"].whole(VERSION, VERSION);
     ProjectRecord record;
@@ -164,7 +164,7 @@ ProjectRecord read_project_record(const Path& file)
     record.content_hash = root["content_hash"].any_text();
     record.levels = int(root["levels"].whole(1, 32));
     VolumeInfo& info = record.info;
-    info.size = root["size"].size(LARGEST_SIDE);
+    info.size = root["size"].size(MAX_SIDE);
     info.type = root["type"].parsed([](const std::string& name) { return voxel_type_of(name); }, VOXEL_TYPE_NAMES);
     info.spacing = root["spacing"].vector(any_number());
     if (!glm::all(glm::greaterThan(info.spacing, glm::dvec3(0.0)))) root["spacing"].refuse("three numbers above 0");

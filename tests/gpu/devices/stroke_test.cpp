@@ -223,7 +223,7 @@ TEST_CASE("a stroke that memory stays too short for ends, and says that its rest
             said.push_back(error.what());
             CHECK_FALSE(annotator.stroke_is_running());
         }
-    REQUIRE(said.size() == size_t(Annotator::MOST_TRIES));
+    REQUIRE(said.size() == size_t(Annotator::MAX_TRIES));
     CHECK(said.front().find("the stroke") == std::string::npos);
     CHECK(said.back() == said.front() + "; the rest of the stroke is not painted");
     CHECK(annotator.strokes_done() == 0);

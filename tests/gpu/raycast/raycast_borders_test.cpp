@@ -17,7 +17,7 @@ namespace {
 
 constexpr uint32_t SEED = 20261123;
 /// Samples whose two heaviest labels differ by less are left out: rounding decides there.
-constexpr double LEAST_MARGIN = 1e-3;
+constexpr double MIN_MARGIN = 1e-3;
 
 struct Vote {
     uint8_t group = 0;
@@ -82,7 +82,7 @@ std::pair<glm::dvec3, bool> expected_color(const Mask& mask, const Size3& size, 
     for (double s = begin; s < end; s += each) {
         const glm::dvec3 position = ray.origin + std::min(s + 0.5 * each, 0.5 * (s + end)) * ray.direction;
         const Vote vote = vote_at(mask, size, position);
-        if (vote.margin < LEAST_MARGIN) return {glm::dvec3(0.0), true};
+        if (vote.margin < MIN_MARGIN) return {glm::dvec3(0.0), true};
         if (vote.group != 0) return {std::array{RED, GREEN, BLUE}[vote.group - 1u], false};
     }
     return {glm::dvec3(0.0), false};

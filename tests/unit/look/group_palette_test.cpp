@@ -119,7 +119,7 @@ TEST_CASE("The colours of the first ten groups can be told apart, and from the d
     std::vector<Seen> colors;
     for (size_t group = 1; group <= GROUP_COUNT; ++group)
         colors.push_back(seen_of(default_group(uint8_t(group)).color));
-    CHECK(least_difference(colors) >= LEAST_GROUP_DIFFERENCE);
+    CHECK(least_difference(colors) >= MIN_GROUP_DIFFERENCE);
     CHECK(default_group(11).color == default_group(1).color);
 
     // The ten that shipped before: what they are compared with.

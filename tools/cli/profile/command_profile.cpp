@@ -11,7 +11,7 @@ namespace shvr::cli {
 
 namespace {
 
-constexpr int64_t LARGEST_PROFILE = int64_t(64) << 20;
+constexpr int64_t MAX_PROFILE_BYTES = int64_t(64) << 20;
 constexpr int DEEPEST_PROFILE = 16;  // ours have 4 levels; each costs far more memory than its two characters
 
 struct ProfileCommandOptions {
@@ -166,7 +166,7 @@ Json read_profile(const std::string& path)
                  " levels; expected what shvr profile --json prints");
         return true;
     };
-    const Json summary = Json::parse(read_text(path, LARGEST_PROFILE), check_depth, false);
+    const Json summary = Json::parse(read_text(path, MAX_PROFILE_BYTES), check_depth, false);
     if (summary.is_discarded()) fail(path, ": is not JSON; expected what shvr profile --json prints");
     return summary;
 }

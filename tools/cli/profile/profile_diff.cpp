@@ -150,7 +150,7 @@ std::string note_on_unknown(const std::vector<const Json*>& lists)
     for (const Json* const list : lists)
         for (const Json& row : *list)
             if (row["verdict"] == "unknown")
-                return sentence("\nunknown: what was measured fewer than ", report::FEWEST_TIMES,
+                return sentence("\nunknown: what was measured fewer than ", report::MIN_TIMES,
                                 " times tells no noise (--frames, or --replays with --script)\n");
     return {};
 }

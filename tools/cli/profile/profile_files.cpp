@@ -19,7 +19,7 @@ namespace shvr::cli {
 namespace {
 
 constexpr int HOST = 1, DEVICE = 2;  // "processes" of the trace
-constexpr int64_t LARGEST_GRAPH = int64_t(64) << 20;
+constexpr int64_t MAX_GRAPH_BYTES = int64_t(64) << 20;
 
 double microseconds(double milliseconds)
 {
@@ -120,7 +120,7 @@ std::string svg_of(const std::string& graphviz)
     }
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
         fail("the program dot failed with status ", WIFEXITED(status) ? WEXITSTATUS(status) : status, "; expected 0");
-    return read_text(output, LARGEST_GRAPH);
+    return read_text(output, MAX_GRAPH_BYTES);
 }
 
 }  // namespace

@@ -75,8 +75,8 @@ std::string change_in_words(const View::PassTime& pass, const PassRun& run)
     const View::PassTime* const was = run.find(pass.name);
     if (!was) return {};
     // A share says little about times near those that a clock can tell.
-    constexpr double LEAST_MS = 0.05;
-    if (was->total_ms < LEAST_MS || pass.total_ms < LEAST_MS) return pass.total_ms == was->total_ms ? "same" : "tiny";
+    constexpr double MIN_MS = 0.05;
+    if (was->total_ms < MIN_MS || pass.total_ms < MIN_MS) return pass.total_ms == was->total_ms ? "same" : "tiny";
     char text[32];
     std::snprintf(text, sizeof text, "x %.2f", pass.total_ms / was->total_ms);
     return text;

@@ -127,8 +127,8 @@ void check_zarr_chunk(const JsonNode& node, const ZarrMetadata& metadata)
 {
     auto bytes = int64_t(bytes_of(metadata.type));
     for (const int64_t side : metadata.chunks) {
-        if (!__builtin_mul_overflow(bytes, side, &bytes) && bytes <= LARGEST_CHUNK_BYTES) continue;
-        node.refuse(sentence("chunks of at most ", LARGEST_CHUNK_BYTES >> 20, " MiB, which are decoded as a whole"));
+        if (!__builtin_mul_overflow(bytes, side, &bytes) && bytes <= MAX_CHUNK_BYTES) continue;
+        node.refuse(sentence("chunks of at most ", MAX_CHUNK_BYTES >> 20, " MiB, which are decoded as a whole"));
     }
 }
 

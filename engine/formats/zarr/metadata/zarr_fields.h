@@ -20,7 +20,7 @@ std::vector<int64_t> read_zarr_chunk(const JsonNode& node, size_t axes);
 void read_zarr_fill(const JsonNode& node, ZarrMetadata& metadata);
 nlohmann::json zarr_fill(const ZarrMetadata& metadata);
 
-/// Refuses `node`, the shape of a chunk, if it holds more than LARGEST_CHUNK_BYTES.
+/// Refuses `node`, the shape of a chunk, if it holds more than MAX_CHUNK_BYTES.
 void check_zarr_chunk(const JsonNode& node, const ZarrMetadata& metadata);
 
 }  // namespace shvr

@@ -58,7 +58,7 @@ void refuse_filters(const JsonNode& filters)
 
 ZarrMetadata read_version_2(const ZarrPlace& array)
 {
-    const JsonDocument document = read_zarr_json(array, ".zarray", LARGEST_ZARR_METADATA);
+    const JsonDocument document = read_zarr_json(array, ".zarray", MAX_ZARR_METADATA_BYTES);
     const JsonNode root = document.root();
     root["zarr_format"].whole(2, 2);
     ZarrMetadata metadata;

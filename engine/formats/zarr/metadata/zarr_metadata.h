@@ -14,7 +14,7 @@
 namespace shvr {
 
 /// A chunk is decoded as a whole, so its size is bounded.
-inline constexpr int64_t LARGEST_CHUNK_BYTES = int64_t{256} << 20;
+inline constexpr int64_t MAX_CHUNK_BYTES = int64_t{256} << 20;
 
 /// One step from the bytes of a chunk to the stored bytes: a compressor or a checksum.
 struct ZarrCompressor {
@@ -65,7 +65,7 @@ struct ZarrMetadata {
 };
 
 /// Reads the metadata of an array. Fails if a field is missing, invalid or not supported (filters, other types, codecs
-/// and grids), or if a chunk is larger than LARGEST_CHUNK_BYTES.
+/// and grids), or if a chunk is larger than MAX_CHUNK_BYTES.
 ZarrMetadata read_zarr_metadata(const ZarrPlace& array, int version);
 
 /// The content of `key()`; equal for equal metadata. The index of a shard must be little-endian, in the array's order,

@@ -20,7 +20,7 @@ using Kind = ZarrCompressor::Kind;
 
 constexpr size_t MAX_CODECS = 16;
 /// Limit of a shard's index, which is read as a whole: four million chunks.
-constexpr int64_t LARGEST_INDEX_BYTES = int64_t{64} << 20;
+constexpr int64_t MAX_INDEX_BYTES = int64_t{64} << 20;
 
 /// numcodecs' names are those of zarr-python's numcodecs.zarr3, whose bytes are the same.
 constexpr Spelling<Kind> CODECS[] = {{Kind::blosc, "blosc"},         {Kind::zstd, "zstd"},
@@ -161,9 +161,8 @@ void read_sharding(const Chain& outer, ZarrMetadata& metadata)
         const size_t axis = outer.order[i];
         if (sharding.shape[axis] % sides[i] != 0) shape.refuse("sides that divide those of the shard");
         metadata.chunks[axis] = sides[i];
-        if (__builtin_mul_overflow(chunks, sharding.shape[axis] / sides[i], &chunks) ||
-            chunks > LARGEST_INDEX_BYTES / 16) {
-            shape.refuse(sentence("shards of at most ", LARGEST_INDEX_BYTES / 16, " chunks"));
+        if (__builtin_mul_overflow(chunks, sharding.shape[axis] / sides[i], &chunks) || chunks > MAX_INDEX_BYTES / 16) {
+            shape.refuse(sentence("shards of at most ", MAX_INDEX_BYTES / 16, " chunks"));
         }
     }
     check_zarr_chunk(shape, metadata);
@@ -245,7 +244,7 @@ Json sharding_of(const ZarrMetadata& metadata, const Json& codecs)
 
 ZarrMetadata read_zarr_v3(const ZarrPlace& array)
 {
-    const JsonDocument document = read_zarr_json(array, "zarr.json", LARGEST_ZARR_ATTRIBUTES);
+    const JsonDocument document = read_zarr_json(array, "zarr.json", MAX_ZARR_ATTRIBUTE_BYTES);
     const JsonNode root = document.root();
     root["zarr_format"].whole(3, 3);
     const std::array<std::string_view, 1> array_only{"array"};

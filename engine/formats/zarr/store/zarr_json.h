@@ -7,8 +7,8 @@
 namespace shvr {
 
 /// Size limits: metadata files are small; attributes may hold data of other programs.
-inline constexpr int64_t LARGEST_ZARR_METADATA = int64_t{1} << 20;
-inline constexpr int64_t LARGEST_ZARR_ATTRIBUTES = int64_t{4} << 20;
+inline constexpr int64_t MAX_ZARR_METADATA_BYTES = int64_t{1} << 20;
+inline constexpr int64_t MAX_ZARR_ATTRIBUTE_BYTES = int64_t{4} << 20;
 
 /// The object in a file. Fails if it is not valid JSON, not an object, or nested more than 64 deep. Repeated keys are
 /// allowed: other programs write attributes too, and some of them repeat keys.

@@ -7,7 +7,7 @@ namespace {
 
 ZarrNode version_3(const ZarrPlace& place)
 {
-    ZarrNode node{.version = 3, .document = read_zarr_json(place, "zarr.json", LARGEST_ZARR_ATTRIBUTES)};
+    ZarrNode node{.version = 3, .document = read_zarr_json(place, "zarr.json", MAX_ZARR_ATTRIBUTE_BYTES)};
     const JsonNode root = node.document.root();
     root["zarr_format"].whole(3, 3);
     const std::array<std::string_view, 2> types{"group", "array"};
@@ -39,7 +39,7 @@ std::optional<ZarrNode> read_zarr_node(const ZarrPlace& place)
     return ZarrNode{.version = 2,
                     .is_array = is_array,
                     .document = !is_array && place.has(".zattrs")
-                                    ? read_zarr_json(place, ".zattrs", LARGEST_ZARR_ATTRIBUTES)
+                                    ? read_zarr_json(place, ".zattrs", MAX_ZARR_ATTRIBUTE_BYTES)
                                     : JsonDocument("{}", place.path_of(".zattrs").string())};
 }
 

@@ -92,7 +92,7 @@ private:
 /// Deflated entries that are read in parts (shards, if the archive's writer compressed them again) are decoded as a
 /// whole; the most recent ones are kept.
 constexpr int64_t KEPT_ENTRY_BYTES = int64_t{64} << 20;
-constexpr int64_t LARGEST_DEFLATED_SHARD = int64_t{256} << 20;
+constexpr int64_t MAX_DEFLATED_SHARD_BYTES = int64_t{256} << 20;
 
 class ArchiveStore final : public ZarrStore {
 public:
@@ -130,7 +130,7 @@ public:
         }
         if (ZipArchive::is_plain(*entry)) return archive_.read_part(*entry, offset, part);
         const auto whole = kept_.get({0, entry - archive_.entries().data()},
-                                     [&] { return archive_.read(*entry, LARGEST_DEFLATED_SHARD); });
+                                     [&] { return archive_.read(*entry, MAX_DEFLATED_SHARD_BYTES); });
         if (!part.empty()) std::memcpy(part.data(), whole->data() + offset, part.size());
     }
 
