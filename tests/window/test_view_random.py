@@ -2,6 +2,7 @@
 what the log replays to without a window. SHVR_SLOW=1 does 200, SHVR_SEED chooses others; where it fails, the log stays
 beside the program."""
 import json
+import math
 import os
 import random
 import shutil
@@ -92,12 +93,12 @@ class Random(Seen):
             raise
 
     def probe_has_arrived(self):
-        """Two keys without an effect log the probe at the very same place."""
+        """Two keys without an effect log the probe at one place."""
         for _ in range(2):
             self.press("Escape")
             self.see_frames()
         places = [action["voxel"] for action in self.done()[-4:] if action["op"] == "place_probe"]
-        return len(places) == 2 and places[0] == places[1]
+        return len(places) == 2 and math.dist(*places) < 1e-9
 
     def replay(self, session, script):
         """What the command line reports; each action draws a picture, which on a busy machine takes a second."""
@@ -124,7 +125,10 @@ class Random(Seen):
             self.assertEqual(here.exists(), there.exists(), name)
             if here.exists():
                 self.assertEqual(here.read_bytes(), there.read_bytes(), name)
-        self.assertEqual(json.loads(session.read_text()), json.loads(again.read_text()))
+        kept, replayed_session = json.loads(session.read_text()), json.loads(again.read_text())
+        # The servo still moves the probe by a last bit between the log's last place and the save.
+        self.assertLess(math.dist(kept["probe"].pop("voxel"), replayed_session["probe"].pop("voxel")), 1e-6)
+        self.assertEqual(kept, replayed_session)
 
 
 if __name__ == "__main__":
