@@ -72,7 +72,7 @@ struct ForceMemory {
     uint32_t reset = 0;          ///< ForceSettings::reset, last seen
 
     // Cross-fade between two pulls: after a change of mode, law or object
-    HapticMode mode = HapticMode::proximity;
+    TouchMode mode = TouchMode::proximity;
     ProxyLaw law = ProxyLaw::potential;
     uint32_t object = 0;
     double cross = 1.0;         ///< 0 ... 1: weight of the present pull

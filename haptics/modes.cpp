@@ -60,18 +60,18 @@ ModePull pull_to_object(const ForceSettings& settings, const RelevancePatch& pat
 ModePull pull_of(const ForceSettings& settings, const RelevancePatch& patch, const glm::dvec3& probe, uint64_t now_ns,
                  SurfaceMemory& surface, GrowthMemory& growth) noexcept
 {
-    if (settings.mode != HapticMode::object) forget_object(growth);
-    if (settings.mode != HapticMode::surface) surface = {};
+    if (settings.mode != TouchMode::object) forget_object(growth);
+    if (settings.mode != TouchMode::surface) surface = {};
     ModePull pull;
-    if (settings.mode == HapticMode::surface) {
-        pull = pull_to_surface(settings, patch, probe, surface);
-    } else if (settings.mode == HapticMode::object) {
-        pull = pull_to_object(settings, patch, probe, now_ns, growth);
-    } else if (patch.sequence != 0) {
-        pull = towards(find_proxy(patch, probe, settings.probe_radius, settings.law));
+    switch (settings.mode) {
+        case TouchMode::proximity:
+            if (patch.sequence != 0) pull = towards(find_proxy(patch, probe, settings.probe_radius, settings.law));
+            break;
+        case TouchMode::surface: pull = pull_to_surface(settings, patch, probe, surface); break;
+        case TouchMode::object: pull = pull_to_object(settings, patch, probe, now_ns, growth); break;
     }
     // An object is as old as the patch it was grown in; without one, nothing is felt and the patch itself counts.
-    const bool is_object = settings.mode == HapticMode::object && growth.has_object;
+    const bool is_object = settings.mode == TouchMode::object && growth.has_object;
     pull.is_usable = is_usable(is_object ? growth.object() : patch, settings, probe, now_ns);
     return pull;
 }

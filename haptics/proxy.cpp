@@ -181,17 +181,33 @@ Proxy find_sampled_proxy(const RelevancePatch& patch, const glm::dvec3& centre, 
     return {true, radius * sum / double(count), double(count) / double(points.size())};
 }
 
+namespace {
+
+/// Divides the integral of a - p; only for the laws that integrate.
+double denominator_of(ProxyLaw law, const BallIntegrals& ball, double radius, double whole) noexcept
+{
+    switch (law) {
+        case ProxyLaw::mean:
+        case ProxyLaw::thesis: return ball.volume;
+        case ProxyLaw::potential: {
+            // The weight 1 - |a - p|^2 / r^2 is 0 at the rim, so the chords' ends contribute nothing to the derivative
+            // of its sum: it is 2 / r^2 times `first`, exactly, even for a finite number of rows.
+            const double weighted = std::max(ball.volume - ball.second / (radius * radius), 0.0);
+            return weighted + POTENTIAL_FLOOR * whole;
+        }
+    }
+    return ball.volume;
+}
+
+}  // namespace
+
 Proxy find_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius, ProxyLaw law) noexcept
 {
     if (law == ProxyLaw::thesis) return find_sampled_proxy(patch, centre, radius, THESIS_POINTS);
     const BallIntegrals ball = integrate(patch, centre, radius);
     if (!(ball.volume > 0.0)) return {};
     const double whole = 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
-    // The weight 1 - |a - p|^2 / r^2 is 0 at the rim, so the chords' ends contribute nothing to the derivative of its
-    // sum: it is 2 / r^2 times `first`, exactly, even for a finite number of rows.
-    const double weighted = std::max(ball.volume - ball.second / (radius * radius), 0.0);
-    const double denominator = law == ProxyLaw::mean ? ball.volume : weighted + POTENTIAL_FLOOR * whole;
-    return {true, ball.first / denominator, ball.volume / whole};
+    return {true, ball.first / denominator_of(law, ball, radius, whole), ball.volume / whole};
 }
 
 }  // namespace shvr

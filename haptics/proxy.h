@@ -18,6 +18,7 @@
 
 #include <glm/glm.hpp>
 
+#include "engine/touch/touch_mode.h"
 #include "haptics/relevance.h"
 
 namespace shvr {
@@ -30,7 +31,6 @@ struct BallIntegrals {
 };
 BallIntegrals integrate(const RelevancePatch& patch, const glm::dvec3& centre, double radius) noexcept;
 
-enum class ProxyLaw : uint8_t { potential, mean, thesis };
 inline constexpr int SAMPLE_POINTS = 3000;  ///< as in the thesis
 
 struct Proxy {

@@ -5,7 +5,7 @@
 
 #include <glm/glm.hpp>
 
-#include "engine/base/spelling.h"
+#include "engine/touch/touch_mode.h"
 #include "haptics/proxy.h"
 
 namespace shvr {
@@ -16,26 +16,8 @@ struct Workspace {
     glm::dvec3 origin{0.0};     ///< physical
     glm::dvec3 to_point(const glm::dvec3& position_m) const { return origin + to_volume * position_m; }
     double scale() const { return glm::length(to_volume[0]); }
+    bool operator==(const Workspace&) const = default;
 };
-
-enum class HapticMode : uint8_t {
-    proximity,  ///< towards the mean of the relevant voxels in the ball
-    surface,    ///< held where enough of the ball is relevant, until the probe moves towards the camera
-    object,     ///< as proximity, but only for the object touched first
-};
-
-inline constexpr Spelling<HapticMode> HAPTIC_MODES[] = {
-    {HapticMode::proximity, "proximity"}, {HapticMode::surface, "surface"}, {HapticMode::object, "object"}};
-constexpr std::span<const Spelling<HapticMode>> spellings_of(HapticMode)
-{
-    return HAPTIC_MODES;
-}
-inline constexpr Spelling<ProxyLaw> PROXY_LAWS[] = {
-    {ProxyLaw::potential, "potential"}, {ProxyLaw::mean, "mean"}, {ProxyLaw::thesis, "thesis"}};
-constexpr std::span<const Spelling<ProxyLaw>> spellings_of(ProxyLaw)
-{
-    return PROXY_LAWS;
-}
 
 struct ForceSettings {
     bool assistance = false;  ///< off: no force
@@ -45,7 +27,7 @@ struct ForceSettings {
     double damping = 1.0;       ///< N s/m, at most 1.2
     Workspace workspace;
     uint32_t reset = 0;  ///< a change clears a latched fault
-    HapticMode mode = HapticMode::proximity;
+    TouchMode mode = TouchMode::proximity;
     glm::dvec3 to_camera{0.0, 0.0, 1.0};  ///< unit vector in the volume; motion along it releases a surface
     double surface_share = 0.4;           ///< fraction of the ball: a surface holds above it and lets go below 3/4 of
                                           ///< it
@@ -54,6 +36,7 @@ struct ForceSettings {
     bool clicks = false;                  ///< a short pulse when contact begins; only for devices with motors
     bool let_go = false;                  ///< no force from the next tick on; afterwards it engages again
     uint32_t relevance_settings = 0;      ///< counts changes of threshold and groups: relevance made before fades out
+    bool operator==(const ForceSettings&) const = default;
 };
 
 /// Radius of a probe in the hand at which `stiffness` applies unscaled: ten voxels of 0.25 mm.

@@ -18,6 +18,7 @@ from pathlib import Path, PurePosixPath
 MAY_INCLUDE = {
     "shaders": "",
     "engine/base": "",
+    "engine/touch": "engine/base",
     "engine/volume": "engine/base shaders",
     "engine/graph": "engine/base",
     "engine/gpu": "engine/base engine/graph",
@@ -42,7 +43,7 @@ MAY_INCLUDE = {
     "engine/annotation/script": "engine/base engine/annotation engine/annotation/trace",
     "engine/annotation/work": "engine/base engine/volume engine/annotation engine/annotation/files "
     "engine/annotation/trace engine/projects",
-    "engine/session": "engine/base engine/volume engine/look engine/annotation engine/annotation/trace engine/formats "
+    "engine/session": "engine/base engine/touch engine/volume engine/look engine/annotation engine/annotation/trace engine/formats "
     "engine/formats/zarr engine/projects",
     "engine/jobs": "engine/base",
     "engine/tasks": "engine/base engine/volume engine/look engine/components engine/formats/export engine/annotation "
@@ -53,15 +54,50 @@ MAY_INCLUDE = {
     "engine/picture": "engine/base engine/volume engine/passes engine/look engine/annotation/work engine/session engine/device",
     "engine/live": "engine/volume engine/passes engine/look engine/annotation engine/annotation/trace engine/annotation/work "
     "engine/session engine/picture shaders",
-    "haptics": "engine/base",
+    "haptics": "engine/base engine/touch",
     "haptics/hid": "engine/base haptics",
     "haptics/inverse3": "engine/base haptics",
     "haptics/openhaptics": "engine/base haptics",
     "haptics/devices": "engine/base haptics haptics/hid haptics/inverse3 haptics/openhaptics",
-    "ui/workbench": "engine/base engine/look engine/annotation/script engine/annotation/trace engine/annotation/work "
-    "engine/session engine/jobs engine/tasks engine/picture engine/live haptics haptics/hid haptics/devices",
+    "engine/workbench/appearance": "engine/base",
+    "engine/workbench/curves": "engine/look engine/session",
+    "engine/workbench/touch": "engine/base engine/look engine/annotation/trace engine/annotation/work engine/session "
+    "engine/live haptics haptics/devices",
+    "engine/workbench/models": "engine/base engine/volume engine/annotation/work engine/session engine/jobs engine/live "
+    "haptics haptics/devices engine/workbench/appearance engine/workbench/touch",
+    "engine/workbench/actions": "engine/base engine/annotation/script engine/session engine/tasks engine/workbench/models",
+    "engine/workbench/lists": "engine/base engine/look engine/annotation/trace engine/session engine/live "
+    "engine/workbench/models engine/workbench/actions",
+    "engine/workbench/sight": "engine/base engine/look engine/annotation/trace engine/session engine/workbench/models "
+    "engine/workbench/lists",
+    "engine/workbench/edits": "engine/session haptics engine/workbench/touch engine/workbench/models "
+    "engine/workbench/actions",
+    "engine/workbench/bindings": "engine/base engine/session engine/workbench/models engine/workbench/actions "
+    "engine/workbench/sight engine/workbench/edits",
+    "engine/workbench/words": "engine/annotation/trace engine/annotation/work engine/session engine/workbench/bindings",
+    "engine/workbench/document": "engine/base engine/annotation/trace engine/annotation/work engine/session engine/jobs "
+    "engine/picture engine/live haptics engine/workbench/touch engine/workbench/models engine/workbench/actions "
+    "engine/workbench/sight",
+    "engine/workbench/desk": "engine/base engine/session engine/jobs engine/workbench/touch engine/workbench/models "
+    "engine/workbench/actions engine/workbench/lists engine/workbench/sight engine/workbench/bindings "
+    "engine/workbench/document",
+    "engine/workbench/services": "engine/base engine/look engine/annotation/work engine/session engine/tasks engine/live "
+    "engine/workbench/models engine/workbench/actions engine/workbench/sight engine/workbench/edits "
+    "engine/workbench/words engine/workbench/document engine/workbench/desk",
+    "engine/workbench": "engine/base engine/workbench/actions engine/workbench/lists engine/workbench/desk "
+    "engine/workbench/services",
     "ui/files": "engine/base engine/formats",
-    "ui": "engine/base engine/gpu engine/session engine/live haptics ui/files ui/workbench",
+    "ui/panels": "engine/base engine/session engine/workbench/appearance engine/workbench/curves engine/workbench/models "
+    "engine/workbench/actions engine/workbench/lists engine/workbench/sight engine/workbench/edits "
+    "engine/workbench/bindings",
+    "ui/panels/look": "engine/session engine/workbench/curves engine/workbench/models engine/workbench/actions "
+    "engine/workbench/edits engine/workbench/bindings ui/panels",
+    "ui/panels/dialogs": "engine/base engine/session engine/workbench/models engine/workbench/actions "
+    "engine/workbench/lists engine/workbench/bindings ui/files ui/panels",
+    "ui/panels/touch": "engine/workbench/models engine/workbench/lists engine/workbench/edits engine/workbench/bindings "
+    "ui/panels",
+    "ui": "engine/base engine/gpu engine/live haptics engine/workbench engine/workbench/models engine/workbench/sight "
+    "engine/workbench/edits engine/workbench/bindings ui/panels",
     "tests": "*",
     "tests/reference": "engine/annotation",
     "tools/report": "engine/base",
@@ -69,7 +105,8 @@ MAY_INCLUDE = {
     "tools/golden tools/report",
     "tools/golden": "engine/base engine/annotation/script engine/session engine/live shaders tools/report",
     "tools": "engine/base engine/volume engine/graph engine/projects engine/annotation/script engine/annotation/trace "
-    "engine/annotation/work engine/session engine/jobs engine/tasks engine/picture engine/live haptics haptics/devices haptics/hid ui ui/workbench "
+    "engine/annotation/work engine/session engine/jobs engine/tasks engine/picture engine/live haptics haptics/devices haptics/hid ui engine/workbench "
+    "engine/workbench/touch engine/workbench/bindings "
     "tools/golden tools/bench tools/report",
 }
 # Rooms without a device: none of them may include a room that depends on one, directly or indirectly.
@@ -77,13 +114,16 @@ WITHOUT_DEVICE = ["engine/session", "engine/projects", "engine/bricks", "engine/
                   "haptics/devices"]
 WITH_DEVICE = {"engine/gpu", "engine/passes", "engine/device"}
 MAX_SOURCES = 30  # per folder
+# Folders of the product that include each other all the same. None do; a new one needs a reason here.
+FOLDER_CYCLES = []
+PRODUCT = {"engine", "haptics", "shaders", "ui"}
 
 # third party: pattern of its headers, pattern of the files that may include them
 THIRD_PARTIES = {
     "Vulkan": (r"vulkan/", r"engine/gpu/|ui/swapchain(_frame)?\.cpp|tests/layers/"),
     "hidapi": (r"hidapi", r"haptics/hid/hid_device\.cpp|tests/vm/"),
-    "GLFW": (r"GLFW/", r"ui/(?!workbench/)"),
-    "Dear ImGui": (r"(backends/|imgui/)?imgui", r"ui/(?!workbench/)|tests/unit/ui/screen_text_test"),
+    "GLFW": (r"GLFW/", r"ui/"),
+    "Dear ImGui": (r"(backends/|imgui/)?imgui", r"ui/|tests/unit/ui/screen_text_test"),
     # 25,000 lines for everyone who includes a header; json_fwd.hpp is small. engine/base/json.h reads JSON; the other
     # files write it.
     "nlohmann/json": (
@@ -203,6 +243,32 @@ def check_cycles(includes):
         yield from visit(file)
 
 
+def check_folder_cycles(includes, accepted):
+    """Folders, the parents of including and included files, that reach each other: each such set must be accepted."""
+    uses = {}
+    for file, lines in includes.items():
+        for _, _, target in lines:
+            if target is not None and target.parent != file.parent and file.parts[0] in PRODUCT:
+                uses.setdefault(str(file.parent), set()).add(str(target.parent))
+
+    def reached(folder):
+        found, pending = set(), [folder]
+        while pending:
+            new = uses.get(pending.pop(), set()) - found
+            found |= new
+            pending.extend(new)
+        return found
+
+    reach = {folder: reached(folder) for folder in uses}
+    cycles = {frozenset(other for other in there if folder in reach.get(other, ())) for folder, there in reach.items()}
+    for cycle in sorted(map(sorted, cycles - {frozenset()})):
+        if set(cycle) not in accepted:
+            yield f"folders include each other in a circle: {', '.join(cycle)}"
+    for cycle in accepted:
+        if frozenset(cycle) not in cycles:
+            yield f"tools/check_layers.py: {', '.join(sorted(cycle))} are no such circle any more; take them out of FOLDER_CYCLES"
+
+
 def is_source(root, file):
     if file.suffix:
         return file.suffix in SOURCES
@@ -228,7 +294,7 @@ def check_tree(root, files, rooms):
             yield f"{folder}: holds {len(sources)} sources; expected at most {MAX_SOURCES}: cut it along an idea"
 
 
-def check(root, rooms=MAY_INCLUDE):
+def check(root, rooms=MAY_INCLUDE, folder_cycles=FOLDER_CYCLES):
     files = list(files_below(root))
     includes, findings = read_includes(root, files)
     return [
@@ -236,6 +302,7 @@ def check(root, rooms=MAY_INCLUDE):
         *check_arrows(includes, rooms),
         *check_table(includes, rooms),
         *check_cycles(includes),
+        *check_folder_cycles(includes, folder_cycles),
         *check_tree(root, files, rooms),
     ]
 
@@ -302,7 +369,19 @@ FORBIDDEN_TABLES = [
 ]
 
 
-def findings_of(tree, rooms):
+# sources of folders that reach each other, and the folders
+FOLDERS_IN_A_CIRCLE = (
+    {
+        "ui/keys.h": '#include "ui/panels/panel.h"',
+        "ui/panels/panel.h": '#include "ui/panels/look/light.h"',
+        "ui/panels/look/light.h": '#include "ui/state.h"',
+        "ui/state.h": "",
+    },
+    {"ui", "ui/panels", "ui/panels/look"},
+)
+
+
+def findings_of(tree, rooms, folder_cycles=()):
     with tempfile.TemporaryDirectory() as folder:
         root = Path(folder)
         for name, content in (dict.fromkeys(TOP_LEVEL_FILES, "") | ALLOWED | tree).items():
@@ -311,7 +390,7 @@ def findings_of(tree, rooms):
         for name in ["engine", *rooms, "engine/new", "tools/cli", "tests/unit", "ui/panels"]:
             if (root / name).is_dir():
                 (root / name / "README.md").touch()
-        return check(root, rooms)
+        return check(root, rooms, folder_cycles)
 
 
 def self_test():
@@ -319,17 +398,26 @@ def self_test():
     if findings := findings_of({}, ROOMS):
         failures.append(f"the allowed tree: {findings}")
     for path, content, expected in FORBIDDEN:
-        findings = findings_of({path: content}, ROOMS)
+        # Some of these close a circle of folders as well, which is a rule of its own.
+        findings = [each for each in findings_of({path: content}, ROOMS) if not each.startswith("folders include")]
         if len(findings) != 1 or expected not in findings[0]:
             failures.append(f"{path} {content!r}: expected {expected}, found {findings}")
     for change, expected in FORBIDDEN_TABLES:
         if not any(expected in finding for finding in findings_of({}, ROOMS | change)):
             failures.append(f"{change}: expected {expected}")
+    tree, circle = FOLDERS_IN_A_CIRCLE
+    expected = f"folders include each other in a circle: {', '.join(sorted(circle))}"
+    if (findings := findings_of(tree, ROOMS)) != [expected]:
+        failures.append(f"a circle of folders: expected {expected}, found {findings}")
+    if findings := findings_of(tree, ROOMS, [circle]):
+        failures.append(f"an accepted circle of folders: {findings}")
+    if not any("no such circle any more" in finding for finding in findings_of({}, ROOMS, [circle])):
+        failures.append("an accepted circle of folders that is none is not reported")
     crowd = {f"shaders/kernel_{number}.comp": "" for number in range(MAX_SOURCES)}
     if not any("shaders: holds" in finding for finding in findings_of(crowd, ROOMS)):
         failures.append("a crowded folder is not reported")
     print("\n".join(f"self-test: {failure}" for failure in failures))
-    return len(failures), len(FORBIDDEN) + len(FORBIDDEN_TABLES) + 2
+    return len(failures), len(FORBIDDEN) + len(FORBIDDEN_TABLES) + 5
 
 
 def main():

@@ -8,6 +8,7 @@
 #include <GLFW/glfw3.h>
 #include <imgui/imgui.h>
 
+#include "engine/workbench/bindings/preferences_file.h"
 #include "ui/panels/field_keys.h"
 
 namespace shvr::ui {

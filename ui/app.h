@@ -11,12 +11,12 @@
 #include <memory>
 #include <optional>
 
+#include "engine/workbench/workbench.h"
 #include "ui/keys.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/style.h"
 #include "ui/run_report.h"
 #include "ui/viewport.h"
-#include "ui/workbench/workbench.h"
 
 namespace shvr::ui {
 

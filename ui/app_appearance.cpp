@@ -5,9 +5,9 @@
 #include <imgui/imgui.h>
 #include <imgui/imgui_internal.h>
 
+#include "engine/workbench/models/preferences.h"
 #include "ui/app.h"
 #include "ui/panels/field_keys.h"
-#include "ui/workbench/preferences.h"
 
 namespace shvr::ui {
 

@@ -7,9 +7,9 @@
 #include <imgui/imgui.h>
 
 #include "engine/base/image.h"
+#include "engine/workbench/sight/marks.h"
 #include "ui/app.h"
 #include "ui/screen_text.h"
-#include "ui/workbench/sight/marks.h"
 
 namespace shvr::ui {
 

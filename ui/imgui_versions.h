@@ -18,10 +18,6 @@ namespace shvr::ui {
 
 #if IMGUI_VERSION_NUM >= 19200
 #error "expected Dear ImGui 1.86 to 1.91: later ones handle fonts in another way"
-#elif IMGUI_VERSION_NUM >= 18700
-inline constexpr ImGuiKey KEYPAD_ENTER = ImGuiKey_KeypadEnter;
-#else
-inline constexpr ImGuiKey KEYPAD_ENTER = ImGuiKey_KeyPadEnter;
 #endif
 
 /// After ImGui::CreateContext.

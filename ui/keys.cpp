@@ -12,7 +12,7 @@ namespace {
 
 constexpr double SLOWED = 0.2;
 constexpr double TAPS_PER_SECOND = 5.0;  ///< of a held key
-constexpr double LONGEST_FRAME_S = 0.5;  ///< after a hung frame a held key must not throw the view far away
+constexpr double MAX_FRAME_S = 0.5;      ///< after a hung frame a held key must not throw the view far away
 
 /// Keys that stand for no character.
 std::string name_of_key(int key)
@@ -131,7 +131,7 @@ void Keyboard::handle(const KeyEvent& event, const Model& model, bool ui_has_key
 void Keyboard::hold(double seconds, int mods, const std::function<bool(int key)>& is_down, const Model& model,
                     Actions& actions)
 {
-    const double taps = TAPS_PER_SECOND * std::clamp(seconds, 0.0, LONGEST_FRAME_S);
+    const double taps = TAPS_PER_SECOND * std::clamp(seconds, 0.0, MAX_FRAME_S);
     std::erase_if(held_, [&](const Held& held) {
         if (is_down(held.pressed.key)) return false;
         release(held, model, actions);

@@ -1,11 +1,11 @@
 #pragma once
-// Turns the keyboard into actions, by the keymap (ui/workbench/bindings/keymap.h). Letters and signs are those of the
-// person's layout; keys that steer like a joystick are those at the same place on every keyboard. Main thread.
+// Turns the keyboard into actions, by the keymap (engine/workbench/bindings/keymap.h). Letters and signs are those of
+// the person's layout; keys that steer like a joystick are those at the same place on every keyboard. Main thread.
 
 #include <vector>
 
+#include "engine/workbench/bindings/keymap.h"
 #include "ui/window.h"
-#include "ui/workbench/bindings/keymap.h"
 
 namespace shvr::ui {
 

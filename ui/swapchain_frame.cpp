@@ -302,9 +302,9 @@ VkResult Swapchain::hand_to_screen(const VkPresentInfoKHR& info)
 /// For the screen, when the next image is handed to it; 0: none that is worth filling.
 double Swapchain::expected_wait_ms() const
 {
-    constexpr double MIN_MS = 1.0, MOST_MS = 50.0;  // longer waits are of a screen that is slow for now
+    constexpr double MIN_MS = 1.0, MAX_MS = 50.0;  // longer waits are of a screen that is slow for now
     // One frame that waited says nothing; and where a newer image replaces the one before, none waits.
-    const double wait_ms = std::min(*std::ranges::min_element(waits_ms_), MOST_MS);
+    const double wait_ms = std::min(*std::ranges::min_element(waits_ms_), MAX_MS);
     return mode_ == VK_PRESENT_MODE_FIFO_KHR && wait_ms >= MIN_MS ? wait_ms : 0.0;
 }
 

@@ -5,10 +5,10 @@
 
 #include <GLFW/glfw3.h>
 
+#include "engine/workbench/edits/edit.h"
+#include "engine/workbench/sight/gestures.h"
+#include "engine/workbench/sight/hits.h"
 #include "ui/mouse_feed.h"
-#include "ui/workbench/edit.h"
-#include "ui/workbench/sight/gestures.h"
-#include "ui/workbench/sight/hits.h"
 
 namespace shvr::ui {
 

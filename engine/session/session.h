@@ -17,6 +17,7 @@
 #include "engine/look/settings.h"
 #include "engine/look/surface_tree.h"
 #include "engine/look/transfer_function.h"
+#include "engine/touch/touch_mode.h"
 #include "engine/volume/procedural/source_procedural.h"
 
 namespace shvr {
@@ -69,24 +70,6 @@ constexpr std::span<const Spelling<Tool>> spellings_of(Tool)
     return TOOLS;
 }
 
-/// How the probe is pulled towards relevant voxels: haptics/proxy.h.
-enum class Guidance { potential, mean, thesis };
-inline constexpr Spelling<Guidance> GUIDANCES[] = {
-    {Guidance::potential, "potential"}, {Guidance::mean, "mean"}, {Guidance::thesis, "thesis"}};
-constexpr std::span<const Spelling<Guidance>> spellings_of(Guidance)
-{
-    return GUIDANCES;
-}
-
-/// Which aspect of them pulls the probe: haptics/settings.h.
-enum class TouchMode { proximity, surface, object };
-inline constexpr Spelling<TouchMode> TOUCH_MODES[] = {
-    {TouchMode::proximity, "proximity"}, {TouchMode::surface, "surface"}, {TouchMode::object, "object"}};
-constexpr std::span<const Spelling<TouchMode>> spellings_of(TouchMode)
-{
-    return TOUCH_MODES;
-}
-
 /// The plane of voxels to which the probe is confined, named by its normal axis.
 enum class TouchPlane { none, x, y, z };
 inline constexpr Spelling<TouchPlane> TOUCH_PLANES[] = {
@@ -127,7 +110,7 @@ struct ProbeSettings {
     bool preview = false;        ///< draws the brush's effect at the probe
     Tool tool = Tool::turn;
     bool guided = false;
-    Guidance guidance = Guidance::potential;
+    ProxyLaw guidance = ProxyLaw::potential;
     FeelSettings touch;
     std::optional<glm::dvec3> color;           ///< linear light; default: its group's
     double opacity = 1.0;                      ///< opacity of its ball

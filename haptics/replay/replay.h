@@ -10,7 +10,7 @@
 namespace shvr {
 
 struct ReplayOptions {
-    std::optional<HapticMode> mode;  ///< replaces the trace's
+    std::optional<TouchMode> mode;  ///< replaces the trace's
     std::optional<ProxyLaw> law;
     std::optional<double> stiffness, damping;
     /// A modelled hand moves this device along the trace; without it, the device's answers are those of the trace.

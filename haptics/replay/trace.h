@@ -20,6 +20,7 @@ struct TraceSettings {
     ForceSettings force;
     double threshold = 0.0;  ///< intensity
     size_t from_tick = 0;
+    bool operator==(const TraceSettings&) const = default;
 };
 
 struct TraceTick {

@@ -14,10 +14,10 @@
 #include "engine/base/image_file.h"
 #include "engine/base/image_metrics.h"
 #include "engine/picture/frame.h"
+#include "engine/workbench/document/screenshots.h"
 #include "tests/support/gpu.h"
 #include "tests/support/slow.h"
 #include "tests/support/stored_volume.h"
-#include "ui/workbench/document/screenshots.h"
 
 using namespace shvr;
 using namespace shvr::test;

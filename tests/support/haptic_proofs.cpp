@@ -32,7 +32,7 @@ struct Chance {
 };
 
 /// The hand's millimetres are the volume's; the middle of 64 voxels of 0.25 mm.
-ForceSettings settings_for(HapticMode mode)
+ForceSettings settings_for(TouchMode mode)
 {
     ForceSettings settings{.assistance = true, .probe_radius = 2.5};
     settings.workspace = {glm::dmat3(1000.0), glm::dvec3(8.0)};
@@ -84,7 +84,7 @@ double given_by_potential(const ForceSettings& settings, const RelevancePatch& p
                           const glm::dvec3& position_m, const SurfaceMemory& surface)
 {
     const glm::dvec3 probe = settings.workspace.to_point(position_m);
-    if (settings.mode == HapticMode::surface) {
+    if (settings.mode == TouchMode::surface) {
         const double away_m = surface.is_pinned ? glm::distance(probe, surface.pin) / settings.workspace.scale() : 0.0;
         return -0.5 * stiffness * away_m * away_m;
     }
@@ -108,7 +108,7 @@ Contact contact(const ContactCase& one)
     memory.engagement = memory.strength = memory.relevance_fade = 1.0;  // as after a second in the open
     memory.has_begun = true;
     const auto growth = std::make_unique<GrowthMemory>();
-    ForceSettings settings = settings_for(one.is_tube ? HapticMode::proximity : HapticMode::surface);
+    ForceSettings settings = settings_for(one.is_tube ? TouchMode::proximity : TouchMode::surface);
     const RelevancePatch& patch = one.is_tube ? tube() : half_space();
     settings.stiffness = one.stiffness;
     settings.damping = one.damping;
@@ -223,7 +223,7 @@ void check_nonsense(int ticks, uint32_t seed)
     fill_patch(*patch, {0, 0, 0}, glm::ivec3(32), glm::dvec3(0.5),
                [&](const glm::dvec3&) { return dice.random() % 3 == 0; });
     patch->volume_size = glm::ivec3(32);
-    ForceSettings settings = settings_for(HapticMode::proximity);
+    ForceSettings settings = settings_for(TouchMode::proximity);
     DeviceCaps caps{.outputs_force = true};
     DeviceState state;
     uint64_t now_ns = 1'000'000'000;
@@ -247,8 +247,8 @@ void check_nonsense(int ticks, uint32_t seed)
             case 2: state.position_m.y = dice.random() % 2 ? 1e30 : nan; break;
             case 3: state.time_ns = dice.random(); break;
             case 4: now_ns += dice.random() % 100'000'000; break;
-            case 5: settings.mode = HapticMode(dice.random() % 3); break;
-            case 6: settings.law = ProxyLaw(dice.random() % 2); break;
+            case 5: settings.mode = TOUCH_MODES[dice.random() % std::size(TOUCH_MODES)].value; break;
+            case 6: settings.law = dice.random() % 2 ? ProxyLaw::mean : ProxyLaw::potential; break;
             case 7: settings.probe_radius = dice.between(0.5, 3.0); break;
             case 8: settings.let_go = !settings.let_go; break;
             case 9: settings.strength = dice.between(-0.5, 1.5); break;
@@ -293,9 +293,9 @@ void check_loops(int count, uint32_t seed)
     const auto patch = std::make_unique<RelevancePatch>();
     fill_patch(*patch, {0, 0, 0}, glm::ivec3(64), glm::dvec3(0.25), [&](const glm::dvec3& p) { return tube.holds(p); });
     patch->volume_size = glm::ivec3(64);
-    for (const HapticMode mode : {HapticMode::proximity, HapticMode::object, HapticMode::surface}) {
+    for (const TouchMode mode : {TouchMode::proximity, TouchMode::object, TouchMode::surface}) {
         const ForceSettings settings = settings_for(mode);
-        const bool is_surface = mode == HapticMode::surface;
+        const bool is_surface = mode == TouchMode::surface;
         double worst = 0.0;
         for (int loop = 0; loop < count; ++loop) {
             const auto growth = std::make_unique<GrowthMemory>();
@@ -316,7 +316,7 @@ void check_loops(int count, uint32_t seed)
                 const glm::dvec3 away = radius * (std::cos(turn) * u + std::sin(turn) * v);
                 return middle + (is_surface ? glm::dvec3(away.x, away.y, 0.0) : away);
             };
-            if (mode == HapticMode::object)
+            if (mode == TouchMode::object)
                 for (int i = 0; i < 3; ++i) pull_at(at(0.0));
             constexpr int STEPS = 240;
             double work = 0.0, length = 0.0, largest = 1e-9;

@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
-#include "ui/workbench/bindings/keymap.h"
-#include "ui/workbench/model.h"
-#include "ui/workbench/preferences.h"
+#include "engine/workbench/bindings/keymap.h"
+#include "engine/workbench/models/model.h"
+#include "engine/workbench/models/preferences.h"
 
 namespace shvr::test {
 
@@ -21,18 +21,28 @@ struct World {
     ui::MessageLog messages;
     ui::Keymap keymap;
     ui::Preferences preferences;
-    ui::Model model{.is_open = true,
-                    .session = session,
-                    .volume = volume,
-                    .statistics = statistics,
-                    .camera = camera,
-                    .panes = panes,
-                    .presets = presets,
-                    .trace = trace,
-                    .session_path = path,
-                    .messages = messages,
-                    .keymap = keymap,
-                    .preferences = preferences};
+    ui::Model model{{.is_open = true,
+                     .session = session,
+                     .volume = volume,
+                     .statistics = statistics,
+                     .camera = camera,
+                     .session_path = path,
+                     .messages = messages},
+                    {.panes = panes},
+                    {},
+                    {},
+                    {},
+                    {},
+                    {.trace = trace},
+                    {},
+                    {},
+                    {},
+                    {},
+                    {},
+                    {.keymap = keymap, .preferences = preferences},
+                    {.presets = presets},
+                    {},
+                    {}};
 };
 
 }  // namespace shvr::test

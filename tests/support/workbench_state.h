@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "ui/workbench/workbench.h"
+#include "engine/workbench/workbench.h"
 
 namespace shvr::test {
 

@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <fstream>
 
-#include "ui/workbench/edit.h"
-#include "ui/workbench/workbench.h"
+#include "engine/workbench/edits/edit.h"
+#include "engine/workbench/workbench.h"
 
 namespace {
 

@@ -5,8 +5,8 @@
 #include "engine/annotation/script/script.h"
 #include "engine/annotation/work/hold.h"
 #include "engine/base/text.h"
+#include "engine/workbench/workbench.h"
 #include "tools/cli/cli.h"
-#include "ui/workbench/workbench.h"
 
 namespace shvr::cli {
 

@@ -6,11 +6,11 @@
 #include "engine/annotation/work/work_offsets.h"
 #include "engine/base/text.h"
 #include "engine/volume/unit.h"
+#include "engine/workbench/touch/felt_relevance.h"
 #include "haptics/replay/replay.h"
 #include "haptics/servo.h"
 #include "tools/cli/cli.h"
 #include "tools/cli/haptics_report.h"
-#include "ui/workbench/touch/felt_relevance.h"
 
 namespace shvr::cli {
 
@@ -67,7 +67,7 @@ void run_replay(const ReplayCommandOptions& options)
     if (options.threshold)
         for (TraceSettings& settings : trace.settings) settings.threshold = *options.threshold;
 
-    ReplayOptions how{.mode = chosen<HapticMode>(options.mode),
+    ReplayOptions how{.mode = chosen<TouchMode>(options.mode),
                       .law = chosen<ProxyLaw>(options.law),
                       .stiffness = options.stiffness,
                       .damping = options.damping,
@@ -106,7 +106,7 @@ void add_replay(CLI::App& haptics)
     command->add_option("--volume", options->volume,
                         "Volume, project folder or session (.json); not needed where the trace holds what was felt, "
                         "as those recorded in the window do");
-    command->add_option("--mode", options->mode, "Instead of the trace's")->check(CLI::IsMember(choices<HapticMode>()));
+    command->add_option("--mode", options->mode, "Instead of the trace's")->check(CLI::IsMember(choices<TouchMode>()));
     command->add_option("--law", options->law, "Instead of the trace's")->check(CLI::IsMember(choices<ProxyLaw>()));
     command->add_option("--threshold", options->threshold,
                         "Intensity, instead of the trace's; what is felt is made anew");

@@ -70,7 +70,7 @@ void cut(const std::vector<uint8_t>& scene, const glm::dvec3& point, int32_t sid
 }
 
 /// A hand follows the tube at 20 mm/s and strays as hands do. A voxel is 0.25 mm in the hand.
-Trace make_trace(double radius_voxels, HapticMode mode, size_t ticks)
+Trace make_trace(double radius_voxels, TouchMode mode, size_t ticks)
 {
     Trace trace;
     trace.unit = "um";
@@ -98,11 +98,11 @@ Trace make_trace(double radius_voxels, HapticMode mode, size_t ticks)
 struct Case {
     int32_t side;
     double radius;
-    HapticMode mode;
+    TouchMode mode;
 };
-constexpr Case CASES[] = {{64, 12.0, HapticMode::object},  {64, 12.0, HapticMode::proximity},
-                          {64, 24.0, HapticMode::object},  {64, 12.0, HapticMode::surface},
-                          {128, 24.0, HapticMode::object}, {128, 48.0, HapticMode::object}};
+constexpr Case CASES[] = {{64, 12.0, TouchMode::object},  {64, 12.0, TouchMode::proximity},
+                          {64, 24.0, TouchMode::object},  {64, 12.0, TouchMode::surface},
+                          {128, 24.0, TouchMode::object}, {128, 48.0, TouchMode::object}};
 
 Json run_case(const std::vector<uint8_t>& scene, const Case& one, LongWork& work, Json& first)
 {
@@ -129,7 +129,7 @@ Json run_case(const std::vector<uint8_t>& scene, const Case& one, LongWork& work
 /// The servo on the real clock, with a modelled Touch at rest in the tube.
 Json run_servo(const std::vector<uint8_t>& scene, double seconds, LongWork& work)
 {
-    const Trace trace = make_trace(12.0, HapticMode::object, 1);
+    const Trace trace = make_trace(12.0, TouchMode::object, 1);
     auto device = std::make_unique<ModelledTouch>();
     device->wish().publish({.position_m = trace.ticks[0].state.position_m, .buttons = 0, .jump = 1});
     const auto servo = std::make_unique<Servo>(std::move(device), real_pacing(), Servo::Options{});

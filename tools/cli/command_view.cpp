@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "engine/workbench/bindings/preferences_file.h"
 #include "tools/cli/cli.h"
 #include "tools/cli/stop.h"
 #include "ui/app.h"
-#include "ui/workbench/preferences.h"
 
 namespace shvr::cli {
 

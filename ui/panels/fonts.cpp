@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/workbench/appearance/glyphs.h"
 #include "ui/panels/style.h"
-#include "ui/workbench/appearance/glyphs.h"
 
 namespace shvr::ui {
 

@@ -9,13 +9,13 @@
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>
 
+#include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/bindings/hints.h"
+#include "engine/workbench/edits/edit.h"
+#include "engine/workbench/lists/group_list.h"
+#include "ui/panels/color_field.h"
 #include "ui/panels/field_keys.h"
-#include "ui/panels/look/color_field.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/action_rows.h"
-#include "ui/workbench/appearance/hints.h"
-#include "ui/workbench/edit.h"
-#include "ui/workbench/lists/group_list.h"
 
 namespace shvr::ui {
 

@@ -9,10 +9,10 @@
 #include <imgui/imgui_stdlib.h>
 
 #include "engine/base/error.h"
+#include "engine/workbench/bindings/keymap.h"
+#include "engine/workbench/bindings/palette.h"
+#include "engine/workbench/models/preferences.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/bindings/keymap.h"
-#include "ui/workbench/lists/palette.h"
-#include "ui/workbench/preferences.h"
 
 namespace shvr::ui {
 

@@ -6,10 +6,10 @@
 #include <imgui/imgui.h>
 
 #include "engine/base/error.h"
+#include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/lists/history_list.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/action_rows.h"
-#include "ui/workbench/lists/history_list.h"
 
 namespace shvr::ui {
 

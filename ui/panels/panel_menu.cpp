@@ -10,16 +10,16 @@
 #include <imgui/imgui.h>
 
 #include "engine/base/error.h"
+#include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/bindings/keymap.h"
+#include "engine/workbench/bindings/preferences_file.h"
+#include "engine/workbench/bindings/tools.h"
+#include "engine/workbench/edits/edit.h"
+#include "engine/workbench/edits/group_steps.h"
+#include "engine/workbench/lists/bug_report.h"
+#include "engine/workbench/models/hand_view.h"
+#include "engine/workbench/sight/words.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/action_rows.h"
-#include "ui/workbench/bindings/keymap.h"
-#include "ui/workbench/bindings/tools.h"
-#include "ui/workbench/edit.h"
-#include "ui/workbench/lists/bug_report.h"
-#include "ui/workbench/lists/group_steps.h"
-#include "ui/workbench/preferences.h"
-#include "ui/workbench/sight/words.h"
-#include "ui/workbench/touch/hand_view.h"
 
 namespace shvr::ui {
 

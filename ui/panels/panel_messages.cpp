@@ -4,9 +4,9 @@
 
 #include <imgui/imgui.h>
 
+#include "engine/workbench/lists/bug_report.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/lists/bug_report.h"
 
 namespace shvr::ui {
 

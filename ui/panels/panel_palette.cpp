@@ -7,10 +7,10 @@
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>
 
+#include "engine/workbench/bindings/palette.h"
 #include "ui/panels/field_keys.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/lists/palette.h"
 
 namespace shvr::ui {
 

@@ -8,10 +8,10 @@
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>
 
+#include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/lists/pass_log.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/action_rows.h"
-#include "ui/workbench/lists/pass_log.h"
 
 namespace shvr::ui {
 

@@ -4,10 +4,10 @@
 
 #include <imgui/imgui.h>
 
+#include "engine/workbench/bindings/hints.h"
+#include "engine/workbench/models/preferences.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/appearance/hints.h"
-#include "ui/workbench/preferences.h"
 
 namespace shvr::ui {
 

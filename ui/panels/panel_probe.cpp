@@ -7,9 +7,9 @@
 
 #include <imgui/imgui.h>
 
+#include "engine/workbench/bindings/hints.h"
+#include "engine/workbench/edits/edit.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/appearance/hints.h"
-#include "ui/workbench/edit.h"
 
 namespace shvr::ui {
 
@@ -60,8 +60,8 @@ bool radius(const Model& model, BrushSettings& brush, Actions& actions)
 {
     label("Radius");
     ImGui::SetNextItemWidth(8.0f * ImGui::GetFontSize());
-    const bool changed = drag_number("##radius", brush.radius_voxels, 0.15, SMALLEST_RADIUS_VOXELS,
-                                     LARGEST_RADIUS_VOXELS, "%.1f voxels", ImGuiSliderFlags_Logarithmic);
+    const bool changed = drag_number("##radius", brush.radius_voxels, 0.15, MIN_RADIUS_VOXELS, MAX_RADIUS_VOXELS,
+                                     "%.1f voxels", ImGuiSliderFlags_Logarithmic);
     hint(sentence("Of the probe and the brush. Drag sideways, or Ctrl + click to type. ",
                   name_with_key("larger_brush", model.keymap), ", ", name_with_key("smaller_brush", model.keymap), ".")
              .c_str());

@@ -3,10 +3,10 @@
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>
 
+#include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/edits/edit.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/action_rows.h"
-#include "ui/workbench/edit.h"
 
 namespace shvr::ui {
 

@@ -5,11 +5,11 @@
 
 #include <imgui/imgui.h>
 
+#include "engine/workbench/bindings/hints.h"
+#include "engine/workbench/edits/edit.h"
+#include "engine/workbench/edits/trace_ops.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/appearance/hints.h"
-#include "ui/workbench/edit.h"
-#include "ui/workbench/trace_ops.h"
 
 namespace shvr::ui {
 

@@ -6,11 +6,11 @@
 
 #include <imgui/imgui.h>
 
-#include "ui/panels/look/color_field.h"
+#include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/lists/trace_list.h"
+#include "ui/panels/color_field.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/action_rows.h"
-#include "ui/workbench/lists/trace_list.h"
 
 namespace shvr::ui {
 

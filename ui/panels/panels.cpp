@@ -9,9 +9,9 @@
 
 #include <imgui/imgui.h>
 
+#include "engine/workbench/bindings/preferences_file.h"
 #include "ui/panels/style.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/preferences.h"
 
 namespace shvr::ui {
 
@@ -21,7 +21,7 @@ struct PanelBody {
     const char* id = "";
     void (*draw)(const Model& model, Actions& actions) = nullptr;
 };
-/// What each panel shows; their order and titles are in ui/workbench/appearance/layout.cpp.
+/// What each panel shows; their order and titles are in engine/workbench/appearance/layout.cpp.
 constexpr PanelBody BODIES[] = {
     {"transfer_function", transfer_function_panel},
     {"groups", groups_panel},

@@ -4,8 +4,8 @@
 
 #include <imgui/imgui.h>
 
-#include "ui/workbench/action.h"
-#include "ui/workbench/model.h"
+#include "engine/workbench/actions/action.h"
+#include "engine/workbench/models/model.h"
 
 namespace shvr::ui {
 
@@ -24,7 +24,7 @@ bool covers(const glm::dvec2& at);
 /// left. While nothing is open, the start page is there instead of tools and panels.
 Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& actions);
 
-// What panels show, each in its own file; which there are and where is in ui/workbench/appearance/layout.h.
+// What panels show, each in its own file; which there are and where is in engine/workbench/appearance/layout.h.
 void probe_panel(const Model& model, Actions& actions);
 void touch_panel(const Model& model, Actions& actions);
 /// In it: the devices that are there, and how the one in use fares.

@@ -8,8 +8,8 @@
 
 #include <imgui/imgui.h>
 
-#include "ui/workbench/appearance/theme.h"
-#include "ui/workbench/sight/figure.h"
+#include "engine/workbench/appearance/theme.h"
+#include "engine/workbench/sight/figure.h"
 
 namespace shvr::ui {
 

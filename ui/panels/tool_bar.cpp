@@ -7,13 +7,13 @@
 #include <imgui/imgui.h>
 
 #include "engine/base/image.h"
+#include "engine/workbench/bindings/hints.h"
+#include "engine/workbench/bindings/tools.h"
+#include "engine/workbench/edits/edit.h"
+#include "engine/workbench/edits/group_steps.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/style.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/appearance/hints.h"
-#include "ui/workbench/bindings/tools.h"
-#include "ui/workbench/edit.h"
-#include "ui/workbench/lists/group_steps.h"
 
 namespace shvr::ui {
 

@@ -10,8 +10,8 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/session/session_patch.h"
+#include "engine/workbench/curves/fine_drag.h"
 #include "ui/panels/panels.h"
-#include "ui/workbench/curves/fine_drag.h"
 
 namespace shvr::ui {
 

@@ -5,8 +5,8 @@
 
 #include <imgui/imgui.h>
 
+#include "engine/workbench/actions/action.h"
 #include "ui/panels/style.h"
-#include "ui/workbench/action.h"
 
 namespace shvr::ui {
 

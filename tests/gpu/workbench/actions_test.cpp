@@ -1,5 +1,5 @@
 // Every action, applied once without a display: what it must change, and that nothing else changes. The table is the
-// documentation of the actions; ui/workbench/ACTIONS.md is printed from it.
+// documentation of the actions; engine/workbench/ACTIONS.md is printed from it.
 
 #include <set>
 
@@ -282,7 +282,7 @@ TEST_CASE("ACTIONS.md says of each action what the program says")
         }
         expected += sentence("| `", action.id, "` | ", action.meaning, " | ", examples, " | ", changes, " |\n");
     }
-    const std::string written = read_text("ui/workbench/ACTIONS.md", int64_t{1} << 20);
+    const std::string written = read_text("engine/workbench/ACTIONS.md", int64_t{1} << 20);
     if (written != expected) std::puts(expected.c_str());
     CHECK((written == expected));
 }

@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/base/file.h"
+#include "engine/workbench/bindings/preferences_file.h"
 #include "haptics/replay/replay.h"
 #include "haptics/simulated_device.h"
 #include "tests/support/gpu.h"
@@ -207,7 +208,7 @@ TEST_CASE_FIXTURE(OnDevice, "ways of touching are settings: by key in both sets,
     Workbench again(renderer(), {.has_servo = false});
     again.open(folder.path / "scan.json", {});
     CHECK(again.document().session.probe.touch == left);
-    CHECK(again.document().session.probe.guidance == Guidance::thesis);
+    CHECK(again.document().session.probe.guidance == ProxyLaw::thesis);
     CHECK_THROWS_AS(bench.perform(Set{R"({"probe":{"touch":{"groups":[256]}}})"}), Error);
     CHECK_THROWS_AS(bench.perform(Set{R"({"probe":{"touch":{"strength":1.5}}})"}), Error);
     CHECK(Keymap(KeySet::thesis).text_of(*shortcut_named("next_mode")) == "Home");
@@ -442,7 +443,7 @@ TEST_CASE_FIXTURE(OnDevice,
     // It begins without force, and guides as soon as it is known what can be felt.
     CHECK(!trace.settings.front().force.assistance);
     CHECK(trace.settings.back().force.assistance);
-    CHECK(trace.settings.back().force.mode == HapticMode::surface);
+    CHECK(trace.settings.back().force.mode == TouchMode::surface);
     CHECK(trace.relevance.size() >= 3);
     const ReplayResult once = replay_trace(trace, {}, {});
     CHECK(once.told == trace.ticks.size());

@@ -3,10 +3,10 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/workbench/bindings/shortcuts.h"
 #include "tests/support/gpu.h"
 #include "tests/support/volume_files.h"
 #include "tests/support/workbench_state.h"
-#include "ui/workbench/bindings/shortcuts.h"
 
 using namespace shvr;
 using namespace shvr::test;

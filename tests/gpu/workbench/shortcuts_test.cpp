@@ -7,11 +7,11 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/workbench/bindings/keymap.h"
 #include "haptics/simulated_device.h"
 #include "tests/support/gpu.h"
 #include "tests/support/volume_files.h"
 #include "tests/support/workbench_state.h"
-#include "ui/workbench/bindings/keymap.h"
 
 using namespace shvr;
 using namespace shvr::test;

@@ -43,7 +43,7 @@ void run_ticks(int side, double radius)
     const auto growth = std::make_unique<GrowthMemory>();
     ForceMemory memory;
     ForceSettings settings{.assistance = true, .probe_radius = radius};
-    settings.mode = HapticMode::object;
+    settings.mode = TouchMode::object;
     settings.workspace = {glm::dmat3(4000.0), line_in(side).at(0.5 * side)};
     DeviceState state;
     ForceStep now;

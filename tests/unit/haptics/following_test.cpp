@@ -79,7 +79,7 @@ void cut(const std::vector<uint8_t>& scene, const glm::dvec3& probe_mm, Relevanc
 }
 
 /// RMS distance of the probe from the middle line, mm: 20 mm/s along it, wandering as hands do.
-double follow(const std::vector<uint8_t>& scene, const HandModel& hand, std::optional<HapticMode> mode)
+double follow(const std::vector<uint8_t>& scene, const HandModel& hand, std::optional<TouchMode> mode)
 {
     double squares = 0.0;
     int count = 0;
@@ -94,7 +94,7 @@ double follow(const std::vector<uint8_t>& scene, const HandModel& hand, std::opt
         ForceMemory memory;
         ForceSettings settings{.assistance = mode.has_value(), .probe_radius = 2.5};
         settings.workspace = {glm::dmat3(1000.0), glm::dvec3(0.0)};
-        settings.mode = mode.value_or(HapticMode::proximity);
+        settings.mode = mode.value_or(TouchMode::proximity);
         DeviceCaps caps = device.caps();
         caps.usable_lower_m = glm::dvec3(-1.0);
         caps.usable_upper_m = glm::dvec3(1.0);
@@ -131,11 +131,11 @@ TEST_CASE("object following takes at least 60 % of the lateral error, and neighb
         const std::vector<uint8_t> scene = make_scene(kind, 0.5);
         for (const bool is_mouse : {false, true}) {
             const HandModel hand = is_mouse ? MOUSE_HAND : MODELLED_HAND;
-            const double free_mm = follow(scene, hand, {}), guided_mm = follow(scene, hand, HapticMode::object);
+            const double free_mm = follow(scene, hand, {}), guided_mm = follow(scene, hand, TouchMode::object);
             if (&kind == SCENES) alone_mm[is_mouse] = guided_mm;
             MESSAGE(std::string(is_mouse ? "mouse" : "hand"), " ", std::string(kind.name), ": ", free_mm,
                     " mm without, ", guided_mm, " mm with object following, ",
-                    follow(scene, hand, HapticMode::proximity), " mm with proximity following");
+                    follow(scene, hand, TouchMode::proximity), " mm with proximity following");
             CHECK(free_mm > 1.0);
             CHECK(guided_mm <= 0.4 * free_mm);
             CHECK(guided_mm <= 1.05 * alone_mm[is_mouse]);
@@ -146,9 +146,9 @@ TEST_CASE("object following takes at least 60 % of the lateral error, and neighb
 TEST_CASE("beside a tube that touches, a threshold above what lies between them follows the one as if it were alone")
 {
     // Half-way both are one object, and the hand is drawn between them.
-    const double alone_mm = follow(make_scene(SCENES[0], 0.75), MODELLED_HAND, HapticMode::object);
-    const double parted_mm = follow(make_scene(TOUCHING, 0.75), MODELLED_HAND, HapticMode::object);
-    const double joined_mm = follow(make_scene(TOUCHING, 0.25), MODELLED_HAND, HapticMode::object);
+    const double alone_mm = follow(make_scene(SCENES[0], 0.75), MODELLED_HAND, TouchMode::object);
+    const double parted_mm = follow(make_scene(TOUCHING, 0.75), MODELLED_HAND, TouchMode::object);
+    const double joined_mm = follow(make_scene(TOUCHING, 0.25), MODELLED_HAND, TouchMode::object);
     MESSAGE("alone ", alone_mm, " mm, parted ", parted_mm, " mm, joined ", joined_mm, " mm");
     CHECK(parted_mm <= 1.05 * alone_mm);
     CHECK(joined_mm > 1.2 * alone_mm);

@@ -123,7 +123,7 @@ TEST_CASE("no tick waits for a page, the first touch included, and none can be t
     forget_code();
     Servo servo(std::make_unique<ComingHand>(), std::make_unique<CountingPacing>(counts, 4000),
                 {.rate_hz = 1000, .realtime = false});
-    ForceSettings settings{.assistance = true, .probe_radius = 2.5, .mode = HapticMode::object};
+    ForceSettings settings{.assistance = true, .probe_radius = 2.5, .mode = TouchMode::object};
     settings.workspace = {glm::dmat3(1000.0), glm::dvec3(8.0)};
     servo.settings().publish(settings);
     RelevancePatch& patch = servo.relevance().writing();

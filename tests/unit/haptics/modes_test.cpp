@@ -21,7 +21,7 @@ struct Scene {
     uint64_t now_ns = 1'000'000;
 
     template <class Claim>
-    explicit Scene(HapticMode mode, const Claim& claim)
+    explicit Scene(TouchMode mode, const Claim& claim)
     {
         settings.mode = mode;
         fill_patch(*patch, {0, 0, 0}, glm::ivec3(64), glm::dvec3(1), claim);
@@ -45,7 +45,7 @@ bool half_space(const glm::dvec3& p)
 
 TEST_CASE("a surface holds the probe where 40 % of its ball is relevant")
 {
-    Scene scene(HapticMode::surface, half_space);
+    Scene scene(TouchMode::surface, half_space);
     double z = 40.0;
     for (; !scene.at({32, 32, z}).in_contact; z -= 0.05) REQUIRE(z > 20.0);
     // A cap of 40 % of a ball's volume: h^2 (3 - h) / 4 = 0.4 at h = 0.866 of the radius.
@@ -62,7 +62,7 @@ TEST_CASE("a surface holds the probe where 40 % of its ball is relevant")
 
 TEST_CASE("a surface lets go when the probe moves towards the camera, and holds again only from outside")
 {
-    Scene scene(HapticMode::surface, half_space);
+    Scene scene(TouchMode::surface, half_space);
     for (double z = 40.0; z > 29.0; z -= 0.05) scene.at({32, 32, z});
     REQUIRE(scene.at({32, 32, 29.0}).in_contact);
     CHECK(scene.at({32, 32, 29.0 + 0.9 * RELEASE_SHARE * 6.0}).in_contact);   // a tremble
@@ -77,7 +77,7 @@ TEST_CASE("a surface lets go when the probe moves towards the camera, and holds 
 
 TEST_CASE("a surface lets go where little is left of it, whatever the view")
 {
-    Scene scene(HapticMode::surface, half_space);
+    Scene scene(TouchMode::surface, half_space);
     scene.settings.to_camera = {1.0, 0.0, 0.0};
     for (double z = 40.0; z > 31.0; z -= 0.05) scene.at({32, 32, z});
     REQUIRE(scene.at({32, 32, 31.0}).in_contact);
@@ -89,7 +89,7 @@ TEST_CASE("a surface lets go where little is left of it, whatever the view")
 
 TEST_CASE("small objects do not hold a surface")
 {
-    Scene scene(HapticMode::surface, [](const glm::dvec3& p) { return glm::distance(p, glm::dvec3(32)) < 3.0; });
+    Scene scene(TouchMode::surface, [](const glm::dvec3& p) { return glm::distance(p, glm::dvec3(32)) < 3.0; });
     for (double z = 45.0; z > 20.0; z -= 0.1) REQUIRE(!scene.at({32, 32, z}).in_contact);
 }
 
@@ -97,7 +97,7 @@ TEST_CASE("object following stays with its tube beside one that nearly touches; 
 {
     const Rod tube{.point = {32.0, 28.0, 32.0}, .radius = 3.0}, neighbour{.point = {32.0, 35.5, 32.0}, .radius = 3.0};
     const auto both = [&](const glm::dvec3& p) { return tube.holds(p) || neighbour.holds(p); };
-    Scene proximity(HapticMode::proximity, both), object(HapticMode::object, both);
+    Scene proximity(TouchMode::proximity, both), object(TouchMode::object, both);
     object.at({20, 28, 32});
     object.at({20, 28, 32});
     for (double x = 20.0; x < 44.0; x += 0.25) {
@@ -113,7 +113,7 @@ TEST_CASE("object following stays with its tube beside one that nearly touches; 
 TEST_CASE("where two tubes truly touch, both are the object: connectivity cannot tell them apart")
 {
     const Rod tube{.point = {32.0, 28.0, 32.0}, .radius = 3.0}, neighbour{.point = {32.0, 33.0, 32.0}, .radius = 3.0};
-    Scene object(HapticMode::object, [&](const glm::dvec3& p) { return tube.holds(p) || neighbour.holds(p); });
+    Scene object(TouchMode::object, [&](const glm::dvec3& p) { return tube.holds(p) || neighbour.holds(p); });
     object.at({20, 28, 32});
     object.at({20, 28, 32});
     CHECK(object.at({20, 28, 32}).offset.y > 0.5);
@@ -121,7 +121,7 @@ TEST_CASE("where two tubes truly touch, both are the object: connectivity cannot
 
 TEST_CASE("relevance made with other settings is not used")
 {
-    Scene scene(HapticMode::proximity, half_space);
+    Scene scene(TouchMode::proximity, half_space);
     CHECK(scene.at({32, 32, 32}).is_usable);
     scene.settings.relevance_settings = 1;
     CHECK(!scene.at({32, 32, 32}).is_usable);
@@ -132,7 +132,7 @@ TEST_CASE("relevance made with other settings is not used")
 TEST_CASE("3000 random points find the mean within what the thesis's sampling can")
 {
     const Rod tube{.point = {32.0, 30.0, 32.0}, .radius = 4.0};
-    Scene scene(HapticMode::proximity, [&](const glm::dvec3& p) { return tube.holds(p); });
+    Scene scene(TouchMode::proximity, [&](const glm::dvec3& p) { return tube.holds(p); });
     double squares = 0.0;
     int count = 0;
     for (double y = 26.0; y < 34.0; y += 0.1, ++count) {

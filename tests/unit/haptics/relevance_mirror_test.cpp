@@ -9,9 +9,9 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/workbench/touch/felt_relevance.h"
 #include "haptics/servo.h"
 #include "tests/support/haptic_scenes.h"
-#include "ui/workbench/touch/felt_relevance.h"
 
 using namespace shvr;
 
@@ -145,7 +145,7 @@ struct World {
     std::unique_ptr<Servo> servo;
     std::unique_ptr<RelevanceMirror> mirror;
 
-    World(double speed, HapticMode mode)
+    World(double speed, TouchMode mode)
     {
         servo = std::make_unique<Servo>(std::make_unique<MovingHand>(speed), std::make_unique<TurnPacing>(turns),
                                         Servo::Options{.rate_hz = 1000, .realtime = false});
@@ -218,7 +218,7 @@ struct World {
 
 TEST_CASE("while the main thread is held nothing fades, whether the hand rests in the cube or leaves it")
 {
-    for (const HapticMode mode : {HapticMode::proximity, HapticMode::object, HapticMode::surface}) {
+    for (const TouchMode mode : {TouchMode::proximity, TouchMode::object, TouchMode::surface}) {
         for (const double speed : {0.0, 0.02, 0.04}) {
             CAPTURE(int(mode));
             CAPTURE(speed);
@@ -226,7 +226,7 @@ TEST_CASE("while the main thread is held nothing fades, whether the hand rests i
             world.begin();
             world.turns.run(1500);
             CHECK(world.blind == 0);
-            if (mode != HapticMode::surface) CHECK(world.least_n > 0.05);
+            if (mode != TouchMode::surface) CHECK(world.least_n > 0.05);
             CHECK(world.mirror->made_on_host() >= (speed > 0.0 ? 3 : 1));
             CHECK(world.mirror->made_on_host() <= 30);
         }
@@ -235,7 +235,7 @@ TEST_CASE("while the main thread is held nothing fades, whether the hand rests i
 
 TEST_CASE("a mirror that stands still does fade: the check above can fail")
 {
-    World world(0.0, HapticMode::object);
+    World world(0.0, TouchMode::object);
     world.begin();
     {
         const std::scoped_lock lock(world.turns.mutex);
@@ -250,7 +250,7 @@ TEST_CASE("a device that answers in time is enough; the host steps in for one th
 {
     for (const int late_ticks : {2, 10, 200}) {
         CAPTURE(late_ticks);
-        World world(0.02, HapticMode::proximity);
+        World world(0.02, TouchMode::proximity);
         world.answer(late_ticks);
         world.begin();
         const uint64_t before = world.mirror->made_on_host();
@@ -268,7 +268,7 @@ TEST_CASE("a device that answers in time is enough; the host steps in for one th
 
 TEST_CASE("another threshold takes effect within the time that a force needs to fade, and is not mixed with the last")
 {
-    World world(0.0, HapticMode::proximity);
+    World world(0.0, TouchMode::proximity);
     world.begin();
     world.turns.run(100);
     world.choice.threshold = 250.0;  // nothing is left
@@ -288,7 +288,7 @@ TEST_CASE("another threshold takes effect within the time that a force needs to 
 
 TEST_CASE("voxels that cannot be read fade out with a sentence, and are read again a second later")
 {
-    World world(0.02, HapticMode::proximity);
+    World world(0.02, TouchMode::proximity);
     world.begin();
     world.source->is_torn = true;
     world.turns.run(800);
@@ -304,7 +304,7 @@ TEST_CASE("voxels that cannot be read fade out with a sentence, and are read aga
 
 TEST_CASE("offsets that a person paints are felt once the choice tells of them")
 {
-    World world(0.0, HapticMode::proximity);
+    World world(0.0, TouchMode::proximity);
     world.begin();
     const uint64_t made = world.mirror->made_on_host();
     auto field = std::make_shared<DensityField>(Size3(LENGTH, 64, 64), VoxelType::uint8);

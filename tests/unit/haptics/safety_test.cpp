@@ -174,7 +174,7 @@ TEST_CASE("another mode or law takes over without a step")
             last = now;
         }
     }
-    held.settings.mode = HapticMode::surface;  // nothing holds here
+    held.settings.mode = TouchMode::surface;  // nothing holds here
     for (int i = 0; i < 120; ++i) {
         const double now = held.force();
         CHECK(std::abs(now - last) <= 0.02);

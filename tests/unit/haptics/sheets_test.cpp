@@ -36,7 +36,7 @@ struct Hand {
     ForceMemory memory;
     uint64_t now_ns = 0;
 
-    Hand(int voxels, HapticMode mode) : patch(sheet(voxels))
+    Hand(int voxels, TouchMode mode) : patch(sheet(voxels))
     {
         settings.workspace = {glm::dmat3(1000.0), glm::dvec3(MIDDLE)};
         settings.mode = mode;
@@ -68,7 +68,7 @@ struct Hand {
 TEST_CASE("a sheet of one voxel holds a hand up to 0.3 N and one of two up to 0.5 N: none is popped through below")
 {
     for (const int voxels : {1, 2}) {
-        for (const HapticMode mode : {HapticMode::proximity, HapticMode::object}) {
+        for (const TouchMode mode : {TouchMode::proximity, TouchMode::object}) {
             CAPTURE(voxels);
             CAPTURE(int(mode));
             Hand hand(voxels, mode);
@@ -102,7 +102,7 @@ TEST_CASE("a sheet of one voxel holds a hand up to 0.3 N and one of two up to 0.
 TEST_CASE("sheets crossed at up to 50 mm/s change the force by at most 0.05 N a tick; none more than slew")
 {
     for (const int voxels : {1, 2}) {
-        for (const HapticMode mode : {HapticMode::proximity, HapticMode::object, HapticMode::surface}) {
+        for (const TouchMode mode : {TouchMode::proximity, TouchMode::object, TouchMode::surface}) {
             for (const double speed : {0.005, 0.02, 0.05, 0.2, 0.5}) {
                 CAPTURE(voxels);
                 CAPTURE(int(mode));
@@ -121,7 +121,7 @@ TEST_CASE("sheets crossed at up to 50 mm/s change the force by at most 0.05 N a 
                     most = std::max(most, glm::length(now.force_n));
                     last = now.force_n;
                 }
-                if (mode != HapticMode::surface) CHECK(most > 0.05);
+                if (mode != TouchMode::surface) CHECK(most > 0.05);
                 CHECK(largest <= (speed <= 0.05 ? 0.05 + 1e-9 : SLEW_N + 1e-12));
             }
         }
@@ -133,7 +133,7 @@ TEST_CASE("the law alone, without the limit of slew, changes by at most 0.062 N 
     constexpr double STEP_MM = 0.05;
     for (const int voxels : {1, 2}) {
         CAPTURE(voxels);
-        Hand hand(voxels, HapticMode::proximity);
+        Hand hand(voxels, TouchMode::proximity);
         double largest = 0.0, last = 0.0;
         for (double z = MIDDLE - 3.2; z < MIDDLE + 3.7; z += STEP_MM) {
             const Proxy proxy = find_proxy(*hand.patch, {8.1, 7.9, z}, hand.settings.probe_radius, hand.settings.law);
@@ -153,7 +153,7 @@ TEST_CASE(
 {
     // Ten voxels: one or two are 7 to 15 % of the ball, at most.
     for (const int voxels : {1, 2}) {
-        Hand hand(voxels, HapticMode::surface);
+        Hand hand(voxels, TouchMode::surface);
         DeviceState state;
         double most = 0.0;
         for (int tick = 0; tick < 500; ++tick) {
@@ -166,7 +166,7 @@ TEST_CASE(
     }
     // A probe of one voxel is held by a sheet of two up to what the spring has where less than 30 % of the ball is
     // left.
-    Hand hand(2, HapticMode::surface);
+    Hand hand(2, TouchMode::surface);
     hand.settings.probe_radius = VOXEL_MM;
     DeviceState state;
     double most = 0.0, held_to = 0.0;

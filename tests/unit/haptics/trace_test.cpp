@@ -39,7 +39,7 @@ Trace wandering(int ticks)
     settings.force.workspace = {glm::dmat3(1000.0), glm::dvec3(8.0)};
     settings.threshold = 0.1;
     trace.settings.push_back(settings);
-    settings.force.mode = HapticMode::object;
+    settings.force.mode = TouchMode::object;
     settings.force.clicks = true;
     settings.from_tick = size_t(ticks / 2);
     trace.settings.push_back(settings);
@@ -78,7 +78,7 @@ TEST_CASE("a trace is read as it was written, bit for bit")
     CHECK(again.ticks[9].force_n == trace.ticks[9].force_n);
     CHECK(again.ticks[20].state.position_m == trace.ticks[20].state.position_m);
     CHECK(again.settings[1].from_tick == 150);
-    CHECK(again.settings[1].force.mode == HapticMode::object);
+    CHECK(again.settings[1].force.mode == TouchMode::object);
     CHECK(again.settings[1].force.clicks);
     CHECK(!again.settings[0].force.clicks);
 }

@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "ui/workbench/action_rows.h"
+#include "engine/workbench/actions/action_rows.h"
 
 using namespace shvr;
 using namespace shvr::ui;

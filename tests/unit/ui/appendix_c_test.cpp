@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include "ui/workbench/bindings/keymap.h"
+#include "engine/workbench/bindings/keymap.h"
 
 using namespace shvr::ui;
 

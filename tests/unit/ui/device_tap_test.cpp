@@ -1,6 +1,6 @@
 // What stands between the servo and its device, on a clock that the test moves.
 
-#include "ui/workbench/touch/device_tap.h"
+#include "engine/workbench/touch/device_tap.h"
 
 #include <atomic>
 #include <chrono>
@@ -8,12 +8,12 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/workbench/touch/device_watch.h"
+#include "engine/workbench/touch/stylus_recorder.h"
 #include "haptics/replay/replay.h"
 #include "haptics/simulated_device.h"
 #include "tests/support/haptic_scenes.h"
 #include "tests/support/volume_files.h"
-#include "ui/workbench/touch/device_watch.h"
-#include "ui/workbench/touch/stylus_recorder.h"
 
 using namespace shvr;
 using namespace shvr::test;
@@ -99,7 +99,7 @@ TEST_CASE("a recording of a hand replays bit for bit, through changes of what wa
         }
     };
     run(1500);
-    bench.order.settings.force.mode = HapticMode::object;
+    bench.order.settings.force.mode = TouchMode::object;
     bench.send();
     run(700);
     bench.order.settings.force.strength = 0.4;
@@ -134,7 +134,7 @@ TEST_CASE("a recording goes on through a swap of the device, and replays bit for
         Bench bench(is_second ? 9'000'000'000 : 1'000'000'000);
         if (is_second) recorder.swap_device();
         bench.order.recording = 1;
-        bench.order.settings.force.mode = is_second ? HapticMode::proximity : HapticMode::object;
+        bench.order.settings.force.mode = is_second ? TouchMode::proximity : TouchMode::object;
         bench.publish_rod();
         if (is_second) bench.run(20);  // a servo that was told nothing yet
         bench.send();

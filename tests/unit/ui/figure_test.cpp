@@ -1,6 +1,6 @@
 // Scale bar, axes, distances and words in pictures in files.
 
-#include "ui/workbench/sight/figure.h"
+#include "engine/workbench/sight/figure.h"
 
 #include <algorithm>
 

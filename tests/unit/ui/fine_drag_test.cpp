@@ -1,4 +1,4 @@
-#include "ui/workbench/curves/fine_drag.h"
+#include "engine/workbench/curves/fine_drag.h"
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // Groups as a tree: listed, found, rearranged; and what a trace has in them.
 
-#include "ui/workbench/lists/group_list.h"
+#include "engine/workbench/lists/group_list.h"
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // Bars that suit what voxels can be: no comb where the volume has none.
 
-#include "ui/workbench/curves/histogram_bars.h"
+#include "engine/workbench/curves/histogram_bars.h"
 
 #include <algorithm>
 #include <cmath>

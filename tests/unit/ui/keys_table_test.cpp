@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/base/file.h"
+#include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/bindings/shortcuts.h"
 #include "tests/support/model_world.h"
-#include "ui/workbench/action_rows.h"
-#include "ui/workbench/bindings/shortcuts.h"
 
 using namespace shvr;
 using namespace shvr::test;
@@ -60,7 +60,7 @@ TEST_CASE("KEYS.md says of each shortcut what the program does")
         expected += sentence("| `", shortcut.id, "` | ", shortcut.name, " | ", in_code(shortcut.keys[0]), " | ",
                              in_code(shortcut.keys[1]), " | ", in_short(shortcut.action(world.model, 1.0)), " |\n");
     }
-    const std::string written = read_text("ui/workbench/bindings/KEYS.md", int64_t{1} << 20);
+    const std::string written = read_text("engine/workbench/bindings/KEYS.md", int64_t{1} << 20);
     if (written != expected) std::puts(expected.c_str());
     CHECK((written == expected));
 }

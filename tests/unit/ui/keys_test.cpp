@@ -8,11 +8,11 @@
 #include <doctest/doctest.h>
 
 #include "engine/session/session_patch.h"
-#include "ui/workbench/action_rows.h"
-#include "ui/workbench/bindings/tools.h"
-#include "ui/workbench/lists/group_steps.h"
-#include "ui/workbench/lists/palette.h"
-#include "ui/workbench/preferences.h"
+#include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/bindings/palette.h"
+#include "engine/workbench/bindings/tools.h"
+#include "engine/workbench/edits/group_steps.h"
+#include "engine/workbench/models/preferences.h"
 
 using namespace shvr;
 using namespace shvr::ui;
@@ -35,18 +35,28 @@ struct World {
     MessageLog messages;
     Keymap keymap;
     Preferences preferences;
-    Model model{.is_open = true,
-                .session = session,
-                .volume = volume,
-                .statistics = statistics,
-                .camera = camera,
-                .panes = panes,
-                .presets = presets,
-                .trace = trace,
-                .session_path = path,
-                .messages = messages,
-                .keymap = keymap,
-                .preferences = preferences};
+    Model model{{.is_open = true,
+                 .session = session,
+                 .volume = volume,
+                 .statistics = statistics,
+                 .camera = camera,
+                 .session_path = path,
+                 .messages = messages},
+                {.panes = panes},
+                {},
+                {},
+                {},
+                {},
+                {.trace = trace},
+                {},
+                {},
+                {},
+                {},
+                {},
+                {.keymap = keymap, .preferences = preferences},
+                {.presets = presets},
+                {},
+                {}};
 };
 
 Actions actions_of(const World& world, int key, int mods, bool repeated = false, const std::string& character = {})

@@ -1,4 +1,4 @@
-#include "ui/workbench/appearance/layout.h"
+#include "engine/workbench/appearance/layout.h"
 
 #include <set>
 
@@ -6,10 +6,10 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/workbench/appearance/glyphs.h"
+#include "engine/workbench/bindings/hints.h"
+#include "engine/workbench/bindings/preferences_file.h"
 #include "tests/support/volume_files.h"
-#include "ui/workbench/appearance/glyphs.h"
-#include "ui/workbench/appearance/hints.h"
-#include "ui/workbench/preferences.h"
 
 using namespace shvr;
 using namespace shvr::test;

@@ -1,6 +1,6 @@
 // The light's direction on a ball, and as angles.
 
-#include "ui/workbench/curves/light_ball.h"
+#include "engine/workbench/curves/light_ball.h"
 
 #include <initializer_list>
 

@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "ui/workbench/lists/load_form.h"
+#include "engine/workbench/lists/load_form.h"
 
 using namespace shvr;
 using namespace shvr::ui;

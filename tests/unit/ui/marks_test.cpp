@@ -1,6 +1,6 @@
 // Lines and words that the window draws over its panes.
 
-#include "ui/workbench/sight/marks.h"
+#include "engine/workbench/sight/marks.h"
 
 #include <algorithm>
 

@@ -2,12 +2,12 @@
 
 #include <doctest/doctest.h>
 
-#include "ui/workbench/action_rows.h"
-#include "ui/workbench/bindings/keymap.h"
-#include "ui/workbench/lists/bug_report.h"
-#include "ui/workbench/lists/history_list.h"
-#include "ui/workbench/lists/recent_actions.h"
-#include "ui/workbench/preferences.h"
+#include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/bindings/keymap.h"
+#include "engine/workbench/lists/bug_report.h"
+#include "engine/workbench/lists/history_list.h"
+#include "engine/workbench/lists/recent_actions.h"
+#include "engine/workbench/models/preferences.h"
 
 using namespace shvr;
 using namespace shvr::ui;
@@ -29,22 +29,28 @@ struct Place {
     Preferences preferences;
     RecentActions recent;
     History history;
-    Model model{.is_open = true,
-                .session = session,
-                .volume = volume,
-                .statistics = statistics,
-                .camera = camera,
-                .panes = panes,
-                .presets = presets,
-                .trace = trace,
-                .history = &history,
-                .session_path = path,
-                .messages = messages,
-                .keymap = keymap,
-                .preferences = preferences,
-                .recent = &recent,
-                .version = "1.2.3",
-                .gpu_name = "a device"};
+    Model model{{.is_open = true,
+                 .session = session,
+                 .volume = volume,
+                 .statistics = statistics,
+                 .camera = camera,
+                 .session_path = path,
+                 .messages = messages},
+                {.panes = panes},
+                {},
+                {},
+                {},
+                {},
+                {.trace = trace},
+                {.history = &history},
+                {},
+                {},
+                {},
+                {},
+                {.keymap = keymap, .preferences = preferences},
+                {.presets = presets},
+                {.gpu_name = "a device"},
+                {.recent = &recent, .version = "1.2.3"}};
 };
 
 Command dab(const std::string& label, int64_t brick, std::vector<MaskRun> runs)

@@ -1,6 +1,6 @@
 // The curve of ambient occlusion, as a hand edits it.
 
-#include "ui/workbench/curves/occlusion_curve.h"
+#include "engine/workbench/curves/occlusion_curve.h"
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // Times of passes over frames, and against a run that was saved.
 
-#include "ui/workbench/lists/pass_log.h"
+#include "engine/workbench/lists/pass_log.h"
 
 #include <doctest/doctest.h>
 

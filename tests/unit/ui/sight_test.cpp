@@ -5,9 +5,9 @@
 #include <doctest/doctest.h>
 
 #include "engine/session/session.h"
-#include "ui/workbench/sight/gestures.h"
-#include "ui/workbench/sight/hits.h"
-#include "ui/workbench/sight/words.h"
+#include "engine/workbench/sight/gestures.h"
+#include "engine/workbench/sight/hits.h"
+#include "engine/workbench/sight/words.h"
 
 using namespace shvr;
 using namespace shvr::ui;

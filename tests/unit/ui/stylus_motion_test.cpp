@@ -1,6 +1,6 @@
 // What moves of a stylus mean for view, probe and tools.
 
-#include "ui/workbench/touch/stylus_motion.h"
+#include "engine/workbench/touch/stylus_motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,9 @@
 #include <doctest/doctest.h>
 
 #include "engine/volume/grid.h"
-#include "ui/workbench/touch/felt_relevance.h"
-#include "ui/workbench/touch/hand_view.h"
+#include "engine/workbench/edits/puck_moves.h"
+#include "engine/workbench/models/hand_view.h"
+#include "engine/workbench/touch/felt_relevance.h"
 
 using namespace shvr;
 using namespace shvr::ui;

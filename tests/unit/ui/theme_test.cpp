@@ -1,4 +1,4 @@
-#include "ui/workbench/appearance/theme.h"
+#include "engine/workbench/appearance/theme.h"
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // A trace as lists: what is in them, in which order, and that they are made once for each state of the trace.
 
-#include "ui/workbench/lists/trace_list.h"
+#include "engine/workbench/lists/trace_list.h"
 
 #include <doctest/doctest.h>
 

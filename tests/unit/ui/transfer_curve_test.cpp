@@ -1,6 +1,6 @@
 // Editing the transfer function without a window: places, what lies under the mouse, and what becomes of the points.
 
-#include "ui/workbench/curves/transfer_curve.h"
+#include "engine/workbench/curves/transfer_curve.h"
 
 #include <cfloat>
 

@@ -6,8 +6,8 @@
 #include <doctest/doctest.h>
 
 #include "engine/session/session_patch.h"
+#include "engine/workbench/actions/action_rows.h"
 #include "tests/support/model_world.h"
-#include "ui/workbench/action_rows.h"
 
 using namespace shvr;
 using namespace shvr::test;

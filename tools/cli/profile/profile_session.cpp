@@ -4,8 +4,8 @@
 #include <numeric>
 
 #include "engine/annotation/script/script.h"
+#include "engine/workbench/workbench.h"
 #include "tools/cli/profile/temporary_folder.h"
-#include "ui/workbench/workbench.h"
 
 namespace shvr::cli {
 

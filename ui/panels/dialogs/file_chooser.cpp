@@ -8,7 +8,7 @@
 #include <imgui/imgui_stdlib.h>
 
 #include "engine/base/error.h"
-#include "ui/imgui_versions.h"
+#include "ui/panels/imgui_keys.h"
 #include "ui/panels/widgets.h"
 
 namespace shvr::ui {

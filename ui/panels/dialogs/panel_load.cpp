@@ -9,12 +9,12 @@
 #include <imgui/imgui_stdlib.h>
 
 #include "engine/base/error.h"
+#include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/lists/load_form.h"
+#include "engine/workbench/models/preferences.h"
 #include "ui/panels/dialogs/file_chooser.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/action_rows.h"
-#include "ui/workbench/lists/load_form.h"
-#include "ui/workbench/preferences.h"
 
 namespace shvr::ui {
 

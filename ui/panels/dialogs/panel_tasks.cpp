@@ -11,11 +11,11 @@
 #include <imgui/imgui.h>
 
 #include "engine/base/progress.h"
+#include "engine/workbench/actions/action_rows.h"
 #include "ui/files/asked.h"
 #include "ui/panels/dialogs/field_widgets.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/action_rows.h"
 
 namespace shvr::ui {
 

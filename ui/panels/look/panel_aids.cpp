@@ -4,11 +4,11 @@
 
 #include <imgui/imgui.h>
 
-#include "ui/panels/look/color_field.h"
+#include "engine/workbench/bindings/keymap.h"
+#include "engine/workbench/edits/edit.h"
+#include "ui/panels/color_field.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/bindings/keymap.h"
-#include "ui/workbench/edit.h"
 
 namespace shvr::ui {
 

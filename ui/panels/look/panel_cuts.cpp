@@ -4,9 +4,9 @@
 
 #include <imgui/imgui.h>
 
+#include "engine/workbench/edits/edit.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/edit.h"
 
 namespace shvr::ui {
 

@@ -7,10 +7,10 @@
 
 #include <imgui/imgui.h>
 
-#include "ui/panels/look/color_field.h"
+#include "engine/workbench/curves/light_ball.h"
+#include "engine/workbench/edits/edit.h"
+#include "ui/panels/color_field.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/curves/light_ball.h"
-#include "ui/workbench/edit.h"
 
 namespace shvr::ui {
 

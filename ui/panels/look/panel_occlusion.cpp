@@ -4,12 +4,12 @@
 
 #include <imgui/imgui.h>
 
+#include "engine/workbench/bindings/hints.h"
+#include "engine/workbench/curves/fine_drag.h"
+#include "engine/workbench/curves/occlusion_curve.h"
+#include "engine/workbench/edits/edit.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/appearance/hints.h"
-#include "ui/workbench/curves/fine_drag.h"
-#include "ui/workbench/curves/occlusion_curve.h"
-#include "ui/workbench/edit.h"
 
 namespace shvr::ui {
 

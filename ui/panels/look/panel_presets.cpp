@@ -7,12 +7,12 @@
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>
 
+#include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/edits/edit.h"
+#include "ui/panels/color_field.h"
 #include "ui/panels/field_keys.h"
-#include "ui/panels/look/color_field.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/action_rows.h"
-#include "ui/workbench/edit.h"
 
 namespace shvr::ui {
 

@@ -1,8 +1,8 @@
 #pragma once
 // The line above the curve: whole transfer functions to begin from, and those that a person keeps.
 
-#include "ui/workbench/action.h"
-#include "ui/workbench/model.h"
+#include "engine/workbench/actions/action.h"
+#include "engine/workbench/models/model.h"
 
 namespace shvr::ui {
 

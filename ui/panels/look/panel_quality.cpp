@@ -6,9 +6,9 @@
 #include <imgui/imgui.h>
 
 #include "engine/session/quality.h"
+#include "engine/workbench/edits/edit.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/edit.h"
 
 namespace shvr::ui {
 

@@ -1,4 +1,4 @@
-// The transfer function as a curve over the histogram. What the mouse does to it is in ui/workbench/curves.
+// The transfer function as a curve over the histogram. engine/workbench/curves holds the effects of the mouse.
 
 #include "ui/panels/panels.h"
 
@@ -13,13 +13,13 @@
 #include <imgui/imgui.h>
 #include <imgui/imgui_internal.h>  // SetItemUsingMouseWheel
 
-#include "ui/panels/look/color_field.h"
+#include "engine/workbench/curves/fine_drag.h"
+#include "engine/workbench/curves/histogram_bars.h"
+#include "engine/workbench/curves/transfer_curve.h"
+#include "engine/workbench/edits/edit.h"
+#include "ui/panels/color_field.h"
 #include "ui/panels/look/panel_presets.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/curves/fine_drag.h"
-#include "ui/workbench/curves/histogram_bars.h"
-#include "ui/workbench/curves/transfer_curve.h"
-#include "ui/workbench/edit.h"
 
 namespace shvr::ui {
 

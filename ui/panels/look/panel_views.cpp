@@ -5,10 +5,10 @@
 
 #include <imgui/imgui.h>
 
+#include "engine/workbench/bindings/hints.h"
+#include "engine/workbench/edits/edit.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/appearance/hints.h"
-#include "ui/workbench/edit.h"
 
 namespace shvr::ui {
 

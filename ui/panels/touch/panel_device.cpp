@@ -7,9 +7,9 @@
 
 #include <imgui/imgui.h>
 
+#include "engine/workbench/models/hand_view.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/touch/hand_view.h"
 
 namespace shvr::ui {
 

@@ -5,12 +5,12 @@
 
 #include <imgui/imgui.h>
 
+#include "engine/workbench/bindings/hints.h"
+#include "engine/workbench/edits/edit.h"
+#include "engine/workbench/lists/group_list.h"
+#include "engine/workbench/models/hand_view.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
-#include "ui/workbench/appearance/hints.h"
-#include "ui/workbench/edit.h"
-#include "ui/workbench/lists/group_list.h"
-#include "ui/workbench/touch/hand_view.h"
 
 namespace shvr::ui {
 
@@ -40,10 +40,12 @@ constexpr Choice3<TouchMode> MODES[] = {
     {TouchMode::surface, "surface", "Held where the probe dips into something; pull towards yourself to get off."},
     {TouchMode::object, "object",
      "Follows what is touched first and everything connected with it, past neighbours that it does not touch."}};
-constexpr Choice3<Guidance> LAWS[] = {
-    {Guidance::potential, "smooth", "Grows from nothing at the first touch, and never drives the hand by itself."},
-    {Guidance::mean, "mean", "To the mean of what lies in the probe."},
-    {Guidance::thesis, "points", "To the mean of 3000 random points: rougher, as the first SHVR did it."}};
+static_assert(std::size(MODES) == std::size(TOUCH_MODES));
+constexpr Choice3<ProxyLaw> LAWS[] = {
+    {ProxyLaw::potential, "smooth", "Grows from nothing at the first touch, and never drives the hand by itself."},
+    {ProxyLaw::mean, "mean", "To the mean of what lies in the probe."},
+    {ProxyLaw::thesis, "points", "To the mean of 3000 random points: rougher, as the first SHVR did it."}};
+static_assert(std::size(LAWS) == std::size(PROXY_LAWS));
 constexpr Choice3<TouchPlane> PLANES[] = {{TouchPlane::none, "free", "The probe goes wherever the hand does."},
                                           {TouchPlane::x, "x", "It stays in its plane across x."},
                                           {TouchPlane::y, "y", "It stays in its plane across y."},

@@ -1,0 +1,45 @@
+#include "engine/workbench/actions/conditions.h"
+
+#include <algorithm>
+
+#include "engine/workbench/models/model.h"
+
+namespace shvr::ui {
+
+std::string why_not_edited(const Model& model)
+{
+    if (!model.holder.empty()) return sentence("the project is open for writing in ", model.holder);
+    if (!model.disputes.empty()) return "saved files were changed by another program: files or journal?";
+    if (model.is_saving_as) return "the work is being saved under another name";
+    return {};
+}
+
+std::string why_not_traced(const Model& model)
+{
+    return model.is_painting ? IS_PAINTING : why_not_edited(model);
+}
+
+std::string why_without_selection(const Model& model)
+{
+    const std::string why = why_not_traced(model);
+    return why.empty() && model.trace.selection().empty() ? "nothing is selected" : why;
+}
+
+std::string why_without_node(const Model& model)
+{
+    const std::string why = why_not_traced(model);
+    return why.empty() && !model.trace.selection().node() ? "no node is selected" : why;
+}
+
+std::string why_without_group(const Model& model, uint8_t group)
+{
+    return group == 0 ? "group 0 is the eraser; choose a group from 1 up" : why_not_traced(model);
+}
+
+std::string why_not_own(const Model& model, const std::string& name)
+{
+    const auto is_it = [&](const TransferPreset& preset) { return preset.is_own && preset.name == name; };
+    return std::ranges::any_of(model.presets, is_it) ? "" : sentence("no transfer function is kept as ", name);
+}
+
+}  // namespace shvr::ui

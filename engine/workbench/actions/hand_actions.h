@@ -1,0 +1,93 @@
+#pragma once
+// What a person can ask of the hand. Devices are those of haptics/devices; the chosen one is kept for all scans.
+
+#include "engine/workbench/actions/action_row.h"
+
+namespace shvr::ui {
+
+class Hand;
+
+struct LetGo {  ///< no force from the next tick on, until it is switched off again
+    bool on = true;
+};
+
+struct GrabVolume {  ///< the volume moves and turns with the stylus until released; the probe stays on its voxel
+    bool on = false;
+};
+
+struct UseDevice {
+    std::string device;  ///< id of a listed one; empty: the first that can be used, whatever is plugged in
+};
+
+struct FindDevices {};  ///< looks again for what is plugged in
+
+struct CalibrateDevice {};  ///< opens it again, so that its place of rest becomes its origin
+
+/// What the stylus does and feels, tick by tick, into a file (haptics/replay/README.md).
+struct RecordStylus {
+    std::filesystem::path path;  ///< empty: a free name beside the session
+};
+
+struct StopRecording {};
+
+/// Leads the probe along such a file, tick by tick, as a hand would with the present guidance: its first button paints,
+/// or adds nodes in the trace tool.
+struct FollowStylus {
+    std::filesystem::path path;
+    bool by_hand = true;             ///< a modelled hand holds a modelled stylus; false: the device's own answers
+    double node_every_voxels = 8.0;  ///< between nodes, along x
+};
+
+inline constexpr const char* HAND_GROUP = "Touch";
+
+inline constexpr auto HAND_ACTIONS = std::tuple{
+    row<LetGo, Hand>({"let_go", "Let go", HAND_GROUP, "no force at once, until it is switched off again"},
+                     [](auto& f, LetGo& a) { f.flag("on", a.on, {}); }),
+    row<GrabVolume, Hand>(
+        {"grab_volume", "Take hold of the volume", HAND_GROUP,
+         "the volume moves and turns with the stylus until it is let go"},
+        [](auto& f, GrabVolume& a) { f.flag("on", a.on, {}); },
+        [](const auto& model, const GrabVolume& action) -> std::string {
+            return !action.on || (model.hand && model.hand->moves_probe) ? "" : "no stylus moves the probe";
+        }),
+    row<UseDevice, Hand>(
+        {"use_device", "Use a device", HAND_GROUP, "takes a listed haptic device, or the first that can be used"},
+        [](auto& f, UseDevice& a) { f.text("device", a.device, {}); },
+        [](const auto& model, const UseDevice& action) -> std::string {
+            if (action.device.empty()) return {};
+            const auto is_it = [&](const auto& device) { return device.id == action.device; };
+            const bool is_there = model.hand && std::ranges::any_of(model.hand->devices, is_it);
+            return is_there ? "" : sentence("no device ", action.device, " is plugged in");
+        }),
+    row<FindDevices, Hand>({"find_devices", "Look for devices", HAND_GROUP, "looks again for what is plugged in"}),
+    row<CalibrateDevice, Hand>(
+        {"calibrate_device", "Calibrate", HAND_GROUP, "takes the stylus's place of rest as the origin"}, NO_FIELDS,
+        [](const auto& model, const CalibrateDevice&) -> std::string {
+            return model.hand && model.hand->moves_probe ? "" : "no haptic device moves the probe";
+        }),
+    row<RecordStylus, Hand>(
+        {"record_stylus", "Record the stylus", HAND_GROUP,
+         "writes what the stylus does and feels, tick by tick, into a file"},
+        [](auto& f, RecordStylus& a) { f.path("path", a.path, {}); },
+        [](const auto& model, const RecordStylus&) -> std::string {
+            return model.hand && model.hand->recorded_s ? "the stylus is being recorded" : "";
+        }),
+    row<StopRecording, Hand>(
+        {"stop_recording", "End the recording", HAND_GROUP, "ends the recording of the stylus, and writes its file"},
+        NO_FIELDS,
+        [](const auto& model, const StopRecording&) -> std::string {
+            return model.hand && model.hand->recorded_s ? "" : "nothing is being recorded";
+        }),
+    row<FollowStylus, Hand>(
+        {"follow_stylus", "Follow a recorded stylus", HAND_GROUP,
+         "leads the probe along a recording, with the present guidance"},
+        [](auto& f, FollowStylus& a) {
+            f.path("path", a.path, {.is_required = true});
+            f.flag("by_hand", a.by_hand, {});
+            f.number("node_every_voxels", a.node_every_voxels, NODE_STEPS, {"between nodes, along x"});
+        },
+        [](const auto& model, const FollowStylus&) -> std::string {
+            return model.is_painting ? IS_PAINTING : why_not_edited(model);
+        })};
+
+}  // namespace shvr::ui

@@ -1,0 +1,192 @@
+#pragma once
+// What a person can ask of the view. Angles in degrees; pixels are those of a pane, counted as in Screen::parts.
+
+#include "engine/workbench/actions/action_row.h"
+
+namespace shvr::ui {
+
+class Viewer;
+
+struct Orbit {
+    double right_degrees = 0.0, up_degrees = 0.0;
+};
+
+struct Roll {
+    double degrees = 0.0;
+};
+
+/// Along the camera's right, up and forward; 1 is the height of the view at the target's depth.
+struct Move {
+    glm::dvec3 heights{0.0};
+};
+
+struct Zoom {  ///< in a slice: all slices
+    size_t pane = 0;
+    glm::dvec2 pixel{0.0};
+    double factor = 1.0;
+};
+
+/// Moves the camera in the plane of a map, or the slices, following the mouse.
+struct DragInMap {
+    size_t pane = 0;
+    glm::dvec2 pixels{0.0};
+};
+
+struct LookFrom {
+    std::string camera;  ///< a camera of the session, or a side
+};
+
+/// Keeps the present view under a name; a camera of that name is replaced. Without a name it gets a new one.
+struct KeepCamera {
+    std::string name;
+};
+
+struct ForgetCamera {
+    std::string name;
+};
+
+struct RenameCamera {
+    std::string name, to;
+};
+
+/// Turning goes about what is seen there, from now on.
+struct PivotAt {
+    size_t pane = 0;
+    glm::dvec2 pixel{0.0};
+};
+
+/// The camera looks at a voxel, from the same side and as far away as before.
+struct GoTo {
+    glm::dvec3 voxel{0.0};
+};
+
+/// Cutting planes: axis 0 ... 2, lower or upper plane, as fractions of the volume's size.
+struct MoveCut {
+    int axis = 0;
+    bool upper = false;
+    double share = 0.0;
+};
+
+/// Clip planes of the camera, as fractions of the distance to the target.
+struct MoveClip {
+    bool far = false;
+    double share = 0.0;
+};
+
+/// Both clip planes, as distances from the eye in physical units; 0: no plane.
+struct PlaceClips {
+    double near = 0.0, far = 0.0;
+};
+
+struct ResetCuts {};
+
+/// Brings the volume, or what the cutting planes leave of it, into sight, from where one looks.
+struct FitView {
+    size_t pane = 0;  ///< a slice: fits all slices instead of the camera
+};
+
+/// Back to the camera that the session opens with.
+struct ResetView {};
+
+/// Towards what is selected, at the distance there is.
+struct LookAtSelection {};
+
+struct UpdateOcclusion {};  ///< updates it where it does not update by itself
+
+inline constexpr const char* LOOKING_GROUP = "Looking";
+
+inline constexpr auto LOOKING_ACTIONS = std::tuple{
+    row<Orbit, Viewer>(
+        {"orbit", "Turn the view", LOOKING_GROUP, "turns the camera about its target, to the right and up"},
+        [](auto& f, Orbit& a) {
+            f.number("right_degrees", a.right_degrees, DEGREES, {});
+            f.number("up_degrees", a.up_degrees, DEGREES, {});
+        }),
+    row<Roll, Viewer>({"roll", "Roll the view", LOOKING_GROUP, "turns the camera about its line of sight"},
+                      [](auto& f, Roll& a) { f.number("degrees", a.degrees, DEGREES, {.is_required = true}); }),
+    row<Move, Viewer>(
+        {"move_view", "Move the view", LOOKING_GROUP, "moves the camera right, up and forward, in heights of the view"},
+        [](auto& f, Move& a) { f.vector("heights", a.heights, SHARES, {.is_required = true}); }),
+    row<Zoom, Viewer>({"zoom", "Zoom", LOOKING_GROUP,
+                       "brings what lies under a pixel of a pane nearer by a factor; in a slice, all slices"},
+                      [](auto& f, Zoom& a) {
+                          pane_field(f, a.pane);
+                          pixel_field(f, "pixel", a.pixel);
+                          f.number("factor", a.factor, FACTOR, {.is_required = true});
+                      }),
+    row<DragInMap, Viewer>({"drag_in_map", "Move the camera in a map", LOOKING_GROUP,
+                            "moves the camera with the mouse in a map, or the slices"},
+                           [](auto& f, DragInMap& a) {
+                               pane_field(f, a.pane);
+                               pixel_field(f, "pixels", a.pixels);
+                           }),
+    row<LookFrom, Viewer>(
+        {"look_from", "Look from", LOOKING_GROUP, "takes a camera of the session, or a side of the volume"},
+        [](auto& f, LookFrom& a) { f.text("camera", a.camera, {.is_required = true}); }),
+    row<KeepCamera, Viewer>(
+        {"keep_camera", "Keep this view", LOOKING_GROUP, "keeps the present view in the session, under a name"},
+        [](auto& f, KeepCamera& a) { f.text("name", a.name, {}); }),
+    row<ForgetCamera, Viewer>(
+        {"forget_camera", "Forget a view", LOOKING_GROUP, "removes a camera of the session"},
+        [](auto& f, ForgetCamera& a) { f.text("name", a.name, {.is_required = true}); },
+        [](const auto& model, const ForgetCamera& action) -> std::string {
+            return model.session.cameras.contains(action.name) ? "" : sentence("no view is kept as ", action.name);
+        }),
+    row<RenameCamera, Viewer>(
+        {"rename_camera", "Rename a view", LOOKING_GROUP, "gives a camera of the session another name"},
+        [](auto& f, RenameCamera& a) {
+            f.text("name", a.name, {.is_required = true});
+            f.text("to", a.to, {.is_required = true});
+        },
+        [](const auto& model, const RenameCamera& action) -> std::string {
+            if (!model.session.cameras.contains(action.name)) return sentence("no view is kept as ", action.name);
+            return model.session.cameras.contains(action.to) ? sentence("a view is kept as ", action.to, " already")
+                                                             : "";
+        }),
+    row<PivotAt, Viewer>(
+        {"pivot_at", "Turn about what is seen", LOOKING_GROUP, "turning goes about what is seen at a pixel of a pane"},
+        [](auto& f, PivotAt& a) {
+            pane_field(f, a.pane);
+            pixel_field(f, "pixel", a.pixel);
+        }),
+    row<GoTo, Viewer>(
+        {"go_to", "Go to", LOOKING_GROUP, "the camera looks at a voxel, from the same side and as far away as before"},
+        [](auto& f, GoTo& a) { f.vector("voxel", a.voxel, VOXELS, {.is_required = true}); }),
+    row<MoveCut, Viewer>({"move_cut", "Move a cutting plane", LOOKING_GROUP,
+                          "moves one of the six planes by a share of the volume's size"},
+                         [](auto& f, MoveCut& a) {
+                             f.whole("axis", a.axis, 0, 2, {.is_required = true});
+                             f.flag("upper", a.upper, {});
+                             f.number("share", a.share, SHARES, {.is_required = true});
+                         }),
+    row<MoveClip, Viewer>({"move_clip", "Move a clip plane", LOOKING_GROUP,
+                           "moves the near or far plane by a share of the distance to the target"},
+                          [](auto& f, MoveClip& a) {
+                              f.flag("far", a.far, {});
+                              f.number("share", a.share, SHARES, {.is_required = true});
+                          }),
+    row<PlaceClips, Viewer>({"place_clips", "Place the clip planes", LOOKING_GROUP,
+                             "puts the near and the far plane at distances from the eye"},
+                            [](auto& f, PlaceClips& a) {
+                                f.number("near", a.near, DISTANCES, {});
+                                f.number("far", a.far, DISTANCES, {});
+                            }),
+    row<ResetCuts, Viewer>({"reset_cuts", "Remove all planes", LOOKING_GROUP, "shows the whole volume"}),
+    row<FitView, Viewer>({"fit_view", "Fit", LOOKING_GROUP,
+                          "brings the volume, or what is not cut away of it, into sight; in a slice, the slices"},
+                         [](auto& f, FitView& a) { pane_field(f, a.pane); }),
+    row<ResetView, Viewer>(
+        {"reset_view", "Reset the view", LOOKING_GROUP, "takes the camera that the session opens with"}),
+    row<LookAtSelection, Viewer>(
+        {"look_at_selection", "Look at what is selected", LOOKING_GROUP,
+         "moves what is selected into the middle of the view"},
+        NO_FIELDS,
+        [](const auto& model, const LookAtSelection&)
+            -> std::string { return model.trace.selection().empty() ? "nothing is selected" : ""; }),
+    row<UpdateOcclusion, Viewer>(
+        {"update_occlusion", "Update ambient occlusion", LOOKING_GROUP, "computes it anew where it is not automatic"},
+        NO_FIELDS, [](const auto& model, const UpdateOcclusion&) -> std::string {
+            return model.session.light.occlusion.strength > 0.0 ? "" : "ambient occlusion is off: its strength is 0";
+        })};
+
+}  // namespace shvr::ui

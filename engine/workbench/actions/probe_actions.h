@@ -1,0 +1,88 @@
+#pragma once
+// What a person can ask of the probe.
+
+#include "engine/workbench/actions/action_row.h"
+
+namespace shvr::ui {
+
+class Prober;
+
+/// Limits of the probe's radius in the window, in voxels along x. Sessions and scripts may use other radii.
+inline constexpr double MIN_RADIUS_VOXELS = 0.5, MAX_RADIUS_VOXELS = 60.0;
+
+struct ProbeTo {  ///< follows the mouse in the plane through the probe
+    size_t pane = 0;
+    glm::dvec2 pixel{0.0};
+    bool jumps = false;  ///< not by the hand's motion: a stroke that is open paints nothing in between
+};
+
+/// Onto what is seen there: the largest rise of opacity along the ray (Renderer::pick).
+struct ProbeOnto {
+    size_t pane = 0;
+    glm::dvec2 pixel{0.0};
+};
+
+/// Follows the mouse along what is seen. While a stroke is open, its depth changes by no more than its radius and its
+/// way across the picture, so that the stroke stays on the surface that it began on. Where nothing is seen, it keeps
+/// its depth.
+struct ProbeAlong {
+    size_t pane = 0;
+    glm::dvec2 pixel{0.0};
+    bool jumps = false;
+};
+
+struct PushProbe {  ///< away from the viewer of a pane, to the right and up, in voxels
+    size_t pane = 0;
+    double voxels = 0.0, right = 0.0, up = 0.0;
+};
+
+struct PlaceProbe {  ///< a stroke that is open goes there with it
+    glm::dvec3 voxel{0.0};
+    bool jumps = false;  ///< and paints nothing in between
+};
+
+struct ScaleProbe {
+    double factor = 1.0;
+};
+
+inline constexpr const char* PROBE_GROUP = "Probe";
+
+inline constexpr auto PROBE_ACTIONS =
+    std::tuple{row<ProbeTo, Prober>(
+                   {"probe_to", "Move the probe", PROBE_GROUP, "the probe goes to a pixel of a pane, in its plane"},
+                   [](auto& f, ProbeTo& a) {
+                       pane_field(f, a.pane);
+                       pixel_field(f, "pixel", a.pixel);
+                       f.flag("jumps", a.jumps, {});
+                   }),
+               row<ProbeOnto, Prober>({"probe_onto", "Put the probe onto what is seen", PROBE_GROUP,
+                                       "the probe goes to the surface seen at a pixel of a pane"},
+                                      [](auto& f, ProbeOnto& a) {
+                                          pane_field(f, a.pane);
+                                          pixel_field(f, "pixel", a.pixel);
+                                      }),
+               row<ProbeAlong, Prober>({"probe_along", "Move the probe along what is seen", PROBE_GROUP,
+                                        "the probe follows what is seen, as a stroke does"},
+                                       [](auto& f, ProbeAlong& a) {
+                                           pane_field(f, a.pane);
+                                           pixel_field(f, "pixel", a.pixel);
+                                           f.flag("jumps", a.jumps, {});
+                                       }),
+               row<PushProbe, Prober>({"push_probe", "Push the probe", PROBE_GROUP,
+                                       "the probe goes away from the viewer of a pane, to the right and up"},
+                                      [](auto& f, PushProbe& a) {
+                                          pane_field(f, a.pane);
+                                          f.number("voxels", a.voxels, VOXELS, {"away"});
+                                          f.number("right", a.right, VOXELS, {});
+                                          f.number("up", a.up, VOXELS, {});
+                                      }),
+               row<PlaceProbe, Prober>({"place_probe", "Place the probe", PROBE_GROUP, "the probe goes to a voxel"},
+                                       [](auto& f, PlaceProbe& a) {
+                                           f.vector("voxel", a.voxel, VOXELS, {.is_required = true});
+                                           f.flag("jumps", a.jumps, {});
+                                       }),
+               row<ScaleProbe, Prober>(
+                   {"scale_probe", "Resize the probe", PROBE_GROUP, "the probe and its brush grow by a factor"},
+                   [](auto& f, ScaleProbe& a) { f.number("factor", a.factor, FACTOR, {.is_required = true}); })};
+
+}  // namespace shvr::ui

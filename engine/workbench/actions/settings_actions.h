@@ -1,0 +1,81 @@
+#pragma once
+// What a person can ask of the settings, and of transfer functions kept for all scans (transfer_presets.h).
+
+#include "engine/workbench/actions/action_row.h"
+
+namespace shvr::ui {
+
+class PresetShelf;
+class SettingsEditor;
+
+/// Any settings at once, as a patch of the session (session_patch.h). Lasting settings become a step of the history.
+struct Set {
+    std::string patch;
+};
+
+/// The first group that nothing uses yet becomes one of the session's, and the active one.
+struct NewGroup {};
+
+/// What was set since the last step becomes one; it does by itself when the hand lets go.
+struct EndStep {};
+
+/// Black and white of slices so that almost all voxels lie between them.
+struct AutoContrast {};
+
+struct KeepPreset {
+    std::string name;
+};
+
+struct RenamePreset {
+    std::string name, to;
+};
+
+struct ForgetPreset {
+    std::string name;
+};
+
+/// Takes the transfer function of a file, which need not be among those that are kept.
+struct TakePreset {
+    std::filesystem::path path;
+};
+
+inline constexpr const char* SETTINGS_GROUP = "Settings";
+
+inline constexpr auto SETTINGS_ACTIONS = std::tuple{
+    row<Set, SettingsEditor>(
+        {"set", "Change settings", SETTINGS_GROUP, "sets any keys of the session; null takes a key's default"},
+        [](auto& f, Set& a) {
+            const auto read = [&](const JsonNode& node) {
+                if (!node.is_object()) node.refuse("an object such as {\"light\": {\"ambient\": 0.4}}");
+                a.patch = node.dump();
+            };
+            f.other("values", read, [&] { return std::optional(a.patch); }, {.is_required = true});
+        }),
+    row<NewGroup, SettingsEditor>(
+        {"new_group", "New group", SETTINGS_GROUP, "makes the first group that nothing uses yet the active one"}),
+    row<EndStep, SettingsEditor>({"end_step", "End the step", SETTINGS_GROUP,
+                                  "makes one step of what was set since the last; it comes by itself"}),
+    row<AutoContrast, SettingsEditor>({"auto_contrast", "Contrast of the slices", SETTINGS_GROUP,
+                                       "sets black and white so that almost all lies between them"}),
+    row<KeepPreset, PresetShelf>(
+        {"keep_preset", "Keep the transfer function", SETTINGS_GROUP, "keeps it under a name, for all scans"},
+        [](auto& f, KeepPreset& a) { f.text("name", a.name, {.is_required = true}); },
+        [](const auto& model, const KeepPreset&) -> std::string {
+            return model.session.transfer_function.points().size() < 2 ? "there is no transfer function" : "";
+        }),
+    row<RenamePreset, PresetShelf>(
+        {"rename_preset", "Rename a transfer function", SETTINGS_GROUP, "gives one that was kept another name"},
+        [](auto& f, RenamePreset& a) {
+            f.text("name", a.name, {.is_required = true});
+            f.text("to", a.to, {.is_required = true});
+        },
+        [](const auto& model, const RenamePreset& action) -> std::string { return why_not_own(model, action.name); }),
+    row<ForgetPreset, PresetShelf>(
+        {"forget_preset", "Forget a transfer function", SETTINGS_GROUP, "removes one that was kept"},
+        [](auto& f, ForgetPreset& a) { f.text("name", a.name, {.is_required = true}); },
+        [](const auto& model, const ForgetPreset& action) -> std::string { return why_not_own(model, action.name); }),
+    row<TakePreset, SettingsEditor>(
+        {"take_preset", "Take a transfer function", SETTINGS_GROUP, "takes the transfer function of a file"},
+        [](auto& f, TakePreset& a) { f.path("path", a.path, {.is_required = true}); })};
+
+}  // namespace shvr::ui

@@ -1,0 +1,122 @@
+#pragma once
+// What a person can ask of the trace. Operations of scripts on it are actions, too.
+
+#include "engine/annotation/script/script.h"
+#include "engine/workbench/actions/action_row.h"
+
+namespace shvr::ui {
+
+class Tracer;
+
+/// A node counts as near the probe up to this distance, in radii of the probe.
+inline constexpr double NEARBY_RADII = 4.0;
+
+struct DragNode {  ///< the selected node follows the probe until released, as one step of the history
+    bool on = false;
+};
+
+/// A node at what is seen there, linked with the selected one.
+struct NodeAt {
+    size_t pane = 0;
+    glm::dvec2 pixel{0.0};
+};
+
+/// Selects the node or internode that is seen there; or else takes the group that is painted there; or else selects
+/// nothing.
+struct SelectAt {
+    size_t pane = 0;
+    glm::dvec2 pixel{0.0};
+    bool whole_segment = false;
+};
+
+/// Selects the next node by number, and looks at it.
+struct StepNode {
+    bool back = false;
+};
+
+/// Links the two nodes between which the last deletion cut the trace.
+struct MendCut {};
+
+inline constexpr const char* TRACING_GROUP = "Tracing";
+
+inline constexpr auto TRACING_ACTIONS = std::tuple{
+    row<DragNode, Tracer>(
+        {"drag_node", "Move the selected node", TRACING_GROUP,
+         "the selected node goes with the probe until it is let go"},
+        [](auto& f, DragNode& a) { f.flag("on", a.on, {.is_required = true}); },
+        [](const auto& model, const DragNode& action) -> std::string {
+            return action.on ? why_without_node(model) : std::string();
+        }),
+    row<NodeOp, Tracer>({"node", "Add a node", TRACING_GROUP, "adds a node, linked with the selected one"}, NO_FIELDS,
+                        [](const auto& model, const NodeOp& action) -> std::string {
+                            if (action.divides && !model.trace.internodes().contains(*action.divides))
+                                return sentence("there is no internode ", *action.divides);
+                            if (action.divides && !action.group) return why_not_traced(model);
+                            return why_without_group(model, action.group.value_or(model.brush().group));
+                        }),
+    row<SelectOp, Tracer>(
+        {"select", "Select", TRACING_GROUP, "selects a node or an internode, by number or the nearest"}, NO_FIELDS,
+        [](const auto& model, const SelectOp&) -> std::string {
+            if (model.is_painting) return IS_PAINTING;
+            return model.trace.nodes().empty() ? "there is no node" : "";
+        }),
+    row<SelectSegmentOp, Tracer>(
+        {"select_segment", "Select the segment", TRACING_GROUP, "selects all between two branchings or ends"},
+        NO_FIELDS,
+        [](const auto& model, const SelectSegmentOp&) -> std::string {
+            if (model.is_painting) return IS_PAINTING;
+            return model.trace.selection().empty() ? "nothing is selected" : "";
+        }),
+    row<DeselectOp, Tracer>({"deselect", "Deselect", TRACING_GROUP, "selects nothing"}, NO_FIELDS,
+                            [](const auto& model, const DeselectOp&) -> std::string {
+                                return model.trace.selection().empty() ? "nothing is selected" : "";
+                            }),
+    row<LinkOp, Tracer>({"link", "Link", TRACING_GROUP, "links the selected node with another"}, NO_FIELDS,
+                        [](const auto& model, const LinkOp&) -> std::string { return why_without_node(model); }),
+    row<MoveOp, Tracer>({"move", "Move to", TRACING_GROUP, "moves the selected node to a voxel"}, NO_FIELDS,
+                        [](const auto& model, const MoveOp&) -> std::string { return why_without_node(model); }),
+    row<DeleteOp, Tracer>(
+        {"delete", "Delete", TRACING_GROUP, "deletes what is selected"}, NO_FIELDS,
+        [](const auto& model, const DeleteOp&) -> std::string { return why_without_selection(model); }),
+    row<GroupOp, Tracer>({"group", "Change group", TRACING_GROUP, "gives what is selected to a group"}, NO_FIELDS,
+                         [](const auto& model, const GroupOp& action) -> std::string {
+                             return action.group == 0
+                                        ? "group 0 is the eraser, and what is traced belongs to a group from 1 up"
+                                        : why_without_selection(model);
+                         }),
+    row<RadiusOp, Tracer>(
+        {"radius", "Change radius", TRACING_GROUP, "sets radii of what is selected, or of a group"}, NO_FIELDS,
+        [](const auto& model, const RadiusOp& action) -> std::string {
+            return action.of == RadiusOp::Of::selected ? why_without_selection(model) : why_not_traced(model);
+        }),
+    row<NodeAt, Tracer>(
+        {"node_at", "Add a node where it is seen", TRACING_GROUP, "adds a node at what is seen at a pixel of a pane"},
+        [](auto& f, NodeAt& a) {
+            pane_field(f, a.pane);
+            pixel_field(f, "pixel", a.pixel);
+        },
+        [](const auto& model, const NodeAt&) -> std::string { return why_without_group(model, model.brush().group); }),
+    row<SelectAt, Tracer>(
+        {"select_at", "Select what is seen", TRACING_GROUP,
+         "selects the node, internode or group at a pixel of a pane"},
+        [](auto& f, SelectAt& a) {
+            pane_field(f, a.pane);
+            pixel_field(f, "pixel", a.pixel);
+            f.flag("whole_segment", a.whole_segment, {});
+        },
+        [](const auto& model, const SelectAt&) -> std::string { return model.is_painting ? IS_PAINTING : ""; }),
+    row<StepNode, Tracer>(
+        {"step_node", "Next node", TRACING_GROUP, "selects the next node, or the one before, and looks at it"},
+        [](auto& f, StepNode& a) { f.flag("back", a.back, {}); },
+        [](const auto& model, const StepNode&) -> std::string {
+            if (model.is_painting) return IS_PAINTING;
+            return model.trace.nodes().empty() ? "there is no node" : "";
+        }),
+    row<MendCut, Tracer>(
+        {"mend_cut", "Mend the cut", TRACING_GROUP, "links the nodes that deleting one between them has separated"},
+        NO_FIELDS, [](const auto& model, const MendCut&) -> std::string {
+            const std::string why = why_not_traced(model);
+            return why.empty() && !model.is_cut ? "the last deletion cut nothing in two" : why;
+        })};
+
+}  // namespace shvr::ui

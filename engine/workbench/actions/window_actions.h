@@ -1,0 +1,162 @@
+#pragma once
+// What a person can ask of the window, its keys and its preferences.
+
+#include "engine/workbench/actions/action_row.h"
+
+namespace shvr::ui {
+
+class PreferenceKeeper;
+class Saver;
+class Viewer;
+class WindowState;
+
+struct AskOpen {  ///< shows or hides the file chooser
+    bool on = true;
+};
+
+/// One of the two sets of keys (shortcuts.h).
+struct ChooseKeys {
+    std::string set;
+};
+
+/// Other keys for a shortcut: its id, and chords separated by spaces; none: it has no key.
+struct BindKeys {
+    std::string shortcut, keys;
+};
+
+/// The picture is so large now; what pixels of panes mean depends on it.
+struct Resize {
+    glm::uvec2 pixels{0};
+};
+
+/// The next key that is pressed is bound to that shortcut; Escape leaves it as it is, Delete takes its keys away. An
+/// empty id: none is waited for any more.
+struct AwaitKey {
+    std::string shortcut;
+};
+
+struct ShowHelp {
+    bool on = true;
+};
+
+/// All that was said, with its weight; while it is shown, all of it has been read.
+struct ShowMessages {
+    bool on = true;
+};
+
+/// What the device spends on each step of a picture.
+struct ShowPasses {
+    bool on = true;
+};
+
+/// Writes what the steps of the present picture took, to compare others with.
+struct SavePasses {
+    std::filesystem::path path;
+};
+
+/// Compares with such a file, or with what `shvr profile --json` printed; an empty path: with nothing any more.
+struct ComparePasses {
+    std::filesystem::path path;
+};
+
+/// A box to type in, which finds all shortcuts, actions and settings.
+struct ShowPalette {
+    bool on = true;
+};
+
+/// Changes preferences (preferences.h), as a patch of their file: {"theme": "light"}; null takes what ships.
+struct Prefer {
+    std::string patch;
+};
+
+struct ShowPreferences {
+    bool on = true;
+};
+
+/// Gives the keyboard to the panels or to the menu, until Escape or a click.
+struct FocusOn {
+    std::string what = "panels";  ///< or "menu"
+};
+
+struct ShowFullScreen {
+    bool on = true;
+};
+
+struct Quit {
+    bool saves = true;  ///< false: the work goes back to what was saved last, as a step that undo takes back
+};
+
+inline constexpr const char* WINDOW_GROUP = "Window";
+
+inline constexpr auto WINDOW_ACTIONS = std::tuple{
+    row<AskOpen, WindowState>({"ask_open", "Open...", WINDOW_GROUP,
+                               "shows or hides the file chooser, which asks what to open", Needs::nothing},
+                              [](auto& f, AskOpen& a) { f.flag("on", a.on, {}); }),
+    row<ChooseKeys, PreferenceKeeper>(
+        {"choose_keys", "Choose the keys", WINDOW_GROUP, "takes one of the two sets of keys that ship", Needs::nothing},
+        [](auto& f, ChooseKeys& a) { f.text("set", a.set, {.is_required = true}); }),
+    row<BindKeys, PreferenceKeeper>(
+        {"bind_keys", "Other keys", WINDOW_GROUP, "gives a shortcut other keys than those that ship", Needs::nothing},
+        [](auto& f, BindKeys& a) {
+            f.text("shortcut", a.shortcut, {.is_required = true});
+            f.text("keys", a.keys, {});
+        }),
+    row<Resize, Viewer>(
+        {"resize", "Resize", WINDOW_GROUP, "the picture has so many pixels, across and down", Needs::nothing},
+        [](auto& f, Resize& a) {
+            std::vector<int64_t> pixels{a.pixels.x, a.pixels.y};
+            f.wholes("pixels", pixels, 0, 65536, {.is_required = true});
+            a.pixels = {pixels[0], pixels[1]};
+        }),
+    row<AwaitKey, PreferenceKeeper>({"await_key", "Press a key for it", WINDOW_GROUP,
+                                     "the next key that is pressed is bound to a shortcut", Needs::nothing},
+                                    [](auto& f, AwaitKey& a) { f.text("shortcut", a.shortcut, {}); }),
+    row<ShowHelp, WindowState>(
+        {"show_help", "Keys and mouse", WINDOW_GROUP, "shows or hides the list of keys", Needs::nothing},
+        [](auto& f, ShowHelp& a) { f.flag("on", a.on, {}); }),
+    row<ShowMessages, WindowState>({"show_messages", "Messages", WINDOW_GROUP,
+                                    "shows or hides all that was said, and takes it as read", Needs::nothing},
+                                   [](auto& f, ShowMessages& a) { f.flag("on", a.on, {}); }),
+    row<ShowPasses, WindowState>(
+        {"show_passes", "GPU passes", WINDOW_GROUP, "shows or hides what the device spends on each step of a picture"},
+        [](auto& f, ShowPasses& a) { f.flag("on", a.on, {}); }),
+    row<SavePasses, WindowState>({"save_passes", "Save GPU passes", WINDOW_GROUP,
+                                  "writes what the steps of the present picture took into a file"},
+                                 [](auto& f, SavePasses& a) { f.path("path", a.path, {.is_required = true}); }),
+    row<ComparePasses, WindowState>(
+        {"compare_passes", "Compare GPU passes", WINDOW_GROUP,
+         "compares with such a file, or one of shvr profile --json"},
+        [](auto& f, ComparePasses& a) { f.path("path", a.path, {}); },
+        [](const auto& model, const ComparePasses& action) -> std::string {
+            return action.path.empty() && !model.compared_passes ? "they are compared with nothing" : "";
+        }),
+    row<ShowPalette, WindowState>({"show_palette", "Find anything", WINDOW_GROUP,
+                                   "shows or hides a box that finds shortcuts, actions and settings", Needs::nothing},
+                                  [](auto& f, ShowPalette& a) { f.flag("on", a.on, {}); }),
+    row<Prefer, PreferenceKeeper>({"prefer", "Change preferences", WINDOW_GROUP,
+                                   "sets what a person keeps for all scans; null takes what ships", Needs::nothing},
+                                  [](auto& f, Prefer& a) {
+                                      const auto read = [&](const JsonNode& node) {
+                                          if (!node.is_object())
+                                              node.refuse("an object such as {\"theme\": \"light\"}");
+                                          a.patch = node.dump();
+                                      };
+                                      f.other("values", read, [&] { return std::optional(a.patch); },
+                                              {.is_required = true});
+                                  }),
+    row<ShowPreferences, WindowState>(
+        {"show_preferences", "Preferences", WINDOW_GROUP, "shows or hides theme, sizes and keys", Needs::nothing},
+        [](auto& f, ShowPreferences& a) { f.flag("on", a.on, {}); }),
+    row<FocusOn, WindowState>({"focus", "Use panels by keyboard", WINDOW_GROUP,
+                               "gives the keyboard to the panels or to the menu", Needs::nothing},
+                              [](auto& f, FocusOn& a) {
+                                  f.choice("what", a.what, {"panels", "menu"}, {});
+                              }),
+    row<ShowFullScreen, WindowState>(
+        {"full_screen", "Full screen", WINDOW_GROUP, "the window takes the whole screen, or no longer", Needs::nothing},
+        [](auto& f, ShowFullScreen& a) { f.flag("on", a.on, {}); }),
+    row<Quit, Saver>({"quit", "Quit", WINDOW_GROUP,
+                      "saves the work, or goes back to what was saved last, and closes the window", Needs::nothing},
+                     [](auto& f, Quit& a) { f.flag("saves", a.saves, {}); })};
+
+}  // namespace shvr::ui

@@ -1,0 +1,205 @@
+#pragma once
+// What a person can ask of the work: files, history and tasks (engine/tasks).
+
+#include "engine/annotation/script/script.h"
+#include "engine/tasks/evaluate_task.h"
+#include "engine/tasks/export_task.h"
+#include "engine/tasks/import_task.h"
+#include "engine/tasks/label_task.h"
+#include "engine/workbench/actions/action_row.h"
+
+namespace shvr::ui {
+
+class FileTaker;
+class Opener;
+class Photographer;
+class PreferenceKeeper;
+class Saver;
+class SettingsEditor;
+class TaskRunner;
+
+/// Goes on under another name, with the whole history; the files so far stay as they are.
+struct SaveAs {
+    std::filesystem::path path;  ///< the session's new file
+};
+
+/// Writes all that is shown into files of another name, and goes on as before. An empty path: beside the session.
+struct CopySession {
+    std::filesystem::path path;
+};
+
+/// Exporting, importing, labelling and comparing are tasks (engine/tasks), each a background job.
+struct CancelJob {
+    uint64_t number = 0;
+};
+
+struct Screenshot {
+    bool is_large = false;  ///< larger than the window, by the session's interaction.screenshot_scale
+};
+
+/// Runs in the background: the open document stays until the next one is loaded.
+struct Open {
+    std::filesystem::path path;
+    std::string settings{};  ///< for this time, as --set takes them: "volume.channel=red", one a line
+};
+
+/// Reads what a file is, without its voxels, for the dialog that opens it: Model::candidate.
+struct LookAtFile {
+    std::filesystem::path path;  ///< empty: none any more
+    std::string settings{};      ///< as in Open
+};
+
+/// What was dropped onto the window: opens volumes, sessions, projects and pictures, and takes annotation and transfer
+/// functions into what is open, as steps that undo takes back. The contents decide the kind of file. Where one of
+/// several can be opened, the others are taken into that.
+struct TakeFile {
+    std::filesystem::path path;
+    std::string beside{};  ///< those that were dropped with it, one a line
+};
+
+/// The volume's spacing was wrong: saves the work, and opens it with this one. Positions stay at their voxels.
+struct CorrectSpacing {
+    glm::dvec3 spacing{1.0};
+    std::string unit;
+};
+
+/// What was said of recovered work has been read.
+struct DismissNotices {};
+
+/// No longer among what was opened last; the file stays.
+struct ForgetRecent {
+    std::filesystem::path path;
+};
+
+/// Where another program has changed saved annotation: takes the files, as a step that undo takes back, or the journal.
+struct ChooseBelief {
+    bool takes_files = false;
+};
+
+/// Saves all that is shown under names of its own, and opens that.
+struct WorkOnCopy {};
+
+/// Opens the example that ships, as a copy of the person's own.
+struct OpenExample {};
+
+inline constexpr const char* WORK_GROUP = "Work";
+
+inline constexpr auto WORK_ACTIONS = std::tuple{
+    row<UndoOp, SettingsEditor>({"undo", "Undo", WORK_GROUP, "takes the last steps of the history back"}, NO_FIELDS,
+                                [](const auto& model, const UndoOp&) -> std::string {
+                                    if (model.is_painting) return IS_PAINTING;
+                                    return model.undoable == 0 ? "there is nothing to undo" : why_not_edited(model);
+                                }),
+    row<RedoOp, SettingsEditor>({"redo", "Redo", WORK_GROUP, "does the steps again that were undone last"}, NO_FIELDS,
+                                [](const auto& model, const RedoOp&) -> std::string {
+                                    if (model.is_painting) return IS_PAINTING;
+                                    return model.redoable == 0 ? "there is nothing to redo" : why_not_edited(model);
+                                }),
+    row<SaveOp, Saver>({"save", "Save", WORK_GROUP, "writes mask, offsets, trace and session for other programs"},
+                       NO_FIELDS,
+                       [](const auto& model, const SaveOp&) -> std::string { return why_not_edited(model); }),
+    row<RevertOp, SettingsEditor>(
+        {"revert", "Revert", WORK_GROUP, "goes back to what was saved last, as a step that undo takes back"}, NO_FIELDS,
+        [](const auto& model, const RevertOp&) -> std::string {
+            return model.is_painting ? IS_PAINTING : why_not_edited(model);
+        }),
+    row<SaveAs, Saver>(
+        {"save_as", "Save as", WORK_GROUP, "goes on under another name, with the whole history"},
+        [](auto& f, SaveAs& a) { f.path("path", a.path, {.is_required = true}); },
+        [](const auto& model, const SaveAs&) -> std::string {
+            return model.is_saving ? IS_SAVING : why_not_edited(model);
+        }),
+    row<CopySession, Saver>(
+        {"copy_session", "Copy the session", WORK_GROUP, "writes all that is shown into files of another name"},
+        [](auto& f, CopySession& a) { f.path("path", a.path, {}); }),
+    row<ExportTask, TaskRunner>(
+        {"export", "Export", WORK_GROUP, "writes annotation in forms of other programs, and measures"}, TASK_FIELDS,
+        // Asked in each frame of its dialog, so by what is known without the disk; the task itself asks that.
+        [](const auto& model, const ExportTask& task) -> std::string {
+            if ((!task.trace.empty() || !task.mesh.empty()) && model.trace.nodes().empty())
+                return "nothing is traced yet, so there is neither a trace nor a mesh to write";
+            if (task.labels && model.volume.format != "ome-zarr")
+                return "labels are written into a project, and this scan is none: import it as one, or name a mask";
+            const bool has_file =
+                std::ranges::any_of(std::array{&task.mask, &task.offset, &task.trace, &task.mesh, &task.metrics},
+                                    [](const auto* path) { return !path->empty(); });
+            return has_file || task.labels ? "" : "no file is named; expected at least one to be written";
+        }),
+    row<ImportTask, TaskRunner>(
+        {"import", "Import as project", WORK_GROUP, "makes a project folder of a volume, and opens it", Needs::nothing},
+        TASK_FIELDS),
+    row<LabelTask, TaskRunner>({"label", "Label connected parts", WORK_GROUP,
+                                "counts connected parts above a threshold, and writes their labels"},
+                               TASK_FIELDS),
+    row<EvaluateTask, TaskRunner>({"evaluate", "Compare with a reference", WORK_GROUP,
+                                   "says how well an annotation agrees with another", Needs::nothing},
+                                  TASK_FIELDS),
+    row<CancelJob, TaskRunner>(
+        {"cancel_job", "Cancel", WORK_GROUP, "ends a job that runs or waits", Needs::nothing},
+        [](auto& f, CancelJob& a) { f.whole("number", a.number, 1, int64_t{1} << 53, {.is_required = true}); },
+        [](const auto& model, const CancelJob& action) -> std::string {
+            for (const auto& job : model.jobs)
+                if (job.number == action.number) return {};
+            return sentence("there is no job ", action.number);
+        }),
+    row<Screenshot, Photographer>(
+        {"screenshot", "Screenshot", WORK_GROUP, "writes the picture as shown, or a larger one, beside the session"},
+        [](auto& f, Screenshot& a) { f.flag("large", a.is_large, {}); }),
+    row<Open, FileTaker>(
+        {"open", "Open", WORK_GROUP, "opens a volume, a session, a project folder or a picture", Needs::nothing},
+        [](auto& f, Open& a) {
+            f.path("path", a.path, {.is_required = true});
+            f.text("settings", a.settings, {"as --set takes them, one a line"});
+        }),
+    row<LookAtFile, FileTaker>({"look_at_file", "Look at a file", WORK_GROUP,
+                                "reads what a file is, without its voxels, and what loading it takes", Needs::nothing},
+                               [](auto& f, LookAtFile& a) {
+                                   f.path("path", a.path, {});
+                                   f.text("settings", a.settings, {"as --set takes them, one a line"});
+                               }),
+    row<TakeFile, FileTaker>({"take_file", "Take a file", WORK_GROUP,
+                              "opens a file, or takes its annotation or transfer function, by its contents; of several "
+                              "into the one it opens",
+                              Needs::nothing},
+                             [](auto& f, TakeFile& a) {
+                                 f.path("path", a.path, {.is_required = true});
+                                 f.text("beside", a.beside, {"what was dropped with it, one a line"});
+                             }),
+    row<CorrectSpacing, Saver>(
+        {"correct_spacing", "Correct the spacing", WORK_GROUP,
+         "saves, and opens with another spacing; nodes stay at their voxels"},
+        [](auto& f, CorrectSpacing& a) {
+            f.vector("spacing", a.spacing, SPACINGS, {.is_required = true});
+            f.text("unit", a.unit, {"of the spacing; empty: as it is"});
+        },
+        [](const auto& model, const CorrectSpacing&) -> std::string {
+            return model.session.procedural ? "the volume is computed, and its spacing is the session's"
+                                            : why_not_edited(model);
+        }),
+    row<DismissNotices, Opener>(
+        {"dismiss_notices", "Dismiss", WORK_GROUP, "what was recovered or set aside at opening has been read"},
+        NO_FIELDS,
+        [](const auto& model, const DismissNotices&)
+            -> std::string { return model.recovered.empty() ? "there is nothing to be dismissed" : ""; }),
+    row<ForgetRecent, PreferenceKeeper>(
+        {"forget_recent", "Forget", WORK_GROUP, "takes a path from the list of what was opened last; the file stays",
+         Needs::nothing},
+        [](auto& f, ForgetRecent& a) { f.path("path", a.path, {.is_required = true}); },
+        [](const auto& model, const ForgetRecent& action) -> std::string {
+            const auto& recent = model.preferences.recent;
+            return std::ranges::find(recent, action.path) != recent.end()
+                       ? ""
+                       : sentence(action.path.string(), " is not among what was opened last");
+        }),
+    row<ChooseBelief, SettingsEditor>(
+        {"choose_belief", "Files or journal", WORK_GROUP, "says whether changed files or the journal are right"},
+        [](auto& f, ChooseBelief& a) { f.flag("files", a.takes_files, {.is_required = true}); },
+        [](const auto& model, const ChooseBelief&) -> std::string {
+            return model.disputes.empty() ? "no saved file was changed by another program" : "";
+        }),
+    row<WorkOnCopy, Saver>(
+        {"work_on_copy", "Work on a copy", WORK_GROUP, "saves all that is shown under new names, and opens that"}),
+    row<OpenExample, FileTaker>({"open_example", "Open the example", WORK_GROUP,
+                                 "opens the example that ships, in a copy that is kept for you", Needs::nothing})};
+
+}  // namespace shvr::ui

@@ -1,0 +1,111 @@
+#include "engine/workbench/bindings/palette.h"
+
+#include <algorithm>
+
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+#include "engine/session/session_keys.h"
+#include "engine/session/session_patch.h"
+#include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/bindings/keymap.h"
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr size_t MAX_COMPLETIONS = 20;
+
+bool is_action_id(std::string_view word)
+{
+    return std::ranges::any_of(action_rows(), [&](const ActionRow& row) { return row.id == word; });
+}
+
+/// The table is made once: it does not change.
+const std::vector<SessionKey>& keys_of_settings()
+{
+    static const std::vector<SessionKey> KEYS = keys_of([](Fields& f) {
+        static Session session;
+        setting_fields(f, session);
+    });
+    return KEYS;
+}
+
+/// An action as typed; where it is none, or cannot be done, with the reason.
+template <class Make>
+PaletteEntry typed(const Model& model, std::string_view text, const char* group, const Make& make)
+{
+    PaletteEntry entry{.name = std::string(text), .group = group};
+    try {
+        entry.action = make();
+        entry.why_not = why_not(model, *entry.action);
+        if (const Set* const set = std::get_if<Set>(&*entry.action); set && entry.why_not.empty())
+            static_cast<void>(patched(model.session, set->patch));
+    } catch (const Error& error) {
+        entry.why_not = error.what();
+    }
+    return entry;
+}
+
+void add_typed(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
+{
+    const std::string_view first = text.substr(0, text.find(' '));
+    const size_t equals = text.find('=');
+    if (is_action_id(first)) {
+        entries.push_back(typed(model, text, "Action", [&] { return action_of_text(std::string(text)); }));
+    } else if (equals != std::string_view::npos && equals > 0 && text.substr(0, equals).find(' ') == text.npos) {
+        entries.push_back(typed(model, text, "Setting", [&]() -> Action { return Set{patch_of(std::string(text))}; }));
+    }
+}
+
+void add_shortcuts(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
+{
+    for (const Shortcut& shortcut : shortcuts()) {
+        const std::string keys = model.keymap.text_of(shortcut);
+        if (!has_words(sentence(shortcut.name, ' ', shortcut.group, ' ', shortcut.id, ' ', keys), text)) continue;
+        const bool is_held = shortcut.mode == Shortcut::Mode::while_held;
+        entries.push_back({.name = shortcut.name,
+                           .group = shortcut.group,
+                           .keys = keys,
+                           .why_not = is_held ? "goes on while its key is held" : why_not(model, shortcut),
+                           .action = shortcut.action(model, 1.0)});
+    }
+}
+
+void add_completions(std::vector<PaletteEntry>& entries, std::string_view text)
+{
+    if (text.empty() || text.find_first_of(" =") != std::string_view::npos) return;
+    size_t left = MAX_COMPLETIONS;
+    const auto add = [&](const std::string& name, const std::string& says, char next) {
+        if (left == 0 || !name.starts_with(text)) return;
+        --left;
+        entries.push_back({.name = name, .group = says, .completion = name + next});
+    };
+    for (const ActionRow& row : action_rows())
+        if (text != row.id) add(row.id, row.meaning, ' ');
+    for (const SessionKey& key : keys_of_settings()) add(key.name, sentence(key.meaning, "; ", key.allowed), '=');
+}
+
+}  // namespace
+
+bool has_words(std::string_view where, std::string_view text)
+{
+    const std::string lower = lower_case(where), wanted = lower_case(text);
+    return std::ranges::all_of(words_of(wanted),
+                               [&](std::string_view word) { return lower.find(word) != std::string::npos; });
+}
+
+std::vector<PaletteEntry> palette_entries(const Model& model, std::string_view text)
+{
+    text = trimmed(text);
+    std::vector<PaletteEntry> entries, as_typed;
+    add_typed(as_typed, model, text);
+    // What cannot be done as it stands may be the beginning of a shortcut's name.
+    const bool is_done = !as_typed.empty() && as_typed.front().why_not.empty();
+    if (is_done) entries = as_typed;
+    add_shortcuts(entries, model, text);
+    if (!is_done) entries.insert(entries.end(), as_typed.begin(), as_typed.end());
+    add_completions(entries, text);
+    return entries;
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,65 @@
+#include "engine/workbench/bindings/tools.h"
+
+#include <algorithm>
+
+#include "engine/base/error.h"
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr ToolRow TOOL_ROWS[] = {
+    {Tool::turn, "Turn", "tool_turn",
+     "Drag to turn the volume. The right button paints with the active group, and a double click puts the probe onto "
+     "what is seen.",
+     "turn", "paint"},
+    {Tool::paint, "Paint", "tool_paint",
+     "Hold the left button to paint with the active group. The right button turns the volume.", "paint", "turn"},
+    {Tool::erase, "Erase", "tool_erase",
+     "Hold the left button to take paint away, of whatever group. The right button turns the volume.", "erase", "turn"},
+    {Tool::trace, "Trace", "tool_trace",
+     "Click beside all nodes to add one, linked with the selected node. Click a node to select it, drag it to move it. "
+     "The right button turns the volume.",
+     "add, pick or drag a node", "turn"},
+    {Tool::select, "Select", "tool_select",
+     "Click a node or an internode to select it, twice for its whole segment; click paint to take its group, and "
+     "nothing to select nothing. The right "
+     "button turns the volume.",
+     "select", "turn"},
+    {Tool::measure, "Measure", "tool_measure",
+     "Click two points to measure the distance between them. The right button turns the volume.", "set a point",
+     "turn"},
+};
+
+}  // namespace
+
+std::span<const ToolRow> tool_rows()
+{
+    return TOOL_ROWS;
+}
+
+const ToolRow& row_of(Tool tool)
+{
+    const auto found = std::ranges::find(TOOL_ROWS, tool, &ToolRow::tool);
+    SHVR_CHECK(found != std::end(TOOL_ROWS), "tool");
+    return *found;
+}
+
+std::string sentence_of(Tool tool)
+{
+    return sentence(row_of(tool).name, " (", mouse_in_words(tool), ")");
+}
+
+std::string mouse_in_words(Tool tool, Pane::Kind over)
+{
+    const ToolRow& row = row_of(tool);
+    if (over == Pane::Kind::map) return "left: turn, Shift + left or middle: move, wheel: closer or farther";
+    if (over == Pane::Kind::slice && tool == Tool::turn)
+        return "left: move the cross, right: paint, middle: move, wheel: next slice, Ctrl + wheel: zoom";
+    if (over == Pane::Kind::slice)
+        return sentence("left: ", row.left, ", right: contrast, middle: move, wheel: next slice, Ctrl + wheel: zoom");
+    if (tool == Tool::turn) return sentence("left: ", row.left, ", right: ", row.right, ", middle: move, wheel: zoom");
+    return sentence("left: ", row.left, ", right or middle: ", row.right, ", wheel: zoom");
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,161 @@
+#include "engine/workbench/curves/histogram_bars.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr int64_t MAX_VALUES = 65536;  ///< what integers of 16 bits can be
+
+/// As VolumeSource::measure fills bins; values are above the least one.
+size_t bin_of(double value, int64_t span, size_t bins)
+{
+    return std::min(bins - 1, size_t(value / double(span) * double(bins)));
+}
+
+/// The values that voxels may have: `intervals` equal steps from 0 to `span`, which may be rounded down or up.
+struct Lattice {
+    int64_t span = 1, intervals = 1;
+    double step() const { return double(span) / double(intervals); }
+    double lower(int64_t k) const { return std::floor(double(k) * double(span) / double(intervals)); }
+    double upper(int64_t k) const { return std::ceil(double(k) * double(span) / double(intervals)); }
+};
+
+/// How many of the values fall into each bin; where they may be rounded, into which they may.
+std::vector<int64_t> values_in_bins(const Lattice& lattice, size_t bins)
+{
+    std::vector<int64_t> values(bins, 0);
+    for (int64_t k = 0; k <= lattice.intervals; ++k) {
+        const size_t first = bin_of(lattice.lower(k), lattice.span, bins);
+        const size_t last = bin_of(lattice.upper(k), lattice.span, bins);
+        ++values[first];
+        if (last != first) ++values[last];
+    }
+    return values;
+}
+
+/// Whether there are voxels where no value is.
+bool is_refuted(const std::vector<int64_t>& values, const std::vector<int64_t>& counts)
+{
+    for (size_t bin = 0; bin < counts.size(); ++bin)
+        if (counts[bin] > 0 && values[bin] == 0) return true;
+    return false;
+}
+
+/// How much a histogram leaps up and down from one bin that can hold something to the next.
+double roughness(const std::vector<int64_t>& values, const std::vector<int64_t>& counts)
+{
+    double sum = 0.0, last = std::numeric_limits<double>::quiet_NaN();
+    for (size_t bin = 0; bin < counts.size(); ++bin) {
+        if (values[bin] == 0) continue;
+        const double height = std::log1p(double(counts[bin]) / double(values[bin]));
+        if (!std::isnan(last)) sum += std::abs(height - last);
+        last = height;
+    }
+    return sum;
+}
+
+/// What voxels may be, as far as a histogram shows it. The greatest value is one of them.
+Lattice lattice_of(int64_t span, const std::vector<int64_t>& counts)
+{
+    const double bin_width = double(span) / double(counts.size());
+    // Steps wider than a bin: other bins would not be empty. A rounded value may lie in two, so most others must be.
+    for (int64_t intervals = 1; double(span) > bin_width * double(intervals); ++intervals) {
+        const Lattice lattice{span, intervals};
+        const bool is_apart = span % intervals == 0 || lattice.step() >= std::max(4.0 * bin_width, 3.0);
+        if (is_apart && !is_refuted(values_in_bins(lattice, counts.size()), counts)) return lattice;
+    }
+    // Narrower: bins hold one more or one fewer, which shows as a comb that the right step makes smooth.
+    constexpr double CLEARLY = 0.6;
+    Lattice best{span, span};
+    double least = CLEARLY * roughness(values_in_bins(best, counts.size()), counts);
+    for (int64_t step = 2; double(step) <= bin_width; ++step) {
+        const Lattice lattice{span, span / step};
+        if (span % step != 0) continue;
+        if (const double rough = roughness(values_in_bins(lattice, counts.size()), counts); rough < least)
+            best = lattice, least = rough;
+    }
+    return best;
+}
+
+/// A bar for each value, halfway to its neighbours.
+void add_values(const Lattice& lattice, double lowest, const std::vector<int64_t>& counts, HistogramBars& made)
+{
+    for (int64_t k = 0; k <= lattice.intervals; ++k) {
+        const size_t first = bin_of(lattice.lower(k), lattice.span, counts.size());
+        const size_t last = bin_of(lattice.upper(k), lattice.span, counts.size());
+        const int64_t voxels = counts[first] + (last != first ? counts[last] : 0);
+        const double middle = lowest + double(k) * lattice.step(), half = 0.5 * lattice.step();
+        made.bars.push_back({middle - half, middle + half, double(voxels)});
+    }
+}
+
+/// Values that were made of fewer ones by a curve, as when a scan was brightened, leave out others here and there: each
+/// that there is reaches halfway to the next.
+void join_small_gaps(std::vector<HistogramBar>& bars)
+{
+    constexpr size_t MAX_GAP = 2;    // bars that are left out
+    constexpr size_t MIN_SHARE = 4;  // of so many bars one must be left out, or they stay as they are
+    std::vector<size_t> filled;
+    for (size_t i = 0; i < bars.size(); ++i)
+        if (bars[i].voxels > 0.0) filled.push_back(i);
+    size_t left_out = 0;
+    for (size_t k = 1; k < filled.size(); ++k)
+        if (filled[k] - filled[k - 1] - 1 <= MAX_GAP) left_out += filled[k] - filled[k - 1] - 1;
+    if (left_out * MIN_SHARE < filled.size()) return;
+    std::vector<HistogramBar> joined;
+    for (size_t k = 0; k < filled.size(); ++k) {
+        HistogramBar bar = bars[filled[k]];
+        const double width = bar.upper - bar.lower;
+        if (k > 0 && filled[k] - filled[k - 1] - 1 <= MAX_GAP)
+            bar.lower = 0.5 * (bars[filled[k - 1]].upper + bar.lower);
+        if (k + 1 < filled.size() && filled[k + 1] - filled[k] - 1 <= MAX_GAP)
+            bar.upper = 0.5 * (bars[filled[k]].upper + bars[filled[k + 1]].lower);
+        bar.voxels *= width / (bar.upper - bar.lower);
+        joined.push_back(bar);
+    }
+    bars = std::move(joined);
+}
+
+}  // namespace
+
+HistogramBars histogram_bars(VoxelType type, const VolumeStatistics& statistics)
+{
+    HistogramBars made;
+    const std::vector<int64_t>& counts = statistics.histogram;
+    const ValueRange range = statistics.range();
+    if (counts.empty() || !(range.upper > range.lower)) return made;
+    const double width = (range.upper - range.lower) / double(counts.size());
+    const auto bin_at = [&](size_t bin) { return range.lower + double(bin) * width; };
+    const bool is_counted = !is_float(type) && range.upper - range.lower < double(MAX_VALUES) &&
+                            range.lower == std::floor(range.lower) && range.upper == std::floor(range.upper);
+    if (!is_counted) {
+        for (size_t bin = 0; bin < counts.size(); ++bin)
+            made.bars.push_back({bin_at(bin), bin_at(bin + 1), double(counts[bin])});
+        return made;
+    }
+    const Lattice lattice = lattice_of(int64_t(range.upper - range.lower), counts);
+    made.step = lattice.step();
+    if (made.step > width) {
+        add_values(lattice, range.lower, counts, made);
+        if (made.step == 1.0) join_small_gaps(made.bars);
+        return made;
+    }
+    const std::vector<int64_t> values = values_in_bins(lattice, counts.size());
+    for (size_t bin = 0; bin < counts.size(); ++bin)
+        if (values[bin] > 0)
+            made.bars.push_back({bin_at(bin), bin_at(bin + 1), double(counts[bin]) / double(values[bin])});
+    return made;
+}
+
+double height_of_bar(double voxels, double most, bool is_logarithmic)
+{
+    if (!(most > 0.0) || !(voxels > 0.0)) return 0.0;
+    return std::min(is_logarithmic ? std::log1p(voxels) / std::log1p(most) : voxels / most, 1.0);
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,77 @@
+#pragma once
+// What all services of the workbench share: the open document, the renderer, messages, and the two workers. Main
+// thread.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/jobs/jobs.h"
+#include "engine/workbench/actions/action.h"
+#include "engine/workbench/document/document.h"
+#include "engine/workbench/models/model.h"
+#include "engine/workbench/sight/figure.h"
+#include "engine/workbench/touch/device_watch.h"
+
+namespace shvr::ui {
+
+/// The last part of a path, also of a folder with a slash at its end.
+std::string short_name(const std::filesystem::path& path);
+
+struct WorkbenchOptions {
+    View::Options view{};
+    bool has_servo = true;  ///< guidance and haptic devices run; false: guidance has no effect
+    /// For scripts, which do what they state and nothing else: no setting becomes a step or is kept, saves write
+    /// annotation alone, to the files that the session names, and what is selected stays so.
+    bool is_script = false;
+    bool allow_force = false;             ///< lets a haptic device with a verified profile push the hand
+    std::filesystem::path preferences{};  ///< the file (preferences_file.h); empty: none are read or kept
+    std::function<double()> now_s{};      ///< seconds of any clock; null: the system's
+    std::string version{};                ///< the program's, for reports; empty: unknown
+    DeviceSource devices{};               ///< where haptic devices come from; without functions: this machine
+    /// Slices go after a probe that leaves their sight, which is logged; false: the log says where they went.
+    bool slices_follow = true;
+    TextDrawer draw_texts{};  ///< for pictures in files; null: these have no words
+};
+
+struct Desk {
+    Desk(Renderer& with, WorkbenchOptions how);
+    Desk(const Desk&) = delete;
+
+    Renderer& renderer;
+    WorkbenchOptions options;
+    /// Null: nothing is open. Opening replaces it, so services keep a reference to this pointer and never to what it
+    /// points to.
+    std::unique_ptr<Document> document;
+    uint64_t openings = 0;  ///< how often a document was opened
+    double opened_s = 0.0;  ///< when this one was
+    MessageLog messages;
+    bool are_messages_shown = false;  ///< then all of them have been read
+    std::function<void(const std::string&)> log;
+    std::vector<std::string> logged_instead;  ///< replays the action under way, whatever is seen by then
+    Jobs jobs;
+    Jobs savers{{.wake = {}, .seconds = {}, .first = Jobs::Number{1} << 32}};  ///< no save waits for other work
+    /// Those of the workbench; set by it.
+    std::function<bool(const Action&)> apply;
+    std::function<Model()> model;
+
+    void say(std::string text, Weight weight = Weight::done);
+    /// Logs these in place of the action under way: what is seen at a pixel depends on what has been painted and loaded
+    /// by then; where it was does not.
+    void log_instead(const Actions& actions);
+    DocumentModel document_model() const;
+    /// What a model refers to where nothing is open.
+    struct Nothing {
+        Session session;
+        VolumeInfo volume;
+        VolumeStatistics statistics;
+        Camera camera;
+        std::vector<Screen::Part> panes;
+        TraceGraph trace;
+        std::filesystem::path path;
+    };
+    const Nothing nothing{};
+};
+
+}  // namespace shvr::ui

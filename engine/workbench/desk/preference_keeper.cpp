@@ -1,0 +1,111 @@
+#include "engine/workbench/desk/preference_keeper.h"
+
+#include <algorithm>
+
+#include "engine/base/text.h"
+#include "engine/workbench/bindings/preferences_file.h"
+
+namespace shvr::ui {
+
+void PreferenceKeeper::act(const ChooseKeys& action)
+{
+    Preferences preferences = preferences_;
+    const auto set = std::ranges::find(KEY_SETS, action.set, &Spelling<KeySet>::name);
+    if (set == std::end(KEY_SETS)) fail("keys: '", action.set, "' is no set; expected modern or thesis");
+    preferences.key_set = set->value;
+    prefer(std::move(preferences));
+    say(set->value == KeySet::modern ? "Keys: the usual ones" : "Keys: those of the SHVR thesis");
+    for (const std::string& conflict : keymap_.conflicts()) say(conflict, Weight::warning);
+}
+
+void PreferenceKeeper::act(const BindKeys& action)
+{
+    const Shortcut* const shortcut = shortcut_named(action.shortcut);
+    if (!shortcut) fail("keys: '", action.shortcut, "' is no shortcut; expected one that the help window lists");
+    Preferences preferences = preferences_;
+    std::vector<std::string>& keys_of_it = preferences.keys[action.shortcut];
+    keys_of_it.clear();
+    for (const std::string_view chord : words_of(action.keys)) keys_of_it.emplace_back(chord);
+    // What ships is no change, so that it goes along with another choice of the set.
+    if (Keymap(preferences.key_set, preferences.keys).chords_of(*shortcut) ==
+        Keymap(preferences.key_set).chords_of(*shortcut))
+        preferences.keys.erase(action.shortcut);
+    prefer(std::move(preferences));
+    awaits_key_.clear();
+    const std::string keys = keymap_.text_of(*shortcut);
+    say(keys.empty() ? sentence("'", shortcut->name, "' has no key") : sentence(keys, ": ", shortcut->name));
+    for (const std::string& conflict : keymap_.conflicts()) say(conflict, Weight::warning);
+}
+
+void PreferenceKeeper::act(const AwaitKey& action)
+{
+    if (!action.shortcut.empty() && !shortcut_named(action.shortcut))
+        fail("keys: '", action.shortcut, "' is no shortcut; expected one that the help window lists");
+    awaits_key_ = action.shortcut;
+}
+
+void PreferenceKeeper::act(const Prefer& action)
+{
+    prefer(patched(preferences_, action.patch));
+}
+
+void PreferenceKeeper::act(const ForgetRecent& action)
+{
+    Preferences preferences = preferences_;
+    std::erase(preferences.recent, action.path);
+    prefer(std::move(preferences));
+}
+
+/// A file that cannot be read stays as it is, and nothing is kept until it can.
+void PreferenceKeeper::load()
+{
+    if (options_.preferences.empty()) return;
+    try {
+        preferences_ = ui::load_preferences(options_.preferences);
+        keymap_ = Keymap(preferences_.key_set, preferences_.keys);
+        are_kept_ = true;
+    } catch (const Error& error) {
+        say(sentence(error.what(), "; the keys that ship are used, and the file stays as it is"), Weight::warning);
+    }
+    for (const std::string& conflict : keymap_.conflicts()) say(conflict, Weight::warning);
+}
+
+/// Whether they can be kept is told, and changes nothing else.
+void PreferenceKeeper::prefer(Preferences preferences)
+{
+    if (preferences == preferences_) return;
+    keymap_ = Keymap(preferences.key_set, preferences.keys);
+    preferences_ = std::move(preferences);
+    if (!are_kept_) return;
+    savers_.start("keeping preferences", [file = options_.preferences, kept = preferences_](ProgressReporter&) {
+        save_preferences(file, kept);
+        return Jobs::Completion();
+    });
+}
+
+void PreferenceKeeper::note_opened(const std::filesystem::path& path)
+{
+    Preferences next = preferences_;
+    next.note_opened(path);
+    prefer(std::move(next));
+}
+
+std::string PreferenceKeeper::keys_of(const char* shortcut) const
+{
+    const Shortcut* const found = shortcut_named(shortcut);
+    SHVR_CHECK(found, shortcut);
+    return keymap_.text_of(*found);
+}
+
+std::string PreferenceKeeper::with_key(const char* before, const char* shortcut, const char* after) const
+{
+    const std::string keys = keys_of(shortcut);
+    return keys.empty() ? keys : before + keys + after;
+}
+
+PreferenceModel PreferenceKeeper::model() const
+{
+    return {.keymap = keymap_, .preferences = preferences_, .awaits_key = awaits_key_};
+}
+
+}  // namespace shvr::ui

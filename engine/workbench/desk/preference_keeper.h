@@ -1,0 +1,42 @@
+#pragma once
+// A person's preferences: keys, theme, layout and what was opened last, kept in their file by a saver.
+
+#include "engine/workbench/bindings/keymap.h"
+#include "engine/workbench/desk/service.h"
+#include "engine/workbench/models/preferences.h"
+
+namespace shvr::ui {
+
+class PreferenceKeeper : public Service {
+public:
+    explicit PreferenceKeeper(Desk& desk) : Service(desk) {}
+    void act(const ChooseKeys& action);
+    void act(const BindKeys& action);
+    void act(const AwaitKey& action);
+    void act(const Prefer& action);
+    void act(const ForgetRecent& action);
+
+    /// Reads the file. One that cannot be read stays as it is, and nothing is kept until it can.
+    void load();
+    /// Takes these and keeps them. A failure to keep them is said, and changes nothing else.
+    void prefer(Preferences preferences);
+    /// Puts a path first among what was opened last.
+    void note_opened(const std::filesystem::path& path);
+    void await_no_key() { awaits_key_.clear(); }
+    const Preferences& preferences() const { return preferences_; }
+    const Keymap& keymap() const { return keymap_; }
+    const std::string& awaits_key() const { return awaits_key_; }
+    /// The keys of a shortcut, in words; empty where it has none.
+    std::string keys_of(const char* shortcut) const;
+    /// "; Ctrl + T sets that"; empty where the shortcut has no key.
+    std::string with_key(const char* before, const char* shortcut, const char* after) const;
+    PreferenceModel model() const;
+
+private:
+    Preferences preferences_;
+    Keymap keymap_;
+    std::string awaits_key_;  ///< id of the shortcut that the next key is for; empty: none
+    bool are_kept_ = false;
+};
+
+}  // namespace shvr::ui

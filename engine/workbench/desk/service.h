@@ -1,0 +1,50 @@
+#pragma once
+// The base of all services: the desk under the names that they use, and a step of the main loop.
+//
+// A service has its own state, carries out the actions whose rows name it (`act`), and tells the model what there is to
+// see of it. It may call other services, which its constructor names. No service is reached before all are made.
+
+#include <functional>
+#include <string>
+
+#include "engine/workbench/desk/desk.h"
+
+namespace shvr::ui {
+
+class Service {
+public:
+    Service(const Service&) = delete;
+    /// Does the service's step of the main loop (Workbench::advance).
+    virtual void advance() {}
+    /// Whether it has a part where nothing is open, too.
+    virtual bool advances_without_document() const { return false; }
+
+protected:
+    explicit Service(Desk& desk);
+    virtual ~Service() = default;
+
+    /// State of a step that may fail and is then retried.
+    struct Attempt {
+        std::string said;       ///< message of the last failure
+        double failed_s = 0.0;  ///< when that was; 0: never
+        double again_s = 0.0;
+    };
+    /// Failures become messages, and the part is tried again a little later. DeviceLost is thrown.
+    void attempt(Attempt& state, const std::function<void()>& part);
+    void say(std::string text, Weight weight = Weight::done) { desk_.say(std::move(text), weight); }
+    void log_instead(const Actions& actions) { desk_.log_instead(actions); }
+    bool apply(const Action& action) { return desk_.apply(action); }
+    Model model() const { return desk_.model(); }
+
+    Desk& desk_;
+    Renderer& renderer_;
+    const WorkbenchOptions& options_;
+    std::unique_ptr<Document>& document_;  ///< the desk's own pointer
+    const std::function<void(const std::string&)>& log_;
+    Jobs &jobs_, &savers_;
+
+private:
+    void note_failure(Attempt& state, const std::string& why);
+};
+
+}  // namespace shvr::ui

@@ -1,0 +1,37 @@
+#pragma once
+// What the window shows besides the picture: dialogs, lists, full screen, and the device's passes.
+
+#include "engine/workbench/desk/preference_keeper.h"
+#include "engine/workbench/desk/service.h"
+#include "engine/workbench/lists/pass_log.h"
+
+namespace shvr::ui {
+
+class WindowState : public Service {
+public:
+    WindowState(Desk& desk, PreferenceKeeper& keeper) : Service(desk), keeper_(keeper) {}
+    void act(const AskOpen& action);
+    void act(const ShowHelp& action);
+    void act(const ShowMessages& action);
+    void act(const ShowPasses& action);
+    void act(const SavePasses& action);
+    void act(const ComparePasses& action);
+    void act(const ShowPalette& action);
+    void act(const ShowPreferences& action);
+    void act(const FocusOn& action);
+    void act(const ShowFullScreen& action);
+
+    bool is_full_screen() const { return is_full_screen_; }
+    /// What the keyboard was asked to be given to, once; empty: nothing.
+    std::string take_focus() { return std::exchange(focus_, {}); }
+    WindowModel model() const;
+
+private:
+    PreferenceKeeper& keeper_;
+    bool shows_help_ = false, shows_passes_ = false, shows_palette_ = false, is_full_screen_ = false;
+    bool asks_what_to_open_ = false, shows_preferences_ = false;
+    std::string focus_;
+    std::optional<PassRun> compared_passes_;
+};
+
+}  // namespace shvr::ui

@@ -1,0 +1,332 @@
+#include "engine/workbench/document/document.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "engine/base/atomic_file.h"
+#include "engine/base/file.h"
+#include "engine/live/densities.h"
+#include "engine/live/trace_marks.h"
+#include "engine/session/kept_settings.h"
+#include "engine/session/label_looks.h"
+#include "engine/session/lasting_settings.h"
+
+namespace shvr::ui {
+
+namespace {
+
+const char* const WINDOW_CAMERA = "window";
+
+}  // namespace
+
+std::filesystem::path session_path_of(const std::filesystem::path& input)
+{
+    if (std::filesystem::path file = session_file_of(input); !file.empty()) return file;
+    std::filesystem::path beside = input.has_filename() ? input : input.parent_path();
+    return beside.replace_extension(".session.json");
+}
+
+std::optional<std::string> text_of_session(const std::filesystem::path& path)
+{
+    constexpr int64_t MAX_SESSION_BYTES = int64_t{16} << 20;
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) return std::nullopt;
+    return read_text(path, MAX_SESSION_BYTES);
+}
+
+Document::Read Document::read(OpenedSession opened, const std::filesystem::path& input,
+                              const std::vector<std::string>& overridden, Work::Opening opening)
+{
+    Session& session = opened.session;
+    const VolumeInfo& volume = opened.source->info();
+    const std::filesystem::path path = session_path_of(input);
+    if (session.mask_path.empty()) session.mask_path = std::filesystem::path(path).replace_extension(".mask");
+    if (session.journal_path.empty()) session.journal_path = journal_beside(path);
+    shvr::choose_thresholds(session, volume, opened.statistics);
+    Read read{.opened = {}, .session_path = path, .overridden = overridden, .work = nullptr};
+    read.session_text = text_of_session(path);
+    const WorkFiles files = with_kept_settings(work_files(session, volume, overridden), session, overridden);
+    const auto open_work = [&](const Work::Opening& how) {
+        read.work = std::make_unique<Work>(volume.size, volume.type);
+        read.notices = read.work->open(files, how);
+    };
+    try {
+        open_work(opening);
+    } catch (const JournalTaken& taken) {
+        const std::optional<Holder> other = holder_of(files.journal);
+        read.holder = other ? in_words(*other) : taken.what();
+        opening.only_look = true;
+        opening.hold.reset();
+        open_work(opening);
+    }
+    read.opened = std::move(opened);
+    return read;
+}
+
+Document::Document(Renderer& renderer, Read read, const View::Options& view_options)
+    : session_path(std::move(read.session_path)),
+      session(std::move(read.opened.session)),
+      source(std::move(read.opened.source)),
+      statistics(read.opened.statistics),
+      camera(camera_named(session, session.camera_name, source->info())),
+      annotator(renderer, std::move(read.work)),
+      screen(renderer, view_options),
+      touch(renderer),
+      messages(std::move(read.notices)),
+      holder(std::move(read.holder)),
+      is_script_(read.is_script),
+      overridden_(std::move(read.overridden)),
+      session_text_(std::move(read.session_text))
+{
+    surfaces = std::exchange(session.surfaces, {});
+    touch.place(session.probe.voxel.value_or(0.5 * glm::dvec3(volume().size)) * volume().spacing);
+    set_lasting_settings(session, without_overridden(annotator.work().settings(), overridden_));
+    take_kept_settings();
+    choose_for_volume(session);
+    begin_with_turning();
+    if (!is_script_) annotator.work().select_trace({});  // the next node is not linked with one that nobody remembers
+    renderer.scene().show(annotator.document());
+    renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
+    note_saved();
+}
+
+/// Nobody who opens a scan changes it by the first drag, whatever was painted last; and older sessions state the tool
+/// that paints where the right button painted. --set may still choose.
+void Document::begin_with_turning()
+{
+    const bool is_chosen =
+        std::ranges::any_of(overridden_, [](const std::string& setting) { return setting.starts_with("probe.tool="); });
+    Tool& tool = session.probe.tool;
+    if (!is_chosen && (tool == Tool::paint || tool == Tool::erase)) tool = Tool::turn;
+}
+
+void Document::choose_thresholds(Session& of) const
+{
+    shvr::choose_thresholds(of, volume(), statistics);
+}
+
+/// The view and the probe come back as they were left, even where nobody could save them.
+void Document::take_kept_settings()
+{
+    const SettingValues kept = without_overridden(annotator.work().kept_settings(), overridden_);
+    if (kept.empty()) return;
+    set_kept_settings(session, kept);
+    camera = camera_named(session, session.camera_name, volume());
+    ProbeSettings& probe = session.probe;
+    choose_thresholds(session);
+    if (probe.voxel) touch.place(*probe.voxel * volume().spacing);
+}
+
+/// What neither the file nor the journal says. Later than both, so that it counts as no change of either.
+void Document::choose_for_volume(Session& of) const
+{
+    if (!of.probe.node_radius_voxels) of.probe.node_radius_voxels = automatic_node_radius(volume());
+    SliceSettings& slices = of.view.slices;
+    if (slices.black || slices.white) return;
+    const ValueRange contrast = automatic_contrast(statistics);
+    slices.black = contrast.lower;
+    slices.white = contrast.upper;
+}
+
+void Document::keep_settings()
+{
+    if (!only_looks() && !is_script_)
+        annotator.work().keep_settings(without_overridden(kept_settings(saved_session()), overridden_));
+}
+
+void Document::load_again(Renderer& renderer)
+{
+    renderer.load(source, statistics, session.render, shows_occlusion(session.light));
+    show_again(renderer);
+}
+
+void Document::show_again(Renderer& renderer)
+{
+    renderer.scene().show(annotator.document());
+    renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
+}
+
+ProbeLook Document::probe_look() const
+{
+    ProbeLook look{.center = touch.probe(),
+                   .radius = probe_radius(),
+                   .color = probe_color(session, session.probe.painted_group())};
+    look.ball_opacity = session.probe.opacity;
+    look.has_silhouette = session.probe.silhouette;
+    look.has_arrow = session.probe.arrow;
+    if (painted_at == touch.probe()) look.ball_share = BALL_IN_SHELL;
+    if (previewer.shown()) {
+        look.ball_share = BALL_IN_SHELL;
+        look.preview = previewer.shown();
+    }
+    if (session.probe.shell) {
+        look.ball_share = BALL_IN_SHELL;
+        look.shell = ShellLook{.threshold = *brush().threshold,
+                               .opacity = session.probe.shell_opacity,
+                               .is_box = brush().region == RegionShape::box};
+    }
+    return look;
+}
+
+ToolPlace Document::tool_place_at(const glm::dvec3& point) const
+{
+    if (drags_node) return {point, {}, {}};
+    const TraceGraph& trace = annotator.document().trace;
+    const bool is_brush = session.probe.tool == Tool::paint || session.probe.tool == Tool::erase;
+    return ui::tool_place(session.probe.touch, trace, point, probe_radius(),
+                          is_brush ? std::nullopt : trace.selection().node());
+}
+
+ToolPlace Document::tool_place() const
+{
+    ToolPlace place = tool_place_at(touch.probe());
+    if (place.node || place.internode) return place;
+    const ServoState* const servo = touch.servo();
+    const bool has_proxy = session.probe.touch.at_proxy && servo && servo->ticks > 0 && servo->step.in_contact;
+    if (has_proxy) place.point = servo->step.proxy;
+    return place;
+}
+
+VoxelBox Document::voxels_around_probe() const
+{
+    const glm::dvec3 size(volume().size), reach = probe_radius() / volume().spacing;
+    const glm::dvec3 lower = glm::clamp(glm::floor(probe_voxel() - reach), glm::dvec3(0.0), size - 1.0);
+    const glm::dvec3 upper = glm::clamp(glm::ceil(probe_voxel() + reach), lower + 1.0, size);
+    return {Size3(lower), Size3(upper)};
+}
+
+Document::Place Document::place() const
+{
+    const SliceSettings& slices = session.view.slices;
+    return {camera, probe_voxel(), slices.zoom, slices.center};
+}
+
+Session Document::saved_session() const
+{
+    Session saved = session;
+    saved.surfaces = surfaces;
+    saved.cameras[WINDOW_CAMERA] = camera;
+    saved.camera_name = WINDOW_CAMERA;
+    saved.probe.voxel = probe_voxel();
+    return saved;
+}
+
+// ---- Saving ---------------------------------------------------------------------------------------------------------
+
+/// The user's settings, as they would be written. Surfaces are left out: nothing here changes them, and there are many.
+Session Document::edits() const
+{
+    Session edits = saved_session();
+    edits.surfaces.clear();
+    edits.cameras = session.cameras;
+    edits.camera_name = session.camera_name;
+    edits.probe.voxel.reset();
+    edits.view.slices.zoom = 1.0;
+    edits.view.slices.center.reset();
+    return edits;
+}
+
+bool Document::edits_are_saved() const
+{
+    if (!edits_are_saved_) edits_are_saved_ = edits() == saved_edits_;
+    return *edits_are_saved_;
+}
+
+void Document::note_saved()
+{
+    saved_edits_ = edits();
+    edits_are_saved_ = true;
+    saved_place_ = place();
+}
+
+bool Document::record_settings()
+{
+    if (only_looks() || is_script_) return false;
+    const SettingValues now = lasting_settings(session);
+    return annotator.change_settings(difference_of(annotator.work().settings(), now), now) != nullptr;
+}
+
+void Document::take_settings()
+{
+    set_lasting_settings(session, annotator.work().settings());
+    annotator.renderer().scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
+    note_edit();
+}
+
+PaintOp Document::stroke() const
+{
+    BrushSettings used = brush();
+    used.group = session.probe.painted_group();
+    return in_session(stroke_of(used, *used.threshold), session);
+}
+
+PaintOp Document::dab() const
+{
+    PaintOp dab = stroke();
+    dab.path = {tool_voxel()};
+    return dab;
+}
+
+TraceDefaults Document::trace_defaults() const
+{
+    return {.spacing = volume().spacing,
+            .radius_voxels =
+                is_script_ ? brush().radius_voxels : session.probe.node_radius_voxels.value_or(brush().radius_voxels),
+            .group = brush().group,
+            .size = volume().size};
+}
+
+std::optional<uint32_t> Document::nearby_node() const
+{
+    const TraceGraph& trace = annotator.document().trace;
+    const std::optional<uint32_t> nearest = trace.nearest_node(touch.probe(), trace.selection().node());
+    if (!nearest || glm::distance(trace.node(*nearest).position, touch.probe()) > NEARBY_RADII * probe_radius())
+        return std::nullopt;
+    return nearest;
+}
+
+bool Document::is_cut() const
+{
+    const TraceGraph& trace = annotator.document().trace;
+    return cut_ends && trace.nodes().contains(cut_ends->first) && trace.nodes().contains(cut_ends->second) &&
+           !trace.internode_between(cut_ends->first, cut_ends->second);
+}
+
+std::optional<LocalBall> Document::ball_at(const glm::dvec3& voxel, const std::optional<glm::dvec3>& way) const
+{
+    const VolumeInfo& info = volume();
+    const double finest = std::min({info.spacing.x, info.spacing.y, info.spacing.z});
+    const glm::dvec3 size(info.size), ahead = way ? glm::normalize(*way) : glm::dvec3(0.0);
+    if (glm::any(glm::lessThan(voxel, glm::dvec3(0.0))) || glm::any(glm::greaterThan(voxel, size))) return {};
+    // Most structures are thin, and few voxels have to be read for them.
+    for (const double most_voxels : {6.0, 12.0, 24.0}) {  // along the finest axis
+        const double most = most_voxels * finest;
+        // A middle is at most `most` from the voxel, or from one at most that far behind it, and looks that far.
+        const glm::dvec3 about = voxel + 0.5 * most * ahead / info.spacing;
+        const glm::dvec3 reach = (way ? 2.5 : 2.0) * most / info.spacing + 2.0;
+        const VoxelBox box{Size3(glm::clamp(glm::floor(about - reach), glm::dvec3(0.0), size - 1.0)),
+                           Size3(glm::clamp(glm::ceil(about + reach), glm::dvec3(1.0), size))};
+        const DensityBox densities = densities_in(*source, annotator.document().density, box);
+        const auto density_at = [&](const glm::dvec3& at) { return densities.at(at); };
+        const auto found =
+            way ? ball_behind(density_at, *brush().threshold, voxel, *way, info.spacing, most, probe_radius())
+                : local_ball(density_at, *brush().threshold, voxel, info.spacing, most);
+        if (found) return found;
+    }
+    return {};
+}
+
+TraceMarks Document::trace_marks() const
+{
+    if (!session.view.meshes) return {};
+    const glm::dvec3& spacing = volume().spacing;
+    const double least = 0.5 * std::min({spacing.x, spacing.y, spacing.z});
+    const bool is_traced = session.probe.tool == Tool::trace;
+    constexpr size_t SHOWN_LINKS = 64;  // about what fits on a screen
+    return shvr::trace_marks(annotator.document().trace, is_traced ? nearby_node() : std::nullopt, least,
+                             drags_node ? std::optional(tool_place().point) : std::nullopt,
+                             is_traced ? SHOWN_LINKS : 0);
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,179 @@
+// Saving a document: in place, beside the work, or under other names.
+
+#include <array>
+#include <utility>
+
+#include "engine/base/atomic_file.h"
+#include "engine/base/file.h"
+#include "engine/session/label_looks.h"
+#include "engine/workbench/document/document.h"
+
+namespace shvr::ui {
+
+namespace {
+
+std::filesystem::path beside(const std::filesystem::path& session_file, const char* extension)
+{
+    return std::filesystem::path(session_file).replace_extension(extension);
+}
+
+/// The session under another name, with files of that name.
+Session renamed(Session session, const std::filesystem::path& path)
+{
+    session.mask_path = beside(path, ".mask");
+    session.trace_path = beside(path, ".graphml");
+    session.density_path = beside(path, ".offset");
+    session.journal_path = journal_beside(path);
+    return session;
+}
+
+/// Fails where it is no name of a session, or taken.
+std::filesystem::path new_session_path(const std::filesystem::path& path)
+{
+    if (path.extension() != ".json") fail(path.string(), ": is no name for a session; expected one that ends in .json");
+    for (const char* extension : {".json", ".mask", ".graphml", ".offset", ".journal"})
+        if (is_there(beside(path, extension)))
+            fail(beside(path, extension).string(), ": exists already; expected a name that is free");
+    return std::filesystem::absolute(path).lexically_normal();
+}
+
+std::filesystem::path free_copy_path(const std::filesystem::path& session_file)
+{
+    const std::string stem = beside(session_file, "").string() + "-copy";
+    for (int number = 1;; ++number) {
+        const std::filesystem::path path = number == 1 ? stem + ".json" : sentence(stem, number, ".json");
+        const auto is_taken = [&](const char* extension) { return is_there(beside(path, extension)); };
+        if (std::ranges::none_of(std::array{".json", ".mask", ".graphml", ".offset", ".journal"}, is_taken))
+            return path;
+    }
+}
+
+}  // namespace
+
+std::shared_ptr<Document::Saving> Document::begin_save(Parts parts)
+{
+    if (only_looks())
+        throw JournalTaken(sentence(session_path.string(), ": is not saved, since the project is open for writing in ",
+                                    holder, "; expected it to be closed there, or a copy to work on"));
+    std::shared_ptr<Saving> saving(new Saving);
+    if (parts == Parts::work) {
+        saving->work_ = annotator.work().begin_save(label_looks(session.groups, annotator.document().mask));
+        return saving;
+    }
+    if (parts == Parts::all) {
+        if (session.density_path.empty() && annotator.document().density.voxels() > 0)
+            session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
+        name_trace();
+        annotator.work().name_files(session.mask_path, session.trace_path, session.density_path);
+        keep_settings();
+        saving->work_ = annotator.work().begin_save(label_looks(session.groups, annotator.document().mask));
+    }
+    saving->session_path_ = session_path;
+    saving->text_ = to_text(saved_session(), std::filesystem::absolute(session_path).parent_path());
+    saving->text_there_ = session_text_;
+    saving->edits_ = edits();
+    saving->place_ = place();
+    return saving;
+}
+
+/// What another program wrote there since is kept, and the notice tells where.
+void Document::Saving::write_session()
+{
+    if (const std::optional<std::string> there = text_of_session(session_path_); there && there != text_there_) {
+        const std::filesystem::path old = set_aside(session_path_);
+        notice_ = {
+            sentence(session_path_.string(), ": was written by another program since it was opened; it is kept as ",
+                     old.string(), ", and what is saved is this window's"),
+            true};
+    }
+    write_file_atomically(session_path_, std::as_bytes(std::span(text_)));
+    has_session_ = true;
+}
+
+void Document::Saving::write(ProgressReporter& reporter)
+{
+    const Progress progress =
+        reporter.begin(session_path_.empty() ? "saving" : "saving " + session_path_.filename().string());
+    if (as_)
+        as_->write([this] { write_session(); }, progress);
+    else if (work_)
+        work_->write(
+            session_path_.empty() ? std::function<void()>() : [this] { write_session(); }, progress);
+    else
+        write_session();
+    is_written_ = true;
+}
+
+Work::Saved Document::end_save(Saving& saving)
+{
+    Work::Saved saved;
+    if (saving.work_) saved = annotator.work().end_save(*saving.work_);
+    if (saving.as_) saved = annotator.work().end_save_as(*saving.as_);
+    if (saving.as_ && saving.is_written_) {
+        session = renamed(std::move(session), saving.session_path_);
+        session_path = saving.session_path_;
+        overridden_.clear();  // what was set for this time only is in the new file
+    }
+    if (saving.notice_) saved.notices.push_back(*saving.notice_);
+    if (saving.has_session_) session_text_ = saving.text_;
+    if (!saving.is_written_ || saving.session_path_.empty()) return saved;
+    saved_edits_ = saving.edits_;
+    edits_are_saved_.reset();
+    saved_place_ = saving.place_;
+    return saved;
+}
+
+bool Document::has_view_to_keep() const
+{
+    if (only_looks() || !annotator.work().disputes().empty()) return false;
+    const bool is_kept = saved_place_ == place();
+    std::error_code ignored;
+    return !is_kept && overridden_.empty() && is_saved() && std::filesystem::is_regular_file(session_path, ignored);
+}
+
+std::function<std::filesystem::path()> Document::copier(const std::filesystem::path& path) const
+{
+    if (!path.empty()) new_session_path(path);  // refused at once
+    return [session = saved_session(), at = session_path, path, volume = volume(),
+            copy = annotator.work().copier(label_looks(session.groups, annotator.document().mask))] {
+        const std::filesystem::path to = path.empty() ? free_copy_path(at) : new_session_path(path);
+        const Session copied = renamed(session, to);
+        copy(work_files(copied, volume));
+        const std::string text = to_text(copied, std::filesystem::absolute(to).parent_path());
+        write_file_atomically(to, std::as_bytes(std::span(text)));
+        return to;
+    };
+}
+
+std::shared_ptr<Document::Saving> Document::begin_save_as(const std::filesystem::path& path)
+{
+    const std::filesystem::path next = new_session_path(path);
+    keep_settings();
+    const Session moved = renamed(saved_session(), next);
+    std::shared_ptr<Saving> saving(new Saving);
+    saving->as_ = annotator.work().begin_save_as(work_files(moved, volume()),
+                                                 label_looks(session.groups, annotator.document().mask), next);
+    saving->session_path_ = next;
+    saving->text_ = to_text(moved, next.parent_path());
+    saving->edits_ = renamed(edits(), next);
+    saving->place_ = place();
+    return saving;
+}
+
+/// Only GraphML keeps all of a trace, so a trace from another format is saved to a new file and its source is left
+/// unchanged.
+void Document::name_trace()
+{
+    if (annotator.work().trace_is_saved()) return;
+    if (session.trace_path.empty()) {
+        session.trace_path = session_path;
+        session.trace_path.replace_extension(".graphml");
+    } else if (session.trace_path.extension() != ".graphml") {
+        const std::filesystem::path stem = std::filesystem::path(session.trace_path).replace_extension();
+        session.trace_path = stem.string() + ".graphml";
+        for (int number = 2; std::filesystem::exists(session.trace_path); ++number)
+            session.trace_path = sentence(stem.string(), "-", number, ".graphml");
+    }
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,85 @@
+#include "engine/workbench/document/screenshots.h"
+
+#include <chrono>
+#include <utility>
+
+#include "engine/base/image_file.h"
+
+namespace shvr::ui {
+
+/// "scan-view-1.png", or with the first free number. The large one has its name before its file is there.
+std::filesystem::path Screenshots::free_path(const std::filesystem::path& stem) const
+{
+    for (int number = 1;; ++number) {
+        std::filesystem::path path = sentence(stem.string(), "-view-", number, ".png");
+        if (!std::filesystem::exists(path) && !(large_ && path == large_path_)) return path;
+    }
+}
+
+void Screenshots::take_large(const std::filesystem::path& stem, Renderer& renderer, const Session& session,
+                             const Camera& camera, const RenderOptions& options, const Texts& texts, Figure figure)
+{
+    large_.reset();
+    large_path_ = free_path(stem);
+    const auto over = [figure = std::move(figure)](ImageF& rows, uint32_t first_row) { draw(figure, rows, first_row); };
+    large_ = std::make_unique<PictureFile>(large_path_, renderer, session, camera, options, texts(large_path_), over);
+}
+
+Screenshots::Turn Screenshots::advance(Screen& screen, const std::filesystem::path& stem, bool is_still,
+                                       const Texts& texts, const std::function<Figure()>& figure)
+{
+    if (is_writing()) {
+        if (written_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
+        return {.said = written_.get(), .progress = {}};
+    }
+    const bool was_held = screen.is_held();  // by a large one that waits for its bricks
+    screen.hold(false);
+    if (!screen.complete() && !was_held) return {};
+    if (screen.complete() && std::exchange(is_wanted_, false)) {
+        write(screen.read_back(), stem, texts, figure());
+        return {};
+    }
+    if (!large_ || !is_still) return {};
+    const Turn turn = advance_large();
+    screen.hold(large_ && large_->is_waiting());
+    return screen.is_held() ? Turn{} : turn;  // nothing new to tell
+}
+
+Screenshots::Turn Screenshots::advance_large()
+{
+    if (large_->is_writing()) return {};
+    std::unique_ptr<PictureFile> picture = std::move(large_);  // dropped here if it fails
+    if (picture->is_committing()) {
+        picture->commit();
+        return {.said = "Screenshot: " + large_path_.string(), .progress = {}};
+    }
+    if (picture->is_drawn())
+        picture->begin_commit();
+    else
+        picture->step(false);
+    const int percent = int(100.0 * picture->progress());
+    large_ = std::move(picture);
+    return {.said = {}, .progress = sentence("Large screenshot: ", percent, " %")};
+}
+
+void Screenshots::write(Image8 image, const std::filesystem::path& stem, const Texts& texts, Figure figure)
+{
+    const std::filesystem::path path = free_path(stem);
+    written_ = std::async(std::launch::async,
+                          [image = std::move(image), figure = std::move(figure), path, kept = texts(path)]() mutable {
+                              try {
+                                  draw(figure, image);
+                                  write_png(path, image, kept);
+                                  return "Screenshot: " + path.string();
+                              } catch (const Error& error) {
+                                  return std::string(error.what());
+                              }
+                          });
+}
+
+void Screenshots::wait() const
+{
+    if (written_.valid()) written_.wait();
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,58 @@
+#pragma once
+// Saves pictures of the view: as shown, once it is sharp, or larger, rendered part by part while nothing else needs
+// drawing, and written as it is made. Compressing is slow and runs on a thread; everything else runs on the main
+// thread.
+
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "engine/live/screen.h"
+#include "engine/picture/picture_file.h"
+#include "engine/workbench/sight/figure.h"
+
+namespace shvr::ui {
+
+class Screenshots {
+public:
+    /// Requests a picture of the view as shown.
+    void take() { is_wanted_ = true; }
+    /// What a picture of that name keeps in its file.
+    using Texts = std::function<PictureTexts(const std::filesystem::path& picture)>;
+    /// `stem` as for `advance`. `figure`: drawn over it. Fails where the file cannot be written.
+    void take_large(const std::filesystem::path& stem, Renderer& renderer, const Session& session, const Camera& camera,
+                    const RenderOptions& options, const Texts& texts, Figure figure);
+    /// Abandons a large picture, since its volume changes or goes away.
+    void drop_large() { large_.reset(); }
+    bool has_large() const { return large_ != nullptr; }
+    /// Of the large one: where it is written, and how much of it is drawn, 0 ... 1.
+    const std::filesystem::path& large_path() const { return large_path_; }
+    double progress() const { return large_ ? large_->progress() : 0.0; }
+    bool is_writing() const { return written_.valid(); }
+
+    struct Turn {
+        std::string said;      ///< message for the user; empty: none
+        std::string progress;  ///< likewise, but replaced as it changes
+    };
+    /// Call every turn. `stem`: of the file, "scan" for scan-view-1.png. `is_still`: nothing else waits for the device.
+    /// `figure`: makes what is drawn over a picture as shown. Fails if a picture cannot be made; then it is abandoned.
+    Turn advance(Screen& screen, const std::filesystem::path& stem, bool is_still, const Texts& texts,
+                 const std::function<Figure()>& figure);
+    /// Waits until the last one is written.
+    void wait() const;
+
+private:
+    std::filesystem::path free_path(const std::filesystem::path& stem) const;
+    void write(Image8 image, const std::filesystem::path& stem, const Texts& texts, Figure figure);
+    Turn advance_large();
+
+    bool is_wanted_ = false;
+    std::unique_ptr<PictureFile> large_;  ///< in progress
+    std::filesystem::path large_path_;
+    std::future<std::string> written_;  ///< message about it
+};
+
+}  // namespace shvr::ui

@@ -1,0 +1,27 @@
+#pragma once
+// Makes the action that changes settings. Pure; any thread.
+
+#include "engine/session/session_patch.h"
+#include "engine/workbench/actions/action.h"
+#include "engine/workbench/models/model.h"
+
+namespace shvr::ui {
+
+/// The settings as `edit` leaves them.
+template <class Edit>
+Set edited(const Session& session, const Edit& edit)
+{
+    Session after = session;
+    edit(after);
+    const std::string patch = patch_between(session, after);
+    return {patch.empty() ? "{}" : patch};
+}
+
+/// Adds it, where it changes anything. `edit(Session&)`.
+template <class Edit>
+void set(Actions& actions, const Model& model, const Edit& edit)
+{
+    if (Set action = edited(model.session, edit); action.patch != "{}") actions.emplace_back(std::move(action));
+}
+
+}  // namespace shvr::ui

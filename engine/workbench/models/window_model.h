@@ -1,0 +1,49 @@
+#pragma once
+// What preferences and the window's own state show.
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/session/transfer_presets.h"
+
+namespace shvr::ui {
+
+class Keymap;
+class RecentActions;
+struct PassRun;
+struct Preferences;
+
+/// Made by the keeper of preferences.
+struct PreferenceModel {
+    const Keymap& keymap;
+    const Preferences& preferences;
+    std::string_view awaits_key{};  ///< id of the shortcut that the next key is for; empty: none
+};
+
+/// Made by the shelf of presets.
+struct PresetModel {
+    const std::vector<TransferPreset>& presets;
+};
+
+/// Made by the state of the window.
+struct WindowModel {
+    bool shows_help = false, shows_messages = false, shows_passes = false, shows_palette = false,
+         is_full_screen = false;
+    bool asks_what_to_open = false, shows_preferences = false;
+    std::string_view gpu_name{};
+    uint64_t device_bytes = 0, device_budget = 0;
+    std::map<std::string, uint64_t> bytes_by_name{};  ///< device memory by name; filled only while the passes are shown
+    const PassRun* compared_passes = nullptr;         ///< null: compared with nothing
+};
+
+/// Made by the workbench itself, for reports.
+struct ReportModel {
+    const RecentActions* recent = nullptr;  ///< the last actions; null: none are recorded
+    std::string_view version{};             ///< the program's version
+    double ui_frame_ms = 0.0;               ///< median of the last frames; set by the window
+};
+
+}  // namespace shvr::ui

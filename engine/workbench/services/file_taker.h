@@ -1,0 +1,34 @@
+#pragma once
+// Files that are opened, described or dropped onto the window. Their contents decide what they are.
+
+#include "engine/tasks/file_content.h"
+#include "engine/workbench/desk/service.h"
+
+namespace shvr::ui {
+
+class Opener;
+struct Services;
+class SettingsEditor;
+
+class FileTaker : public Service {
+public:
+    explicit FileTaker(Services& all);
+    void act(const Open& action);
+    void act(const OpenExample& action);
+    void act(const LookAtFile& action);
+    void act(const TakeFile& action);
+
+    CandidateModel model() const { return {.candidate = candidate_.get()}; }
+
+private:
+    void take(FileContent content, const std::filesystem::path& path);
+    void take_transfer_function(const std::filesystem::path& path, const std::string& text);
+    void take_together(std::vector<std::filesystem::path> paths);
+    void take_annotation(Part part, const std::filesystem::path& path);
+
+    Opener& opener_;
+    SettingsEditor& settings_;
+    std::unique_ptr<Candidate> candidate_;
+};
+
+}  // namespace shvr::ui

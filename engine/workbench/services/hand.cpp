@@ -1,0 +1,259 @@
+#include "engine/workbench/services/hand.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/annotation/work/work_offsets.h"
+#include "engine/workbench/edits/puck_moves.h"
+#include "engine/workbench/services/services.h"
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr double MAX_PUCK_STEP_S = 0.1;    ///< a hung frame must not throw the view far away
+constexpr double TAPS_PER_SECOND = 5.0;    ///< while a button is held, as for keys
+constexpr double MAX_BUTTON_STEP_S = 0.5;  ///< a hung frame must not throw the view far away
+
+std::filesystem::path free_trace_path(const std::filesystem::path& stem)
+{
+    for (int number = 1;; ++number) {
+        std::filesystem::path path = sentence(stem.string(), "-stylus-", number, ".trace");
+        if (!std::filesystem::exists(path)) return path;
+    }
+}
+
+}  // namespace
+
+Hand::Hand(Services& all)
+    : Service(all.desk),
+      viewer_(all.viewer),
+      prober_(all.prober),
+      painter_(all.painter),
+      tracer_(all.tracer),
+      photographer_(all.photographer),
+      keeper_(all.keeper)
+{}
+
+void Hand::advance()
+{
+    attempt(touching_, [this] { follow_touch(); });
+}
+
+void Hand::act(const LetGo& action)
+{
+    if (hand_.is_let_go == action.on) return;
+    hand_.is_let_go = action.on;
+    if (action.on) act(GrabVolume{false});
+    say(action.on ? "Let go: no force until you switch that off" : "Force again: it comes back within a second");
+    if (document_->touch.servo()) document_->touch.advance(touch_settings());
+}
+
+TouchSettings Hand::touch_settings() const
+{
+    const Document& document = *document_;
+    TouchSettings settings{
+        .guide = guide_settings(document.session, document.probe_radius()),
+        .camera = document.camera,
+        .view_height = pixel_size(document.camera, {1, 1}, glm::distance(document.camera.eye, document.camera.target)),
+        .scale = document.session.interaction.workspace_scale,
+        // While the volume moves with the stylus, what is felt would lag behind it.
+        .lets_go = hand_.is_let_go || grab_.has_value(),
+        .source = document.source,
+        .offsets = &document.annotator.document().density,
+        .mask = &document.annotator.document().mask,
+        .voxels = document.annotator.revision()};
+    settings.guide.assists = settings.guide.assists && options_.has_servo;
+    return settings;
+}
+
+void Hand::follow_touch()
+{
+    follow_devices();
+    Touch& touch = document_->touch;
+    touch.use(device_, hand_.is_puck && keeper_.preferences().puck == PuckMoves::view);
+    touch.advance(touch_settings());
+    follow_buttons(touch.buttons());
+    follow_grab();
+    follow_puck();
+    if (touch.recorder() && !touch.recorder()->end().empty()) finish_recording();
+    note_hand();
+}
+
+void Hand::note_hand()
+{
+    const Touch& touch = document_->touch;
+    hand_.moves_probe = !touch.is_mouse();
+    hand_.is_realtime = touch.is_realtime();
+    hand_.is_grabbing = grab_.has_value();
+    hand_.tap = touch.tap();
+    hand_.recorded_s = touch.recorder() ? std::optional(touch.recorder()->seconds()) : std::nullopt;
+    if (device_ && *device_->trouble()) hand_.trouble = device_->trouble();
+}
+
+void Hand::act(const GrabVolume& action)
+{
+    if (action.on == grab_.has_value()) return;
+    if (!action.on) {
+        grab_.reset();
+        return say("The volume stays where it is");
+    }
+    const Touch& touch = document_->touch;
+    if (touch.is_mouse() || !touch.servo())
+        fail("no stylus moves the probe; expected one that takes hold of the volume");
+    const DeviceState& device = touch.last_state().device;
+    grab_ = Grab{.camera = document_->camera, .position_m = device.position_m, .rotation = device.rotation};
+    say("The volume moves with the stylus");
+}
+
+/// Eq. 4.9 of the thesis.
+void Hand::follow_grab()
+{
+    const Touch& touch = document_->touch;
+    if (!grab_) return;
+    if (touch.is_mouse() || !touch.servo() || (touch.last_state().step.flags & FORCE_NO_DEVICE))
+        return act(GrabVolume{false});
+    const DeviceState& device = touch.last_state().device;
+    const TouchSettings settings = touch_settings();
+    const double units_per_m = settings.scale * settings.view_height / WORKSPACE_M;
+    viewer_.look_from(camera_of_grab(*grab_, device.position_m, device.rotation, units_per_m));
+}
+
+/// Its silence is rest: the back end gives no speed then.
+void Hand::follow_puck()
+{
+    const double now = options_.now_s();
+    const double seconds = std::min(now - std::exchange(puck_at_s_, now), MAX_PUCK_STEP_S);
+    const ServoState* const puck = document_->touch.puck();
+    if (!puck || puck->ticks == 0 || (puck->step.flags & FORCE_NO_DEVICE)) return;
+    for (const Action& move : moves_of_puck(puck->device, seconds)) apply(move);
+}
+
+/// Buttons of a stylus are keys without modifiers: Stylus1 is the first.
+void Hand::follow_buttons(uint32_t buttons)
+{
+    const double now = options_.now_s(), elapsed = std::min(now - std::exchange(buttons_at_s_, now), MAX_BUTTON_STEP_S);
+    for (uint32_t button = 0; button < MAX_BUTTONS; ++button) {
+        const uint32_t bit = 1u << button;
+        const bool is_down = buttons & bit, was_down = buttons_ & bit;
+        if (!is_down && !was_down) continue;
+        const Chord chord{.key = sentence("Stylus", button + 1)};
+        if (is_down && !was_down && !keeper_.awaits_key().empty()) {
+            apply(BindKeys{keeper_.awaits_key(), text_of(chord)});
+            continue;
+        }
+        for (const Shortcut* const shortcut : keeper_.keymap().shortcuts_for(chord)) {
+            const bool lasts = shortcut->mode == Shortcut::Mode::while_held;
+            if (is_down && was_down && shortcut->mode == Shortcut::Mode::hold)
+                apply(shortcut->action(desk_.model(), TAPS_PER_SECOND * elapsed));
+            else if (is_down != was_down && (is_down || lasts))
+                apply(shortcut->action(desk_.model(), is_down ? 1.0 : 0.0));
+        }
+    }
+    buttons_ = buttons;
+}
+
+// ---- Recordings -----------------------------------------------------------------------------------------------------
+
+void Hand::act(const RecordStylus& action)
+{
+    if (!options_.has_servo) fail("no device runs here; expected the window");
+    if (document_->touch.recorder()) fail("the stylus is being recorded already; expected that to be ended first");
+    if (document_->touch.puck()) fail("the device moves the view; expected one that moves the probe");
+    hand_.recording = action.path.empty() ? free_trace_path(photographer_.stem()) : action.path;
+    document_->touch.begin_recording(hand_.recording);
+    note_hand();
+    say("Recording what the stylus does");
+}
+
+void Hand::act(const StopRecording&)
+{
+    if (!document_->touch.recorder()) fail("nothing is being recorded; expected a recording to end");
+    finish_recording();
+}
+
+/// A saver writes the file.
+void Hand::finish_recording()
+{
+    const StylusRecorder& recorder = *document_->touch.recorder();
+    const std::filesystem::path path = recorder.path();
+    const std::string end = recorder.end();
+    auto trace = std::make_shared<Trace>(document_->touch.end_recording());
+    note_hand();
+    savers_.start("writing " + short_name(path), [this, path, trace, end](ProgressReporter&) -> Jobs::Completion {
+        write_trace(path, *trace);
+        const double seconds = double(trace->ticks.size()) / trace->rate_hz;
+        return [this, path, seconds, end] {
+            say(sentence("Recorded ", std::round(10.0 * seconds) / 10.0, " s of the stylus: ", path.string(),
+                         end.empty() ? "" : "; it ended, since ", end),
+                end.empty() ? Weight::done : Weight::warning);
+        };
+    });
+}
+
+void Hand::act(const FollowStylus& action)
+{
+    const Document& document = *document_;
+    if (document.annotator.stroke_is_running()) fail("a stroke is being painted; expected it to have ended");
+    const std::shared_ptr<const VolumeSource> source =
+        with_offsets(document.source, document.annotator.document().density);
+    jobs_.start(
+        "following " + short_name(action.path),
+        [this, action, source, guide = guide_settings(document.session, document.probe_radius()),
+         mask = document.annotator.document().mask, of = desk_.openings](ProgressReporter&) -> Jobs::Completion {
+            auto points = std::make_shared<std::vector<StylusPoint>>(
+                play_stylus(read_trace(action.path), guide, action.by_hand, source, mask));
+            return [this, points, of, action] {
+                if (document_ && desk_.openings == of) follow_points(*points, action.node_every_voxels);
+            };
+        });
+}
+
+/// As a hand would: while the first button is down it paints, or adds nodes in the trace tool.
+void Hand::follow_points(const std::vector<StylusPoint>& points, double node_every)
+{
+    constexpr double APART_VOXELS = 0.5;
+    const glm::dvec3 spacing = document_->volume().spacing;
+    const FeelSettings feel = document_->session.probe.touch;
+    const bool is_tracing = document_->session.probe.tool == Tool::trace;
+    const double apart = (is_tracing ? node_every : APART_VOXELS) * spacing.x;
+    PaintOp stroke = document_->stroke();
+    std::optional<glm::dvec3> last;
+    const auto end_stroke = [&] {
+        if (!stroke.path.empty()) painter_.act(PaintOp(stroke));
+        stroke.path.clear();
+        last.reset();
+    };
+    size_t placed = 0;
+    for (const StylusPoint& point : points) {
+        if (!point.is_pressed) {
+            end_stroke();
+            continue;
+        }
+        const glm::dvec3 at = feel.at_proxy ? point.proxy : point.probe;
+        if (last && glm::distance(*last, at) < apart) continue;
+        last = at;
+        ++placed;
+        if (!is_tracing) {
+            stroke.path.push_back(at / spacing);
+            continue;
+        }
+        NodeOp node{.at = at / spacing, .radius_voxels = {}, .group = {}};
+        if (feel.overlap_radius && point.in_contact)
+            if (const auto radius = radius_from_overlap(point.relevant_share, document_->probe_radius()))
+                node.radius_voxels = *radius / spacing.x;
+        tracer_.trace(node);
+    }
+    end_stroke();
+    if (!points.empty()) prober_.move_probe(points.back().probe, true);
+    say(sentence("Followed ", points.size(), " steps of the stylus: ", placed,
+                 is_tracing ? " nodes" : " points of strokes"));
+}
+
+TouchedModel Hand::model() const
+{
+    if (!document_) return {};
+    return {.servo = document_->touch.servo(), .hand = &hand_, .relevance_age_ms = document_->touch.relevance_age_ms()};
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,69 @@
+#pragma once
+// The hand: which device it holds, what its moves and buttons do, recordings of it.
+
+#include <set>
+
+#include "engine/workbench/desk/service.h"
+#include "engine/workbench/models/hand_view.h"
+
+namespace shvr::ui {
+
+class Painter;
+class Photographer;
+class PreferenceKeeper;
+class Prober;
+struct Services;
+class Tracer;
+class Viewer;
+
+class Hand : public Service {
+public:
+    explicit Hand(Services& all);
+    void act(const LetGo& action);
+    void act(const GrabVolume& action);
+    void act(const UseDevice& action);
+    void act(const FindDevices& action);
+    void act(const CalibrateDevice& action);
+    void act(const RecordStylus& action);
+    void act(const StopRecording& action);
+    void act(const FollowStylus& action);
+
+    void advance() override;
+    /// From now on this device moves the probe, whatever is plugged in, and its button paints.
+    void use_device(std::shared_ptr<HapticDevice> device, const std::string& name);
+    TouchedModel model() const;
+
+private:
+    TouchSettings touch_settings() const;
+    void follow_touch();
+    void follow_devices();
+    void follow_puck();
+    void follow_grab();
+    void follow_buttons(uint32_t buttons);
+    void choose_device();
+    void take_device(std::shared_ptr<HapticDevice> device, const DeviceListing& row);
+    void leave_device();
+    const DeviceListing* wanted_device() const;
+    void note_hand();
+    void finish_recording();
+    void follow_points(const std::vector<StylusPoint>& points, double node_every);
+
+    Viewer& viewer_;
+    Prober& prober_;
+    Painter& painter_;
+    Tracer& tracer_;
+    Photographer& photographer_;
+    PreferenceKeeper& keeper_;
+    std::unique_ptr<DeviceWatch> watch_;    ///< null: no device is looked for
+    std::shared_ptr<HapticDevice> device_;  ///< null: none is open
+    HandView hand_;
+    std::set<std::string> refused_;  ///< ids of devices that could not be opened, until they are asked for again
+    bool is_given_device_ = false;   ///< by the caller
+    double look_again_s_ = 0.0, puck_at_s_ = 0.0;
+    std::optional<Grab> grab_;
+    uint32_t buttons_ = 0;  ///< the stylus's buttons in the last step
+    double buttons_at_s_ = 0.0;
+    Attempt touching_;
+};
+
+}  // namespace shvr::ui

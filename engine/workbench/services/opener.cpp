@@ -1,0 +1,305 @@
+#include "engine/workbench/services/opener.h"
+
+#include <chrono>
+#include <thread>
+
+#include "engine/base/text.h"
+#include "engine/session/picture_session.h"
+#include "engine/session/session_keys.h"
+#include "engine/session/session_patch.h"
+#include "engine/workbench/services/opening.h"
+#include "engine/workbench/services/services.h"
+
+namespace shvr::ui {
+
+namespace {
+
+bool is_one_journal(const std::filesystem::path& a, const std::filesystem::path& b)
+{
+    return std::filesystem::absolute(a).lexically_normal() == std::filesystem::absolute(b).lexically_normal();
+}
+
+/// What is opened for a picture: the project it was made of, or the bare volume. Empty where it is no picture, or one
+/// of bare voxels, which only its session describes.
+std::filesystem::path opened_for_picture(const std::filesystem::path& path, const OpenedSession& opened)
+{
+    std::error_code ignored;
+    if (!session_file_of(path).empty() || !session_in_picture(path)) return {};
+    if (!opened.pictured.empty() && std::filesystem::exists(opened.pictured, ignored)) return opened.pictured;
+    const bool has_file = !opened.session.procedural && !opened.session.raw_layout;
+    return has_file ? opened.session.volume_path : std::filesystem::path();
+}
+
+/// Who opens a scan once more wants what was saved beside it: its session, if that is of this very file. Empty: there
+/// is none.
+std::filesystem::path session_saved_for(const std::filesystem::path& volume)
+{
+    std::error_code ignored;
+    if (!session_file_of(volume).empty()) return {};
+    const std::filesystem::path beside = session_path_of(volume);
+    const std::optional<std::string> text = text_of_session(beside);
+    if (!text) return {};
+    const Session session = read_session(session_document(*text, beside.string()), beside.parent_path());
+    const bool is_of_it = !session.procedural && std::filesystem::equivalent(session.volume_path, volume, ignored);
+    return is_of_it ? beside : std::filesystem::path();
+}
+
+}  // namespace
+
+Opener::Opener(Services& all)
+    : Service(all.desk),
+      taker_(all.taker),
+      painter_(all.painter),
+      photographer_(all.photographer),
+      keeper_(all.keeper),
+      reader_(all.reader),
+      reloader_(all.reloader),
+      saver_(all.saver),
+      settings_(all.settings),
+      tasks_(all.tasks),
+      viewer_(all.viewer)
+{}
+
+Opener::~Opener() = default;
+
+void Opener::begin_open(const std::filesystem::path& path, const std::vector<std::string>& settings,
+                        std::vector<std::filesystem::path> taken_into_it)
+{
+    start({.path = path, .settings = settings, .taken_into_it = std::move(taken_into_it)});
+}
+
+void Opener::start(Opening next)
+{
+    if (opening_) {
+        jobs_.cancel(opening_->number);  // its result is no longer wanted
+        opening_.reset();
+        tasks_.advance();
+    }
+    reloader_.cancel();
+    open_failure_.clear();
+    failed_path_.clear();
+    next.name = short_name(next.path);
+    next.begun_s = options_.now_s();
+    if (next.how.program.empty()) next.how.program = "shvr view";
+    opening_ = std::make_shared<Opening>(std::move(next));
+    read_next();
+}
+
+void Opener::open(const std::filesystem::path& path, const std::vector<std::string>& settings, Work::Opening how)
+{
+    const auto failure = std::make_shared<std::exception_ptr>();
+    awaited_failure_ = failure;
+    start({.path = path, .settings = settings, .how = std::move(how), .saves_before = false});
+    while (opening_) {
+        tasks_.advance();
+        advance();
+        if (opening_ && !opening_->scene) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    awaited_failure_.reset();
+    if (*failure) std::rethrow_exception(*failure);
+}
+
+/// Begins to read on the worker; once more where what is open has changed the journal since.
+void Opener::read_next()
+{
+    Opening& opening = *opening_;
+    opening.read.reset();
+    opening.thrown = std::make_shared<std::exception_ptr>();
+    Work::Opening how = opening.how;
+    std::function<void()> flush;
+    if (document_) {
+        Work& work = document_->annotator.work();
+        if (!how.hold) how.hold = work.hold();
+        flush = work.flusher();
+        opening.journal_bytes = work.journal().bytes;
+    }
+    const std::filesystem::path path = opening.path;
+    const auto read = [path, settings = opening.settings, how, flush, goes_on = !options_.is_script,
+                       &renderer =
+                           renderer_](ProgressReporter& reporter) -> std::pair<Document::Read, std::optional<Session>> {
+        const std::string name = short_name(path);
+        if (flush) flush();
+        const OpeningOptions options{.measure = {.progress = reporter.begin("measuring " + name)}};
+        const std::filesystem::path saved =
+            goes_on && settings.empty() ? session_saved_for(path) : std::filesystem::path();
+        std::filesystem::path input = saved.empty() ? path : saved;
+        std::optional<Session> pictured{};
+        OpenedSession opened = open_session(input, settings, options);
+        if (const std::filesystem::path of = opened_for_picture(input, opened); !of.empty()) {
+            pictured = std::move(opened.session);
+            input = of;
+            opened = open_session(input, settings, options);
+        }
+        const Session& session = opened.session;
+        opened.source = renderer.with_levels(std::move(opened.source), session.render, shows_occlusion(session.light),
+                                             reporter.begin("making coarser levels of " + name));
+        Work::Opening with_progress = how;
+        with_progress.progress = reporter.begin("reading the work on " + name);
+        return {Document::read(std::move(opened), input, settings, std::move(with_progress)), std::move(pictured)};
+    };
+    opening.number =
+        jobs_.start("opening " + short_name(path),
+                    [this, read, thrown = opening.thrown](ProgressReporter& reporter) -> Jobs::Completion {
+                        try {
+                            auto result = read(reporter);
+                            auto done = std::make_shared<Document::Read>(std::move(result.first));
+                            static_cast<void>(reporter.begin({}));  // a cancelled job releases its journal here
+                            return [this, thrown, done, pictured = std::move(result.second)] {
+                                if (!opening_ || opening_->thrown != thrown) return;  // its result is no longer wanted
+                                opening_->read = done;
+                                opening_->pictured = pictured;
+                            };
+                        } catch (...) {
+                            *thrown = std::current_exception();
+                            throw;
+                        }
+                    });
+}
+
+void Opener::advance()
+{
+    if (!opening_) return;
+    try {
+        if (!opening_->scene && !opening_->comes_back) {
+            if (!opening_->read || !is_ready_to_load()) return;
+            begin_loading();
+        }
+        if (opening_->scene && opening_->scene->load_on(SLICE_S)) finish();
+    } catch (const DeviceLost&) {
+        throw;  // it goes on once there is a device again
+    } catch (...) {
+        end(std::current_exception());
+    }
+}
+
+/// What is open is saved, and its journal is as it was read.
+bool Opener::is_ready_to_load()
+{
+    if (!document_) return true;
+    if (opening_->saves_before) {
+        std::string why;
+        const Leave leave_now = saver_.leave(why);
+        if (leave_now == Leave::later) return false;
+        if (leave_now == Leave::refused) fail("what is open cannot be saved: ", why);
+    }
+    Work& work = document_->annotator.work();
+    if (!is_one_journal(document_->session.journal_path, opening_->read->opened.session.journal_path)) return true;
+    if (saver_.is_saving()) return false;
+    work.settle();  // it was flushed a moment ago
+    if (work.journal().bytes == opening_->journal_bytes) return true;
+    read_next();
+    return false;
+}
+
+void Opener::begin_loading()
+{
+    Document::Read& read = *opening_->read;
+    const Session& session = read.opened.session;
+    const bool has_light = shows_occlusion(session.light);
+    photographer_.drop_large("opening another scan");
+    if (!renderer_.fits_beside(*read.opened.source, session.render, has_light)) {
+        if (document_) {
+            document_->screen.clear();
+            put_away();
+        }
+        renderer_.take_scene();
+    }
+    opening_->scene = renderer_.begin_loading(read.opened.source, read.opened.statistics, session.render, has_light,
+                                              read.work->document());
+}
+
+void Opener::finish()
+{
+    const std::shared_ptr<Opening> opening = std::exchange(opening_, nullptr);
+    viewer_.look_again();
+    if (document_) document_->screen.clear();
+    std::unique_ptr<Scene> before = renderer_.show(std::move(opening->scene));
+    if (opening->comes_back) return show_again();
+    const std::vector<std::string> losses = opening->read->opened.losses;
+    std::unique_ptr<Document> next;
+    try {
+        next = std::make_unique<Document>(renderer_, std::move(*opening->read), options_.view);
+    } catch (...) {
+        renderer_.show(std::move(before));
+        opening_ = opening;  // which ends now
+        throw;
+    }
+    document_ = std::move(next);
+    before.reset();
+    away_.reset();
+    begin_document(*opening);
+    welcome(opening->path, losses);
+    if (opening->pictured) show_picture(*opening->pictured);
+    for (const std::filesystem::path& taken : opening->taken_into_it) taker_.act(TakeFile{.path = taken});
+}
+
+/// What was put away.
+void Opener::show_again()
+{
+    try {
+        away_->show_again(renderer_);
+    } catch (const Error& error) {
+        const std::string path = away_->session_path.string();
+        away_.reset();
+        renderer_.take_scene();
+        return say(sentence(path, " cannot be shown again: ", error.what(), "; it is saved"), Weight::error);
+    }
+    document_ = std::move(away_);
+    say(document_->session_path.string() + " is open again");
+}
+
+/// Services forget what was of the document before.
+void Opener::begin_document(const Opening& opening)
+{
+    desk_.opened_s = opening.begun_s;
+    keeper_.note_opened(opening.path);
+    ++desk_.openings;
+    reader_.begin_document();
+    settings_.begin_document();
+    saver_.begin_document();
+    painter_.begin_document();
+}
+
+void Opener::take(Document::Read read)
+{
+    read.is_script = options_.is_script;
+    document_ = std::make_unique<Document>(renderer_, std::move(read), options_.view);
+    document_->choose_thresholds(document_->session);
+    ++desk_.openings;
+}
+
+/// Says what was opened, and what is not as it was left: that stays to be seen until it is dismissed.
+void Opener::welcome(const std::filesystem::path& path, const std::vector<std::string>& losses)
+{
+    recovered_ = losses;
+    for (const Notice& notice : document_->messages) recovered_.push_back(notice.text);
+    std::string status = "Opened " + path.string();
+    const std::filesystem::path& session = document_->session_path;  // of a scan, saved beside it
+    if (document_->has_session_file() && session != path && session.parent_path() == path.parent_path())
+        status += ", and goes on with " + session.filename().string();
+    if (document_->only_looks()) status += "; read only, for it is open for writing in " + document_->holder;
+    for (const std::string& loss : losses) status += "; " + loss;
+    for (const std::string& warning : document_->volume().warnings) status += "; " + warning;
+    for (const Notice& notice : document_->messages) status += "; " + notice.text;
+    const bool is_as_left = recovered_.empty() && !document_->only_looks();
+    say(status, is_as_left ? Weight::done : Weight::warning);
+}
+
+/// The look and the view of a picture, as settings that undo takes back.
+void Opener::show_picture(const Session& pictured)
+{
+    Session wanted = pictured;
+    wanted.probe = document_->session.probe;
+    const std::string patch = patch_between(document_->session, wanted);
+    if (!patch.empty()) apply(Set{patch});
+    settings_.record_settings();
+    viewer_.look_from(camera_named(pictured, pictured.camera_name, document_->volume()));
+    say("Shown as in the picture; undo takes its settings back");
+}
+
+void Opener::act(const DismissNotices&)
+{
+    recovered_.clear();
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,169 @@
+#include "engine/workbench/services/opener.h"
+
+#include <algorithm>
+
+#include "engine/base/text.h"
+#include "engine/workbench/services/opening.h"
+#include "engine/workbench/services/services.h"
+
+namespace shvr::ui {
+
+Jobs::Number Opener::number() const
+{
+    return opening_ ? opening_->number : 0;
+}
+
+std::string_view Opener::opening_name() const
+{
+    return opening_ ? std::string_view(opening_->name) : std::string_view();
+}
+
+void Opener::add_loading(std::vector<Jobs::State>& states) const
+{
+    if (opening_ && (opening_->read || opening_->comes_back)) states.push_back(state_of(*opening_));
+}
+
+void Opener::add_read(std::vector<Jobs::State>& states) const
+{
+    // The job has ended, and its result has not been taken yet.
+    if (opening_ && std::ranges::find(states, opening_->number, &Jobs::State::number) == states.end())
+        states.push_back(state_of(*opening_));
+}
+
+Jobs::State Opener::state_of(const Opening& opening) const
+{
+    const std::string name = short_name(opening.path);
+    return {.number = opening.number,
+            .what = "opening " + name,
+            .stretch = opening.scene ? "loading " + name + " onto the device" : std::string(),
+            .detail = opening.scene ? std::string() : "waits until the work is saved",
+            .fraction = opening.scene ? opening.scene->loaded() : -1.0,
+            .seconds = options_.now_s() - opening.begun_s};
+}
+
+OpeningModel Opener::model() const
+{
+    return {.recovered = document_ ? std::span<const std::string>(recovered_) : std::span<const std::string>(),
+            .opening = opening_name(),
+            .open_failure = open_failure_,
+            .failed_path = &failed_path_};
+}
+
+// ---- Where it does not come to its end ------------------------------------------------------------------------------
+
+void Opener::end_reading(const std::string& failure)
+{
+    const bool was_thrown = opening_->thrown && *opening_->thrown;
+    end(was_thrown ? *opening_->thrown : std::make_exception_ptr(Error(failure)));
+}
+
+void Opener::cancel()
+{
+    if (!opening_) return;
+    if (opening_->comes_back) return;  // there is nothing else to be shown
+    jobs_.cancel(opening_->number);
+    say("Cancelled: opening " + short_name(opening_->path), Weight::warning);
+    const std::shared_ptr<Opening> ended = std::exchange(opening_, nullptr);
+    ended->scene.reset();
+    if (away_) bring_back();
+}
+
+void Opener::end(std::exception_ptr failure)
+{
+    const std::shared_ptr<Opening> ended = std::exchange(opening_, nullptr);
+    ended->scene.reset();
+    viewer_.look_again();
+    std::string why = "an error of an unknown kind";
+    try {
+        std::rethrow_exception(failure);
+    } catch (const std::bad_alloc& error) {
+        why = sentence(ended->path.string(), ": ", told_of(error), "; close other programs, and open it again");
+    } catch (const std::exception& error) {
+        why = error.what();
+    } catch (...) {
+    }
+    if (ended->comes_back) {
+        const std::string path = away_ ? away_->session_path.string() : std::string();
+        away_.reset();
+        return say(sentence(why, "; ", path, " cannot be shown again either; it is saved"), Weight::error);
+    }
+    if (!ended->taken_into_it.empty()) why += "; what was dropped with it is not taken either";
+    if (document_) why += "; " + document_->session_path.string() + " stays open";
+    open_failure_ = why;
+    failed_path_ = ended->path;
+    if (awaited_failure_)
+        *awaited_failure_ = document_ ? std::make_exception_ptr(Error(why)) : failure;
+    else
+        say(why, Weight::error);
+    if (away_) bring_back();
+}
+
+void Opener::put_away()
+{
+    away_ = std::move(document_);
+    away_->touch.use(nullptr);  // one servo at a time on a device
+}
+
+/// Loads what was put away once more.
+void Opener::bring_back()
+{
+    opening_ = std::make_shared<Opening>(Opening{.path = away_->session_path,
+                                                 .name = short_name(away_->session_path),
+                                                 .begun_s = options_.now_s(),
+                                                 .comes_back = true});
+    opening_->number = next_return_++;
+    const Session& session = away_->session;
+    try {
+        renderer_.take_scene();
+        opening_->scene = renderer_.begin_loading(away_->source, away_->statistics, session.render,
+                                                  shows_occlusion(session.light), away_->annotator.document());
+    } catch (const DeviceLost&) {
+        throw;
+    } catch (...) {
+        end(std::current_exception());
+    }
+}
+
+// ---- Where the graphics device is lost ------------------------------------------------------------------------------
+
+void Opener::restart_device(const std::function<void()>& make_anew)
+{
+    const bool was_painting = document_ && document_->annotator.stroke_is_running();
+    photographer_.drop_large("the loss of the device");
+    if (document_) {
+        document_->annotator.drop_queries();
+        document_->previewer.drop();
+        document_->meter.drop();
+        document_->touch.drop_queries();
+        document_->screen.drop();
+    }
+    if (opening_) opening_->scene.reset();  // it is loaded again from its beginning
+    if (document_) reloader_.forget();      // the document is loaded as its settings now say
+    make_anew();
+    viewer_.look_again();
+    if (document_) load_again();
+    if (away_ && (!opening_ || opening_->comes_back)) bring_back();
+    say(sentence("The graphics device stopped answering and was started again; ",
+                 was_painting && !document_
+                     ? "of the stroke that was under way a part may be missing, all other work is there"
+                     : "all work is there"),
+        Weight::warning);
+}
+
+/// Puts the document away, to be brought back, where the new device cannot hold it.
+void Opener::load_again()
+{
+    try {
+        document_->load_again(renderer_);
+    } catch (const DeviceLost&) {
+        throw;
+    } catch (const Error& error) {
+        say(sentence("The graphics device was started again, but ", document_->session_path.string(),
+                     " cannot be shown on it: ", error.what()),
+            Weight::error);
+        document_->annotator.drop_strokes();
+        put_away();
+    }
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,221 @@
+#include "engine/workbench/services/painter.h"
+
+#include <algorithm>
+#include <chrono>
+#include <numbers>
+#include <thread>
+
+#include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/services/services.h"
+#include "engine/workbench/sight/words.h"
+
+namespace shvr::ui {
+
+namespace {
+
+/// How long the bricks of a stroke are waited for.
+constexpr double PATIENCE_S = 20.0;
+
+/// Of what the brush reaches at a place.
+bool is_hardly_any(const StrokeResult& result, const glm::dvec3& spacing)
+{
+    constexpr double HARDLY = 0.05;
+    const double radius = result.stroke.radius_voxels * spacing.x;
+    const double share_of_box = result.stroke.region == RegionShape::ball ? std::numbers::pi / 6.0 : 1.0;
+    const double reached = share_of_box * 8.0 * radius * radius * radius / (spacing.x * spacing.y * spacing.z);
+    return double(result.voxels() + result.kept_painted) < HARDLY * reached;
+}
+
+}  // namespace
+
+Painter::Painter(Services& all) : Service(all.desk), settings_(all.settings), tracer_(all.tracer), keeper_(all.keeper)
+{}
+
+void Painter::advance()
+{
+    attempt(painting_, [this] { follow_stroke(); });
+    attempt(previewing_, [this] { follow_preview(); });
+}
+
+bool Painter::is_stuck() const
+{
+    return options_.now_s() - stroke_progress_s_ > PATIENCE_S;
+}
+
+std::string Painter::why_stuck()
+{
+    return sentence("its bricks did not arrive within ", PATIENCE_S, " s");
+}
+
+void Painter::act(const Paint& action)
+{
+    Annotator& annotator = document_->annotator;
+    if (document_->session.probe.tool == Tool::trace) {
+        if (action.on) tracer_.add_node_here();
+        return;
+    }
+    if (action.on && !annotator.stroke_is_open()) {
+        if (settings_.has_settings_to_record() || document_->drags_node)
+            await_strokes();  // in the history they come before
+        if (document_->drags_node) tracer_.act(DragNode{false});
+        const Previewer& previewer = document_->previewer;
+        if (previewer.shown() && previewer.is_current()) previewed_at_stroke_ = previewer.shown()->voxels;
+        check_radius(document_->brush().radius_voxels, document_->volume().spacing, document_->volume().size);
+        settings_.record_settings();
+        annotator.begin_stroke(document_->stroke());
+        stroke_end_voxel_ = document_->tool_voxel();
+        annotator.extend_stroke(stroke_end_voxel_);
+    } else if (!action.on && annotator.stroke_is_open()) {
+        extend_stroke();
+        annotator.end_stroke();
+    }
+}
+
+void Painter::act(const PaintOp& op)
+{
+    if (document_->annotator.stroke_is_running()) fail("a stroke is being painted; expected it to have ended");
+    settings_.record_settings();
+    document_->annotator.paint(in_session(op, document_->session));
+    stroke_ended();
+}
+
+void Painter::extend_stroke()
+{
+    if (!document_->annotator.stroke_is_open() || document_->tool_voxel() == stroke_end_voxel_) return;
+    stroke_end_voxel_ = document_->tool_voxel();
+    document_->annotator.extend_stroke(stroke_end_voxel_);
+    if (log_ && document_->touch.servo()) log_(line_of(PlaceProbe{stroke_end_voxel_}));
+}
+
+void Painter::follow_stroke()
+{
+    Annotator& annotator = document_->annotator;
+    const std::string failure = annotator.work().journal().failure;
+    if (failure != journal_failure_)
+        say(failure.empty() ? "The journal can be written again: all work is kept" : failure,
+            failure.empty() ? Weight::done : Weight::error);
+    journal_failure_ = failure;
+    if (!annotator.stroke_is_running() && !annotator.is_behind()) return;
+    extend_stroke();
+    const uint64_t done = annotator.strokes_done();
+    advance_stroke();
+    if (annotator.strokes_done() != done) stroke_ended();
+}
+
+void Painter::advance_stroke()
+{
+    const bool has_painted = document_->annotator.advance().has_value();
+    const uint64_t before =
+        std::exchange(stroke_uploads_, renderer_.volume().counts().value_or(DeviceVolume::Counts{}).uploads);
+    if (has_painted || before != stroke_uploads_) stroke_progress_s_ = options_.now_s();
+}
+
+/// Changes of annotation wait for strokes that have ended. These take milliseconds unless bricks come from a slow disk;
+/// an action that still cannot be done fails with its reason.
+void Painter::await_strokes()
+{
+    constexpr double MAX_WAIT_S = 2.0;
+    constexpr std::chrono::microseconds TURN(200);
+    const Annotator& annotator = document_->annotator;
+    const double until = options_.now_s() + MAX_WAIT_S;
+    while (annotator.stroke_is_running() && !annotator.stroke_is_open() && options_.now_s() < until) {
+        attempt(painting_, [this] { follow_stroke(); });
+        renderer_.scene().advance();
+        std::this_thread::sleep_for(TURN);
+    }
+}
+
+std::string Painter::finish_stroke()
+{
+    constexpr std::chrono::milliseconds TURN(1), AGAIN(250);
+    Annotator& annotator = document_->annotator;
+    extend_stroke();
+    if (annotator.stroke_is_open()) annotator.end_stroke();
+    std::string unpainted;
+    stroke_progress_s_ = options_.now_s();
+    while (annotator.stroke_is_running()) {
+        const bool was_tried = tries_stroke(unpainted);
+        renderer_.scene().advance();
+        if (is_stuck()) {
+            annotator.drop_strokes();
+            unpainted = why_stuck();
+        }
+        std::this_thread::sleep_for(was_tried ? TURN : AGAIN);
+    }
+    return unpainted;
+}
+
+/// False where memory is too short just now. What cannot be painted at all leaves the reason.
+bool Painter::tries_stroke(std::string& unpainted)
+{
+    try {
+        follow_stroke();
+        return true;
+    } catch (const gpu::MemoryError&) {
+        return false;
+    } catch (const gpu::DeviceLost&) {
+        throw;
+    } catch (const Error& error) {
+        unpainted = error.what();
+        return true;
+    }
+}
+
+void Painter::stroke_ended()
+{
+    const StrokeResult& result = document_->annotator.last_stroke();
+    const bool is_as_meant = result.taken_from.empty() && result.kept_by_locks() == 0;
+    std::string said =
+        sentence_of(result, [&](uint8_t group) { return group_of(document_->session.groups, group).name; });
+    const bool found_nothing =
+        is_as_meant && result.voxels() == 0 && result.kept_painted == 0 && !result.stroke.erases();
+    if (is_as_meant && !result.stroke.erases() && is_hardly_any(result, document_->volume().spacing))
+        said += how_to_reach_this();
+    settings_.note_stroke(result.voxels() == 0);
+    if (result.voxels() != 0) document_->painted_at = document_->touch.probe();
+    say(said, is_as_meant && !found_nothing ? Weight::done : Weight::warning);
+}
+
+/// Where what is under the probe is below the paint threshold: what it is, and the key that changes that.
+std::string Painter::how_to_reach_this() const
+{
+    const Model now = desk_.model();
+    const Reading& here = now.reading;
+    if (!here.is_inside || !here.intensity || *here.intensity + here.offset >= now.paint_threshold()) return {};
+    return "; here is " + value_in_words(here) +
+           keeper_.with_key(", and ", "threshold_here", " sets the threshold from it");
+}
+
+/// Requests the preview while it is shown and no stroke is running: a stroke shows its own effect.
+void Painter::follow_preview()
+{
+    Document& document = *document_;
+    const bool is_wanted = document.session.probe.preview && document.session.probe.tool != Tool::trace &&
+                           !document.annotator.stroke_is_running();
+    document.previewer.want(is_wanted ? std::optional(document.dab()) : std::nullopt);
+    try {
+        document.previewer.advance();
+    } catch (const Error& error) {
+        const bool is_of_budget = dynamic_cast<const gpu::BudgetError*>(&error) != nullptr;
+        if (dynamic_cast<const gpu::DeviceLost*>(&error) != nullptr) throw;
+        if (dynamic_cast<const gpu::MemoryError*>(&error) != nullptr && !is_of_budget) throw;  // there may be some soon
+        // Else it is a brush that is too large, a file that cannot be read.
+        document.session.probe.preview = false;
+        settings_.note_edit();
+        document.previewer.want(std::nullopt);
+        say(error.what(), Weight::error);
+    }
+}
+
+PaintModel Painter::model() const
+{
+    if (!document_) return {};
+    const Previewer& previewer = document_->previewer;
+    const bool has_preview = previewer.shown() && previewer.is_current();
+    return {.is_painting = document_->annotator.stroke_is_running(),
+            .stroke_is_open = document_->annotator.stroke_is_open(),
+            .previewed_voxels = has_preview ? std::optional(previewer.shown()->voxels) : std::nullopt,
+            .voxels_by_group = document_->annotator.document().mask.voxels_by_group()};
+}
+
+}  // namespace shvr::ui

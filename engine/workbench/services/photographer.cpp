@@ -1,0 +1,91 @@
+#include "engine/workbench/services/photographer.h"
+
+#include <cstdlib>
+
+#include "engine/session/picture_session.h"
+#include "engine/workbench/services/services.h"
+
+namespace shvr::ui {
+
+Photographer::Photographer(Services& all) : Service(all.desk), viewer_(all.viewer) {}
+
+void Photographer::advance()
+{
+    attempt(photographing_, [this] { follow_screenshots(); });
+}
+
+void Photographer::drop_large(const char* by)
+{
+    if (!screenshots_.has_large()) return;
+    screenshots_.drop_large();
+    say(sentence("The large screenshot was cancelled by ", by), Weight::warning);
+}
+
+void Photographer::follow_screenshots()
+{
+    if (document_->annotator.stroke_is_running()) drop_large("painting");  // only some parts would show it
+    const Screenshots::Turn turn =
+        screenshots_.advance(document_->screen, stem(), is_still_, texts_of_picture(viewer_.pixels(), true),
+                             [this] { return figure_of_picture(1); });
+    if (!turn.said.empty()) say(turn.said);
+    if (!turn.progress.empty()) desk_.messages.amend(options_.now_s(), turn.progress);
+}
+
+std::filesystem::path Photographer::stem() const
+{
+    const std::filesystem::path stem = std::filesystem::path(document_->session_path).replace_extension();
+    // The example lies in the hidden folder of the settings, which is no place for pictures.
+    const bool is_example = stem.parent_path() == options_.preferences.parent_path() / "example";
+    const char* const home = std::getenv("HOME");
+    return is_example && home && *home ? std::filesystem::path(home) / stem.filename() : stem;
+}
+
+Jobs::State Photographer::state_of_large() const
+{
+    return {.number = NUMBER,
+            .what = "drawing " + short_name(screenshots_.large_path()),
+            .fraction = screenshots_.progress()};
+}
+
+void Photographer::act(const Screenshot& action)
+{
+    if (!action.is_large) {
+        document_->painted_at.reset();  // a picture is drawn again from its session, which knows no smaller ball
+        screenshots_.take();
+        return say("The screenshot will be taken when the picture is sharp");
+    }
+    Session session = document_->saved_session();
+    session.render.size = viewer_.pixels() * session.interaction.screenshot_scale;
+    RenderOptions options;
+    options.part_pixels = 96;  // bounds the delay when the user resumes
+    screenshots_.take_large(stem(), renderer_, session, document_->camera, options,
+                            texts_of_picture(session.render.size, false),
+                            figure_of_picture(session.interaction.screenshot_scale));
+    say(sentence("A screenshot of ", session.render.size.x, " x ", session.render.size.y,
+                 " pixels is made in the background"));
+}
+
+/// Draws marks for a picture `scale` times as large as the window; empty where none are wanted.
+Figure Photographer::figure_of_picture(uint32_t scale) const
+{
+    const Document& document = *document_;
+    if (!document.session.interaction.screenshot_marks) return {};
+    const std::vector<Pane> panes = panes_of(document.session.view, document.camera, viewer_.pixels() * scale,
+                                             document.volume(), document.probe_voxel());
+    return figure_of(model(), panes, units_ * scale, options_.draw_texts);
+}
+
+/// The session in a picture is of that size; a picture larger than the window shows no probe.
+Screenshots::Texts Photographer::texts_of_picture(const glm::uvec2& pixels, bool shows_probe) const
+{
+    return [this, pixels, shows_probe](const std::filesystem::path& picture) {
+        Session session = document_->saved_session();
+        session.render.size = pixels;
+        const bool has_project = document_->has_session_file() || document_->annotator.work().journal().bytes > 0;
+        return shvr::texts_of_picture(std::move(session), document_->camera, picture,
+                                      has_project ? document_->session_path : std::filesystem::path(),
+                                      shows_probe ? PictureProbe::plain : PictureProbe::none);
+    };
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,123 @@
+#include "engine/workbench/services/prober.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/workbench/services/services.h"
+#include "engine/workbench/sight/words.h"
+
+namespace shvr::ui {
+
+namespace {
+
+double depth_of(const Camera& camera, const glm::dvec3& point)
+{
+    return glm::dot(point - camera.eye, axes_of(camera).forward);
+}
+
+/// At the depth of the probe, or just before the eye.
+glm::dvec3 in_plane_of(const glm::dvec3& probe, const Pane& seen, const glm::dvec2& pixel)
+{
+    const Camera& camera = seen.shot.camera;
+    const double shallowest = 1e-3 * glm::distance(camera.eye, camera.target);
+    return unproject(camera, seen.pixels(), pixel, std::max(depth_of(camera, probe), shallowest));
+}
+
+}  // namespace
+
+Prober::Prober(Services& all) : Service(all.desk), viewer_(all.viewer), painter_(all.painter), settings_(all.settings)
+{}
+
+/// A stroke that is open paints nothing on the way to where the hand is next.
+void Prober::lift()
+{
+    if (document_->annotator.stroke_is_open()) document_->annotator.lift_stroke();
+}
+
+void Prober::act(const ProbeTo& action)
+{
+    const glm::dvec3 point = in_plane_of(document_->touch.probe(), viewer_.pane(action.pane), action.pixel);
+    if (action.jumps) lift();
+    move_probe(point, false);
+}
+
+void Prober::act(const ProbeOnto& action)
+{
+    const Pane seen = viewer_.pane(action.pane);
+    const std::optional<glm::dvec3> point = viewer_.seen_at(seen, action.pixel);
+    if (!point) return say("Nothing is seen there: the probe stays where it is");
+    move_probe(*point, true);
+    const Document& document = *document_;
+    if (document.annotator.stroke_is_running() && !document.touch.servo())
+        log_instead({PlaceProbe{document.probe_voxel()}});  // what is seen may still be painted over
+    std::string said = "Probe at " + place_in_words(document.probe_voxel(), document.volume());
+    if (!seen.shot.is_slice)
+        said += sentence(", ",
+                         length_in_words(depth_below_surface(seen.shot.camera, document.session.cut, document.volume(),
+                                                             document.touch.probe()),
+                                         document.volume().unit),
+                         " deep");
+    say(std::move(said));
+}
+
+void Prober::act(const ProbeAlong& action)
+{
+    const Pane seen = viewer_.pane(action.pane);
+    const glm::dvec3 probe = document_->touch.probe(), level = in_plane_of(probe, seen, action.pixel);
+    const bool is_stroke = document_->annotator.stroke_is_open() && !action.jumps;
+    const std::optional<glm::dvec3> point =
+        is_stroke ? viewer_.seen_near(seen, action.pixel, depth_of(seen.shot.camera, level),
+                                      document_->probe_radius() + glm::distance(level, probe))
+                  : viewer_.seen_at(seen, action.pixel);
+    if (action.jumps) lift();
+    move_probe(point.value_or(level), false);
+    if (!document_->touch.servo()) log_instead({PlaceProbe{document_->probe_voxel(), action.jumps}});
+}
+
+void Prober::act(const PushProbe& action)
+{
+    const CameraAxes axes = axes_of(viewer_.pane(action.pane).shot.camera);
+    const auto step = [&](const glm::dvec3& way, double voxels) {
+        return way * (voxels * glm::length(way * document_->volume().spacing));
+    };
+    move_probe(document_->touch.probe() + step(axes.forward, action.voxels) + step(axes.right, action.right) +
+                   step(axes.up, action.up),
+               false);
+}
+
+void Prober::act(const PlaceProbe& action)
+{
+    if (action.jumps) lift();
+    move_probe(action.voxel * document_->volume().spacing, true);
+}
+
+/// A stroke that is open goes there with it.
+void Prober::move_probe(const glm::dvec3& point, bool jumps)
+{
+    if (jumps)
+        document_->touch.place(point);
+    else
+        document_->touch.wish(point);
+    settings_.note_to_keep();
+    painter_.extend_stroke();
+}
+
+void Prober::act(const ScaleProbe& action)
+{
+    double& radius = document_->session.probe.brush.radius_voxels;
+    radius = std::clamp(radius * action.factor, MIN_RADIUS_VOXELS, MAX_RADIUS_VOXELS);
+    settings_.note_edit();
+    say(sentence("Probe radius ", std::round(10.0 * radius) / 10.0, " voxels"));
+}
+
+ProbeModel Prober::model() const
+{
+    if (!document_) return {};
+    const ToolPlace tool = document_->tool_place();
+    return {.probe_voxel = document_->probe_voxel(),
+            .tool_voxel = tool.point / document_->volume().spacing,
+            .tool_node = tool.node,
+            .tool_internode = tool.internode};
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,44 @@
+#pragma once
+// What is read under the probe and the pointer, what is measured, and what the scene reports.
+
+#include "engine/workbench/desk/service.h"
+
+namespace shvr::ui {
+
+class PreferenceKeeper;
+class SettingsEditor;
+struct Services;
+class Viewer;
+
+class Reader : public Service {
+public:
+    explicit Reader(Services& all);
+    void act(const MeasureAt& action);
+    void act(const ClearMeasurements& action);
+    void act(const CopyMeasurements& action);
+
+    void advance() override;
+    /// Reads the voxel again, since another document is open.
+    void begin_document() { read_voxel_.reset(); }
+    /// What was to be copied since the last call; empty: nothing.
+    std::string take_clipboard() { return std::exchange(clipboard_, {}); }
+    ReadingModel model() const;
+
+private:
+    void follow_reading();
+    void read_at(const glm::dvec3& voxel);
+    bool probe_is_measured() const;
+    glm::dvec3 voxel_to_read() const;
+
+    Viewer& viewer_;
+    SettingsEditor& settings_;
+    PreferenceKeeper& keeper_;
+    Reading reading_;
+    std::optional<glm::dvec3> read_voxel_;  ///< whole numbers: of which `reading_` has the intensity
+    uint64_t read_revision_ = 0;            ///< revision of the paint
+    double read_again_s_ = 0.0;             ///< reading may take long: not before
+    std::string clipboard_;
+    Attempt reading_turn_;
+};
+
+}  // namespace shvr::ui

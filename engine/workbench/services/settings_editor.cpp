@@ -1,0 +1,287 @@
+#include "engine/workbench/services/settings_editor.h"
+
+#include <algorithm>
+
+#include "engine/session/session_patch.h"
+#include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/edits/edit.h"
+#include "engine/workbench/edits/group_steps.h"
+#include "engine/workbench/services/services.h"
+#include "engine/workbench/words/settings_words.h"
+
+namespace shvr::ui {
+
+namespace {
+
+/// Whether pictures of the volume are the same: these settings are drawn over them, or not at all.
+bool look_the_same(Session before, const Session& after)
+{
+    before.probe = after.probe;  // which is drawn by itself, as distances are
+    before.measurements = after.measurements;
+    if (!shows_occlusion(before.light) && !shows_occlusion(after.light)) before.light.occlusion = after.light.occlusion;
+    return before == after;
+}
+
+}  // namespace
+
+SettingsEditor::SettingsEditor(Services& all)
+    : Service(all.desk), viewer_(all.viewer), tracer_(all.tracer), painter_(all.painter), reloader_(all.reloader)
+{}
+
+void SettingsEditor::advance()
+{
+    attempt(recording_, [this] { follow_settings(); });
+    attempt(keeping_, [this] { follow_view(); });
+}
+
+void SettingsEditor::begin_document()
+{
+    settings_to_record_ = was_set_in_this_turn_ = false;
+    discarded_steps_.reset();
+    steps_at_empty_stroke_.reset();
+    to_keep_since_s_.reset();
+    session_before_hand_.reset();
+}
+
+void SettingsEditor::act(const Set& action)
+{
+    if (action.patch.empty()) return log_instead({Set{"{}"}});  // a key for what is so already
+    Session after = patched(document_->session, action.patch);
+    if (!after.transfer_preset.empty())
+        after.transfer_function = transfer_function_of(transfer_preset_named(std::exchange(after.transfer_preset, {})),
+                                                       document_->statistics);
+    document_->choose_thresholds(after);
+    document_->choose_for_volume(after);
+    const Session before = document_->session;
+    take_session(std::move(after));
+    if (is_hand_down_ && !session_before_hand_) session_before_hand_ = before;
+    const Session& since = session_before_hand_ ? *session_before_hand_ : before;
+    std::string said = special_sentence(since, document_->session);
+    if (said.empty()) said = difference_in_words(since, document_->session);
+    if (!said.empty()) say(std::move(said));
+}
+
+void SettingsEditor::act(const NewGroup&)
+{
+    const uint8_t next = unused_group(desk_.model());
+    if (next == 0) fail("all 255 groups are in use; expected one that nothing is painted, traced or described with");
+    act(edited(document_->session, [&](Session& s) {
+        s.groups[next].name = group_of(s.groups, next).name;
+        s.probe.brush.group = next;
+    }));
+}
+
+void SettingsEditor::act(const EndStep&)
+{
+    record_settings();
+}
+
+void SettingsEditor::act(const AutoContrast&)
+{
+    const ValueRange contrast = automatic_contrast(document_->statistics);
+    Session after = document_->session;
+    after.view.slices.black = contrast.lower;
+    after.view.slices.white = contrast.upper;
+    take_session(std::move(after));
+    say(sentence("Slices: black at ", contrast.lower, ", white at ", contrast.upper));
+}
+
+void SettingsEditor::act(const TakePreset& action)
+{
+    Session after = document_->session;
+    const TransferPreset preset = read_transfer_preset(action.path);
+    after.transfer_function = transfer_function_of(preset, document_->statistics);
+    take_session(std::move(after));
+    say("Transfer function: " + preset.name);
+}
+
+void SettingsEditor::take_session(Session session)
+{
+    Document& document = *document_;
+    Session before = std::exchange(document.session, std::move(session));
+    const Session& after = document.session;
+    try {
+        settings_changed(before);
+    } catch (...) {
+        document.session = before;
+        throw;
+    }
+    note_edit();
+    if (!look_the_same(std::move(before), after)) viewer_.look_again();
+}
+
+/// Updates the window's data about the trace; the annotator passes changes to the scene itself.
+void SettingsEditor::show_changes(const Command& command)
+{
+    Document& document = *document_;
+    const bool is_traced = std::ranges::any_of(
+        command.changes, [](const Change& change) { return std::holds_alternative<TraceChange>(change); });
+    if (is_traced) document.drags_node = false;
+    const bool is_set = std::ranges::any_of(
+        command.changes, [](const Change& change) { return std::holds_alternative<SettingChange>(change); });
+    if (!is_set) return;
+    const Session before = document.session;
+    document.take_settings();
+    if (!look_the_same(before, document.session)) viewer_.look_again();
+}
+
+/// Applies effects of settings other than a new picture.
+void SettingsEditor::settings_changed(const Session& before)
+{
+    Document& document = *document_;
+    const Session& after = document.session;
+    if (before.render.sampling != after.render.sampling || before.render.paging != after.render.paging) {
+        reloader_.want(before.render);
+    } else if (before.groups != after.groups) {
+        renderer_.scene().show_surfaces(document.surfaces, document.annotator.document().trace, after.groups);
+    }
+    if (before.cut != after.cut) viewer_.show_cut_box();
+    if (before.probe.tool != after.probe.tool) {
+        if (document.annotator.stroke_is_open()) document.annotator.end_stroke();
+        if (document.drags_node) tracer_.act(DragNode{false});
+        document.measuring_from.reset();
+    }
+}
+
+/// View, probe and the like go into the journal when the hand rests, and every few seconds while it does not.
+void SettingsEditor::note_to_keep()
+{
+    last_change_s_ = options_.now_s();
+    if (!to_keep_since_s_) to_keep_since_s_ = last_change_s_;
+}
+
+void SettingsEditor::follow_view()
+{
+    constexpr double REST_S = 0.2, MAX_UNKEPT_S = 5.0;
+    const double now = options_.now_s();
+    if (!to_keep_since_s_ || (now - last_change_s_ < REST_S && now - *to_keep_since_s_ < MAX_UNKEPT_S)) return;
+    to_keep_since_s_.reset();
+    document_->keep_settings();
+}
+
+void SettingsEditor::note_edit()
+{
+    note_to_keep();
+    document_->note_edit();
+    settings_to_record_ = was_set_in_this_turn_ = true;
+}
+
+/// Makes a step of the history of what was set, once the hand has let go: one drag is one step.
+void SettingsEditor::follow_settings()
+{
+    const bool is_being_set = std::exchange(was_set_in_this_turn_, false) || is_hand_down_;
+    if (!is_hand_down_) session_before_hand_.reset();
+    if (!settings_to_record_ || is_being_set) return;
+    record_settings();
+}
+
+/// Of what follows, undo is to take back that first.
+void SettingsEditor::record_settings()
+{
+    if (document_->annotator.stroke_is_running() || document_->annotator.work().is_saving_as()) return;
+    settings_to_record_ = false;
+    if (document_->record_settings() && log_) log_(line_of(EndStep{}));
+}
+
+// ---- The history ----------------------------------------------------------------------------------------------------
+
+template <class Way>
+void SettingsEditor::step(int count, const char* done, const char* nothing, Way way)
+{
+    record_settings();
+    std::string last;
+    int steps = 0;
+    for (; steps < count; ++steps) {
+        const Command* const command = way(document_->annotator);
+        if (!command) break;
+        show_changes(*command);
+        last = command->label;
+    }
+    if (steps == 0 && document_->annotator.stroke_is_running()) fail("A stroke is being painted");
+    if (steps == 0) return say(nothing);
+    say(steps == 1 ? sentence(done, ": ", last) : sentence(done, ": ", steps, " steps, the last: ", last));
+}
+
+/// Whether undo would take back another step than what a person did last: a stroke that changed nothing is none.
+/// Asked once after such a stroke. Scripts count steps.
+bool SettingsEditor::follows_empty_stroke()
+{
+    record_settings();
+    const size_t steps = document_->annotator.history().undoable();
+    return std::exchange(steps_at_empty_stroke_, {}) == steps && steps > 0 && !document_->is_script();
+}
+
+void SettingsEditor::note_stroke(bool is_empty)
+{
+    if (is_empty)
+        steps_at_empty_stroke_ = document_->annotator.history().undoable();
+    else
+        steps_at_empty_stroke_.reset();
+}
+
+void SettingsEditor::act(const UndoOp& action)
+{
+    if (follows_empty_stroke() && action.count == 1) {
+        const History& history = document_->annotator.history();
+        say(sentence("The last stroke changed nothing, and nothing is undone; undo once more takes back: ",
+                     history.label_of(history.undoable() - 1)));
+        return log_instead({Set{"{}"}});
+    }
+    step(action.count, "Undone", "Nothing to undo", [](Annotator& annotator) { return annotator.undo(); });
+}
+
+void SettingsEditor::act(const RedoOp& action)
+{
+    steps_at_empty_stroke_.reset();
+    step(action.count, "Redone", "Nothing to redo", [](Annotator& annotator) { return annotator.redo(); });
+}
+
+void SettingsEditor::act(const RevertOp&)
+{
+    record_settings();
+    const Command* const command = document_->annotator.revert();
+    if (!command && document_->annotator.stroke_is_running()) fail("A stroke is being painted");
+    if (!command) return say("Nothing has changed since the last save");
+    show_changes(*command);
+    say("Reverted to the last save; undo takes that back");
+}
+
+void SettingsEditor::act(const ChooseBelief& action)
+{
+    std::string said;
+    for (const Notice& notice : document_->annotator.choose(action.takes_files ? Belief::files : Belief::journal))
+        said += (said.empty() ? "" : "; ") + notice.text;
+    document_->drags_node = false;
+    viewer_.look_again();
+    say(said);
+}
+
+/// Files stay as they are. The journal keeps what was done since: undo brings it back next time.
+void SettingsEditor::discard()
+{
+    if (!document_ || document_->only_looks() || !document_->annotator.work().disputes().empty()) return;
+    static_cast<void>(painter_.finish_stroke());  // which is discarded
+    record_settings();
+    const Command* done = nullptr;
+    try {
+        done = document_->annotator.revert();
+    } catch (const Error&) {  // what was never saved was nothing
+        while (const Command* const undone = document_->annotator.undo()) show_changes(*undone);
+    }
+    if (done) show_changes(*done);
+    discarded_steps_ = document_->annotator.history().undoable();
+}
+
+bool SettingsEditor::is_discarded() const
+{
+    return discarded_steps_ == document_->annotator.history().undoable() && !settings_to_record_;
+}
+
+HistoryModel SettingsEditor::model() const
+{
+    if (!document_) return {};
+    const History& history = document_->annotator.history();
+    return {.history = &history, .undoable = history.undoable() + settings_to_record_, .redoable = history.redoable()};
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,161 @@
+#include "engine/workbench/services/task_runner.h"
+
+#include <algorithm>
+
+#include "engine/workbench/services/services.h"
+
+namespace shvr::ui {
+
+namespace {
+
+std::string joined(const std::vector<std::string>& texts, const char* between)
+{
+    std::string text;
+    for (const std::string& each : texts) text += (text.empty() ? "" : between) + each;
+    return text;
+}
+
+std::string sentence_about(const EvaluateResult& result)
+{
+    std::string text;
+    const auto add = [&](const auto&... parts) { text += sentence(text.empty() ? "" : ", ", parts...); };
+    if (result.dice && result.dice->painted) add("Dice ", *result.dice->painted);
+    if (result.nodes && result.nodes->mean) add("nodes ", *result.nodes->mean, " inside the mask");
+    if (result.internodes && result.internodes->mean) add("internodes ", *result.internodes->mean);
+    if (result.traces)
+        add(result.traces->segments_found, " of ", result.traces->segments_total, " segments found, ",
+            result.traces->topological_errors(), " topological errors");
+    return text.empty() ? "There was nothing to compare" : "Compared with the reference: " + text;
+}
+
+}  // namespace
+
+TaskRunner::TaskRunner(Services& all)
+    : Service(all.desk),
+      taker_(all.taker),
+      opener_(all.opener),
+      photographer_(all.photographer),
+      reloader_(all.reloader),
+      saver_(all.saver),
+      settings_(all.settings)
+{}
+
+void TaskRunner::advance()
+{
+    for (const Jobs::Finished& job : savers_.finish()) saver_.end(job);
+    for (const Jobs::Finished& job : jobs_.finish()) {
+        writers_.erase(job.number);
+        if (opener_.is_opening() && opener_.number() == job.number) {
+            if (job.was_cancelled)
+                opener_.cancel();
+            else if (!job.failure.empty())
+                opener_.end_reading(job.failure);
+            continue;
+        }
+        if (job.was_cancelled)
+            say("Cancelled: " + job.what, Weight::warning);
+        else if (!job.failure.empty())
+            say(job.failure, Weight::error);
+    }
+}
+
+void TaskRunner::act(const CancelJob& action)
+{
+    if (opener_.is_opening() && opener_.number() == action.number) return opener_.cancel();
+    if (action.number == Reloader::NUMBER && reloader_.cancel())
+        return say("Cancelled: loading once more", Weight::warning);
+    if (action.number == Photographer::NUMBER && photographer_.has_large()) {
+        photographer_.drop_large();
+        return say("Cancelled: the large screenshot", Weight::warning);
+    }
+    jobs_.cancel(action.number);
+    savers_.cancel(action.number);
+}
+
+JobModel TaskRunner::model() const
+{
+    std::vector<Jobs::State> states = savers_.states();
+    opener_.add_loading(states);
+    if (document_ && reloader_.is_wanted()) states.push_back(reloader_.state());
+    if (document_ && photographer_.has_large()) states.push_back(photographer_.state_of_large());
+    for (Jobs::State& state : jobs_.states()) states.push_back(std::move(state));
+    opener_.add_read(states);
+    return {.jobs = std::move(states)};
+}
+
+void TaskRunner::act(const ExportTask& task)
+{
+    settings_.record_settings();
+    const Document& document = *document_;
+    const shvr::Document& annotation = document.annotator.document();
+    const AnnotationView view{.volume = document.volume(),
+                              .mask = annotation.mask,
+                              .density = annotation.density,
+                              .trace = annotation.trace,
+                              .groups = document.session.groups,
+                              .volume_hash = document.session.volume_hash,
+                              .project = document.session.volume_path,
+                              .volume_path = document.session.volume_path,
+                              .trace_path = document.session.trace_path};
+    auto snapshot = std::make_shared<AnnotationSnapshot>(view);
+    std::vector<std::string> names;
+    for (const std::filesystem::path& path : {task.mask, task.offset, task.trace, task.mesh, task.metrics})
+        if (!path.empty()) names.push_back(short_name(path));
+    if (task.labels) names.emplace_back("labels");
+    writers_.insert(jobs_.start("exporting " + joined(names, ", "),
+                                [this, task, snapshot](ProgressReporter& reporter) -> Jobs::Completion {
+                                    ExportResult result = run(task, snapshot->view(), reporter);
+                                    return [this, result = std::move(result)] {
+                                        say("Exported " + joined(result.written, ", ") +
+                                                (result.left_out.empty() ? "" : "; " + joined(result.left_out, "; ")),
+                                            result.left_out.empty() ? Weight::done : Weight::warning);
+                                    };
+                                }));
+}
+
+/// The project is opened when it is there.
+void TaskRunner::act(const ImportTask& task)
+{
+    const auto import = [this, task](ProgressReporter& reporter) -> Jobs::Completion {
+        ImportTask wanted = task;
+        wanted.program = "shvr view";
+        const ImportResult result = run(wanted, reporter);
+        return [this, project = result.report.project, warnings = result.report.warnings] {
+            for (const std::string& warning : warnings) say(warning, Weight::warning);
+            taker_.act(Open{project});
+        };
+    };
+    writers_.insert(jobs_.start("importing " + short_name(task.volume), import));
+}
+
+void TaskRunner::act(const LabelTask& task)
+{
+    const std::shared_ptr<const VolumeSource> source = document_->source;
+    const std::filesystem::path path = document_->session.volume_path;
+    const std::string name = document_->volume().name;
+    const auto label = [this, task, source, path, name](ProgressReporter& reporter) -> Jobs::Completion {
+        check(task, *source, path);
+        const LabelResult result = run(task, *source, name, reporter);
+        return [this, result, task] {
+            const Components::Counts& counts = result.counts;
+            for (const std::string& warning : result.warnings) say(warning, Weight::warning);
+            say(sentence(counts.found, " connected parts at or above ", task.threshold, ", the largest of ",
+                         counts.largest_voxels, " voxels",
+                         task.output.empty() ? "" : "; labels are in " + task.output.string()));
+        };
+    };
+    writers_.insert(jobs_.start("labelling " + name, label));
+}
+
+void TaskRunner::act(const EvaluateTask& task)
+{
+    jobs_.start("comparing with the reference", [this, task](ProgressReporter& reporter) -> Jobs::Completion {
+        const EvaluateResult result = run(task, reporter);
+        return [this, result] {
+            for (const std::string& warning : result.warnings) say(warning, Weight::warning);
+            say(sentence_about(result));
+        };
+    });
+}
+
+}  // namespace shvr::ui

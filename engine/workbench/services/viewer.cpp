@@ -1,0 +1,354 @@
+#include "engine/workbench/services/viewer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/look/camera_motion.h"
+#include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/edits/edit.h"
+#include "engine/workbench/edits/trace_ops.h"
+#include "engine/workbench/services/services.h"
+
+namespace shvr::ui {
+
+namespace {
+
+/// The first of "view 1", "view 2", ... that is free.
+std::string free_camera_name(const Session& session)
+{
+    for (int number = 1;; ++number)
+        if (std::string name = sentence("view ", number); !session.cameras.contains(name)) return name;
+}
+
+/// The height of the view at the target's depth.
+double height_of(const Camera& camera)
+{
+    return pixel_size(camera, {1, 1}, glm::distance(camera.eye, camera.target));
+}
+
+}  // namespace
+
+Viewer::Viewer(Services& all) : Service(all.desk), settings_(all.settings) {}
+
+void Viewer::advance()
+{
+    attempt(looking_, [this] { follow_look(); });
+}
+
+void Viewer::look_from(const Camera& camera)
+{
+    document_->camera = camera;
+    camera_moved_ = true;
+    settings_.note_to_keep();
+}
+
+/// The point that the view turns about.
+glm::dvec3 Viewer::pivot() const
+{
+    switch (document_->session.interaction.pivot) {
+        case Pivot::target: break;
+        case Pivot::probe: return document_->touch.probe();
+        case Pivot::picked: return document_->picked_pivot.value_or(document_->camera.target);
+    }
+    return document_->camera.target;
+}
+
+void Viewer::act(const PivotAt& action)
+{
+    const std::optional<glm::dvec3> point = seen_at(pane(action.pane), action.pixel);
+    if (!point) fail("nothing is seen there; expected something to turn about");
+    document_->picked_pivot = point;
+    Session after = document_->session;
+    after.interaction.pivot = Pivot::picked;
+    settings_.take_session(std::move(after));
+    say("The view turns about the place with the small cross");
+}
+
+void Viewer::act(const Orbit& action)
+{
+    look_from(orbited(document_->camera, pivot(), action.right_degrees, action.up_degrees));
+}
+
+void Viewer::act(const Roll& action)
+{
+    look_from(rolled(document_->camera, action.degrees));
+}
+
+void Viewer::act(const Move& action)
+{
+    look_from(moved(document_->camera, action.heights * height_of(document_->camera)));
+}
+
+void Viewer::act(const Zoom& action)
+{
+    const Pane seen = pane(action.pane);
+    if (!seen.shot.is_slice) return look_from(zoomed(document_->camera, seen.pixels(), action.pixel, action.factor));
+    show_slices(slices_zoomed(document_->session.view.slices, seen, action.pixel, action.factor, document_->volume(),
+                              document_->probe_voxel()));
+}
+
+/// Where they are looked at is kept as the camera is: it is no change of the work.
+void Viewer::show_slices(SliceSettings slices)
+{
+    document_->session.view.slices = slices;
+    look_again();
+    settings_.note_to_keep();
+}
+
+/// A probe that went out of their sight takes them along, wherever it was sent from.
+void Viewer::follow_slices()
+{
+    constexpr double STIR_VOXELS = 0.05;  // a stylus is never quite at rest, and slices may be moved away from it
+    if (!options_.slices_follow) return;
+    Document& document = *document_;
+    const glm::dvec3 voxel = document.probe_voxel();
+    if (glm::distance(voxel, followed_voxel_) <= STIR_VOXELS) return;
+    followed_voxel_ = voxel;
+    if (document.session.view.arrangement != Arrangement::slices || pixels_.x == 0) return;
+    const std::vector<Pane> panes = panes_of(document.session.view, document.camera, pixels_, document.volume(), voxel);
+    const std::optional<size_t> held = pointer_ ? std::optional(pointer_->pane) : std::nullopt;
+    const SliceSettings next = slices_following(document.session.view.slices, panes, held, document.volume(), voxel);
+    if (next == document.session.view.slices) return;
+    const Set following = edited(document.session, [&](Session& s) { s.view.slices = next; });
+    show_slices(next);
+    if (log_) log_(line_of(following));  // what pixels of slices mean from now on
+}
+
+void Viewer::follow_look()
+{
+    Document& document = *document_;
+    follow_slices();
+    if (pixels_.x > 0 && pixels_.y > 0) {
+        if (look_is_stale_)
+            document.screen.look(document.session, document.camera, pixels_, document.probe_voxel());
+        else if (camera_moved_)
+            document.screen.look_from(document.camera, document.probe_voxel());
+        look_is_stale_ = camera_moved_ = false;
+    }
+    // A running stroke, or touch, requests its own bricks.
+    if (!document.touch.servo() && !document.annotator.stroke_is_running())
+        renderer_.volume().prefer(document.voxels_around_probe());
+    document.screen.show_probe(document.probe_look());
+    document.screen.advance();
+}
+
+/// As camera and probe are now: the screen follows them once a turn, and several actions may come in one.
+Pane Viewer::pane(size_t index) const
+{
+    const std::vector<Pane> panes = panes_of(document_->session.view, document_->camera, pixels_,
+                                             renderer_.scene().info(), document_->probe_voxel());
+    if (pixels_.x == 0 || index >= panes.size()) fail("the window has no such part any more");
+    return panes[index];
+}
+
+std::optional<glm::dvec3> Viewer::seen_at(const Pane& seen, const glm::dvec2& pixel) const
+{
+    const glm::uvec2 pixels = seen.pixels();
+    const Camera& camera = seen.shot.camera;
+    if (seen.shot.is_slice) return unproject(camera, pixels, pixel, 0.5 * (camera.near_distance + camera.far_distance));
+    const glm::uvec2 at = glm::uvec2(glm::clamp(pixel, glm::dvec2(0.0), glm::dvec2(pixels - 1u)));
+    const auto found = renderer_.pick(document_->session.look(), camera, pixels, at, document_->probe_look());
+    return found ? std::optional(found->point) : std::nullopt;
+}
+
+std::optional<glm::dvec3> Viewer::seen_near(const Pane& seen, const glm::dvec2& pixel, double depth, double reach) const
+{
+    if (seen.shot.is_slice) return seen_at(seen, pixel);
+    Pane between = seen;
+    Camera& camera = between.shot.camera;
+    camera.near_distance = std::max(camera.near_distance, depth - reach);
+    camera.far_distance = camera.far_distance > 0.0 ? std::min(camera.far_distance, depth + reach) : depth + reach;
+    if (camera.far_distance <= camera.near_distance) return std::nullopt;
+    return seen_at(between, pixel);
+}
+
+void Viewer::act(const Resize& action)
+{
+    if (std::exchange(pixels_, action.pixels) != action.pixels) look_again();
+}
+
+void Viewer::act(const DragInMap& action)
+{
+    const Pane map = pane(action.pane);
+    if (map.shot.is_slice)
+        return show_slices(slices_moved(document_->session.view.slices, map, action.pixels, document_->volume(),
+                                        document_->probe_voxel()));
+    const CameraAxes axes = axes_of(map.shot.camera);
+    const glm::dvec2 way = action.pixels * pixel_size(map.shot.camera, map.pixels(), 1.0);
+    const glm::dvec3 moved = axes.right * way.x - axes.up * way.y;
+    Camera camera = document_->camera;
+    camera.eye += moved;
+    camera.target += moved;
+    look_from(camera);
+}
+
+void Viewer::act(const LookFrom& action)
+{
+    look_from(camera_named(document_->session, action.camera, document_->volume()));
+    say("Looking from " + action.camera);
+}
+
+void Viewer::act(const KeepCamera& action)
+{
+    const std::string name = action.name.empty() ? free_camera_name(document_->session) : action.name;
+    document_->session.cameras[name] = document_->camera;
+    settings_.note_edit();
+    say("This view is kept as " + name);
+}
+
+void Viewer::act(const ForgetCamera& action)
+{
+    if (document_->session.cameras.erase(action.name) == 0)
+        fail("no view is kept as '", action.name, "'; expected one of the session's cameras");
+    if (document_->session.camera_name == action.name) document_->session.camera_name.clear();
+    settings_.note_edit();
+    say("The view " + action.name + " is no longer kept");
+}
+
+void Viewer::act(const RenameCamera& action)
+{
+    std::map<std::string, CameraSpec>& cameras = document_->session.cameras;
+    if (!cameras.contains(action.name))
+        fail("no view is kept as '", action.name, "'; expected one of the session's cameras");
+    if (action.to.empty() || cameras.contains(action.to))
+        fail("'", action.to, "' is no free name for a view; expected one that no view has");
+    auto renamed = cameras.extract(action.name);
+    renamed.key() = action.to;
+    cameras.insert(std::move(renamed));
+    if (document_->session.camera_name == action.name) document_->session.camera_name = action.to;
+    settings_.note_edit();
+    say("The view " + action.name + " is now called " + action.to);
+}
+
+void Viewer::act(const GoTo& action)
+{
+    Camera camera = document_->camera;
+    const glm::dvec3 way = action.voxel * document_->volume().spacing - camera.target;
+    camera.eye += way;
+    camera.target += way;
+    look_from(camera);
+    say(sentence("Looking at voxel ", std::floor(action.voxel.x), ", ", std::floor(action.voxel.y), ", ",
+                 std::floor(action.voxel.z)));
+}
+
+void Viewer::act(const PlaceClips& action)
+{
+    if (action.far > 0.0 && action.near >= action.far)
+        fail("the near clip plane is ", action.near, " from the eye; expected less than the far one's ", action.far);
+    Camera camera = document_->camera;
+    camera.near_distance = action.near;
+    camera.far_distance = action.far;
+    look_from(camera);
+    const std::string unit = " " + document_->volume().unit;
+    const auto named = [&](double distance) { return distance > 0.0 ? sentence(distance, unit) : "none"; };
+    say(sentence("Clip planes, from the eye: near ", named(action.near), ", far ", named(action.far)));
+}
+
+void Viewer::act(const MoveCut& action)
+{
+    Session after = document_->session;
+    CutBox& cut = after.cut;
+    const glm::dvec3 size(document_->volume().size);
+    cut.upper = glm::min(cut.upper, size);
+    double& plane = action.upper ? cut.upper[action.axis] : cut.lower[action.axis];
+    const double low = action.upper ? cut.lower[action.axis] : 0.0;
+    const double high = action.upper ? size[action.axis] : cut.upper[action.axis];
+    plane = std::clamp(plane + action.share * size[action.axis], low, high);
+    settings_.take_session(std::move(after));
+    say(sentence(action.upper ? "Far" : "Near", " cutting plane of ", "xyz"[action.axis], " at voxel ",
+                 std::lround(plane)));
+}
+
+void Viewer::act(const MoveClip& action)
+{
+    Camera& camera = document_->camera;
+    const double reach = glm::distance(camera.eye, camera.target);
+    const double diagonal = glm::length(glm::dvec3(document_->volume().size) * document_->volume().spacing);
+    if (!action.far) {
+        camera.near_distance = std::max(0.0, camera.near_distance + action.share * reach);
+    } else {
+        const double from = camera.far_distance > 0.0 ? camera.far_distance : reach + 0.5 * diagonal;
+        camera.far_distance = std::max(from + action.share * reach, 0.01 * reach);
+    }
+    look_again();
+    say(sentence(action.far ? "Far" : "Near", " clip plane at ",
+                 action.far ? camera.far_distance : camera.near_distance, " ", document_->volume().unit,
+                 " from the eye"));
+}
+
+void Viewer::act(const ResetCuts&)
+{
+    Session after = document_->session;
+    after.cut = {};
+    settings_.take_session(std::move(after));
+    document_->camera.near_distance = document_->camera.far_distance = 0.0;
+    look_again();
+    say("All cutting planes are removed");
+}
+
+void Viewer::act(const FitView& action)
+{
+    const bool has_panes = !document_->screen.parts().empty();
+    if (has_panes && pane(action.pane).shot.is_slice) {
+        SliceSettings whole = document_->session.view.slices;
+        whole.zoom = 1.0;
+        whole.center.reset();
+        show_slices(whole);
+        return say("The slices show the whole volume");
+    }
+    const VolumeInfo& volume = document_->volume();
+    const glm::dvec3 size(volume.size);
+    const CutBox& cut = document_->session.cut;
+    const glm::dvec3 lower = glm::clamp(cut.lower, glm::dvec3(0.0), size);
+    const glm::dvec3 upper = glm::clamp(cut.upper, lower, size);
+    const glm::uvec2 pixels = has_panes ? pane(0).pixels() : pixels_;
+    look_from(fitted(document_->camera, pixels, lower * volume.spacing, upper * volume.spacing));
+    const bool is_cut = lower != glm::dvec3(0.0) || upper != size;
+    const bool is_clipped = document_->camera.near_distance > 0.0 || document_->camera.far_distance > 0.0;
+    say(sentence(is_cut ? "What the cutting planes leave is in sight" : "The whole volume is in sight",
+                 is_clipped ? ", but for what the clip planes hide" : ""));
+}
+
+void Viewer::act(const ResetView&)
+{
+    const Session& session = document_->session;
+    // A session that was left open names the camera it was left with; then the side that shows most is meant.
+    const std::string name = session.camera_name == "window" ? std::string() : session.camera_name;
+    look_from(camera_named(session, name, document_->volume()));
+    say("The view is as at the beginning");
+}
+
+void Viewer::act(const LookAtSelection&)
+{
+    const TraceGraph& trace = document_->annotator.document().trace;
+    const std::optional<glm::dvec3> middle = middle_of_selection(trace);
+    if (!middle) fail("Nothing is selected");
+    look_from(looking_at(document_->camera, *middle));
+    say("Looking at what is selected");
+}
+
+void Viewer::act(const UpdateOcclusion&)
+{
+    document_->screen.update_occlusion();
+    say(document_->session.light.occlusion.strength > 0.0 ? "Ambient occlusion is being updated"
+                                                          : "Ambient occlusion is off: its strength is 0");
+}
+
+void Viewer::show_cut_box()
+{
+    constexpr double CUT_GLOW_S = 1.5;
+    cut_shown_until_s_ = options_.now_s() + CUT_GLOW_S;
+}
+
+ViewModel Viewer::model() const
+{
+    if (!document_) return {.panes = desk_.nothing.panes};
+    return {.panes = document_->screen.parts(),
+            .screen = &document_->screen,
+            .pointer = pointer_,
+            .picked_pivot = document_->picked_pivot,
+            .view_is_complete = document_->screen.complete(),
+            .view_is_limited = renderer_.volume().state() == DeviceVolume::State::limited};
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,71 @@
+#pragma once
+// The view: cameras, cutting and clipping planes, slices, and what lies under a pixel.
+
+#include "engine/workbench/desk/service.h"
+
+namespace shvr::ui {
+
+struct Services;
+class SettingsEditor;
+
+class Viewer : public Service {
+public:
+    explicit Viewer(Services& all);
+    void act(const Orbit& action);
+    void act(const Roll& action);
+    void act(const Move& action);
+    void act(const Zoom& action);
+    void act(const DragInMap& action);
+    void act(const LookFrom& action);
+    void act(const KeepCamera& action);
+    void act(const ForgetCamera& action);
+    void act(const RenameCamera& action);
+    void act(const PivotAt& action);
+    void act(const GoTo& action);
+    void act(const MoveCut& action);
+    void act(const MoveClip& action);
+    void act(const PlaceClips& action);
+    void act(const ResetCuts& action);
+    void act(const FitView& action);
+    void act(const ResetView& action);
+    void act(const LookAtSelection& action);
+    void act(const UpdateOcclusion& action);
+    void act(const Resize& action);
+
+    void advance() override;
+    /// Draws the whole picture again.
+    void look_again() { look_is_stale_ = true; }
+    void look_from(const Camera& camera);
+    /// As camera and probe are now: the screen follows them once a frame, and several actions may come in one.
+    Pane pane(size_t index) const;
+    /// What is seen at a pixel of a pane, volume space; of a slice, the point of its plane. Null: nothing is.
+    std::optional<glm::dvec3> seen_at(const Pane& pane, const glm::dvec2& pixel) const;
+    /// What of it lies within `reach` of a depth along the view.
+    std::optional<glm::dvec3> seen_near(const Pane& pane, const glm::dvec2& pixel, double depth, double reach) const;
+    /// Size of the picture; 0, 0: none is drawn.
+    const glm::uvec2& pixels() const { return pixels_; }
+    /// Whether there is a picture that does not yet show what was done last.
+    bool is_stirring() const { return pixels_.x > 0 && pixels_.y > 0 && (look_is_stale_ || camera_moved_); }
+    void set_pointer(const std::optional<Pointer>& pointer) { pointer_ = pointer; }
+    const std::optional<Pointer>& pointer() const { return pointer_; }
+    /// Lines show what the cutting planes leave: while they are moved, and a little longer.
+    void show_cut_box();
+    bool shows_cut_box() const { return options_.now_s() < cut_shown_until_s_; }
+    ViewModel model() const;
+
+private:
+    void show_slices(SliceSettings slices);
+    void follow_slices();
+    void follow_look();
+    glm::dvec3 pivot() const;
+
+    SettingsEditor& settings_;
+    glm::uvec2 pixels_{0};
+    bool look_is_stale_ = true, camera_moved_ = false;
+    std::optional<Pointer> pointer_;
+    glm::dvec3 followed_voxel_{0.0};  ///< the probe's place that the slices have followed
+    double cut_shown_until_s_ = 0.0;
+    Attempt looking_;
+};
+
+}  // namespace shvr::ui

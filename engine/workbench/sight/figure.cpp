@@ -1,0 +1,69 @@
+#include "engine/workbench/sight/figure.h"
+
+#include <cmath>
+#include <utility>
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr uint8_t GROUND = 236;  ///< of 255, in linear light: on white as dark as the window's
+constexpr glm::dvec3 GROUND_COLOR(0.007);
+
+Stamp ground_of(const Stamp& words, double units)
+{
+    const glm::ivec2 spare(int(std::lround(3.0 * units)), int(std::lround(units)));
+    Stamp ground{.begin = words.begin - spare, .pixels = words.pixels + 2 * spare, .coverage{}, .color = GROUND_COLOR};
+    ground.coverage.assign(size_t(ground.pixels.x) * size_t(ground.pixels.y), GROUND);
+    return ground;
+}
+
+std::vector<Stamp> stamps_of(const std::vector<Label>& labels, double units, const TextDrawer& draw_texts)
+{
+    std::vector<std::string> texts;
+    for (const Label& label : labels) texts.push_back(label.text);
+    std::vector<TextImage> images = draw_texts(texts, FONT_UNITS * units);
+    std::vector<Stamp> stamps;
+    for (size_t i = 0; i < labels.size(); ++i) {
+        const glm::dvec2 begin = labels[i].at - labels[i].anchor * glm::dvec2(images[i].pixels);
+        Stamp words{.begin = glm::ivec2(glm::round(begin)),
+                    .pixels = images[i].pixels,
+                    .coverage = std::move(images[i].coverage),
+                    .color = labels[i].color};
+        stamps.push_back(ground_of(words, units));
+        stamps.push_back(std::move(words));
+    }
+    return stamps;
+}
+
+}  // namespace
+
+Figure figure_of(const Model& model, std::span<const Pane> panes, double units, const TextDrawer& draw_texts)
+{
+    Figure figure;
+    for (size_t i = 0; i < panes.size(); ++i) {
+        Marks marks = marks_of(model, panes[i], i, units, MarksFor::picture);
+        Figure::Part part{.box = panes[i].box, .strokes = std::move(marks.strokes), .stamps{}};
+        if (draw_texts && !marks.labels.empty()) part.stamps = stamps_of(marks.labels, units, draw_texts);
+        figure.parts.push_back(std::move(part));
+    }
+    return figure;
+}
+
+void draw(const Figure& figure, ImageF& rows, uint32_t first_row)
+{
+    for (const Figure::Part& part : figure.parts) {
+        draw_strokes(rows, part.strokes, part.box, first_row);
+        draw_stamps(rows, part.stamps, part.box, first_row);
+    }
+}
+
+void draw(const Figure& figure, Image8& picture)
+{
+    for (const Figure::Part& part : figure.parts) {
+        draw_strokes(picture, part.strokes, part.box);
+        draw_stamps(picture, part.stamps, part.box);
+    }
+}
+
+}  // namespace shvr::ui

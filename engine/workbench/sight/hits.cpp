@@ -1,0 +1,74 @@
+#include "engine/workbench/sight/hits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr double NODE_PIXELS = 6.0, INTERNODE_PIXELS = 4.0;
+
+bool is_before_eye(const Camera& camera, double depth)
+{
+    return depth >= camera.near_distance && (camera.far_distance <= 0.0 || depth <= camera.far_distance);
+}
+
+struct Near {
+    double pixels = std::numeric_limits<double>::infinity(), share = 0.0;
+};
+
+Near nearest_on(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec2& pixel)
+{
+    const glm::dvec2 way = to - from;
+    const double square = glm::dot(way, way);
+    const double share = square > 0.0 ? std::clamp(glm::dot(pixel - from, way) / square, 0.0, 1.0) : 0.0;
+    return {glm::distance(pixel, from + share * way), share};
+}
+
+}  // namespace
+
+double behind_plane(const Camera& camera, const glm::dvec3& point)
+{
+    return glm::dot(point - camera.eye, axes_of(camera).forward) - 0.5 * (camera.near_distance + camera.far_distance);
+}
+
+TraceHit trace_hit(const TraceGraph& trace, const Pane& pane, const glm::dvec2& pixel, const VolumeInfo& volume)
+{
+    const Camera& camera = pane.shot.camera;
+    const glm::uvec2 pixels = pane.pixels();
+    const bool is_slice = pane.kind == Pane::Kind::slice;
+    const double half_voxel = is_slice ? 0.5 * volume.spacing[std::clamp(pane.axis, 0, 2)] : 0.0;
+    const auto is_shown = [&](const glm::dvec3& point, double depth, double radius) {
+        return is_slice ? std::abs(behind_plane(camera, point)) <= std::max(radius, half_voxel)
+                        : is_before_eye(camera, depth);
+    };
+    TraceHit hit;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const auto& [number, node] : trace.nodes()) {
+        const auto at = project(camera, pixels, node.position);
+        if (!at || at->depth >= nearest || !is_shown(node.position, at->depth, node.radius)) continue;
+        const double reach = std::max(node.radius / pixel_size(camera, pixels, at->depth), NODE_PIXELS);
+        if (glm::distance(at->pixel, pixel) > reach) continue;
+        hit = {.node = number, .internode = {}, .depth = at->depth, .radius = node.radius};
+        nearest = at->depth;
+    }
+    if (hit.node) return hit;
+    for (const auto& [number, internode] : trace.internodes()) {
+        const glm::dvec3 &a = trace.node(internode.a).position, &b = trace.node(internode.b).position;
+        const auto from = project(camera, pixels, a), to = project(camera, pixels, b);
+        if (!from || !to) continue;
+        const Near near = nearest_on(from->pixel, to->pixel, pixel);
+        const glm::dvec3 point = glm::mix(a, b, near.share);
+        const double depth = glm::mix(from->depth, to->depth, near.share),
+                     radius = trace.radius_of(internode, near.share);
+        const double reach = std::max(radius / pixel_size(camera, pixels, depth), INTERNODE_PIXELS);
+        if (near.pixels > reach || depth >= nearest || !is_shown(point, depth, radius)) continue;
+        hit = {.node = {}, .internode = number, .depth = depth, .radius = radius};
+        nearest = depth;
+    }
+    return hit;
+}
+
+}  // namespace shvr::ui

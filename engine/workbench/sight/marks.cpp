@@ -1,0 +1,352 @@
+#include "engine/workbench/sight/marks.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "engine/workbench/lists/group_list.h"
+#include "engine/workbench/sight/hits.h"
+#include "engine/workbench/sight/words.h"
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr glm::dvec3 DARK(0.02), LIGHT(0.95), LINK(1.0, 0.83, 0.02), MEASURED(0.05, 0.9, 0.9);
+constexpr std::array<glm::dvec3, 3> AXES{glm::dvec3(0.95, 0.12, 0.08), glm::dvec3(0.1, 0.75, 0.15),
+                                         glm::dvec3(0.15, 0.4, 1.0)};
+constexpr double DASH = 6.0, GAP = 5.0;
+
+/// Of at most so many characters, whole ones of UTF-8.
+std::string shortened_name(const std::string& name)
+{
+    constexpr size_t MOST = 32;
+    const auto begins = [](char c) { return (uint8_t(c) & 0xc0) != 0x80; };
+    size_t characters = 0;
+    for (size_t at = 0; at < name.size(); ++at)
+        if (begins(name[at]) && ++characters > MOST) return name.substr(0, at) + "...";
+    return name;
+}
+
+class Drawing {
+public:
+    Drawing(const Model& model, const Pane& pane, size_t index, double units, MarksFor purpose)
+        : model_(model),
+          pane_(pane),
+          index_(index),
+          units_(units),
+          is_for_screen_(purpose == MarksFor::screen),
+          pixels_(pane.pixels()),
+          axes_(axes_of(pane.shot.camera)),
+          color_(group_of(model.session.groups, std::max(model.session.probe.painted_group(), uint8_t(1))).color)
+    {
+        if (model.session.probe.painted_group() == 0) color_ = glm::dvec3(0.6);
+    }
+
+    Marks all()
+    {
+        if (is_slice()) {
+            trace_in_slice();
+            if (is_for_screen_) brush_ring();
+        }
+        if (is_for_screen_) drawn_tool();
+        if (is_for_screen_) link();
+        measurements();
+        if (is_for_screen_) pivot();
+        if (model_.session.interaction.axes) axes();
+        if (model_.session.interaction.scale_bar) scale();
+        if (model_.session.interaction.group_legend) groups();
+        title();
+        if (is_for_screen_ && is_main() && model_.session.interaction.probe_label) probe_label();
+        return std::move(marks_);
+    }
+
+private:
+    bool is_slice() const { return pane_.kind == Pane::Kind::slice; }
+    bool is_main() const { return pane_.kind == Pane::Kind::main; }
+    double voxel_along() const { return model_.volume.spacing[std::clamp(pane_.axis, 0, 2)]; }
+    glm::dvec3 probe() const { return model_.probe_voxel * model_.volume.spacing; }
+    glm::dvec3 tool() const { return model_.tool_voxel * model_.volume.spacing; }
+    std::optional<glm::dvec2> pixel_of(const glm::dvec3& point) const
+    {
+        const auto at = project(pane_.shot.camera, pixels_, point);
+        return at ? std::optional(at->pixel) : std::nullopt;
+    }
+    /// With a halo, so that it is seen on any picture.
+    void line(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec3& color, double width = 1.5)
+    {
+        marks_.strokes.push_back({from, to, DARK, (width + 2.0) * units_});
+        marks_.strokes.push_back({from, to, color, width * units_});
+    }
+    void dashed(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec3& color)
+    {
+        constexpr double MOST = 4000.0;  // beyond any screen
+        const double length = std::min(glm::distance(from, to), MOST * units_);
+        if (length <= 0.0) return;
+        const glm::dvec2 way = (to - from) / glm::distance(from, to);
+        for (double at = 0.0; at < length; at += (DASH + GAP) * units_)
+            line(from + at * way, from + std::min(at + DASH * units_, length) * way, color);
+    }
+    void closed(const std::vector<glm::dvec2>& points, const glm::dvec3& color, double width = 1.5)
+    {
+        for (size_t i = 0; i < points.size(); ++i) line(points[i], points[(i + 1) % points.size()], color, width);
+    }
+    void ring(const glm::dvec2& middle, double radius, const glm::dvec3& color, double width = 1.5)
+    {
+        constexpr int CORNERS = 48;
+        std::vector<glm::dvec2> points;
+        for (int i = 0; i < CORNERS; ++i) {
+            const double angle = 2.0 * std::numbers::pi * i / CORNERS;
+            points.push_back(middle + radius * glm::dvec2(std::cos(angle), std::sin(angle)));
+        }
+        closed(points, color, width);
+    }
+    void label(const glm::dvec2& at, const glm::dvec2& anchor, std::string text, const glm::dvec3& color = LIGHT)
+    {
+        marks_.labels.push_back({at, anchor, std::move(text), color});
+    }
+
+    /// The cross-section of what the brush reaches with this plane.
+    void brush_ring()
+    {
+        const BrushSettings& brush = model_.brush();
+        const glm::dvec3 center = probe();
+        const double radius = brush.radius_voxels * model_.volume.spacing.x;
+        const double away = behind_plane(pane_.shot.camera, center);
+        const auto at = pixel_of(center);
+        if (!at || std::abs(away) >= radius) return;
+        const double unit = pixel_size(pane_.shot.camera, pixels_, 1.0);
+        if (brush.region == RegionShape::ball)
+            return ring(*at, std::sqrt(radius * radius - away * away) / unit, color_);
+        const double half = radius / unit;
+        closed({*at + glm::dvec2(-half, -half), *at + glm::dvec2(half, -half), *at + glm::dvec2(half, half),
+                *at + glm::dvec2(-half, half)},
+               color_);
+    }
+
+    /// What of the trace the plane passes through, or within a voxel of.
+    void trace_in_slice()
+    {
+        const Camera& camera = pane_.shot.camera;
+        const double unit = pixel_size(camera, pixels_, 1.0);
+        for (const auto& [number, internode] : model_.trace.internodes()) {
+            glm::dvec3 a = model_.trace.node(internode.a).position, b = model_.trace.node(internode.b).position;
+            const double from = behind_plane(camera, a), to = behind_plane(camera, b);
+            const double reach = std::max(model_.trace.radius_of(internode, 0.5), voxel_along());
+            if (std::min(from, to) > reach || std::max(from, to) < -reach) continue;
+            if (from != to) {
+                const auto share = [&](double depth) { return std::clamp((depth - from) / (to - from), 0.0, 1.0); };
+                const double one = share(-reach), other = share(reach);
+                const glm::dvec3 begin = glm::mix(a, b, std::min(one, other)),
+                                 end = glm::mix(a, b, std::max(one, other));
+                a = begin;
+                b = end;
+            }
+            const auto begin = pixel_of(a), end = pixel_of(b);
+            if (begin && end && is_near(*begin, *end)) line(*begin, *end, color_of(internode.group), 1.5);
+        }
+        for (const auto& [number, node] : model_.trace.nodes()) {
+            const double away = behind_plane(camera, node.position), reach = std::max(node.radius, 0.5 * voxel_along());
+            if (std::abs(away) > reach) continue;
+            const auto at = pixel_of(node.position);
+            if (!at || !is_near(*at, *at)) continue;
+            const double section = std::sqrt(std::max(node.radius * node.radius - away * away, 0.0)) / unit;
+            ring(*at, std::max(section, 2.5 * units_), color_of(node.group));
+        }
+    }
+    glm::dvec3 color_of(uint8_t group) const { return group_of(model_.session.groups, group).color; }
+    bool is_near(const glm::dvec2& a, const glm::dvec2& b) const
+    {
+        return glm::all(glm::greaterThan(glm::max(a, b), glm::dvec2(0.0))) &&
+               glm::all(glm::lessThan(glm::min(a, b), glm::dvec2(pixels_)));
+    }
+
+    /// Where a node or a centre line has drawn the tools.
+    void drawn_tool()
+    {
+        if (!model_.tool_node && !model_.tool_internode) return;
+        if (pane_.kind == Pane::Kind::map || pane_.shot.right_eye) return;
+        const auto from = pixel_of(probe()), at = pixel_of(tool());
+        if (!from || !at) return;
+        line(*from, *at, LIGHT);
+        ring(*at, 5.0 * units_, LINK, 2.0);
+    }
+
+    /// The link that a node added now would get, with its length.
+    void link()
+    {
+        const std::optional<uint32_t> selected = model_.trace.selection().node();
+        const bool adds_nodes = model_.tool() == Tool::trace || model_.tool() == Tool::turn;
+        if (!selected || !adds_nodes || model_.is_painting || model_.drags_node) return;
+        if (pane_.kind == Pane::Kind::map || pane_.shot.right_eye) return;
+        const glm::dvec3 from = model_.trace.node(*selected).position, to = tool();
+        const auto begin = pixel_of(from), end = pixel_of(to);
+        if (!begin || !end || glm::distance(*begin, *end) < 8.0 * units_) return;
+        dashed(*begin, *end, LINK);
+        label(0.5 * (*begin + *end), {0.5, 1.2}, length_in_words(glm::distance(from, to), model_.volume.unit), LINK);
+    }
+
+    void measurement(const glm::dvec3& from_voxel, const glm::dvec3& to_voxel, bool is_open)
+    {
+        const Measurement ends{from_voxel, to_voxel};
+        const glm::dvec3 begin = from_voxel * model_.volume.spacing, end_point = to_voxel * model_.volume.spacing;
+        const auto from = pixel_of(begin), to = pixel_of(end_point);
+        if (!from || !to || (is_slice() && !is_near_plane(begin, end_point))) return;
+        if (is_open)
+            dashed(*from, *to, MEASURED);
+        else
+            line(*from, *to, MEASURED, 2.0);
+        for (const glm::dvec2& end : {*from, *to}) ring(end, 3.5 * units_, MEASURED);
+        label(0.5 * (*from + *to), {0.5, 1.2},
+              length_in_words(length_of(ends, model_.volume.spacing), model_.volume.unit), MEASURED);
+    }
+    /// It passes through the plane of the slice, or within a voxel of it.
+    bool is_near_plane(const glm::dvec3& a, const glm::dvec3& b) const
+    {
+        const double from = behind_plane(pane_.shot.camera, a), to = behind_plane(pane_.shot.camera, b);
+        return from * to <= 0.0 || std::min(std::abs(from), std::abs(to)) <= voxel_along();
+    }
+    void measurements()
+    {
+        if (pane_.shot.right_eye) return;
+        for (const Measurement& each : model_.measurements) measurement(each.from, each.to, false);
+        if (!model_.measuring_from || !is_for_screen_) return;
+        const bool leads = model_.tool() == Tool::measure && model_.measuring_to;
+        measurement(*model_.measuring_from, leads ? *model_.measuring_to : *model_.measuring_from, true);
+    }
+
+    /// A small cross where turning goes about, if that is a place that somebody chose.
+    void pivot()
+    {
+        if (!is_main() || model_.session.interaction.pivot != Pivot::picked || !model_.picked_pivot) return;
+        const auto at = pixel_of(*model_.picked_pivot);
+        if (!at) return;
+        const double reach = 7.0 * units_;
+        line(*at - glm::dvec2(reach, 0.0), *at + glm::dvec2(reach, 0.0), LIGHT);
+        line(*at - glm::dvec2(0.0, reach), *at + glm::dvec2(0.0, reach), LIGHT);
+    }
+
+    /// In the lower left corner; an axis that points towards the viewer is short.
+    void axes()
+    {
+        if (pane_.kind == Pane::Kind::map || pane_.shot.right_eye) return;
+        const double length = 30.0 * units_;
+        const glm::dvec2 middle(length + 16.0 * units_, double(pixels_.y) - length - 16.0 * units_);
+        if (pixels_.x < 4.0 * length || pixels_.y < 4.0 * length) return;
+        for (size_t axis = 0; axis < 3; ++axis) {
+            glm::dvec3 direction(0.0);
+            direction[int(axis)] = 1.0;
+            const glm::dvec2 way(glm::dot(direction, axes_.right), -glm::dot(direction, axes_.up));
+            if (glm::length(way) < 0.05) continue;
+            line(middle, middle + length * way, AXES[axis]);
+            label(middle + (length + 8.0 * units_) * way, {0.5, 0.5}, std::string(1, "xyz"[axis]));
+        }
+    }
+
+    /// In the lower right corner. In perspective lengths differ with depth, so it says which depth it is for.
+    void scale()
+    {
+        if (pane_.kind == Pane::Kind::map || pane_.shot.right_eye) return;
+        const Camera& camera = pane_.shot.camera;
+        const bool is_perspective = camera.projection == Camera::Projection::perspective;
+        const double unit = pixel_size(camera, pixels_, glm::distance(camera.eye, camera.target));
+        const ScaleBar bar = scale_bar(unit, std::min(140.0 * units_, 0.3 * double(pixels_.x)), model_.volume.unit);
+        if (bar.pixels < 8.0 * units_) return;
+        const glm::dvec2 end(double(pixels_.x) - 16.0 * units_, double(pixels_.y) - 14.0 * units_);
+        const glm::dvec2 begin = end - glm::dvec2(bar.pixels, 0.0), tick(0.0, 4.0 * units_);
+        const std::array bar_lines{std::pair(begin, end), std::pair(begin - tick, begin + tick),
+                                   std::pair(end - tick, end + tick)};
+        for (const auto& [from, to] : bar_lines) marks_.strokes.push_back({from, to, DARK, 7.0 * units_});
+        for (const auto& [from, to] : bar_lines) marks_.strokes.push_back({from, to, LIGHT, 3.0 * units_});
+        label(end - 1.5 * tick, {1.0, 1.0}, bar.text + (is_perspective ? " at the middle of the view" : ""));
+    }
+
+    /// Names and colours of what is painted or traced, in the upper right corner of the first pane: the colour stands
+    /// right of its name, so that no name need be measured.
+    void groups()
+    {
+        if (index_ != 0 || pane_.kind == Pane::Kind::map || pane_.shot.right_eye) return;
+        constexpr double LINE = 20.0, SQUARE = 11.0, EDGE = 12.0;
+        const std::vector<uint8_t> drawn = drawn_groups(model_.session, model_.voxels_by_group, model_.trace);
+        const double free_height = double(pixels_.y) / units_ - 2.0 * EDGE - 90.0;  // axes and scale bar lie below
+        const size_t most = size_t(std::max(free_height / LINE, 0.0));
+        if (most < 2 && drawn.size() > most) return;
+        const size_t named = drawn.size() <= most ? drawn.size() : most - 1;
+        glm::dvec2 at(double(pixels_.x) - EDGE * units_, (EDGE + 0.5 * SQUARE) * units_);
+        const glm::dvec2 square(SQUARE * units_, 0.0), next(0.0, LINE * units_);
+        for (size_t i = 0; i < named; ++i, at += next) {
+            const ColorGroup look = group_of(model_.session.groups, drawn[i]);
+            const glm::dvec2 rim(units_, 0.0);
+            marks_.strokes.push_back({at - square - rim, at + rim, DARK, (SQUARE + 2.0) * units_});
+            marks_.strokes.push_back({at - square, at, look.color, SQUARE * units_});
+            label(at - square - glm::dvec2(6.0 * units_, 0.0), {1.0, 0.5}, shortened_name(look.name));
+        }
+        if (named < drawn.size()) label(at, {1.0, 0.5}, "and " + std::to_string(drawn.size() - named) + " more groups");
+    }
+
+    /// What the pane shows, in its upper left corner; of a slice also what is under the pointer.
+    void title()
+    {
+        if (model_.panes.size() < 2) return;
+        const glm::dvec2 at(8.0 * units_, 6.0 * units_), next(0.0, 20.0 * units_);
+        if (!is_slice()) return label(at, {0.0, 0.0}, pane_.name);
+        label(at, {0.0, 0.0}, slice_in_words(pane_.axis, model_.probe_voxel, model_.volume));
+        if (!is_for_screen_) return;
+        const bool is_here = model_.pointer && model_.pointer->pane == index_;
+        if (is_here)
+            label(at + next, {0.0, 0.0},
+                  place_in_words(model_.reading.voxel, model_.volume) + ": " + value_in_words(model_.reading));
+        else if (index_ == 1)
+            label(at + next, {0.0, 0.0}, "Ctrl + drag: contrast, Ctrl + wheel: zoom");
+    }
+
+    void probe_label()
+    {
+        const auto at = project(pane_.shot.camera, pixels_, probe());
+        if (!at || !is_near(at->pixel, at->pixel) || pane_.shot.right_eye) return;
+        const double radius = model_.brush().radius_voxels * model_.volume.spacing.x;
+        const double reach = std::max(radius / pixel_size(pane_.shot.camera, pixels_, at->depth), 4.0 * units_);
+        std::string text = length_in_words(model_.reading.depth, model_.volume.unit) + " deep";
+        if (model_.reading.relevant_share) {
+            text = std::to_string(std::lround(100.0 * *model_.reading.relevant_share)) + " % full, " + text;
+            meter(at->pixel, reach + 4.0 * units_, *model_.reading.relevant_share);
+        }
+        // Where there is no room at the right it lies at the left; a character is at most that wide.
+        constexpr double CHARACTER = 8.0;
+        const double beside = 0.75 * reach + 6.0 * units_;
+        const bool has_room =
+            at->pixel.x + beside + CHARACTER * units_ * double(text.size()) < double(pixels_.x) || at->pixel.x < beside;
+        label(at->pixel + glm::dvec2(has_room ? beside : -beside, beside), {has_room ? 0.0 : 1.0, 0.0}, text);
+    }
+    /// An arc about the probe, from the top clockwise: the share of its ball that is relevant.
+    void meter(const glm::dvec2& middle, double radius, double share)
+    {
+        constexpr int WHOLE = 60;
+        const int steps = int(std::lround(share * WHOLE));
+        const auto at = [&](int step) {
+            const double angle = 2.0 * std::numbers::pi * step / WHOLE;
+            return middle + radius * glm::dvec2(std::sin(angle), -std::cos(angle));
+        };
+        for (int step = 0; step < steps; ++step) line(at(step), at(step + 1), LIGHT, 2.0);
+    }
+
+    const Model& model_;
+    const Pane& pane_;
+    size_t index_;
+    double units_;
+    bool is_for_screen_;
+    glm::uvec2 pixels_;
+    CameraAxes axes_;
+    glm::dvec3 color_;
+    Marks marks_;
+};
+
+}  // namespace
+
+Marks marks_of(const Model& model, const Pane& pane, size_t index, double units, MarksFor purpose)
+{
+    return Drawing(model, pane, index, units, purpose).all();
+}
+
+}  // namespace shvr::ui

@@ -1,0 +1,167 @@
+#pragma once
+// Stands between the servo and its device, on the servo's thread: holds the probe in a plane, hands settings over at
+// the beginning of a tick, and notes what happens for plots and recordings.
+//
+//   main thread --orders()--> TapPacing --> Servo::settings()        Servo <--> DeviceTap <--> device
+//   main thread <--take()---- ring of ticks <------ DeviceTap        main thread <--state()-- DeviceTap
+//
+// Settings go through the tap, so that a recording knows in which tick they took effect; of relevance it notes in each
+// tick which one the servo took. On the servo's thread nothing here locks, allocates, logs or throws; where a recording
+// is not fetched in time, it ends.
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "engine/workbench/touch/relevance_log.h"
+#include "haptics/replay/trace.h"
+#include "haptics/servo.h"
+
+namespace shvr::ui {
+
+/// A plane in the device's frame; the force along its normal is left out. Off: none.
+struct PlaneHold {
+    bool is_on = false;
+    glm::dvec3 normal{0.0, 0.0, 1.0}, point_m{0.0};
+    uint32_t count = 0;  ///< of planes so far: a change places the probe anew, and is no glitch
+    bool operator==(const PlaneHold&) const = default;
+};
+
+struct TapOrder {
+    TraceSettings settings;
+    PlaneHold plane;
+    uint32_t recording = 0;  ///< number of the recording under way; 0: none
+    bool operator==(const TapOrder&) const = default;
+};
+
+/// Forces of the last seconds, and what the servo's state does not hold.
+struct TapState {
+    static constexpr size_t BARS = 250;
+    static constexpr uint32_t TICKS_A_BAR = 20;
+    std::array<float, BARS> force_n{};  ///< the largest of 20 ticks each; `bars` % BARS is the oldest
+    uint64_t bars = 0;
+    double heat = 0.0;         ///< share of what the motors may hold for ever, of the model in haptics/safety.h
+    uint64_t lost_states = 0;  ///< gaps in the device's numbers
+};
+
+struct RecordedTick {
+    TraceTick tick;
+    bool has_settings = false;
+    TraceSettings settings;
+    DeviceCaps caps;
+    uint64_t relevance = 0;  ///< sequence of that in use; 0: none
+    uint32_t recording = 0;
+};
+
+class TapLink {
+public:
+    /// `recording`: the number of one that begins with the first tick.
+    explicit TapLink(uint32_t recording = 0) : ring_(RING), recording_(recording)
+    {
+        if (recording != 0) relevance_log_.begin();
+    }
+    // Main thread
+    Latest<TapOrder>& orders() { return orders_; }
+    Latest<TapState>& state() { return state_; }
+    /// Where settings go, and what the servo feels.
+    void connect(Latest<ForceSettings>& settings, const Latest<RelevancePatch>& relevance)
+    {
+        relevance_.store(&relevance, std::memory_order_release);
+        settings_.store(&settings, std::memory_order_release);
+    }
+    RelevanceLog& relevance_log() { return relevance_log_; }
+    bool take(RecordedTick& tick);
+    /// Ticks were not fetched in time, and are missing.
+    bool has_overrun() const { return has_overrun_.load(std::memory_order_relaxed); }
+
+    // The servo's thread
+    void begin_tick() noexcept;
+    void note_now(uint64_t now_ns) noexcept;
+    void note_caps(const DeviceCaps& caps) noexcept { now_.caps = caps; }
+    void note_read(ReadResult result, const DeviceState& state) noexcept;
+    void note_write(const glm::dvec3& asked_n, const glm::dvec3& force_n, bool was_written,
+                    const DeviceCaps& caps) noexcept;
+    const PlaneHold& plane() const noexcept { return orders_.value().plane; }
+
+private:
+    static constexpr uint64_t RING = 4096;  ///< ticks: four seconds of a window that hangs
+    void put() noexcept;
+    void add_to_plot(double force_n) noexcept;
+
+    Latest<TapOrder> orders_;
+    Latest<TapState> state_;
+    std::atomic<Latest<ForceSettings>*> settings_{nullptr};
+    std::atomic<const Latest<RelevancePatch>*> relevance_{nullptr};
+    RelevanceLog relevance_log_;
+    std::vector<RecordedTick> ring_;
+    alignas(64) std::atomic<uint64_t> written_{0};
+    alignas(64) std::atomic<uint64_t> fetched_{0};
+    std::atomic<bool> has_overrun_{false};
+
+    // The servo's thread alone
+    RecordedTick now_;
+    TapState plot_;
+    HeatMemory heat_;
+    float bar_ = 0.0f;
+    uint32_t in_bar_ = 0, last_sequence_ = 0, recording_ = 0;
+    uint64_t last_ns_ = 0;
+    bool is_new_tick_ = false, has_new_settings_ = false, has_sequence_ = false, was_written_ = true;
+};
+
+class TapPacing : public Pacing {
+public:
+    TapPacing(std::unique_ptr<Pacing> pacing, std::shared_ptr<TapLink> link)
+        : pacing_(std::move(pacing)), link_(std::move(link))
+    {}
+    uint64_t now_ns() noexcept override
+    {
+        const uint64_t now = pacing_->now_ns();
+        link_->note_now(now);
+        return now;
+    }
+    void wait_until(uint64_t deadline_ns) noexcept override
+    {
+        pacing_->wait_until(deadline_ns);
+        link_->begin_tick();
+    }
+
+private:
+    std::unique_ptr<Pacing> pacing_;
+    std::shared_ptr<TapLink> link_;
+};
+
+class DeviceTap : public HapticDevice {
+public:
+    DeviceTap(std::shared_ptr<HapticDevice> device, std::shared_ptr<TapLink> link)
+        : device_(std::move(device)), link_(std::move(link))
+    {}
+    DeviceCaps caps() const noexcept override
+    {
+        const DeviceCaps caps = device_->caps();
+        link_->note_caps(caps);
+        return caps;
+    }
+    ReadResult read(DeviceState& state) noexcept override;
+    bool write(const glm::dvec3& force_n, uint32_t sequence) noexcept override;
+    const char* trouble() const noexcept override { return device_->trouble(); }
+
+private:
+    std::shared_ptr<HapticDevice> device_;
+    std::shared_ptr<TapLink> link_;
+    DeviceState raw_;
+};
+
+/// A servo on a device, with its tap. Main thread.
+struct TappedServo {
+    explicit TappedServo(std::shared_ptr<HapticDevice> with, std::unique_ptr<Pacing> pacing = real_pacing(),
+                         uint32_t recording = 0);
+    /// What the servo shall feel: fill the first, then publish it. One thread, which need not be the main one.
+    RelevancePatch& relevance() { return servo.relevance().writing(); }
+    void publish_relevance();
+    std::shared_ptr<HapticDevice> device;
+    std::shared_ptr<TapLink> link;
+    Servo servo;
+};
+
+}  // namespace shvr::ui

@@ -1,0 +1,35 @@
+#pragma once
+// What a recorded stylus does with the present guidance, through the servo's own step, without a device or a clock:
+// the same recording, volume and settings give the same path, bit for bit. One thread; reads the volume's file.
+
+#include <vector>
+
+#include "engine/annotation/work/work.h"
+#include "engine/session/session.h"
+#include "haptics/replay/replay.h"
+
+namespace shvr::ui {
+
+/// As the servo is told it.
+struct GuideSettings {
+    bool assists = false;
+    ProxyLaw law = ProxyLaw::potential;
+    TouchMode mode = TouchMode::proximity;
+    double threshold = 0.0;     ///< intensity
+    double probe_radius = 1.0;  ///< physical units
+    FeelSettings feel;
+};
+GuideSettings guide_settings(const Session& session, double probe_radius);
+
+struct StylusPoint {
+    glm::dvec3 probe{0.0}, proxy{0.0};  ///< physical units; equal without contact
+    bool in_contact = false;
+    double relevant_share = 0.0;
+    bool is_pressed = false;  ///< the first button
+};
+/// `by_hand`: a modelled hand and stylus are drawn along the recording; otherwise the probe is where it was. `source`
+/// holds density offsets already.
+std::vector<StylusPoint> play_stylus(const Trace& trace, const GuideSettings& guide, bool by_hand,
+                                     std::shared_ptr<const VolumeSource> source, const Mask& mask);
+
+}  // namespace shvr::ui

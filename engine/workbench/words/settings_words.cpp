@@ -1,0 +1,172 @@
+#include "engine/workbench/words/settings_words.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/session/quality.h"
+#include "engine/workbench/bindings/tools.h"
+
+namespace shvr::ui {
+
+namespace {
+
+std::string name_of(StereoOutput output)
+{
+    switch (output) {
+        case StereoOutput::side_by_side: return "side by side";
+        case StereoOutput::top_bottom: return "one above the other";
+        case StereoOutput::anaglyph: return "for red and cyan glasses";
+    }
+    return {};
+}
+
+std::string sentence_about(const ViewSettings& view)
+{
+    switch (view.arrangement) {
+        case Arrangement::single: return "Single view";
+        case Arrangement::stereo: return "Two eyes: " + name_of(view.stereo.output);
+        case Arrangement::overview: return "Overview: drag in a map to move the camera";
+        case Arrangement::slices: return "Slices through the probe: the wheel moves a slice";
+    }
+    return {};
+}
+
+std::string sentence_about_group(const Session& session)
+{
+    const uint8_t group = session.probe.brush.group;
+    if (group == 0) return "Eraser: painting removes voxels from their group";
+    return sentence("Group ", int(group), ": ", group_of(session.groups, group).name);
+}
+
+std::string sentence_about_solo(const Session& session)
+{
+    const std::optional<uint8_t> solo = session.view.solo;
+    if (!solo) return "All groups that are visible are drawn";
+    return *solo == 0 ? std::string("Only what no group holds is drawn")
+                      : sentence("Only group ", int(*solo), " is drawn: ", group_of(session.groups, *solo).name);
+}
+
+/// How far all points were moved, where that is all.
+std::optional<double> shift_between(const TransferFunction& was, const TransferFunction& is)
+{
+    const auto before = was.points(), after = is.points();
+    if (before.size() != after.size() || before.empty()) return std::nullopt;
+    const double shift = after[0].intensity - before[0].intensity;
+    for (size_t i = 0; i < before.size(); ++i) {
+        const bool is_same_look = after[i].color == before[i].color && after[i].opacity == before[i].opacity;
+        const double moved = after[i].intensity - before[i].intensity;
+        if (!is_same_look || std::abs(moved - shift) > 1e-6 * std::max(1.0, std::abs(shift))) return std::nullopt;
+    }
+    return shift;
+}
+
+std::string sentence_about(const TransferFunction& was, const TransferFunction& is)
+{
+    const std::optional<double> shift = shift_between(was, is);
+    if (shift) return sentence("Transfer function shifted by ", *shift);
+    return sentence("Transfer function of ", is.points().size(), " points, from ", is.lower(), " to ", is.upper());
+}
+
+/// How the light that arrives is mapped to what is seen.
+std::string sentence_about(const OcclusionSettings& was, const OcclusionSettings& is)
+{
+    const auto &before = was.mapping, &after = is.mapping;
+    const std::string off = is.strength > 0.0 ? "" : "; occlusion is off, its strength is 0";
+    if (after.empty()) return "Occlusion curve: a power again" + off;
+    if (before.size() != after.size())
+        return sentence("Occlusion curve: ",
+                        before.empty()                 ? "points from now on"
+                        : before.size() < after.size() ? "a point added"
+                                                       : "a point removed",
+                        ", ", after.size(), " of them", off);
+    const auto [old, moved] = std::ranges::mismatch(before, after);
+    const auto percent = [](double share) { return sentence(std::round(100.0 * share), " %"); };
+    return sentence("Occlusion curve, point ", moved - after.begin() + 1, ": where ", percent(moved->arrives),
+                    " of the light arrives, ", percent(moved->seen), " is seen", off);
+}
+
+std::string sentence_about(ProxyLaw guidance)
+{
+    switch (guidance) {
+        case ProxyLaw::potential: return "Guidance: smooth";
+        case ProxyLaw::mean: return "Guidance: mean of what is relevant";
+        case ProxyLaw::thesis: return "Guidance: mean of 3000 random points";
+    }
+    return {};
+}
+
+/// Empty where only numbers changed, which say enough themselves.
+std::string sentence_about(const FeelSettings& was, const FeelSettings& is)
+{
+    if (was.mode != is.mode) {
+        switch (is.mode) {
+            case TouchMode::proximity: return "Touching: pulled to the middle of all that is near";
+            case TouchMode::surface: return "Touching: held on surfaces, until you pull towards yourself";
+            case TouchMode::object: return "Touching: follows the object first touched, and no neighbour";
+        }
+    }
+    if (was.strength != is.strength) return sentence("Strength ", std::round(100.0 * is.strength), " %");
+    if (was.groups != is.groups && is.groups.empty()) return "Everything at or above the haptic threshold is felt";
+    if (was.plane != is.plane)
+        return is.plane == TouchPlane::none ? std::string("The probe moves freely")
+                                            : sentence("The probe stays in its plane across ", spelled(is.plane));
+    if (was.at_proxy != is.at_proxy)
+        return is.at_proxy ? "Tools act at the middle of what is touched" : "Tools act at the probe";
+    if (was.to_nodes != is.to_nodes)
+        return is.to_nodes ? "Tools act at a node in the probe's ball" : "Nodes draw no tool";
+    if (was.to_lines != is.to_lines)
+        return is.to_lines ? "Tools act on a centre line in the probe's ball, and a new node divides it"
+                           : "Centre lines draw no tool";
+    if (was.clicks != is.clicks)
+        return is.clicks ? "A haptic device clicks where contact begins" : "Contact begins without a click";
+    return {};
+}
+
+}  // namespace
+
+std::string special_sentence(const Session& was, const Session& is)
+{
+    const ProbeSettings &before = was.probe, &after = is.probe;
+    if (was.view.arrangement != is.view.arrangement) return sentence_about(is.view);
+    if (before.brush.group != after.brush.group) return sentence_about_group(is);
+    if (before.brush.brush != after.brush.brush) return sentence("Brush: ", row_of(after.brush.brush).name);
+    if (before.tool != after.tool) return sentence_of(after.tool);
+    if (before.guided != after.guided)
+        return after.guided ? "Guidance on: the probe is pulled to what is at or above the haptic threshold"
+                            : "Guidance off";
+    if (before.guidance != after.guidance) return sentence_about(after.guidance);
+    if (before.touch != after.touch) return sentence_about(before.touch, after.touch);
+    if (before.shell != after.shell)
+        return after.shell ? "Iso-surface around the probe on, at the paint threshold"
+                           : "Iso-surface around the probe off";
+    if (before.preview != after.preview)
+        return after.preview ? "Preview of the brush on: what it would change is shown" : "Preview of the brush off";
+    if (before.arrow != after.arrow) return after.arrow ? "Arrow towards the probe on" : "Arrow towards the probe off";
+    if (before.silhouette != after.silhouette)
+        return after.silhouette ? "Silhouette of the probe on" : "Silhouette of the probe off";
+    if (was.view.volume != is.view.volume)
+        return is.view.volume ? "The volume is drawn" : "The volume is not drawn, except in slices";
+    if (was.view.meshes != is.view.meshes)
+        return is.view.meshes ? "Nodes, internodes and the probe's ball are drawn"
+                              : "Nodes, internodes and the probe's ball are not drawn";
+    if (was.view.cut_box != is.view.cut_box)
+        return is.view.cut_box ? "The edges of the cutting planes are drawn"
+                               : "The edges of the cutting planes are not drawn";
+    if (was.view.solo != is.view.solo) return sentence_about_solo(is);
+    if (was.interaction.workspace_scale != is.interaction.workspace_scale)
+        return sentence("Workspace scale ", std::round(100.0 * is.interaction.workspace_scale) / 100.0,
+                        ": so much farther the probe goes than at 1");
+    if (!(was.transfer_function == is.transfer_function))
+        return sentence_about(was.transfer_function, is.transfer_function);
+    if (const auto quality = quality_of(is.render); quality && was.render != is.render)
+        return sentence("Render quality: ", quality->name);
+    if (was.light.occlusion.mapping != is.light.occlusion.mapping)
+        return sentence_about(was.light.occlusion, is.light.occlusion);
+    if (was.light.shaded != is.light.shaded) return is.light.shaded ? "Shading on" : "Shading off";
+    if (was.render.preintegration != is.render.preintegration)
+        return is.render.preintegration ? "Narrow peaks on: none is missed between samples"
+                                        : "Narrow peaks off: samples may miss them";
+    return {};
+}
+
+}  // namespace shvr::ui

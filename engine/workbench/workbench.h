@@ -1,0 +1,132 @@
+#pragma once
+// Everything a person can do, without a window: the open document, the actions on it, background work, and
+// messages. The window, scripts and tests are its callers; keys, menus and panels only make
+// actions (actions/action.h).
+//
+//   actions -> perform -> the service that an action's row names -> advance: a step of each service
+//
+// One thread, the one that owns the renderer, besides the servo's (haptics/servo.h), those of jobs and savers, and one
+// that writes a screenshot.
+// `advance` never waits for the device, nor for a disk: files are read and written by jobs, and a volume that is opened
+// goes onto the device in slices of a few milliseconds. A step in which nothing happens costs microseconds
+// (ui/MEASURED.md).
+
+#include <array>
+
+#include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/desk/desk.h"
+#include "engine/workbench/lists/recent_actions.h"
+#include "engine/workbench/services/services.h"
+
+namespace shvr::ui {
+
+class Workbench {
+public:
+    Workbench(Renderer& renderer, WorkbenchOptions options);
+    ~Workbench();
+    Workbench(const Workbench&) = delete;
+
+    // ---- Actions
+
+    /// Carries it out. Fails, with nothing changed, with the reason; then the caller says it.
+    void perform(const Action& action);
+    /// The same; a failure other than DeviceLost becomes a message. Returns whether it was carried out.
+    bool apply(const Action& action);
+    /// Opens in the background, with settings as --set takes them, as the action Open does: what is open stays until
+    /// the next is there, and is saved before that. A failure becomes a message.
+    void begin_open(const std::filesystem::path& path, const std::vector<std::string>& settings)
+    {
+        services_.opener.begin_open(path, settings);
+    }
+    /// The same, and waits until it is there; saves nothing before. Fails where it cannot be opened.
+    void open(const std::filesystem::path& path, const std::vector<std::string>& settings, Work::Opening how = {})
+    {
+        services_.opener.open(path, settings, std::move(how));
+    }
+    /// Takes what the caller has opened; the renderer's scene is of its volume.
+    void take(Document::Read read) { services_.opener.take(std::move(read)); }
+    void say(std::string text, Weight weight = Weight::done) { desk_.say(std::move(text), weight); }
+    /// After the graphics device was lost (DeviceLost, from any function here): drops what the workbench has on it,
+    /// calls `make_anew`, and shows all again. Recorded work survives; the unpainted rest of a stroke under way does
+    /// not.
+    void restart_device(const std::function<void()>& make_anew) { services_.opener.restart_device(make_anew); }
+    /// From now on this device moves the probe, whatever is plugged in, and its button paints.
+    void use_device(std::shared_ptr<HapticDevice> device, const std::string& name)
+    {
+        services_.hand.use_device(std::move(device), name);
+    }
+    /// Called with each action that was carried out, as a line that replays it (actions/action_rows.h).
+    void log_to(std::function<void(const std::string& line)> log) { desk_.log = std::move(log); }
+
+    // ---- Steps of the main loop
+
+    /// Size of the picture; 0, 0: none is drawn.
+    void set_pixels(const glm::uvec2& pixels);
+    /// Sets the place of the mouse, which is then read; null: not over the picture.
+    void set_pointer(const std::optional<Pointer>& pointer) { services_.viewer.set_pointer(pointer); }
+    /// What was to be copied since the last call; empty: nothing.
+    std::string take_clipboard() { return services_.reader.take_clipboard(); }
+    /// While a hand is setting something no step of the history is made of it: one drag is one step.
+    void set_hand_down(bool is_down) { services_.settings.set_hand_down(is_down); }
+    /// Pixels of one unit of the interface, for what is drawn over pictures.
+    void set_units(double units) { services_.photographer.set_units(units); }
+    /// Nothing else waits for the device: large screenshots may go on.
+    void set_still(bool is_still) { services_.photographer.set_still(is_still); }
+    /// Does one step of all background work. Failures become messages, and the failed part is retried a little later:
+    /// the rest goes on and no work is lost. DeviceLost is thrown.
+    void advance();
+    /// Steps until a running stroke is painted. Returns why part of it was not; empty if all was.
+    std::string finish_stroke() { return services_.painter.finish_stroke(); }
+    /// Waits for what is being saved. Returns what was written; fails with the reason where that is not all.
+    Work::Saved finish_save() { return services_.saver.finish_save(); }
+    /// Waits until all that was done is on disk, in the journal; fails with the reason if that is not possible.
+    void flush() { desk_.document->annotator.work().flush(); }
+    /// Whether another step at once would find something to do.
+    bool has_work() const;
+    /// Whether there is a picture that does not yet show what was done last.
+    bool is_stirring() const { return services_.viewer.is_stirring(); }
+    /// Whether what is open may be closed: call it once a frame. Saves all work as Save does; if the person only looked
+    /// around, saves the view silently. Where the work is only looked at, nothing is saved, as was said; while it is
+    /// asked what to believe, annotation stays as the journal has it.
+    using Leave = ui::Leave;
+    Leave leave(std::string& why) { return services_.saver.leave(why); }
+    bool is_saving() const { return services_.saver.is_saving(); }
+    /// Whether anything is to be seen of jobs.
+    bool shows_jobs() const;
+
+    // ---- What there is to see
+
+    bool is_open() const { return desk_.document != nullptr; }
+    const Document& document() const { return *desk_.document; }
+    Screen& screen() { return desk_.document->screen; }
+    Model model() const;
+    std::string why_not(const Action& action) const { return ui::why_not(model(), action); }
+    const MessageLog& messages() const { return desk_.messages; }
+    bool takes_large_screenshot() const { return services_.photographer.has_large(); }
+    void wait_for_screenshots() const { services_.photographer.wait(); }
+    /// Quit was asked for; asking clears it.
+    bool take_quit() { return services_.saver.take_quit(); }
+    /// What the keyboard was asked to be given to, once; empty: nothing.
+    std::string take_focus() { return services_.window.take_focus(); }
+    /// Whether lines show what the cutting planes leave: while they are moved, and a little longer.
+    bool shows_cut_box() const { return services_.viewer.shows_cut_box(); }
+    bool shows_full_screen() const { return services_.window.is_full_screen(); }
+    /// Voxels that the preview showed when the last stroke began, if it had one.
+    std::optional<int64_t> previewed_at_stroke() const { return services_.painter.previewed_at_stroke(); }
+    /// When the open document was opened, and how often one was.
+    double opened_s() const { return desk_.opened_s; }
+    uint64_t openings() const { return desk_.openings; }
+
+private:
+    void carry_out(const Action& action);
+
+    Desk desk_;
+    Services services_{desk_};
+    RecentActions recent_;
+    /// In the order of a step.
+    const std::array<Service*, 10> turn_{
+        &services_.tasks,    &services_.opener,  &services_.reloader, &services_.saver,  &services_.hand,
+        &services_.settings, &services_.painter, &services_.viewer,   &services_.reader, &services_.photographer};
+};
+
+}  // namespace shvr::ui
