@@ -261,11 +261,16 @@ bool App::ui_has_mouse(const InputEvent& event) const
 /// in them are theirs, and all others mean what they always mean.
 bool App::ui_has_key(const KeyEvent& event) const
 {
-    const ImGuiIO& io = ImGui::GetIO();
     if (field_has_keys() || choosers_have_keys()) return true;
     if (!bench_->model().awaits_key.empty()) return false;  // any key may be the one that is chosen
+    return panels_have_keyboard() && moves_in_panels(event);
+}
+
+/// Whether a field, a menu or a dialog is open, or a person moves through a panel by keys.
+bool App::panels_have_keyboard() const
+{
     const bool has_popup = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
-    return (io.NavVisible || has_popup) && moves_in_panels(event);
+    return ImGui::GetIO().NavVisible || has_popup || field_has_keys() || choosers_have_keys();
 }
 
 /// Those that came behind a key that may have opened or closed a field wait for the frame that tells whose they are.
@@ -302,10 +307,10 @@ void App::handle_events(double timeout_s)
         keep_drawing(AFTERGLOW_S);
         const auto* const key = std::get_if<KeyEvent>(&event.what);
         if (key || std::holds_alternative<ButtonEvent>(event.what)) report_.asked(event.time_s);
-        window_.tell_ui(event);
+        const bool is_for_ui = key && ui_has_key(*key);
+        if (!key || !key->pressed || panels_have_keyboard() || !moves_focus(*key)) window_.tell_ui(event);
         bool decides = false;
         if (key) {
-            const bool is_for_ui = ui_has_key(*key);
             keyboard_.handle(*key, model(), is_for_ui, actions_);
             decides = decides_who_has_keys(*key, is_for_ui);
             if (decides && !is_for_ui) ImGui::GetIO().ClearInputCharacters();  // those were of shortcuts

@@ -68,6 +68,7 @@ private:
     double next_reason_to_draw_s() const;
     double time_to_wait() const;
     bool ui_has_key(const KeyEvent& event) const;
+    bool panels_have_keyboard() const;
     std::vector<InputEvent> events_in_turn(double timeout_s);
     void hold_back(std::vector<InputEvent>& events, size_t first);
     bool decides_who_has_keys(const KeyEvent& event, bool is_for_ui) const;

@@ -153,6 +153,14 @@ bool moves_in_panels(const KeyEvent& event)
     return std::ranges::find(KEYS, event.key) != std::end(KEYS) && !(event.mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT));
 }
 
+bool moves_focus(const KeyEvent& event)
+{
+    constexpr int KEYS[] = {GLFW_KEY_UP,    GLFW_KEY_DOWN,  GLFW_KEY_LEFT,    GLFW_KEY_RIGHT,
+                            GLFW_KEY_HOME,  GLFW_KEY_END,   GLFW_KEY_PAGE_UP, GLFW_KEY_PAGE_DOWN,
+                            GLFW_KEY_SPACE, GLFW_KEY_ENTER, GLFW_KEY_KP_ENTER};
+    return std::ranges::find(KEYS, event.key) != std::end(KEYS);
+}
+
 bool leaves_panels(const KeyEvent& event)
 {
     return event.pressed && !event.repeated && event.key == GLFW_KEY_ESCAPE;

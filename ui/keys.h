@@ -29,6 +29,8 @@ private:
 
 /// Arrows, Tab, Space, Enter and Escape, without Ctrl and Alt: what Dear ImGui is used with by keyboard.
 bool moves_in_panels(const KeyEvent& event);
+/// Whether Dear ImGui would take this key, pressed over the picture, for a move into a panel. Tab is the key for that.
+bool moves_focus(const KeyEvent& event);
 /// Gives the keyboard back to the picture.
 bool leaves_panels(const KeyEvent& event);
 

@@ -10,6 +10,7 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/base/error.h"
 #include "engine/base/image_file.h"
 #include "tests/gpu/matrix/wrong_renderings.h"
 #include "tests/gpu/wrong_kernels.h"
@@ -182,7 +183,13 @@ TEST_CASE("every kernel with a mistake fails a golden")
         }
         const WrongKernels wrong(mistake, kernels[one.name]);
         CHECK_MESSAGE(wrong.count() > 0, "no kernel of ", one.name, " has the mistake");
-        const std::optional<std::string> why = why_different(Studio(one).draw(), one);
+        std::optional<std::string> why;
+        try {
+            why = why_different(Studio(one).draw(), one);
+        } catch (const Error& error) {
+            why = error.what();  // pixels that nothing draws hold what was in the memory, which may be NaN
+            CHECK(why->find("values of the picture are no numbers") != std::string::npos);
+        }
         CHECK_MESSAGE(why, std::string(mistake.golden), " does not notice");
         caught += why ? 1 : 0;
         if (std::getenv("SHVR_GOLDEN_VERBOSE") && why) std::cout << mistake.name << ": " << *why << '\n';

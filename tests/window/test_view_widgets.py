@@ -70,6 +70,17 @@ class Widgets(Seen):
     def open_panel(self, panel, **keys):
         self.open_scan(self.write_ball(**keys), preferences=only_panel(panel))
 
+    def test_keys_over_the_picture_stay_shortcuts_after_a_click_in_a_panel(self):
+        self.open_panel("light")
+        self.click_on("Grey", "Side panel")
+        self.do("mousemove", *self.middle(), pause_s=0)
+        self.see_frames()
+        for key, action in (("Left", "push_probe"), ("Right", "push_probe"), ("Home", "fit_view"),
+                            ("Alt+Down", "push_probe"), ("Space", "set probe.guided")):
+            self.check_key(key, action)
+        self.assertNotIn("folded", self.log.read_text())
+        self.finish()
+
     def drag(self, begin, by, *, finely=False, tail=()):
         """By so many pixels, with Shift where it is to be fine."""
         way = [(begin[0] + by[0] * step // 5, begin[1] + by[1] * step // 5) for step in range(1, 6)]
