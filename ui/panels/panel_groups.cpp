@@ -84,8 +84,8 @@ void solo_cell(uint8_t group, const Model& model, Actions& actions)
         set(actions, model, [&](Session& s) { s.view.solo = is_alone ? std::nullopt : std::optional(group); });
     if (is_alone) ImGui::PopStyleColor();
     hint(is_alone     ? "Shows the others again, as they were."
-         : group == 0 ? "Shows only what no group holds, until it is clicked again."
-                      : "Shows only this group and its subgroups, until it is clicked again.");
+         : group == 0 ? "Shows only unpainted voxels, until clicked again."
+                      : "Shows only this group and its subgroups, until clicked again.");
 }
 
 // ---- The tree
@@ -101,7 +101,7 @@ void drag_and_drop(uint8_t group, const Model& model, Actions& actions)
     if (group != 0 && ImGui::BeginDragDropSource()) {
         ImGui::SetDragDropPayload(DRAGGED, &group, sizeof group);
         ImGui::TextUnformatted(label_of_group(model.session.groups, group).c_str());
-        ImGui::TextDisabled("Drop it onto the group that it belongs to;\nonto 0, if it belongs to none.");
+        ImGui::TextDisabled("Drop it onto its parent group,\nor onto 0 for no parent.");
         ImGui::EndDragDropSource();
     }
     if (!ImGui::BeginDragDropTarget()) return;
@@ -124,15 +124,15 @@ bool settings_popup(uint8_t group, const Model& model, GroupSettings& settings, 
     if (ImGui::IsItemDeactivatedAfterEdit()) ImGui::CloseCurrentPopup();
     if (ImGui::MenuItem("Belongs to no group", nullptr, false, settings.parent != 0))
         set_parent(group, 0, model, actions);
-    if (ImGui::MenuItem("Usual colour", nullptr, false, settings.color.has_value())) {
+    if (ImGui::MenuItem("Default colour", nullptr, false, settings.color.has_value())) {
         settings.color.reset();
         changed = true;
     }
-    if (ImGui::MenuItem("Usual opacity", nullptr, false, settings.opacity.has_value())) {
+    if (ImGui::MenuItem("Default opacity", nullptr, false, settings.opacity.has_value())) {
         settings.opacity.reset();
         changed = true;
     }
-    hint("Its parent's, where it has one.");
+    hint("Uses the parent group's opacity, if there is a parent.");
     ImGui::EndPopup();
     return changed;
 }
@@ -212,10 +212,9 @@ void size_cell(const char* id, uint8_t group, size_t count, double radius_units,
     }
     if (ImGui::IsItemDeactivatedAfterEdit())
         actions.push_back(RadiusOp{.of = of, .radius_voxels = radius, .group = group});
-    hint(of == RadiusOp::Of::nodes
-             ? "Mean radius of the group's nodes, in voxels; a change gives all the same."
-             : "Mean radius of the group's internodes, in voxels; a change gives all the same, and "
-               "they taper no more.");
+    hint(of == RadiusOp::Of::nodes ? "Mean radius of the group's nodes, in voxels; a change applies to all of them."
+                                   : "Mean radius of the group's internodes, in voxels; a change applies to all of "
+                                     "them, and they no longer taper.");
 }
 
 void size_cells(uint8_t group, const Model& model, Actions& actions)
@@ -262,7 +261,7 @@ void group_row(const GroupRow& row, const Model& model, Actions& actions)
         settings.opacity = opacity;
         changed = true;
     }
-    hint("Opacity of one voxel of the group: 0 clear, 1 solid. Drag sideways; a double click takes the usual one.");
+    hint("Opacity of one voxel of the group: 0 clear, 1 solid. Drag sideways; double-click for the default.");
     const bool is_reset = resets(sentence("groups.", int(row.group), ".opacity").c_str(), actions);
     count_cell(model.voxels_by_group[row.group]);
     if (changed && !is_reset) set(actions, model, [&](Session& s) { s.groups[row.group] = settings; });
@@ -329,7 +328,7 @@ void rename_button(const Model& model, Actions& actions)
     ImGui::BeginDisabled(group == 0);
     if (ImGui::Button("Rename")) ImGui::OpenPopup("rename");
     ImGui::EndDisabled();
-    hint("Gives the active group another name.");
+    hint("Renames the active group.");
     if (!ImGui::BeginPopup("rename")) return;
     static FieldKeys keys;
     keys.before_field(ImGui::IsWindowAppearing());
@@ -352,7 +351,7 @@ void tools(const Model& model, Actions& actions)
     ImGui::BeginDisabled(next == 0);
     if (ImGui::Button("New group")) actions.emplace_back(NewGroup{});
     ImGui::EndDisabled();
-    hint(next == 0 ? "All 255 groups are in use." : "A group that nothing uses yet, to paint and trace with.");
+    hint(next == 0 ? "All 255 groups are in use." : "Activates an unused group to paint and trace with.");
     ImGui::SameLine();
     rename_button(model, actions);
     ImGui::SameLine();

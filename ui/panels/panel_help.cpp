@@ -34,9 +34,9 @@ constexpr Gesture GESTURES[] = {
     {"Mouse without buttons", "The probe follows: in its plane with the tool that turns, else on what you see"},
     {"Double click, with the tool that turns", "Put the probe onto what you see there"},
     {"Right drag", "Turn the volume; with the tool that turns, paint; in a slice, change the contrast"},
-    {"Double click on a setting", "Give it its usual value"},
+    {"Double click on a setting", "Restore its default"},
     {"Shift while dragging a setting", "A tenth as far, for fine steps; so with the wheel over the curve"},
-    {"Double click on the panels' edge", "Give them their usual width"},
+    {"Double click on the panels' edge", "Restore their default width"},
     {"Drop files", "Open them: scans, sessions, projects, masks, traces, transfer functions"},
     {"Click, with the tool that turns", "Select the node, or take the group, under the pointer"},
     {"Drag in a slice", "Move the cross, and with it the other slices"},
@@ -101,7 +101,7 @@ void meaning_of(const Shortcut& shortcut, const Model& model, Actions& actions)
         ImGui::SameLine();
         const char* const shipped = shortcut.keys[size_t(model.preferences.key_set)];
         if (ImGui::SmallButton("Reset")) actions.push_back(BindKeys{shortcut.id, shipped});
-        hint(sentence("What ships: ", *shipped ? shipped : "no key").c_str());
+        hint(sentence("Default: ", *shipped ? shipped : "no key").c_str());
     }
     for (const Shortcut* rival : model.keymap.rivals_of(shortcut)) {
         ImGui::PushStyleColor(ImGuiCol_Text, WARNING);

@@ -85,7 +85,7 @@ void file_menu(const Model& model, Actions& actions)
     ImGui::Separator();
     shortcut_item("quit", model, actions);
     shortcut_item("quit_unsaved", model, actions);
-    hint("Files stay as they were saved last. Undo brings back what was done since, when it is opened again.");
+    hint("Files stay as they were last saved. After reopening, undo restores the later changes.");
     ImGui::EndMenu();
 }
 
@@ -388,7 +388,7 @@ void said(const Model& model, const std::string& right, Actions& actions)
         ImGui::TextUnformatted(unread.c_str());
         ImGui::PopStyleColor();
         is_clicked |= ImGui::IsItemClicked();
-        hint("Nobody has looked at these yet; a click shows all messages.");
+        hint("Unread messages. Click to show all.");
     }
     if (is_clicked) actions.push_back(ShowMessages{});
     ImGui::SetCursorPos({begin, top});

@@ -37,9 +37,7 @@ void head(const Model& model, Shown& shown)
     const float width = 4.0f * ImGui::GetFontSize();
     ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), ImGui::GetContentRegionMax().x - width));
     if (ImGui::Button("Copy", {width, 0.0f})) ImGui::SetClipboardText(bug_report(model).c_str());
-    hint(
-        "A report to paste where you tell of a bug: version, device, path of the session, the last actions and "
-        "messages.");
+    hint("Copies a bug report: version, device, session path, last actions and messages.");
 }
 
 /// One beside the other: when, how grave, what; the newest at the bottom, which is in view unless scrolled away.

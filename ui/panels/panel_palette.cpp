@@ -116,7 +116,7 @@ void palette_window(const Model& model, Actions& actions)
     if (was_pressed(ImGuiKey_UpArrow)) --palette.chosen;
     palette.chosen = std::clamp(palette.chosen, 0, std::max(int(entries.size()) - 1, 0));
     list(entries, actions);
-    if (entries.empty()) ImGui::TextDisabled("Nothing has these words in its name.");
+    if (entries.empty()) ImGui::TextDisabled("No entry has these words in its name.");
     if (!entries.empty() && !entries[size_t(palette.chosen)].why_not.empty())
         ImGui::TextWrapped("%s", entries[size_t(palette.chosen)].why_not.c_str());
     if (is_entered && !entries.empty()) choose(entries[size_t(palette.chosen)], actions);

@@ -114,22 +114,22 @@ void preferences_window(const Model& model, Actions& actions)
     if (ImGui::Begin("Preferences", &is_open, flags)) {
         theme_row(preferences, actions);
         number_row("Text", "font_pixels", preferences.font_pixels, Preferences::MIN_FONT_PIXELS,
-                   Preferences::MAX_FONT_PIXELS, "%.0f pixels", "Height of letters, at a scale of 1.", actions);
+                   Preferences::MAX_FONT_PIXELS, "%.0f pixels", "Font size at a scale of 1.", actions);
         bool follows = !preferences.scale;
         row_label("Scale");
         if (ImGui::Checkbox("as the screen says", &follows))
             prefer(actions, follows ? "\"scale\":null" : "\"scale\":1");
-        hint("Changes with the screen that the window is on.");
+        hint("Follows the scale of the screen that the window is on.");
         if (preferences.scale)
             number_row("", "scale", *preferences.scale, Preferences::MIN_SCALE, Preferences::MAX_SCALE, "%.2f times",
-                       "Size of everything but the picture.", actions);
+                       "Size of everything except the picture.", actions);
         keys_row(model, actions);
         budget_row("GPU memory", "budget_device_mib", preferences.budget_device_mib, model.device_budget,
-                   "Of the graphics device, for volumes, pictures and paint. From the next start on.", actions);
+                   "Device memory for volumes, pictures and paint. Applies from the next start.", actions);
         budget_row("Memory", "budget_host_mib", preferences.budget_host_mib, uint64_t{1} << 30,
-                   "Of the computer, for bricks on their way to the device. From the next start on.", actions);
+                   "Main memory for bricks on their way to the device. Applies from the next start.", actions);
         buttons(actions);
-        ImGui::TextDisabled("Kept for all scans. A double click on a slider takes what ships.");
+        ImGui::TextDisabled("Kept for all scans. Double-click a slider to restore its default.");
     }
     ImGui::End();
     if (!is_open) actions.push_back(ShowPreferences{false});

@@ -62,7 +62,7 @@ bool radius(const Model& model, BrushSettings& brush, Actions& actions)
     ImGui::SetNextItemWidth(8.0f * ImGui::GetFontSize());
     const bool changed = drag_number("##radius", brush.radius_voxels, 0.15, MIN_RADIUS_VOXELS, MAX_RADIUS_VOXELS,
                                      "%.1f voxels", ImGuiSliderFlags_Logarithmic);
-    hint(sentence("Of the probe and the brush. Drag sideways, or Ctrl + click to type. ",
+    hint(sentence("Radius of the probe and the brush. Drag sideways, or Ctrl + click to type. ",
                   name_with_key("larger_brush", model.keymap), ", ", name_with_key("smaller_brush", model.keymap), ".")
              .c_str());
     if (resets("probe.radius_voxels", actions)) return false;
@@ -156,7 +156,7 @@ void preview(const Model& model, Actions& actions)
 {
     bool is_on = model.session.probe.preview;
     label("Preview");
-    if (ImGui::Checkbox(sentence("of the brush", key_in_brackets("preview", model.keymap), "##preview").c_str(),
+    if (ImGui::Checkbox(sentence("show changes", key_in_brackets("preview", model.keymap), "##preview").c_str(),
                         &is_on))
         set(actions, model, [&](Session& s) { s.probe.preview = is_on; });
     hint("Shows the voxels that painting would change here; striped where it would erase.");

@@ -70,21 +70,21 @@ void new_nodes(const Model& model, Actions& actions)
     ImGui::SetNextItemWidth(8.0f * ImGui::GetFontSize());
     if (drag_number("##new nodes", radius, 0.05, LEAST, MOST, "%.2f voxels", ImGuiSliderFlags_Logarithmic))
         set(actions, model, [&](Session& s) { s.probe.node_radius_voxels = radius; });
-    hint("Radius of nodes that you add. It has nothing to do with the brush.");
+    hint("Radius of new nodes, independent of the brush.");
     ImGui::SameLine();
     bool is_measured = model.session.probe.measured_radius;
     if (ImGui::Checkbox("measured", &is_measured))
         set(actions, model, [&](Session& s) { s.probe.measured_radius = is_measured; });
     hint(
-        "As wide as what the node lies in: the largest ball that contains it, above the paint threshold. Where that "
-        "cannot be told, the radius beside it is taken.");
+        "Radius of the largest ball above the paint threshold that contains the node. If there is none, the radius "
+        "next to it is used.");
     bool is_centered = model.session.probe.centered_nodes;
     label("");
-    if (ImGui::Checkbox("clicked into the middle", &is_centered))
+    if (ImGui::Checkbox("centred when clicked", &is_centered))
         set(actions, model, [&](Session& s) { s.probe.centered_nodes = is_centered; });
     hint(
-        "Where you click a wall, the node goes into the middle of what lies behind it, above the paint threshold. "
-        "Otherwise it stays on the wall. In slices it is where you click.");
+        "A node clicked on a wall moves to the middle of the structure behind it, above the paint threshold. Otherwise "
+        "it stays on the wall. In slices it stays where you click.");
 }
 
 }  // namespace shvr::ui

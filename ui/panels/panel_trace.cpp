@@ -176,8 +176,7 @@ void tapering(const Model& model, Actions& actions)
     }
     hint(
         "Tapers from node to node; otherwise all of the group have one size, which the keys that change selected nodes "
-        "change "
-        "while nothing is selected.");
+        "change while nothing is selected.");
     if (found == model.trace.internode_radii().end()) return;
     ImGui::SameLine();
     ImGui::TextDisabled("%.4g %s", found->second, spelled(model.volume.unit));

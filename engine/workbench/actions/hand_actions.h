@@ -19,7 +19,7 @@ struct UseDevice {
     std::string device;  ///< id of a listed one; empty: the first that can be used, whatever is plugged in
 };
 
-struct FindDevices {};  ///< looks again for what is plugged in
+struct FindDevices {};  ///< searches for connected devices again
 
 struct CalibrateDevice {};  ///< opens it again, so that its place of rest becomes its origin
 
@@ -41,17 +41,17 @@ struct FollowStylus {
 inline constexpr const char* HAND_GROUP = "Touch";
 
 inline constexpr auto HAND_ACTIONS = std::tuple{
-    row<LetGo, Hand>({"let_go", "Let go", HAND_GROUP, "no force at once, until it is switched off again"},
+    row<LetGo, Hand>({"let_go", "Let go", HAND_GROUP, "switches all force off at once, or allows it again"},
                      [](auto& f, LetGo& a) { f.flag("on", a.on, {}); }),
     row<GrabVolume, Hand>(
         {"grab_volume", "Take hold of the volume", HAND_GROUP,
-         "the volume moves and turns with the stylus until it is let go"},
+         "moves and turns the volume with the stylus until released"},
         [](auto& f, GrabVolume& a) { f.flag("on", a.on, {}); },
         [](const auto& model, const GrabVolume& action) -> std::string {
             return !action.on || (model.hand && model.hand->moves_probe) ? "" : "no stylus moves the probe";
         }),
     row<UseDevice, Hand>(
-        {"use_device", "Use a device", HAND_GROUP, "takes a listed haptic device, or the first that can be used"},
+        {"use_device", "Use a device", HAND_GROUP, "uses a listed haptic device, or the first usable one"},
         [](auto& f, UseDevice& a) { f.text("device", a.device, {}); },
         [](const auto& model, const UseDevice& action) -> std::string {
             if (action.device.empty()) return {};
@@ -59,15 +59,15 @@ inline constexpr auto HAND_ACTIONS = std::tuple{
             const bool is_there = model.hand && std::ranges::any_of(model.hand->devices, is_it);
             return is_there ? "" : sentence("no device ", action.device, " is plugged in");
         }),
-    row<FindDevices, Hand>({"find_devices", "Look for devices", HAND_GROUP, "looks again for what is plugged in"}),
+    row<FindDevices, Hand>({"find_devices", "Look for devices", HAND_GROUP, "searches for connected devices again"}),
     row<CalibrateDevice, Hand>(
-        {"calibrate_device", "Calibrate", HAND_GROUP, "takes the stylus's place of rest as the origin"}, NO_FIELDS,
+        {"calibrate_device", "Calibrate", HAND_GROUP, "sets the origin to the stylus's rest position"}, NO_FIELDS,
         [](const auto& model, const CalibrateDevice&) -> std::string {
             return model.hand && model.hand->moves_probe ? "" : "no haptic device moves the probe";
         }),
     row<RecordStylus, Hand>(
         {"record_stylus", "Record the stylus", HAND_GROUP,
-         "writes what the stylus does and feels, tick by tick, into a file"},
+         "records motion and forces of the stylus, tick by tick, to a file"},
         [](auto& f, RecordStylus& a) { f.path("path", a.path, {}); },
         [](const auto& model, const RecordStylus&) -> std::string {
             return model.hand && model.hand->recorded_s ? "the stylus is being recorded" : "";
@@ -80,7 +80,7 @@ inline constexpr auto HAND_ACTIONS = std::tuple{
         }),
     row<FollowStylus, Hand>(
         {"follow_stylus", "Follow a recorded stylus", HAND_GROUP,
-         "leads the probe along a recording, with the present guidance"},
+         "moves the probe along a recording, with the present guidance"},
         [](auto& f, FollowStylus& a) {
             f.path("path", a.path, {.is_required = true});
             f.flag("by_hand", a.by_hand, {});

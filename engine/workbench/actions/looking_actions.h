@@ -133,7 +133,7 @@ inline constexpr auto LOOKING_ACTIONS = std::tuple{
             return model.session.cameras.contains(action.name) ? "" : sentence("no view is kept as ", action.name);
         }),
     row<RenameCamera, Viewer>(
-        {"rename_camera", "Rename a view", LOOKING_GROUP, "gives a camera of the session another name"},
+        {"rename_camera", "Rename a view", LOOKING_GROUP, "renames a camera of the session"},
         [](auto& f, RenameCamera& a) {
             f.text("name", a.name, {.is_required = true});
             f.text("to", a.to, {.is_required = true});
@@ -144,13 +144,13 @@ inline constexpr auto LOOKING_ACTIONS = std::tuple{
                                                              : "";
         }),
     row<PivotAt, Viewer>(
-        {"pivot_at", "Turn about what is seen", LOOKING_GROUP, "turning goes about what is seen at a pixel of a pane"},
+        {"pivot_at", "Set pivot here", LOOKING_GROUP, "sets the pivot to the point seen at a pixel of a pane"},
         [](auto& f, PivotAt& a) {
             pane_field(f, a.pane);
             pixel_field(f, "pixel", a.pixel);
         }),
     row<GoTo, Viewer>(
-        {"go_to", "Go to", LOOKING_GROUP, "the camera looks at a voxel, from the same side and as far away as before"},
+        {"go_to", "Go to", LOOKING_GROUP, "points the camera at a voxel, from the same side and distance"},
         [](auto& f, GoTo& a) { f.vector("voxel", a.voxel, VOXELS, {.is_required = true}); }),
     row<MoveCut, Viewer>({"move_cut", "Move a cutting plane", LOOKING_GROUP,
                           "moves one of the six planes by a share of the volume's size"},
@@ -172,21 +172,22 @@ inline constexpr auto LOOKING_ACTIONS = std::tuple{
                                 f.number("far", a.far, DISTANCES, {});
                             }),
     row<ResetCuts, Viewer>({"reset_cuts", "Remove all planes", LOOKING_GROUP, "shows the whole volume"}),
-    row<FitView, Viewer>({"fit_view", "Fit", LOOKING_GROUP,
-                          "brings the volume, or what is not cut away of it, into sight; in a slice, the slices"},
-                         [](auto& f, FitView& a) { pane_field(f, a.pane); }),
+    row<FitView, Viewer>(
+        {"fit_view", "Fit", LOOKING_GROUP, "brings the uncut part of the volume into view; in a slice, the slices"},
+        [](auto& f, FitView& a) { pane_field(f, a.pane); }),
     row<ResetView, Viewer>(
-        {"reset_view", "Reset the view", LOOKING_GROUP, "takes the camera that the session opens with"}),
+        {"reset_view", "Reset the view", LOOKING_GROUP, "restores the camera that the session opens with"}),
     row<LookAtSelection, Viewer>(
-        {"look_at_selection", "Look at what is selected", LOOKING_GROUP,
-         "moves what is selected into the middle of the view"},
-        NO_FIELDS,
-        [](const auto& model, const LookAtSelection&)
-            -> std::string { return model.trace.selection().empty() ? "nothing is selected" : ""; }),
-    row<UpdateOcclusion, Viewer>(
-        {"update_occlusion", "Update ambient occlusion", LOOKING_GROUP, "computes it anew where it is not automatic"},
-        NO_FIELDS, [](const auto& model, const UpdateOcclusion&) -> std::string {
-            return model.session.light.occlusion.strength > 0.0 ? "" : "ambient occlusion is off: its strength is 0";
-        })};
+        {"look_at_selection", "Look at the selection", LOOKING_GROUP, "centres the selection in the view"}, NO_FIELDS,
+        [](const auto& model, const LookAtSelection&) -> std::string {
+            return model.trace.selection().empty() ? "nothing is selected" : "";
+        }),
+    row<UpdateOcclusion, Viewer>({"update_occlusion", "Update ambient occlusion", LOOKING_GROUP,
+                                  "recomputes ambient occlusion if that is not automatic"},
+                                 NO_FIELDS, [](const auto& model, const UpdateOcclusion&) -> std::string {
+                                     return model.session.light.occlusion.strength > 0.0
+                                                ? ""
+                                                : "ambient occlusion is off: its strength is 0";
+                                 })};
 
 }  // namespace shvr::ui

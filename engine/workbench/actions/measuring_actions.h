@@ -20,7 +20,7 @@ inline constexpr const char* MEASURING_GROUP = "Measuring";
 
 inline constexpr auto MEASURING_ACTIONS = std::tuple{
     row<MeasureAt, Reader>(
-        {"measure_at", "Measure", MEASURING_GROUP, "sets one end of a distance at what is seen at a pixel of a pane"},
+        {"measure_at", "Measure", MEASURING_GROUP, "sets one end of a distance at the point seen at a pixel of a pane"},
         [](auto& f, MeasureAt& a) {
             pane_field(f, a.pane);
             pixel_field(f, "pixel", a.pixel);

@@ -49,40 +49,40 @@ inline constexpr const char* PROBE_GROUP = "Probe";
 
 inline constexpr auto PROBE_ACTIONS =
     std::tuple{row<ProbeTo, Prober>(
-                   {"probe_to", "Move the probe", PROBE_GROUP, "the probe goes to a pixel of a pane, in its plane"},
+                   {"probe_to", "Move the probe", PROBE_GROUP, "moves the probe to a pixel of a pane, in its plane"},
                    [](auto& f, ProbeTo& a) {
                        pane_field(f, a.pane);
                        pixel_field(f, "pixel", a.pixel);
                        f.flag("jumps", a.jumps, {});
                    }),
                row<ProbeOnto, Prober>({"probe_onto", "Put the probe onto what is seen", PROBE_GROUP,
-                                       "the probe goes to the surface seen at a pixel of a pane"},
+                                       "moves the probe onto the surface seen at a pixel of a pane"},
                                       [](auto& f, ProbeOnto& a) {
                                           pane_field(f, a.pane);
                                           pixel_field(f, "pixel", a.pixel);
                                       }),
                row<ProbeAlong, Prober>({"probe_along", "Move the probe along what is seen", PROBE_GROUP,
-                                        "the probe follows what is seen, as a stroke does"},
+                                        "moves the probe along the visible surface, as a stroke does"},
                                        [](auto& f, ProbeAlong& a) {
                                            pane_field(f, a.pane);
                                            pixel_field(f, "pixel", a.pixel);
                                            f.flag("jumps", a.jumps, {});
                                        }),
                row<PushProbe, Prober>({"push_probe", "Push the probe", PROBE_GROUP,
-                                       "the probe goes away from the viewer of a pane, to the right and up"},
+                                       "moves the probe away from the viewer of a pane, to the right and up"},
                                       [](auto& f, PushProbe& a) {
                                           pane_field(f, a.pane);
                                           f.number("voxels", a.voxels, VOXELS, {"away"});
                                           f.number("right", a.right, VOXELS, {});
                                           f.number("up", a.up, VOXELS, {});
                                       }),
-               row<PlaceProbe, Prober>({"place_probe", "Place the probe", PROBE_GROUP, "the probe goes to a voxel"},
+               row<PlaceProbe, Prober>({"place_probe", "Place the probe", PROBE_GROUP, "moves the probe to a voxel"},
                                        [](auto& f, PlaceProbe& a) {
                                            f.vector("voxel", a.voxel, VOXELS, {.is_required = true});
                                            f.flag("jumps", a.jumps, {});
                                        }),
                row<ScaleProbe, Prober>(
-                   {"scale_probe", "Resize the probe", PROBE_GROUP, "the probe and its brush grow by a factor"},
+                   {"scale_probe", "Resize the probe", PROBE_GROUP, "scales the probe and its brush by a factor"},
                    [](auto& f, ScaleProbe& a) { f.number("factor", a.factor, FACTOR, {.is_required = true}); })};
 
 }  // namespace shvr::ui

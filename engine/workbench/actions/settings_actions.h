@@ -43,7 +43,7 @@ inline constexpr const char* SETTINGS_GROUP = "Settings";
 
 inline constexpr auto SETTINGS_ACTIONS = std::tuple{
     row<Set, SettingsEditor>(
-        {"set", "Change settings", SETTINGS_GROUP, "sets any keys of the session; null takes a key's default"},
+        {"set", "Change settings", SETTINGS_GROUP, "sets any keys of the session; null restores a key's default"},
         [](auto& f, Set& a) {
             const auto read = [&](const JsonNode& node) {
                 if (!node.is_object()) node.refuse("an object such as {\"light\": {\"ambient\": 0.4}}");
@@ -51,27 +51,27 @@ inline constexpr auto SETTINGS_ACTIONS = std::tuple{
             };
             f.other("values", read, [&] { return std::optional(a.patch); }, {.is_required = true});
         }),
-    row<NewGroup, SettingsEditor>(
-        {"new_group", "New group", SETTINGS_GROUP, "makes the first group that nothing uses yet the active one"}),
+    row<NewGroup, SettingsEditor>({"new_group", "New group", SETTINGS_GROUP, "activates the first unused group"}),
     row<EndStep, SettingsEditor>({"end_step", "End the step", SETTINGS_GROUP,
-                                  "makes one step of what was set since the last; it comes by itself"}),
+                                  "makes one history step of the settings changed since the last; also automatic"}),
     row<AutoContrast, SettingsEditor>({"auto_contrast", "Contrast of the slices", SETTINGS_GROUP,
                                        "sets black and white so that almost all lies between them"}),
     row<KeepPreset, PresetShelf>(
-        {"keep_preset", "Keep the transfer function", SETTINGS_GROUP, "keeps it under a name, for all scans"},
+        {"keep_preset", "Keep the transfer function", SETTINGS_GROUP,
+         "keeps the transfer function under a name, for all scans"},
         [](auto& f, KeepPreset& a) { f.text("name", a.name, {.is_required = true}); },
         [](const auto& model, const KeepPreset&) -> std::string {
             return model.session.transfer_function.points().size() < 2 ? "there is no transfer function" : "";
         }),
     row<RenamePreset, PresetShelf>(
-        {"rename_preset", "Rename a transfer function", SETTINGS_GROUP, "gives one that was kept another name"},
+        {"rename_preset", "Rename a transfer function", SETTINGS_GROUP, "renames a kept transfer function"},
         [](auto& f, RenamePreset& a) {
             f.text("name", a.name, {.is_required = true});
             f.text("to", a.to, {.is_required = true});
         },
         [](const auto& model, const RenamePreset& action) -> std::string { return why_not_own(model, action.name); }),
     row<ForgetPreset, PresetShelf>(
-        {"forget_preset", "Forget a transfer function", SETTINGS_GROUP, "removes one that was kept"},
+        {"forget_preset", "Forget a transfer function", SETTINGS_GROUP, "removes a kept transfer function"},
         [](auto& f, ForgetPreset& a) { f.text("name", a.name, {.is_required = true}); },
         [](const auto& model, const ForgetPreset& action) -> std::string { return why_not_own(model, action.name); }),
     row<TakePreset, SettingsEditor>(

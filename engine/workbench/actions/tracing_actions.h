@@ -41,8 +41,7 @@ inline constexpr const char* TRACING_GROUP = "Tracing";
 
 inline constexpr auto TRACING_ACTIONS = std::tuple{
     row<DragNode, Tracer>(
-        {"drag_node", "Move the selected node", TRACING_GROUP,
-         "the selected node goes with the probe until it is let go"},
+        {"drag_node", "Move the selected node", TRACING_GROUP, "moves the selected node with the probe until released"},
         [](auto& f, DragNode& a) { f.flag("on", a.on, {.is_required = true}); },
         [](const auto& model, const DragNode& action) -> std::string {
             return action.on ? why_without_node(model) : std::string();
@@ -61,13 +60,13 @@ inline constexpr auto TRACING_ACTIONS = std::tuple{
             return model.trace.nodes().empty() ? "there is no node" : "";
         }),
     row<SelectSegmentOp, Tracer>(
-        {"select_segment", "Select the segment", TRACING_GROUP, "selects all between two branchings or ends"},
+        {"select_segment", "Select the segment", TRACING_GROUP, "selects everything between two branches or ends"},
         NO_FIELDS,
         [](const auto& model, const SelectSegmentOp&) -> std::string {
             if (model.is_painting) return IS_PAINTING;
             return model.trace.selection().empty() ? "nothing is selected" : "";
         }),
-    row<DeselectOp, Tracer>({"deselect", "Deselect", TRACING_GROUP, "selects nothing"}, NO_FIELDS,
+    row<DeselectOp, Tracer>({"deselect", "Deselect", TRACING_GROUP, "clears the selection"}, NO_FIELDS,
                             [](const auto& model, const DeselectOp&) -> std::string {
                                 return model.trace.selection().empty() ? "nothing is selected" : "";
                             }),
@@ -76,21 +75,21 @@ inline constexpr auto TRACING_ACTIONS = std::tuple{
     row<MoveOp, Tracer>({"move", "Move to", TRACING_GROUP, "moves the selected node to a voxel"}, NO_FIELDS,
                         [](const auto& model, const MoveOp&) -> std::string { return why_without_node(model); }),
     row<DeleteOp, Tracer>(
-        {"delete", "Delete", TRACING_GROUP, "deletes what is selected"}, NO_FIELDS,
+        {"delete", "Delete", TRACING_GROUP, "deletes the selection"}, NO_FIELDS,
         [](const auto& model, const DeleteOp&) -> std::string { return why_without_selection(model); }),
-    row<GroupOp, Tracer>({"group", "Change group", TRACING_GROUP, "gives what is selected to a group"}, NO_FIELDS,
+    row<GroupOp, Tracer>({"group", "Change group", TRACING_GROUP, "moves the selection to a group"}, NO_FIELDS,
                          [](const auto& model, const GroupOp& action) -> std::string {
                              return action.group == 0
                                         ? "group 0 is the eraser, and what is traced belongs to a group from 1 up"
                                         : why_without_selection(model);
                          }),
     row<RadiusOp, Tracer>(
-        {"radius", "Change radius", TRACING_GROUP, "sets radii of what is selected, or of a group"}, NO_FIELDS,
+        {"radius", "Change radius", TRACING_GROUP, "sets radii of the selection, or of a group"}, NO_FIELDS,
         [](const auto& model, const RadiusOp& action) -> std::string {
             return action.of == RadiusOp::Of::selected ? why_without_selection(model) : why_not_traced(model);
         }),
     row<NodeAt, Tracer>(
-        {"node_at", "Add a node where it is seen", TRACING_GROUP, "adds a node at what is seen at a pixel of a pane"},
+        {"node_at", "Add a node where it is seen", TRACING_GROUP, "adds a node at the point seen at a pixel of a pane"},
         [](auto& f, NodeAt& a) {
             pane_field(f, a.pane);
             pixel_field(f, "pixel", a.pixel);
@@ -106,14 +105,14 @@ inline constexpr auto TRACING_ACTIONS = std::tuple{
         },
         [](const auto& model, const SelectAt&) -> std::string { return model.is_painting ? IS_PAINTING : ""; }),
     row<StepNode, Tracer>(
-        {"step_node", "Next node", TRACING_GROUP, "selects the next node, or the one before, and looks at it"},
+        {"step_node", "Next node", TRACING_GROUP, "selects the next or previous node, and looks at it"},
         [](auto& f, StepNode& a) { f.flag("back", a.back, {}); },
         [](const auto& model, const StepNode&) -> std::string {
             if (model.is_painting) return IS_PAINTING;
             return model.trace.nodes().empty() ? "there is no node" : "";
         }),
     row<MendCut, Tracer>(
-        {"mend_cut", "Mend the cut", TRACING_GROUP, "links the nodes that deleting one between them has separated"},
+        {"mend_cut", "Mend the cut", TRACING_GROUP, "links the nodes that were separated by deleting one between them"},
         NO_FIELDS, [](const auto& model, const MendCut&) -> std::string {
             const std::string why = why_not_traced(model);
             return why.empty() && !model.is_cut ? "the last deletion cut nothing in two" : why;

@@ -83,7 +83,7 @@ struct ShowFullScreen {
 };
 
 struct Quit {
-    bool saves = true;  ///< false: the work goes back to what was saved last, as a step that undo takes back
+    bool saves = true;  ///< false: the work returns to the last save, as a step that can be undone
 };
 
 inline constexpr const char* WINDOW_GROUP = "Window";
@@ -93,39 +93,39 @@ inline constexpr auto WINDOW_ACTIONS = std::tuple{
                                "shows or hides the file chooser, which asks what to open", Needs::nothing},
                               [](auto& f, AskOpen& a) { f.flag("on", a.on, {}); }),
     row<ChooseKeys, PreferenceKeeper>(
-        {"choose_keys", "Choose the keys", WINDOW_GROUP, "takes one of the two sets of keys that ship", Needs::nothing},
+        {"choose_keys", "Choose the keys", WINDOW_GROUP, "selects one of the two supplied key sets", Needs::nothing},
         [](auto& f, ChooseKeys& a) { f.text("set", a.set, {.is_required = true}); }),
     row<BindKeys, PreferenceKeeper>(
-        {"bind_keys", "Other keys", WINDOW_GROUP, "gives a shortcut other keys than those that ship", Needs::nothing},
+        {"bind_keys", "Other keys", WINDOW_GROUP, "binds a shortcut to keys other than its defaults", Needs::nothing},
         [](auto& f, BindKeys& a) {
             f.text("shortcut", a.shortcut, {.is_required = true});
             f.text("keys", a.keys, {});
         }),
     row<Resize, Viewer>(
-        {"resize", "Resize", WINDOW_GROUP, "the picture has so many pixels, across and down", Needs::nothing},
+        {"resize", "Resize", WINDOW_GROUP, "sets the picture size in pixels, across and down", Needs::nothing},
         [](auto& f, Resize& a) {
             std::vector<int64_t> pixels{a.pixels.x, a.pixels.y};
             f.wholes("pixels", pixels, 0, 65536, {.is_required = true});
             a.pixels = {pixels[0], pixels[1]};
         }),
     row<AwaitKey, PreferenceKeeper>({"await_key", "Press a key for it", WINDOW_GROUP,
-                                     "the next key that is pressed is bound to a shortcut", Needs::nothing},
+                                     "binds a shortcut to the next key that is pressed", Needs::nothing},
                                     [](auto& f, AwaitKey& a) { f.text("shortcut", a.shortcut, {}); }),
     row<ShowHelp, WindowState>(
         {"show_help", "Keys and mouse", WINDOW_GROUP, "shows or hides the list of keys", Needs::nothing},
         [](auto& f, ShowHelp& a) { f.flag("on", a.on, {}); }),
     row<ShowMessages, WindowState>({"show_messages", "Messages", WINDOW_GROUP,
-                                    "shows or hides all that was said, and takes it as read", Needs::nothing},
+                                    "shows or hides all messages, and marks them as read", Needs::nothing},
                                    [](auto& f, ShowMessages& a) { f.flag("on", a.on, {}); }),
     row<ShowPasses, WindowState>(
-        {"show_passes", "GPU passes", WINDOW_GROUP, "shows or hides what the device spends on each step of a picture"},
+        {"show_passes", "GPU passes", WINDOW_GROUP, "shows or hides the device time of each step of a picture"},
         [](auto& f, ShowPasses& a) { f.flag("on", a.on, {}); }),
-    row<SavePasses, WindowState>({"save_passes", "Save GPU passes", WINDOW_GROUP,
-                                  "writes what the steps of the present picture took into a file"},
-                                 [](auto& f, SavePasses& a) { f.path("path", a.path, {.is_required = true}); }),
+    row<SavePasses, WindowState>(
+        {"save_passes", "Save GPU passes", WINDOW_GROUP, "writes the times of the present picture's steps to a file"},
+        [](auto& f, SavePasses& a) { f.path("path", a.path, {.is_required = true}); }),
     row<ComparePasses, WindowState>(
         {"compare_passes", "Compare GPU passes", WINDOW_GROUP,
-         "compares with such a file, or one of shvr profile --json"},
+         "compares with a saved file, or one of shvr profile --json"},
         [](auto& f, ComparePasses& a) { f.path("path", a.path, {}); },
         [](const auto& model, const ComparePasses& action) -> std::string {
             return action.path.empty() && !model.compared_passes ? "they are compared with nothing" : "";
@@ -134,7 +134,7 @@ inline constexpr auto WINDOW_ACTIONS = std::tuple{
                                    "shows or hides a box that finds shortcuts, actions and settings", Needs::nothing},
                                   [](auto& f, ShowPalette& a) { f.flag("on", a.on, {}); }),
     row<Prefer, PreferenceKeeper>({"prefer", "Change preferences", WINDOW_GROUP,
-                                   "sets what a person keeps for all scans; null takes what ships", Needs::nothing},
+                                   "sets preferences for all scans; null restores the default", Needs::nothing},
                                   [](auto& f, Prefer& a) {
                                       const auto read = [&](const JsonNode& node) {
                                           if (!node.is_object())
@@ -153,10 +153,10 @@ inline constexpr auto WINDOW_ACTIONS = std::tuple{
                                   f.choice("what", a.what, {"panels", "menu"}, {});
                               }),
     row<ShowFullScreen, WindowState>(
-        {"full_screen", "Full screen", WINDOW_GROUP, "the window takes the whole screen, or no longer", Needs::nothing},
+        {"full_screen", "Full screen", WINDOW_GROUP, "switches full screen on or off", Needs::nothing},
         [](auto& f, ShowFullScreen& a) { f.flag("on", a.on, {}); }),
     row<Quit, Saver>({"quit", "Quit", WINDOW_GROUP,
-                      "saves the work, or goes back to what was saved last, and closes the window", Needs::nothing},
+                      "saves the work, or returns to the last save, and closes the window", Needs::nothing},
                      [](auto& f, Quit& a) { f.flag("saves", a.saves, {}); })};
 
 }  // namespace shvr::ui

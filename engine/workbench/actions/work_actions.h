@@ -85,12 +85,12 @@ struct OpenExample {};
 inline constexpr const char* WORK_GROUP = "Work";
 
 inline constexpr auto WORK_ACTIONS = std::tuple{
-    row<UndoOp, SettingsEditor>({"undo", "Undo", WORK_GROUP, "takes the last steps of the history back"}, NO_FIELDS,
+    row<UndoOp, SettingsEditor>({"undo", "Undo", WORK_GROUP, "undoes the last steps of the history"}, NO_FIELDS,
                                 [](const auto& model, const UndoOp&) -> std::string {
                                     if (model.is_painting) return IS_PAINTING;
                                     return model.undoable == 0 ? "there is nothing to undo" : why_not_edited(model);
                                 }),
-    row<RedoOp, SettingsEditor>({"redo", "Redo", WORK_GROUP, "does the steps again that were undone last"}, NO_FIELDS,
+    row<RedoOp, SettingsEditor>({"redo", "Redo", WORK_GROUP, "redoes the steps that were undone last"}, NO_FIELDS,
                                 [](const auto& model, const RedoOp&) -> std::string {
                                     if (model.is_painting) return IS_PAINTING;
                                     return model.redoable == 0 ? "there is nothing to redo" : why_not_edited(model);
@@ -99,21 +99,22 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
                        NO_FIELDS,
                        [](const auto& model, const SaveOp&) -> std::string { return why_not_edited(model); }),
     row<RevertOp, SettingsEditor>(
-        {"revert", "Revert", WORK_GROUP, "goes back to what was saved last, as a step that undo takes back"}, NO_FIELDS,
+        {"revert", "Revert", WORK_GROUP, "returns to the last save, as a step that can be undone"}, NO_FIELDS,
         [](const auto& model, const RevertOp&) -> std::string {
             return model.is_painting ? IS_PAINTING : why_not_edited(model);
         }),
     row<SaveAs, Saver>(
-        {"save_as", "Save as", WORK_GROUP, "goes on under another name, with the whole history"},
+        {"save_as", "Save as", WORK_GROUP, "continues under another name, with the whole history"},
         [](auto& f, SaveAs& a) { f.path("path", a.path, {.is_required = true}); },
         [](const auto& model, const SaveAs&) -> std::string {
             return model.is_saving ? IS_SAVING : why_not_edited(model);
         }),
     row<CopySession, Saver>(
-        {"copy_session", "Copy the session", WORK_GROUP, "writes all that is shown into files of another name"},
+        {"copy_session", "Copy the session", WORK_GROUP, "writes everything shown to files of another name"},
         [](auto& f, CopySession& a) { f.path("path", a.path, {}); }),
     row<ExportTask, TaskRunner>(
-        {"export", "Export", WORK_GROUP, "writes annotation in forms of other programs, and measures"}, TASK_FIELDS,
+        {"export", "Export", WORK_GROUP, "writes annotation in formats of other programs, and measurements"},
+        TASK_FIELDS,
         // Asked in each frame of its dialog, so by what is known without the disk; the task itself asks that.
         [](const auto& model, const ExportTask& task) -> std::string {
             if ((!task.trace.empty() || !task.mesh.empty()) && model.trace.nodes().empty())
@@ -125,17 +126,17 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
                                     [](const auto* path) { return !path->empty(); });
             return has_file || task.labels ? "" : "no file is named; expected at least one to be written";
         }),
-    row<ImportTask, TaskRunner>(
-        {"import", "Import as project", WORK_GROUP, "makes a project folder of a volume, and opens it", Needs::nothing},
-        TASK_FIELDS),
+    row<ImportTask, TaskRunner>({"import", "Import as project", WORK_GROUP,
+                                 "converts a volume to a project folder, and opens it", Needs::nothing},
+                                TASK_FIELDS),
     row<LabelTask, TaskRunner>({"label", "Label connected parts", WORK_GROUP,
                                 "counts connected parts above a threshold, and writes their labels"},
                                TASK_FIELDS),
     row<EvaluateTask, TaskRunner>({"evaluate", "Compare with a reference", WORK_GROUP,
-                                   "says how well an annotation agrees with another", Needs::nothing},
+                                   "reports how well an annotation agrees with another", Needs::nothing},
                                   TASK_FIELDS),
     row<CancelJob, TaskRunner>(
-        {"cancel_job", "Cancel", WORK_GROUP, "ends a job that runs or waits", Needs::nothing},
+        {"cancel_job", "Cancel", WORK_GROUP, "cancels a running or waiting job", Needs::nothing},
         [](auto& f, CancelJob& a) { f.whole("number", a.number, 1, int64_t{1} << 53, {.is_required = true}); },
         [](const auto& model, const CancelJob& action) -> std::string {
             for (const auto& job : model.jobs)
@@ -143,7 +144,7 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
             return sentence("there is no job ", action.number);
         }),
     row<Screenshot, Photographer>(
-        {"screenshot", "Screenshot", WORK_GROUP, "writes the picture as shown, or a larger one, beside the session"},
+        {"screenshot", "Screenshot", WORK_GROUP, "writes the picture as shown, or a larger one, next to the session"},
         [](auto& f, Screenshot& a) { f.flag("large", a.is_large, {}); }),
     row<Open, FileTaker>(
         {"open", "Open", WORK_GROUP, "opens a volume, a session, a project folder or a picture", Needs::nothing},
@@ -152,37 +153,38 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
             f.text("settings", a.settings, {"as --set takes them, one a line"});
         }),
     row<LookAtFile, FileTaker>({"look_at_file", "Look at a file", WORK_GROUP,
-                                "reads what a file is, without its voxels, and what loading it takes", Needs::nothing},
+                                "reads a file's header, and estimates what loading it takes", Needs::nothing},
                                [](auto& f, LookAtFile& a) {
                                    f.path("path", a.path, {});
                                    f.text("settings", a.settings, {"as --set takes them, one a line"});
                                }),
     row<TakeFile, FileTaker>({"take_file", "Take a file", WORK_GROUP,
-                              "opens a file, or takes its annotation or transfer function, by its contents; of several "
-                              "into the one it opens",
+                              "opens a file, or loads its annotation or transfer function, by its contents; several "
+                              "are loaded into the scan among them",
                               Needs::nothing},
                              [](auto& f, TakeFile& a) {
                                  f.path("path", a.path, {.is_required = true});
-                                 f.text("beside", a.beside, {"what was dropped with it, one a line"});
+                                 f.text("beside", a.beside,
+                                        {"paths of the other files in the same drop, one per line"});
                              }),
     row<CorrectSpacing, Saver>(
         {"correct_spacing", "Correct the spacing", WORK_GROUP,
-         "saves, and opens with another spacing; nodes stay at their voxels"},
+         "saves, and reopens with another spacing; nodes stay at their voxels"},
         [](auto& f, CorrectSpacing& a) {
             f.vector("spacing", a.spacing, SPACINGS, {.is_required = true});
-            f.text("unit", a.unit, {"of the spacing; empty: as it is"});
+            f.text("unit", a.unit, {"unit of the spacing; empty: unchanged"});
         },
         [](const auto& model, const CorrectSpacing&) -> std::string {
             return model.session.procedural ? "the volume is computed, and its spacing is the session's"
                                             : why_not_edited(model);
         }),
     row<DismissNotices, Opener>(
-        {"dismiss_notices", "Dismiss", WORK_GROUP, "what was recovered or set aside at opening has been read"},
+        {"dismiss_notices", "Dismiss", WORK_GROUP, "marks the notices about recovered and set-aside files as read"},
         NO_FIELDS,
         [](const auto& model, const DismissNotices&)
             -> std::string { return model.recovered.empty() ? "there is nothing to be dismissed" : ""; }),
     row<ForgetRecent, PreferenceKeeper>(
-        {"forget_recent", "Forget", WORK_GROUP, "takes a path from the list of what was opened last; the file stays",
+        {"forget_recent", "Forget", WORK_GROUP, "removes a path from the list of recent files; the file stays",
          Needs::nothing},
         [](auto& f, ForgetRecent& a) { f.path("path", a.path, {.is_required = true}); },
         [](const auto& model, const ForgetRecent& action) -> std::string {
@@ -192,14 +194,14 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
                        : sentence(action.path.string(), " is not among what was opened last");
         }),
     row<ChooseBelief, SettingsEditor>(
-        {"choose_belief", "Files or journal", WORK_GROUP, "says whether changed files or the journal are right"},
+        {"choose_belief", "Files or journal", WORK_GROUP, "chooses whether the changed files or the journal are used"},
         [](auto& f, ChooseBelief& a) { f.flag("files", a.takes_files, {.is_required = true}); },
         [](const auto& model, const ChooseBelief&) -> std::string {
             return model.disputes.empty() ? "no saved file was changed by another program" : "";
         }),
     row<WorkOnCopy, Saver>(
-        {"work_on_copy", "Work on a copy", WORK_GROUP, "saves all that is shown under new names, and opens that"}),
+        {"work_on_copy", "Work on a copy", WORK_GROUP, "saves everything shown under new names, and opens the copy"}),
     row<OpenExample, FileTaker>({"open_example", "Open the example", WORK_GROUP,
-                                 "opens the example that ships, in a copy that is kept for you", Needs::nothing})};
+                                 "opens the supplied example, in a copy of your own", Needs::nothing})};
 
 }  // namespace shvr::ui

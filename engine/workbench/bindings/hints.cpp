@@ -24,13 +24,13 @@ std::string first_hint(int number, const Keymap& keymap)
     switch (number) {
         case 0:
             return sentence(
-                "Drag to turn the volume, and use the wheel to come closer. In the panel at the right, drag the points "
-                "of the curve until you see what you look for. Fit",
-                key("fit_view"), " brings all of it back into sight.");
+                "Drag to turn the volume, and use the wheel to zoom. In the panel on the right, drag the curve's "
+                "points until your structure appears. Fit",
+                key("fit_view"), " brings the whole volume back into view.");
         case 1:
             return sentence("The bar at the top says what your next click does. Take Paint", key("tool_paint"),
                             " or Trace", key("tool_trace"),
-                            ", choose a group beside it, and use the left button; the right button still turns.");
+                            ", choose a group next to it, and use the left button; the right button still turns.");
         default:
             return sentence("Everything can be undone", key("undo"), ", also settings, and is kept as you work. ",
                             "Find anything", key("palette"), " by its name; all keys are under Help", key("help"), ".");

@@ -18,13 +18,12 @@ constexpr ToolRow TOOL_ROWS[] = {
     {Tool::erase, "Erase", "tool_erase",
      "Hold the left button to take paint away, of whatever group. The right button turns the volume.", "erase", "turn"},
     {Tool::trace, "Trace", "tool_trace",
-     "Click beside all nodes to add one, linked with the selected node. Click a node to select it, drag it to move it. "
-     "The right button turns the volume.",
+     "Click away from all nodes to add one, linked with the selected node. Click a node to select it, drag it to move "
+     "it. The right button turns the volume.",
      "add, pick or drag a node", "turn"},
     {Tool::select, "Select", "tool_select",
      "Click a node or an internode to select it, twice for its whole segment; click paint to take its group, and "
-     "nothing to select nothing. The right "
-     "button turns the volume.",
+     "nothing to select nothing. The right button turns the volume.",
      "select", "turn"},
     {Tool::measure, "Measure", "tool_measure",
      "Click two points to measure the distance between them. The right button turns the volume.", "set a point",

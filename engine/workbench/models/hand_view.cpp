@@ -26,7 +26,7 @@ constexpr FlagText FLAGS[] = {
     {FORCE_OUTSIDE, Weight::warning,
      "The stylus is at the edge of its reach, where its force fades. Move back to the middle."},
     {FORCE_NO_REGION, Weight::warning,
-     "What is around the probe is not known yet, or the probe is too large to feel with."},
+     "The region around the probe is not loaded yet, or the probe is too large for touch."},
     {FORCE_WARM, Weight::warning, "The motors are warm, so the force is limited until they have cooled."},
     {FORCE_OFF_OBJECT, Weight::done, "Off the object. The next one that is touched is followed in a moment."},
     {FORCE_CLAMPED, Weight::done, "At the strongest force that the device can give."},
@@ -77,13 +77,13 @@ std::string rhythm_in_words(const ServoState& servo)
 
 Finding realtime_in_words(bool is_realtime, uint64_t allowed_priority)
 {
-    if (is_realtime) return {Weight::done, "right of way: yes"};
+    if (is_realtime) return {Weight::done, "real-time priority: yes"};
     if (allowed_priority == 0)
         return {Weight::warning,
-                "right of way: no, since this system allows it to nobody but its administrator. The force may stutter "
+                "real-time priority: no, since this system allows it only to its administrator. The force may stutter "
                 "while the computer is busy; \"rtprio\" in /etc/security/limits.conf allows it."};
     return {Weight::warning,
-            sentence("right of way: no, since this system allows priority ", allowed_priority,
+            sentence("real-time priority: no, since this system allows priority ", allowed_priority,
                      " and the servo asked for more. The force may stutter while the computer is busy.")};
 }
 

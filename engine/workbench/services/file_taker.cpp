@@ -189,7 +189,7 @@ void FileTaker::take_annotation(Part part, const std::filesystem::path& path)
             settings_.record_settings();
             const Command* const command = annotator.perform(sentence(name_of(part), " of ", short_name(path)),
                                                              changes_between(part, annotator.document(), *found));
-            if (!command) return say(path.string() + ": holds the " + name_of(part) + " that there is already");
+            if (!command) return say(path.string() + ": its " + name_of(part) + " is already in use");
             settings_.show_changes(*command);
             say(sentence("The ", name_of(part), " of ", path.string(), " is taken; undo takes it back"));
         });

@@ -144,9 +144,8 @@ void Opener::restart_device(const std::function<void()>& make_anew)
     if (document_) load_again();
     if (away_ && (!opening_ || opening_->comes_back)) bring_back();
     say(sentence("The graphics device stopped answering and was started again; ",
-                 was_painting && !document_
-                     ? "of the stroke that was under way a part may be missing, all other work is there"
-                     : "all work is there"),
+                 was_painting && !document_ ? "the stroke being painted may be incomplete, all other work is intact"
+                                            : "all work is intact"),
         Weight::warning);
 }
 

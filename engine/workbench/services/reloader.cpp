@@ -32,7 +32,7 @@ void Reloader::begin()
 {
     const Session& session = document_->session;
     const bool has_light = shows_occlusion(session.light);
-    photographer_.drop_large("loading the volume anew");
+    photographer_.drop_large("reloading the volume");
     if (!renderer_.fits_beside(*document_->source, session.render, has_light)) {
         reload_.reset();
         drop_queries();

@@ -170,7 +170,7 @@ Leave Saver::leave(std::string& why)
 {
     if (tasks_.is_writing() || photographer_.has_large()) {
         if (!std::exchange(told_of_writers_, true))
-            say("It goes on when what is being written is there; cancel that to go on at once");
+            say("Waiting until the current file is written; cancel that to continue now");
         return Leave::later;
     }
     if (!document_) return savers_.is_idle() ? Leave::now : Leave::later;

@@ -305,8 +305,8 @@ void Viewer::act(const FitView& action)
     look_from(fitted(document_->camera, pixels, lower * volume.spacing, upper * volume.spacing));
     const bool is_cut = lower != glm::dvec3(0.0) || upper != size;
     const bool is_clipped = document_->camera.near_distance > 0.0 || document_->camera.far_distance > 0.0;
-    say(sentence(is_cut ? "What the cutting planes leave is in sight" : "The whole volume is in sight",
-                 is_clipped ? ", but for what the clip planes hide" : ""));
+    say(sentence(is_cut ? "The uncut part of the volume is in view" : "The whole volume is in view",
+                 is_clipped ? ", except where the clip planes hide it" : ""));
 }
 
 void Viewer::act(const ResetView&)

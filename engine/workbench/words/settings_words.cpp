@@ -153,9 +153,10 @@ std::string special_sentence(const Session& was, const Session& is)
         return is.view.cut_box ? "The edges of the cutting planes are drawn"
                                : "The edges of the cutting planes are not drawn";
     if (was.view.solo != is.view.solo) return sentence_about_solo(is);
-    if (was.interaction.workspace_scale != is.interaction.workspace_scale)
-        return sentence("Workspace scale ", std::round(100.0 * is.interaction.workspace_scale) / 100.0,
-                        ": so much farther the probe goes than at 1");
+    if (was.interaction.workspace_scale != is.interaction.workspace_scale) {
+        const double scale = std::round(100.0 * is.interaction.workspace_scale) / 100.0;
+        return sentence("Workspace scale ", scale, ": the probe moves ", scale, " times as far as at 1");
+    }
     if (!(was.transfer_function == is.transfer_function))
         return sentence_about(was.transfer_function, is.transfer_function);
     if (const auto quality = quality_of(is.render); quality && was.render != is.render)

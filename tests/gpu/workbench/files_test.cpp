@@ -152,7 +152,7 @@ TEST_CASE_FIXTURE(OnDevice, "what is dropped is taken by its contents, whatever 
     drop("paint.anything");
     CHECK(desk.bench.model().voxels_by_group[3] == 24 * 20 * 16);
     drop("paint.anything");
-    CHECK(desk.said("holds the mask that there is already"));
+    CHECK(desk.said("its mask is already in use"));
     desk.folder.write("line.txt", "-v 10, 12, 14, 1, 2\n");
     drop("line.txt");
     CHECK(desk.bench.model().trace.nodes().size() == 1);
@@ -371,12 +371,12 @@ TEST_CASE_FIXTURE(OnDevice, "Fit says what it brings into sight")
     Desk desk(renderer());
     desk.open("scan.nrrd");
     desk.bench.perform(FitView{});
-    CHECK(desk.bench.messages().last() == "The whole volume is in sight");
+    CHECK(desk.bench.messages().last() == "The whole volume is in view");
     desk.bench.perform(PlaceClips{1.0, 0.0});
     desk.bench.perform(FitView{});
-    CHECK(desk.bench.messages().last() == "The whole volume is in sight, but for what the clip planes hide");
+    CHECK(desk.bench.messages().last() == "The whole volume is in view, except where the clip planes hide it");
     desk.bench.perform(PlaceClips{});
     desk.bench.perform(MoveCut{0, false, 0.25});
     desk.bench.perform(FitView{});
-    CHECK(desk.bench.messages().last() == "What the cutting planes leave is in sight");
+    CHECK(desk.bench.messages().last() == "The uncut part of the volume is in view");
 }

@@ -96,7 +96,7 @@ bool spacing_fields(glm::dvec3& spacing, std::string& unit)
         for (int axis = 0; axis < 3; ++axis)
             if (sides[axis] != float(spacing[axis])) spacing[axis] = std::max(double(sides[axis]), 1e-12);
     is_changed |= ImGui::InputText("unit", &unit);
-    hint("um, mm, ...; empty: as it is");
+    hint("um, mm, ...; empty: unchanged");
     return is_changed;
 }
 
@@ -104,7 +104,7 @@ bool spacing_fields(glm::dvec3& spacing, std::string& unit)
 bool bare_fields(LoadForm& form)
 {
     bool is_changed = ImGui::Checkbox("Bare voxels, without a header", &form.is_bare);
-    hint("A file of numbers alone: their count along x, y and z and their kind have to be typed.");
+    hint("A file of numbers only: enter the size along x, y and z and the type of a voxel.");
     if (!form.is_bare) return is_changed;
     is_changed |= ImGui::InputInt3("voxels along x, y, z", form.size);
     for (int& side : form.size) side = std::clamp(side, 1, 1 << 20);
@@ -163,15 +163,15 @@ void load_dialog(const Model& model, Actions& actions)
     bool is_changed = bare_fields(form);
     if (!form.is_bare) {
         is_changed |= choice_field("channel or series", "channel", form.channel);
-        hint("Of a file or folder with several: red, green, blue, alpha, a name in it, or a number from 1.");
+        hint("If there are several: red, green, blue, alpha, a name in the file, or a number from 1.");
         is_changed |= choice_field("time point", "frame", form.frame);
-        hint("Of a file with several: a number from 1.");
+        hint("If the file has several: a number from 1.");
         is_changed |= level_field(form.level);
         if (loading.levels > 1)
             hint("A coarser size is opened as a volume of its own: it takes less memory, and its paint fits it alone.");
     }
     is_changed |= ImGui::Checkbox("State the spacing", &form.states_spacing);
-    hint("Instead of what the file states, or where it states none.");
+    hint("Replaces the spacing in the file, or supplies a missing one.");
     if (form.states_spacing) is_changed |= spacing_fields(form.spacing, form.unit);
     ImGui::PopItemWidth();
     const std::string settings = settings_of(form);

@@ -24,14 +24,14 @@ FileChooser opening(
      .verb = "Open",
      .note =
          "TIFF, DICOM, NIfTI, NRRD, MetaImage and OME-Zarr; bare voxels: Open with options. Tab completes a path."});
-FileChooser saving({.title = "Go on under another name",
+FileChooser saving({.title = "Continue under another name",
                     .verb = "Save",
-                    .note = "Session (.json); mask, trace and history are written beside it. The files so far stay.",
+                    .note = "Session (.json); mask, trace and history are written next to it. Existing files stay.",
                     .wanted = FileChooser::Wanted::new_file});
 FileChooser taking({.title = "Take annotation or a curve from a file",
                     .verb = "Take",
-                    .note = "Mask, offsets, trace or transfer function, known by its contents. It takes the place of "
-                            "what is there; undo brings that back.",
+                    .note = "Mask, offsets, trace or transfer function, recognised by its contents. It replaces the "
+                            "present one; undo restores that.",
                     .wanted = FileChooser::Wanted::file});
 
 std::vector<Place> places_of(const Model& model)

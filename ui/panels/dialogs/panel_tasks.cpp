@@ -21,7 +21,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// "leaf.swc is there already and is replaced"; empty where nothing is.
+/// "leaf.swc exists and will be replaced"; empty where nothing is.
 template <class Task>
 std::string replacement(const Task& task)
 {
@@ -30,9 +30,7 @@ std::string replacement(const Task& task)
     if constexpr (requires { replaced_files(task); })
         for (const std::filesystem::path& path : replaced_files(task))
             names += (count++ > 0 ? ", " : "") + path.filename().string();
-    return count == 0
-               ? ""
-               : names + (count == 1 ? " is there already and is replaced" : " are there already and are replaced");
+    return count == 0 ? "" : names + (count == 1 ? " exists and will be replaced" : " exist and will be replaced");
 }
 
 /// What the disk says of a task.

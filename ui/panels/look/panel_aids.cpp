@@ -50,11 +50,11 @@ void marks(const Model& model, Actions& actions)
     is_other |= flag(model, "Axes", interaction.axes, "axes", "Which way x, y and z go.");
     ImGui::SameLine();
     is_other |= flag(model, "Names of groups", interaction.group_legend, "group_legend",
-                     "What is painted or traced, by its name beside its colour.");
+                     "Painted and traced groups by name and colour.");
     is_other |= flag(model, "Depth and filling at the probe", interaction.probe_label, "probe_label",
                      "How deep the probe lies in what is drawn, and how much of it is filled.");
-    const bool has_box = flag(model, "Edges of the cutting planes", view.cut_box, "cut_box",
-                              "Lines along the edges of what the cutting planes leave.");
+    const bool has_box =
+        flag(model, "Edges of the cutting planes", view.cut_box, "cut_box", "Lines along the edges of the uncut part.");
     if (is_other) set(actions, model, [&](Session& s) { s.interaction = interaction; });
     if (has_box) set(actions, model, [&](Session& s) { s.view = view; });
 }
@@ -82,9 +82,7 @@ void probe_look(const Model& model, Actions& actions)
         }
     }
     is_other |= slider("Probe's opacity", probe.opacity, 0.0, 1.0, "%.2f");
-    hint(
-        "Of the ball. Below 1 what lies behind it is seen; the picture around it then takes twice as long. 0: no "
-        "ball.");
+    hint("Opacity of the ball. Below 1 it is see-through, and the picture around it takes twice as long. 0: no ball.");
     if (!resets("probe.opacity", actions) && is_other) set(actions, model, [&](Session& s) { s.probe = probe; });
 }
 

@@ -83,9 +83,8 @@ void cutting_planes(const Model& model, Actions& actions)
     if (ImGui::Checkbox("Edges in the picture", &has_box))
         set(actions, model, [&](Session& s) { s.view.cut_box = has_box; });
     hint(
-        "Lines along the edges of what the planes leave, in the colours of the axes. They are shown while a plane "
-        "moves "
-        "in any case.");
+        "Lines along the edges of the uncut part, in the colours of the axes. They are shown while a plane "
+        "moves in any case.");
 }
 
 /// A distance from the eye; 0 is no plane.

@@ -132,10 +132,10 @@ void light_controls(const Model& model, Actions& actions)
 void blend_controls(const Model& model, Actions& actions)
 {
     DistanceBlend blend = model.session.blend;
-    bool changed = explained_slider(
-        "Blend size", blend.size, 1.0,
-        "Distance blending: how much of another colour there is at the far end of the volume. 0 is off, 1 is all. "
-        "Keys: menu View, Distance blending.");
+    bool changed =
+        explained_slider("Blend size", blend.size, 1.0,
+                         "Distance blending: share of another colour at the far end of the volume. 0 is off, 1 is all. "
+                         "Keys: menu View, Distance blending.");
     bool is_reset = resets("blend.size", actions);
     changed |= explained_slider(
         "Blend rate", blend.rate, 10.0,
@@ -148,7 +148,7 @@ void blend_controls(const Model& model, Actions& actions)
         blend.color = color;
         changed = true;
     }
-    hint("The background's unless you choose another.");
+    hint("The background colour unless you choose another.");
     if (blend.color) {
         ImGui::SameLine();
         if (ImGui::SmallButton("Background's")) {

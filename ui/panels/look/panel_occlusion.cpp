@@ -102,12 +102,12 @@ void curve_numbers(const OcclusionSettings& settings, const Model& model, Action
     const int first = 1, last = int(points.size());
     if (slider_scalar("##point", ImGuiDataType_S32, &number, &first, &last, "%d"))
         chosen_point = size_t(std::clamp(number, first, last)) - 1;
-    hint("The point whose numbers these are.");
+    hint("Selected curve point.");
     OcclusionPoint point = points[chosen_point];
     bool is_other = slider("Arrives", point.arrives, 0.0, 1.0, "%.2f");
-    hint("The share of the light that arrives.");
+    hint("Share of the light that arrives.");
     is_other |= slider("Seen", point.seen, 0.0, 1.0, "%.2f");
-    hint("The share of it that is seen.");
+    hint("Share of the light that is shown.");
     if (is_other) send(moved(points, chosen_point, point), model, actions);
     label("");
     ImGui::BeginDisabled(points.size() == MAX_OCCLUSION_POINTS);
@@ -123,7 +123,7 @@ void curve_numbers(const OcclusionSettings& settings, const Model& model, Action
     ImGui::EndDisabled();
     label("");
     if (ImGui::Button("Back to a power")) send({}, model, actions);
-    hint("The curve follows a power again, and its points are given up. Undo brings them back.");
+    hint("Returns to a power curve and discards the points. Undo restores them.");
 }
 
 void curve_rows(const OcclusionSettings& settings, const Model& model, Actions& actions)
@@ -142,7 +142,7 @@ void curve_rows(const OcclusionSettings& settings, const Model& model, Actions& 
     if (!settings.mapping.empty()) return curve_numbers(settings, model, actions);
     label("");
     if (ImGui::Button("As points")) send(points_of_power(settings.curve), model, actions);
-    hint("Goes on with a curve of points, for instance to brighten what is bright and darken what is dark.");
+    hint("Switches to a curve with points, for example to increase the contrast.");
 }
 
 }  // namespace

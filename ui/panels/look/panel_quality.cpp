@@ -22,7 +22,7 @@ void choices(const Model& model, Actions& actions)
     const std::optional<Quality> present = quality_of(model.session.render);
     row("Quality");
     if (!ImGui::BeginCombo("##quality", present ? present->name : "your own")) {
-        hint(present ? present->note : "Settings that are none of the four: draft, interactive, good, reference.");
+        hint(present ? present->note : "Settings that match no preset: draft, interactive, good, reference.");
         return;
     }
     for (const Quality& quality : qualities()) {
@@ -37,10 +37,10 @@ bool sampling(RenderSettings& render)
 {
     int chosen = int(render.sampling);
     row("Sampling");
-    const bool is_other = ImGui::Combo("##sampling", &chosen, "as the device does well\0exact\0by the texture unit\0");
+    const bool is_other = ImGui::Combo("##sampling", &chosen, "as suits the device\0exact\0by the texture unit\0");
     hint(
         "How voxels are interpolated. Texture units are fast on GPUs and round positions to 1/256 of a voxel. A change "
-        "loads the volume again.");
+        "reloads the volume.");
     render.sampling = Sampling(chosen);
     return is_other;
 }
@@ -49,11 +49,10 @@ bool paging(RenderSettings& render)
 {
     int chosen = int(render.paging);
     row("Paging");
-    const bool is_other = ImGui::Combo("##paging", &chosen, "where it is needed\0always\0never\0");
+    const bool is_other = ImGui::Combo("##paging", &chosen, "if needed\0always\0never\0");
     hint(
-        "Whether parts of the volume come and go in the device's memory as they are seen. Never: a volume that does "
-        "not "
-        "fit is refused. A change loads the volume again.");
+        "Whether parts of the volume are paged into device memory as they become visible. Never: a volume that does "
+        "not fit is refused. A change reloads the volume.");
     render.paging = Paging(chosen);
     return is_other;
 }
@@ -62,27 +61,22 @@ bool numbers(RenderSettings& render, bool& is_reset, Actions& actions)
 {
     bool is_other = slider("Step", render.step_voxels, 0.05, 4.0, "%.3g voxels", ImGuiSliderFlags_Logarithmic);
     hint(
-        "Distance between samples along a ray. Half of it takes twice as long. Above 1 narrow peaks cannot be looked "
-        "for.");
+        "Distance between samples along a ray. Half of it takes twice as long. Above 1, narrow peaks cannot be "
+        "detected.");
     is_reset |= resets("render.step_voxels", actions);
     if (render.step_voxels > MAX_PREINTEGRATED_STEP) render.preintegration = false;
     is_other |= slider("Opaque from", render.opacity_limit, 0.5, 1.0, "%.4f");
     hint("A ray stops once its opacity reaches this; 1: never before its end.");
     is_reset |= resets("render.opacity_limit", actions);
     is_other |= slider("Detail", render.detail, 0.0, 8.0, "%.2g voxels a pixel");
-    hint(
-        "Of volumes in several levels: for each pixel at least so many voxels are drawn. More is finer, and 0 always "
-        "the "
-        "finest level. Other volumes do not change.");
+    hint("Multi-resolution volumes only: minimum voxels per pixel. Higher is finer; 0: always the finest level.");
     is_reset |= resets("render.detail", actions);
     is_other |= slider("Adaptive", render.adaptive_tolerance, 0.0, 0.2,
                        render.adaptive_tolerance > 0.0 ? "%.3f" : "every pixel");
     hint(
-        "Above 0: every second pixel of every second row is drawn, and all pixels only where colours around differ by "
-        "more "
-        "than this; the rest lies in between. Faster, most of all in large pictures; 0.03 is hardly seen. What is "
-        "thinner "
-        "than two pixels may be missed. 0: every pixel is drawn.");
+        "Above 0: draws every second pixel of every second row, and all pixels only where neighbouring colours differ "
+        "by more than this; the rest is interpolated. Faster, especially in large pictures; 0.03 is hardly visible. "
+        "Structures thinner than two pixels may be missed. 0: every pixel is drawn.");
     is_reset |= resets("render.adaptive_tolerance", actions);
     return is_other;
 }
@@ -92,7 +86,7 @@ void budget(const Model& model)
     constexpr double MEBIBYTE = 1024.0 * 1024.0;
     ImGui::TextDisabled("GPU memory: %.0f of %.0f MiB", double(model.device_bytes) / MEBIBYTE,
                         double(model.device_budget) / MEBIBYTE);
-    hint("In use, and the most that is used. Preferences (menu Edit) set it, for the next start.");
+    hint("Memory in use, and its limit. Set the limit in Preferences (menu Edit), for the next start.");
 }
 
 }  // namespace
@@ -105,16 +99,16 @@ void quality_panel(const Model& model, Actions& actions)
     bool is_other = numbers(render, is_reset, actions);
     is_other |= sampling(render);
     is_other |= paging(render);
-    is_other |= ImGui::Checkbox("Leap over empty space", &render.skip_empty_space);
-    hint("The picture is the same; without it, it takes longer. For measurements.");
+    is_other |= ImGui::Checkbox("Skip empty space", &render.skip_empty_space);
+    hint("Same picture, only faster. Switch it off for measurements only.");
     ImGui::BeginDisabled(render.step_voxels > MAX_PREINTEGRATED_STEP);
     is_other |= ImGui::Checkbox("Narrow peaks", &render.preintegration);
     ImGui::EndDisabled();
     hint("No peak or edge of the transfer function is missed between two samples, however narrow (pre-integration).");
     is_other |= ImGui::Checkbox("Smooth borders of groups", &render.smooth_borders);
     hint(
-        "Painted groups end between voxels instead of in steps. What is painted stays the same, and slices show it. "
-        "A picture takes about half as long again where much is painted.");
+        "Draws borders of painted groups smoothly instead of in steps. The paint stays as it is, and slices show it. A "
+        "picture takes about half as long again where much is painted.");
     if (is_other && !is_reset) set(actions, model, [&](Session& s) { s.render = render; });
     budget(model);
 }

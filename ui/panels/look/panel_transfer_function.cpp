@@ -316,15 +316,15 @@ void point_buttons(const Model& model, WidgetState& state, Actions& actions)
         hint((place + meaning).c_str());
         return is_pressed;
     };
-    if (button("<##point", state.selected > 0, "Selects the one before.")) --state.selected;
-    if (button(">##point", state.selected + 1 < count, "Selects the next one.")) ++state.selected;
-    if (button("+##point", true, "Adds one half-way to the next; at the last, to the one before.")) {
+    if (button("<##point", state.selected > 0, "Selects the previous point.")) --state.selected;
+    if (button(">##point", state.selected + 1 < count, "Selects the next point.")) ++state.selected;
+    if (button("+##point", true, "Adds a point half-way to the next; at the last, to the previous.")) {
         const size_t right = std::min(state.selected + 1, count - 1);
         const ControlPoint &a = curve.points()[right - 1], &b = curve.points()[right];
         state.selected = curve.add(std::midpoint(a.intensity, b.intensity), std::midpoint(a.opacity, b.opacity));
         send(curve, model, actions);
     }
-    if (button("-##point", count > 2, "Removes it; two always stay.")) {
+    if (button("-##point", count > 2, "Removes the point; at least two remain.")) {
         state.selected = curve.remove(state.selected);
         send(curve, model, actions);
     }
@@ -335,11 +335,10 @@ void scale_and_help(const Model& model, WidgetState& state, Actions& actions)
 {
     ImGui::Checkbox("Logarithmic", &state.is_logarithmic);
     std::string bins =
-        "Height of the histogram's bars: as the logarithm of the number of voxels, which shows what is "
-        "rare, or as that number.";
+        "Height of the histogram's bars: the logarithm of the number of voxels, which shows rare intensities, or the "
+        "number itself.";
     if (state.bars.step > 1.0)
-        bins += " The values in this volume are multiples of " + digits(state.bars.step) +
-                "; there are bars for these alone.";
+        bins += " The values in this volume are multiples of " + digits(state.bars.step) + "; only these have bars.";
     hint(bins.c_str());
     point_buttons(model, state, actions);
     ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize("How to edit (?)").x);
@@ -349,8 +348,8 @@ void scale_and_help(const Model& model, WidgetState& state, Actions& actions)
         "that small opacities can be seen and dragged.\n\n"
         "Drag a point to move it. Double click on empty space adds one, right click on a point deletes it. The wheel "
         "shifts all points; Ctrl + drag does, too. The lines \"paint\" and \"haptic\" are the thresholds; drag them or "
-        "their words, or double click them for what fits the volume.\n\n"
-        "With Shift everything goes a tenth as far, drags and the wheel.");
+        "their labels, or double-click them for a value that fits the volume.\n\n"
+        "With Shift, drags and the wheel go a tenth as far.");
 }
 
 /// The whole curve at once.
@@ -361,8 +360,8 @@ void unpainted(const Model& model, Actions& actions)
     if (!resets("unpainted.opacity", actions) && is_other)
         set(actions, model, [&](Session& s) { s.unpainted.opacity = opacity; });
     hint(
-        "Opacity of the whole volume but for what is painted: all of the curve is multiplied by it. Below 1 painted "
-        "groups and traces inside show through.");
+        "Opacity of the unpainted volume: multiplies the whole curve. Below 1, painted groups and traces inside show "
+        "through.");
 }
 
 /// Number fields of the point last touched.
@@ -379,11 +378,11 @@ void edit_point(const Model& model, size_t index, Actions& actions)
     row("Intensity");
     bool changed = drag_number("##intensity", point.intensity, std::max(speed, 1e-6), least, most, format);
     hint(
-        "Of the selected point, in the file's units. Drag sideways, with Shift a tenth as fast; or Ctrl + click to "
-        "type.");
+        "Intensity of the selected point, in the file's units. Drag sideways, with Shift a tenth as fast; or Ctrl + "
+        "click to type.");
     row("Opacity");
     changed |= drag_number("##opacity", point.opacity, 0.002, 0.0, 1.0, "%.4f", ImGuiSliderFlags_Logarithmic);
-    hint("Of one voxel: 0 clear, 1 solid.");
+    hint("Opacity of one voxel: 0 clear, 1 solid.");
     row("Colour");
     changed |= color_field("##colour", point.color, ImGuiColorEditFlags_None);
     if (changed) send(std::move(points), model, actions);

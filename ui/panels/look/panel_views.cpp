@@ -28,7 +28,7 @@ bool stereo_controls(StereoSettings& stereo, bool& is_reset, Actions& actions)
     stereo.output = StereoOutput(output);
     is_other |= slider("Eyes apart", stereo.eye_distance, 0.0, 0.2, "%.3f");
     hint(
-        "Relative to the distance from the camera to the point it turns about. Less is easier on the "
+        "Relative to the distance from the camera to its pivot. Less is easier on the "
         "eyes.");
     is_reset |= resets("view.stereo.eye_distance", actions);
     is_other |= ImGui::Checkbox("Toe-in", &stereo.toe_in);
@@ -87,11 +87,11 @@ void interaction_controls(const Model& model, Actions& actions)
     InteractionSettings interaction = model.session.interaction;
     double percent = 100.0 * interaction.resolution;
     bool is_other = slider("In motion", percent, 10.0, 100.0, "%.0f %%");
-    hint("Resolution while something moves. What stands still is always sharp.");
+    hint("Resolution during motion. A still picture is always sharp.");
     bool is_reset = resets("interaction.resolution", actions);
     interaction.resolution = percent / 100.0;
     is_other |= slider("Frames", interaction.frames_per_second, 5.0, 120.0, "at most %.0f a second");
-    hint("More is smoother and leaves less time for other work.");
+    hint("Higher is smoother and leaves less time for other work.");
     is_reset |= resets("interaction.frames_per_second", actions);
     int scale = int(interaction.screenshot_scale);
     const int smallest = 1, largest = 16;

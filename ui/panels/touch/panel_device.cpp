@@ -41,11 +41,11 @@ void device_list(const Model& model, const HandView& hand, Actions& actions)
     }
     if (!hand.has_looked) ImGui::TextUnformatted("Looking for devices ...");
     if (ImGui::SmallButton("Look again")) actions.emplace_back(FindDevices{});
-    hint("What is plugged in later is found by itself within seconds.");
+    hint("Devices plugged in later are found automatically within seconds.");
     ImGui::SameLine();
     bool is_automatic = model.preferences.device.name.empty();
     if (ImGui::Checkbox("Automatic", &is_automatic) && is_automatic) actions.emplace_back(UseDevice{});
-    hint("Takes the first device that can be used. What you choose is kept for all scans.");
+    hint("Uses the first usable device. Your choice is kept for all scans.");
 }
 
 void puck(const Model& model, const HandView& hand, Actions& actions)
@@ -104,7 +104,7 @@ void figures(const Model& model, const HandView& hand, const ServoState& servo)
     if (const std::string heat = heat_in_words(hand.tap.heat, servo.caps); !heat.empty()) {
         text_label("Motors");
         ImGui::TextWrapped("%s", heat.c_str());
-        hint("Computed from the forces of the last seconds; no thermometer is read.");
+        hint("Estimated from the forces of the last seconds, not measured.");
     }
     text_label("Delay");
     const double delay_s = servo.step.latency_s > 0.0 ? servo.step.latency_s : servo.caps.latency_s;
@@ -114,7 +114,7 @@ void figures(const Model& model, const HandView& hand, const ServoState& servo)
         "ms the force fades out.");
     text_label("Rhythm");
     ImGui::TextWrapped("%s", rhythm_in_words(servo).c_str());
-    hint("A thousand times a second; a step is late if it began more than a thousandth of a second after its time.");
+    hint("The servo runs at 1 kHz; a step is late if it began more than 1 ms after its time.");
     if (hand.tap.lost_states > 0) {
         text_label("Lost");
         ImGui::Text("%llu readings of the device", static_cast<unsigned long long>(hand.tap.lost_states));
@@ -132,9 +132,7 @@ void recording(const HandView& hand, Actions& actions)
         ImGui::Text("%.1f s", *hand.recorded_s);
     } else {
         if (ImGui::SmallButton("Record the stylus")) actions.emplace_back(RecordStylus{});
-        hint(
-            "Writes what the stylus does and feels into a file beside the session, for a report of something that "
-            "felt wrong, or to be followed again.");
+        hint("Records motion and forces of the stylus to a file next to the session, for a bug report or for replay.");
     }
     if (hand.recording.empty()) return;
     ImGui::PushStyleColor(ImGuiCol_Text, ThemeColor{ColorRole::faint_text});

@@ -71,7 +71,7 @@ void strength(const Model& model, Actions& actions)
     const bool is_other = slider("Strength", percent, 0.0, 100.0, "%.0f %%", ImGuiSliderFlags_AlwaysClamp);
     if (!resets("probe.touch.strength", actions) && is_other)
         set(actions, model, [&](Session& s) { s.probe.touch.strength = std::round(percent) / 100.0; });
-    hint(sentence("How much of the pull there is. ", name_with_key("stronger", model.keymap), ", ",
+    hint(sentence("Strength of the pull. ", name_with_key("stronger", model.keymap), ", ",
                   name_with_key("weaker", model.keymap), ".")
              .c_str());
     if (touch.mode != TouchMode::surface) return;
@@ -79,7 +79,7 @@ void strength(const Model& model, Actions& actions)
     const bool is_moved = slider("Holds from", filled, 1.0, 100.0, "%.0f %% filled", ImGuiSliderFlags_AlwaysClamp);
     if (!resets("probe.touch.surface_share", actions) && is_moved)
         set(actions, model, [&](Session& s) { s.probe.touch.surface_share = std::round(filled) / 100.0; });
-    hint("A surface holds once so much of the probe lies in it.");
+    hint("A surface holds once this share of the probe lies in it.");
 }
 
 void finer(const Model& model, Actions& actions)
@@ -91,7 +91,7 @@ void finer(const Model& model, Actions& actions)
         slider("Stiffness", stiffness, 0.0, MAX_STIFFNESS, "%.0f N/m", ImGuiSliderFlags_AlwaysClamp);
     if (!resets("probe.touch.stiffness", actions) && is_stiffer)
         set(actions, model, [&](Session& s) { s.probe.touch.stiffness = std::round(stiffness); });
-    hint("Of a probe of 2.5 mm in the hand. A device's own limit holds besides.");
+    hint("Stiffness for a 2.5 mm probe. The device's own limit also applies.");
     const bool is_damped =
         slider("Damping", damping, 0.0, MAX_FELT_DAMPING, "%.2f N s/m", ImGuiSliderFlags_AlwaysClamp);
     if (!resets("probe.touch.damping", actions) && is_damped)
@@ -111,7 +111,7 @@ void groups(const Model& model, Actions& actions)
     label("Feels");
     ImGui::SetNextItemWidth(-1.0f);
     const bool is_open = ImGui::BeginCombo("##groups", preview.c_str());
-    hint("Which colour groups are felt. What is painted, or made brighter, is felt at once.");
+    hint("Colour groups that are felt. New paint and offsets are felt at once.");
     if (!is_open) return;
     if (ImGui::Selectable("everything", felt.empty(), ImGuiSelectableFlags_DontClosePopups))
         set(actions, model, [&](Session& s) { s.probe.touch.groups.clear(); });
@@ -142,14 +142,14 @@ void tools(const Model& model, Actions& actions)
     ImGui::Separator();
     flag("Act at the middle", "Paints and sets nodes at the middle of what the probe touches: on the centre line.",
          model, actions, &FeelSettings::at_proxy);
-    flag("Width from touch", "New nodes are as wide as a tube that fills the probe as much as what is felt.", model,
-         actions, &FeelSettings::overlap_radius);
+    flag("Width from touch", "New nodes get the radius of a tube that fills the probe as much as the felt structure.",
+         model, actions, &FeelSettings::overlap_radius);
     flag("To nodes", "Where a node lies in the probe, tools act at it, and a new node becomes a link with it.", model,
          actions, &FeelSettings::to_nodes);
     flag("To centre lines", "Where a centre line passes through the probe, tools act on it, and a new node divides it.",
          model, actions, &FeelSettings::to_lines);
     flag("Click at contact",
-         "A short push against your hand where the probe begins to touch something. Haptic devices with motors alone.",
+         "A short push against your hand where the probe begins to touch something. Only for devices with motors.",
          model, actions, &FeelSettings::clicks);
     label("Plane");
     if (const auto plane = radio(PLANES, model.session.probe.touch.plane))
@@ -159,8 +159,8 @@ void tools(const Model& model, Actions& actions)
                                  ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     if (!resets("interaction.workspace_scale", actions) && is_moved)
         set(actions, model, [&](Session& s) { s.interaction.workspace_scale = scale; });
-    hint(sentence("How far the probe goes when the hand moves a haptic device. At 1 the device's whole reach is the "
-                  "height of the view; below, the hand is steadier, above, it goes farther. ",
+    hint(sentence("Distance that the probe moves with the hand. At 1, the device's whole reach is the height of the "
+                  "view; below, the hand is steadier; above, it reaches farther. ",
                   name_with_key("larger_workspace", model.keymap), ", ",
                   name_with_key("smaller_workspace", model.keymap), ".")
              .c_str());
@@ -180,7 +180,7 @@ void touch_panel(const Model& model, Actions& actions)
     } else {
         ImGui::SameLine();
         if (ImGui::SmallButton("Let go")) actions.emplace_back(LetGo{true});
-        hint(sentence("No force at once, whatever happens. ", name_with_key("let_go", model.keymap), ".").c_str());
+        hint(sentence("Switches all force off at once. ", name_with_key("let_go", model.keymap), ".").c_str());
     }
     label("Touches");
     if (const auto mode = radio(MODES, model.session.probe.touch.mode))
