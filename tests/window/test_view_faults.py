@@ -85,8 +85,8 @@ class Faults(Seen):
         photograph = self.photograph(session)
         report = self.finish()
         said = "\n".join(report["messages"])
-        self.assertEqual(said.count("was started again"), 5, said)
-        self.assertNotIn("missing", said)
+        self.assertEqual(said.count("was restarted"), 5, said)
+        self.assertNotIn("incomplete", said)
         self.assertEqual(sorted(report["voxels_in_group"]), ["3", "5", "6", "7"])
         self.check_photograph(session, photograph)
 

@@ -13,17 +13,17 @@ PREPARED = {"copy_measurements": "measure", "clear_measurements": "measure", "me
             "select_segment": "line"}   # by methods of MenuWalk
 # Menus within menus, and what entries without a shortcut make: an action, or a dialog that is shown.
 INNER = {"Open recent", "Look from", "Kept views", "Panels", "Turn the view", "Move the view", "Distance blending",
-         "Cutting planes", "Clip planes", "Touch", "Group of what is selected", "view 1", "Remove"}
+         "Cutting planes", "Clip planes", "Touch", "Group of the selection", "view 1", "Remove"}
 DIALOGS = {"Save as...", "Open with options...", "Correct the spacing...", "Import as project...", "Export...",
            "Label connected parts...", "Compare with a reference...", "Take from a file..."}
 EXPECTED = {
     "Copy the session": "copy_session", "Revert to the last save": "revert", "Shading": "set light.shaded",
     "Show everything": "reset_cuts", "Go there": "look_from", "Remove this view": "forget_camera",
 }
-BY_MENU = {"Look from": "look_from", "Panels": "prefer", "Group of what is selected": "group"}   # of all that is there
+BY_MENU = {"Look from": "look_from", "Panels": "prefer", "Group of the selection": "group"}   # of all that is there
 # Entries that say something else than their action, since of their kind there is one for each group or brush.
 IN_PAINT = {"set probe.group", "set probe.brush"}
-NO_ENTRIES = {"Cutting planes": ["What is drawn", "from ", "to ", "x", "y", "z"], "view 1": ["view 1", "Rename"]}
+NO_ENTRIES = {"Cutting planes": ["Visible range", "from ", "to ", "x", "y", "z"], "view 1": ["view 1", "Rename"]}
 # They need a pointer over the picture, or stay grey for what they say when pointed at.
 WITH_THE_POINTER = {"pivot_at_pointer"}
 AT_LAST = {"quit", "quit_unsaved", "open_example"}

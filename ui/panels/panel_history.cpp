@@ -57,7 +57,7 @@ void step(const HistoryList& list, const Model& model, size_t row, Actions& acti
     }
     ImGui::TableNextColumn();
     if (row > 0 && ImGui::SmallButton("Where")) show_where(list, model, row, actions);
-    if (row > 0) hint("Puts the probe into the middle of what this step changed.");
+    if (row > 0) hint("Moves the probe to the middle of this step's change.");
     ImGui::PopID();
 }
 

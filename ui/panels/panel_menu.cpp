@@ -119,7 +119,7 @@ void cut_range(int axis, const Model& model, Actions& actions)
 void cut_menu(const Model& model, Actions& actions)
 {
     if (!begin_menu("Cutting planes", model.is_open)) return;
-    ImGui::TextDisabled("What is drawn, in voxels (drag)");
+    ImGui::TextDisabled("Visible range, in voxels (drag)");
     for (int axis = 0; axis < 3; ++axis) cut_range(axis, model, actions);
     ImGui::Separator();
     if (ImGui::MenuItem("Show everything")) actions.push_back(ResetCuts{});
@@ -257,7 +257,7 @@ void trace_menu(const Model& model, Actions& actions)
     shortcut_item("smaller_selected", model, actions);
     shortcut_item("larger_nodes", model, actions);
     shortcut_item("smaller_nodes", model, actions);
-    if (begin_menu("Group of what is selected", !selected.empty())) {
+    if (begin_menu("Group of the selection", !selected.empty())) {
         for (const uint8_t group : known_groups(model)) {
             const std::string label =
                 sentence(int(group), "  ", group_of(model.session.groups, group).name, "##", int(group));

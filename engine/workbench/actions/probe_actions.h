@@ -55,13 +55,13 @@ inline constexpr auto PROBE_ACTIONS =
                        pixel_field(f, "pixel", a.pixel);
                        f.flag("jumps", a.jumps, {});
                    }),
-               row<ProbeOnto, Prober>({"probe_onto", "Put the probe onto what is seen", PROBE_GROUP,
+               row<ProbeOnto, Prober>({"probe_onto", "Put the probe onto the surface", PROBE_GROUP,
                                        "moves the probe onto the surface seen at a pixel of a pane"},
                                       [](auto& f, ProbeOnto& a) {
                                           pane_field(f, a.pane);
                                           pixel_field(f, "pixel", a.pixel);
                                       }),
-               row<ProbeAlong, Prober>({"probe_along", "Move the probe along what is seen", PROBE_GROUP,
+               row<ProbeAlong, Prober>({"probe_along", "Move the probe along the surface", PROBE_GROUP,
                                         "moves the probe along the visible surface, as a stroke does"},
                                        [](auto& f, ProbeAlong& a) {
                                            pane_field(f, a.pane);

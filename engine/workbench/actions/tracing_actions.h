@@ -79,9 +79,8 @@ inline constexpr auto TRACING_ACTIONS = std::tuple{
         [](const auto& model, const DeleteOp&) -> std::string { return why_without_selection(model); }),
     row<GroupOp, Tracer>({"group", "Change group", TRACING_GROUP, "moves the selection to a group"}, NO_FIELDS,
                          [](const auto& model, const GroupOp& action) -> std::string {
-                             return action.group == 0
-                                        ? "group 0 is the eraser, and what is traced belongs to a group from 1 up"
-                                        : why_without_selection(model);
+                             return action.group == 0 ? "group 0 is the eraser, and traces belong to a group from 1 up"
+                                                      : why_without_selection(model);
                          }),
     row<RadiusOp, Tracer>(
         {"radius", "Change radius", TRACING_GROUP, "sets radii of the selection, or of a group"}, NO_FIELDS,
@@ -96,7 +95,7 @@ inline constexpr auto TRACING_ACTIONS = std::tuple{
         },
         [](const auto& model, const NodeAt&) -> std::string { return why_without_group(model, model.brush().group); }),
     row<SelectAt, Tracer>(
-        {"select_at", "Select what is seen", TRACING_GROUP,
+        {"select_at", "Select at the pointer", TRACING_GROUP,
          "selects the node, internode or group at a pixel of a pane"},
         [](auto& f, SelectAt& a) {
             pane_field(f, a.pane);

@@ -94,7 +94,7 @@ Keymap::Keymap(KeySet set, const Changes& changes)
     for (const Shortcut& shortcut : shortcuts()) chords_.push_back(chords_in(shortcut.keys[size_t(set)]));
     for (const auto& [id, texts] : changes) {
         const Shortcut* const shortcut = shortcut_named(id);
-        if (!shortcut) fail("keys: '", id, "' is no shortcut; expected one that the help window lists");
+        if (!shortcut) fail("keys: '", id, "' is no shortcut; expected one listed in the help window");
         std::vector<Chord>& chords = chords_[size_t(shortcut - shortcuts().data())];
         chords.clear();
         for (const std::string& text : texts) {

@@ -16,14 +16,14 @@ constexpr ToolRow TOOL_ROWS[] = {
     {Tool::paint, "Paint", "tool_paint",
      "Hold the left button to paint with the active group. The right button turns the volume.", "paint", "turn"},
     {Tool::erase, "Erase", "tool_erase",
-     "Hold the left button to take paint away, of whatever group. The right button turns the volume.", "erase", "turn"},
+     "Hold the left button to erase paint of any group. The right button turns the volume.", "erase", "turn"},
     {Tool::trace, "Trace", "tool_trace",
      "Click away from all nodes to add one, linked with the selected node. Click a node to select it, drag it to move "
      "it. The right button turns the volume.",
      "add, pick or drag a node", "turn"},
     {Tool::select, "Select", "tool_select",
-     "Click a node or an internode to select it, twice for its whole segment; click paint to take its group, and "
-     "nothing to select nothing. The right button turns the volume.",
+     "Click a node or an internode to select it, twice for its whole segment; click paint to take its group, and empty "
+     "space to deselect. The right button turns the volume.",
      "select", "turn"},
     {Tool::measure, "Measure", "tool_measure",
      "Click two points to measure the distance between them. The right button turns the volume.", "set a point",

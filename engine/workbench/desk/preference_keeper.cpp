@@ -14,14 +14,14 @@ void PreferenceKeeper::act(const ChooseKeys& action)
     if (set == std::end(KEY_SETS)) fail("keys: '", action.set, "' is no set; expected modern or thesis");
     preferences.key_set = set->value;
     prefer(std::move(preferences));
-    say(set->value == KeySet::modern ? "Keys: the usual ones" : "Keys: those of the SHVR thesis");
+    say(set->value == KeySet::modern ? "Keys: the default set" : "Keys: the set of the SHVR thesis");
     for (const std::string& conflict : keymap_.conflicts()) say(conflict, Weight::warning);
 }
 
 void PreferenceKeeper::act(const BindKeys& action)
 {
     const Shortcut* const shortcut = shortcut_named(action.shortcut);
-    if (!shortcut) fail("keys: '", action.shortcut, "' is no shortcut; expected one that the help window lists");
+    if (!shortcut) fail("keys: '", action.shortcut, "' is no shortcut; expected one listed in the help window");
     Preferences preferences = preferences_;
     std::vector<std::string>& keys_of_it = preferences.keys[action.shortcut];
     keys_of_it.clear();
@@ -40,7 +40,7 @@ void PreferenceKeeper::act(const BindKeys& action)
 void PreferenceKeeper::act(const AwaitKey& action)
 {
     if (!action.shortcut.empty() && !shortcut_named(action.shortcut))
-        fail("keys: '", action.shortcut, "' is no shortcut; expected one that the help window lists");
+        fail("keys: '", action.shortcut, "' is no shortcut; expected one listed in the help window");
     awaits_key_ = action.shortcut;
 }
 
@@ -65,7 +65,7 @@ void PreferenceKeeper::load()
         keymap_ = Keymap(preferences_.key_set, preferences_.keys);
         are_kept_ = true;
     } catch (const Error& error) {
-        say(sentence(error.what(), "; the keys that ship are used, and the file stays as it is"), Weight::warning);
+        say(sentence(error.what(), "; the default keys are used, and the file is unchanged"), Weight::warning);
     }
     for (const std::string& conflict : keymap_.conflicts()) say(conflict, Weight::warning);
 }

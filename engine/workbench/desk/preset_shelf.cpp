@@ -9,7 +9,7 @@ namespace shvr::ui {
 std::filesystem::path PresetShelf::folder() const
 {
     if (options_.preferences.empty())
-        fail("no folder for what is kept is known; expected HOME or XDG_CONFIG_HOME in the environment");
+        fail("no settings folder is known; expected HOME or XDG_CONFIG_HOME in the environment");
     return options_.preferences.parent_path() / "transfer_functions";
 }
 
@@ -32,7 +32,7 @@ const TransferPreset& PresetShelf::own(const std::string& name) const
 {
     const auto found = std::ranges::find_if(
         presets_, [&](const TransferPreset& preset) { return preset.is_own && preset.name == name; });
-    if (found == presets_.end()) fail("no transfer function is kept as '", name, "'; expected one that the list shows");
+    if (found == presets_.end()) fail("no transfer function is named '", name, "'; expected one that the list shows");
     return *found;
 }
 
@@ -41,7 +41,7 @@ std::filesystem::path PresetShelf::free_file(const std::string& name) const
 {
     const std::filesystem::path file = preset_file(folder(), name);
     if (std::ranges::any_of(presets_, [&](const TransferPreset& each) { return !each.is_own && each.name == name; }))
-        fail("'", name, "' is a transfer function that ships; expected another name");
+        fail("'", name, "' is a supplied transfer function; expected another name");
     return file;
 }
 

@@ -97,7 +97,7 @@ std::string heat_in_words(double heat, const DeviceCaps& caps)
 {
     if (!caps.outputs_force) return {};
     const char* const word = heat < 0.5 ? "cool" : heat < 0.95 ? "warm" : "hot";
-    return sentence(word, ", ", std::round(100.0 * heat), " % of what the motors may hold for ever");
+    return sentence(word, ", ", std::round(100.0 * heat), " % of the motors' continuous limit");
 }
 
 std::vector<float> plot_of(const TapState& tap)

@@ -183,9 +183,10 @@ void FileTaker::take_annotation(Part part, const std::filesystem::path& path)
             shvr::Document{.mask = Mask(volume.size), .trace = {}, .density = DensityField(volume.size, volume.type)});
         load(part, files, *found);
         return Jobs::Completion([this, part, path, found, opening] {
-            if (!document_ || desk_.openings != opening) fail(path.string(), ": was for what is no longer open");
+            if (!document_ || desk_.openings != opening)
+                fail(path.string(), ": belongs to a volume that is no longer open");
             Annotator& annotator = document_->annotator;
-            if (annotator.stroke_is_running()) fail(path.string(), ": a stroke is being painted; drop it once more");
+            if (annotator.stroke_is_running()) fail(path.string(), ": a stroke is being painted; drop it again");
             settings_.record_settings();
             const Command* const command = annotator.perform(sentence(name_of(part), " of ", short_name(path)),
                                                              changes_between(part, annotator.document(), *found));

@@ -45,7 +45,7 @@ void Hand::act(const LetGo& action)
     if (hand_.is_let_go == action.on) return;
     hand_.is_let_go = action.on;
     if (action.on) act(GrabVolume{false});
-    say(action.on ? "Let go: no force until you switch that off" : "Force again: it comes back within a second");
+    say(action.on ? "Let go: no force until you switch that off" : "Force on: it returns within a second");
     if (document_->touch.servo()) document_->touch.advance(touch_settings());
 }
 
@@ -163,7 +163,7 @@ void Hand::act(const RecordStylus& action)
     hand_.recording = action.path.empty() ? free_trace_path(photographer_.stem()) : action.path;
     document_->touch.begin_recording(hand_.recording);
     note_hand();
-    say("Recording what the stylus does");
+    say("Recording the stylus");
 }
 
 void Hand::act(const StopRecording&)

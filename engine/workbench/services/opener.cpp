@@ -180,7 +180,7 @@ bool Opener::is_ready_to_load()
         std::string why;
         const Leave leave_now = saver_.leave(why);
         if (leave_now == Leave::later) return false;
-        if (leave_now == Leave::refused) fail("what is open cannot be saved: ", why);
+        if (leave_now == Leave::refused) fail("the open work cannot be saved: ", why);
     }
     Work& work = document_->annotator.work();
     if (!is_one_journal(document_->session.journal_path, opening_->read->opened.session.journal_path)) return true;
@@ -294,7 +294,7 @@ void Opener::show_picture(const Session& pictured)
     if (!patch.empty()) apply(Set{patch});
     settings_.record_settings();
     viewer_.look_from(camera_named(pictured, pictured.camera_name, document_->volume()));
-    say("Shown as in the picture; undo takes its settings back");
+    say("Shown as in the picture; undo restores the previous settings");
 }
 
 void Opener::act(const DismissNotices&)

@@ -143,7 +143,7 @@ void Opener::restart_device(const std::function<void()>& make_anew)
     viewer_.look_again();
     if (document_) load_again();
     if (away_ && (!opening_ || opening_->comes_back)) bring_back();
-    say(sentence("The graphics device stopped answering and was started again; ",
+    say(sentence("The graphics device stopped responding and was restarted; ",
                  was_painting && !document_ ? "the stroke being painted may be incomplete, all other work is intact"
                                             : "all work is intact"),
         Weight::warning);
@@ -157,7 +157,7 @@ void Opener::load_again()
     } catch (const DeviceLost&) {
         throw;
     } catch (const Error& error) {
-        say(sentence("The graphics device was started again, but ", document_->session_path.string(),
+        say(sentence("The graphics device was restarted, but ", document_->session_path.string(),
                      " cannot be shown on it: ", error.what()),
             Weight::error);
         document_->annotator.drop_strokes();

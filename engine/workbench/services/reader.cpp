@@ -100,7 +100,7 @@ void Reader::act(const MeasureAt& action)
 {
     Document& document = *document_;
     const std::optional<glm::dvec3> point = viewer_.seen_at(viewer_.pane(action.pane), action.pixel);
-    if (!point) fail("nothing is seen there; expected a place on what is seen");
+    if (!point) fail("nothing is seen there; expected a visible point to measure from");
     const glm::dvec3 voxel = *point / document.volume().spacing;
     if (!document.measuring_from) {
         document.measuring_from = voxel;

@@ -50,8 +50,7 @@ void Saver::save_to(const std::filesystem::path& path)
     painter_.note_progress();
     if (!save_ && !annotator.stroke_is_running()) return begin_save_to(path);
     wanted_save_ = path;
-    say(save_ ? "Saved once more when the save that is under way has ended"
-              : "Saved when the stroke that is under way is painted");
+    say(save_ ? "Will be saved again after the running save" : "Saved when the stroke that is under way is painted");
 }
 
 void Saver::follow_save()
@@ -84,7 +83,7 @@ void Saver::begin_save_as(const std::filesystem::path& path)
 {
     settings_.record_settings();
     start_saving(document_->begin_save_as(path), true);
-    say("Saving as " + path.string() + "; until that has ended nothing can be painted, traced or undone");
+    say("Saving as " + path.string() + "; until that ends, nothing can be painted, traced or undone");
 }
 
 void Saver::start_saving(std::shared_ptr<Document::Saving> saving, bool is_asked_for)

@@ -64,7 +64,7 @@ void SettingsEditor::act(const Set& action)
 void SettingsEditor::act(const NewGroup&)
 {
     const uint8_t next = unused_group(desk_.model());
-    if (next == 0) fail("all 255 groups are in use; expected one that nothing is painted, traced or described with");
+    if (next == 0) fail("all 255 groups are in use; expected an unused one");
     act(edited(document_->session, [&](Session& s) {
         s.groups[next].name = group_of(s.groups, next).name;
         s.probe.brush.group = next;
@@ -223,7 +223,7 @@ void SettingsEditor::act(const UndoOp& action)
 {
     if (follows_empty_stroke() && action.count == 1) {
         const History& history = document_->annotator.history();
-        say(sentence("The last stroke changed nothing, and nothing is undone; undo once more takes back: ",
+        say(sentence("The last stroke changed nothing, and nothing is undone; the next undo reverts: ",
                      history.label_of(history.undoable() - 1)));
         return log_instead({Set{"{}"}});
     }

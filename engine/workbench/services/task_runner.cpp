@@ -62,8 +62,7 @@ void TaskRunner::advance()
 void TaskRunner::act(const CancelJob& action)
 {
     if (opener_.is_opening() && opener_.number() == action.number) return opener_.cancel();
-    if (action.number == Reloader::NUMBER && reloader_.cancel())
-        return say("Cancelled: loading once more", Weight::warning);
+    if (action.number == Reloader::NUMBER && reloader_.cancel()) return say("Cancelled: reloading", Weight::warning);
     if (action.number == Photographer::NUMBER && photographer_.has_large()) {
         photographer_.drop_large();
         return say("Cancelled: the large screenshot", Weight::warning);

@@ -68,7 +68,7 @@ void Tracer::trace(const TraceOp& asked)
         node && node->group.value_or(node->divides ? uint8_t(1) : document_->brush().group) == 0)
         fail("Group 0 is the eraser; choose a group from 1 up for the node");
     if (const GroupOp* group = std::get_if<GroupOp>(&op); group && group->group == 0)
-        fail("Group 0 is the eraser, and what is traced belongs to a group from 1 up");
+        fail("Group 0 is the eraser, and traces belong to a group from 1 up");
     settings_.record_settings();
     const TraceSize before{trace.nodes().size(), trace.internodes().size()};
     const auto cut = std::holds_alternative<DeleteOp>(op) ? ends_of_cut(trace) : std::nullopt;
@@ -162,7 +162,7 @@ void Tracer::act(const NodeAt& action)
         return;
     }
     const std::optional<glm::dvec3> point = viewer_.seen_at(seen, action.pixel);
-    if (!point) fail("nothing is seen there; expected a place for the node on what is seen");
+    if (!point) fail("nothing is seen there; expected a visible point for the node");
     glm::dvec3 voxel = *point / document_->volume().spacing;
     const bool goes_inside = document_->session.probe.centered_nodes && !seen.shot.is_slice;
     const std::optional<LocalBall> ball =

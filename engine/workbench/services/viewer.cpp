@@ -56,12 +56,12 @@ glm::dvec3 Viewer::pivot() const
 void Viewer::act(const PivotAt& action)
 {
     const std::optional<glm::dvec3> point = seen_at(pane(action.pane), action.pixel);
-    if (!point) fail("nothing is seen there; expected something to turn about");
+    if (!point) fail("nothing is seen there; expected a visible point as the pivot");
     document_->picked_pivot = point;
     Session after = document_->session;
     after.interaction.pivot = Pivot::picked;
     settings_.take_session(std::move(after));
-    say("The view turns about the place with the small cross");
+    say("The pivot is at the small cross");
 }
 
 void Viewer::act(const Orbit& action)
@@ -137,7 +137,7 @@ Pane Viewer::pane(size_t index) const
 {
     const std::vector<Pane> panes = panes_of(document_->session.view, document_->camera, pixels_,
                                              renderer_.scene().info(), document_->probe_voxel());
-    if (pixels_.x == 0 || index >= panes.size()) fail("the window has no such part any more");
+    if (pixels_.x == 0 || index >= panes.size()) fail("the window no longer has this pane");
     return panes[index];
 }
 
@@ -315,7 +315,7 @@ void Viewer::act(const ResetView&)
     // A session that was left open names the camera it was left with; then the side that shows most is meant.
     const std::string name = session.camera_name == "window" ? std::string() : session.camera_name;
     look_from(camera_named(session, name, document_->volume()));
-    say("The view is as at the beginning");
+    say("The view is reset");
 }
 
 void Viewer::act(const LookAtSelection&)
@@ -324,7 +324,7 @@ void Viewer::act(const LookAtSelection&)
     const std::optional<glm::dvec3> middle = middle_of_selection(trace);
     if (!middle) fail("Nothing is selected");
     look_from(looking_at(document_->camera, *middle));
-    say("Looking at what is selected");
+    say("Looking at the selection");
 }
 
 void Viewer::act(const UpdateOcclusion&)

@@ -190,7 +190,7 @@ TEST_CASE_FIXTURE(OnDevice, "leaving waits for what is being exported, or for it
         desk.bench.perform(ExportTask{.mask = desk.path("exported.mask")});
         desk.turn_until([&] { return disk.is_waited_for(); });
         CHECK(desk.bench.leave(why) == Workbench::Leave::later);
-        CHECK(desk.said("It goes on when what is being written is there"));
+        CHECK(desk.said("Waiting until the current file is written"));
         if (is_cancelled) desk.bench.perform(CancelJob{desk.bench.model().jobs.at(0).number});
         disk.go_on();
         desk.turn_until([&] { return desk.bench.leave(why) == Workbench::Leave::now; });

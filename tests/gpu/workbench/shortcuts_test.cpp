@@ -97,7 +97,7 @@ TEST_CASE_FIXTURE(OnDevice, "a group that is no node's is refused in a sentence"
     settle(bench);
     const Shortcut& shortcut = *shortcut_named("regroup_0");
     CHECK_FALSE(bench.apply(shortcut.action(bench.model(), 1.0)));
-    CHECK(contains(bench.messages().last(), "Group 0 is the eraser, and what is traced belongs to a group from 1 up"));
+    CHECK(contains(bench.messages().last(), "Group 0 is the eraser, and traces belong to a group from 1 up"));
 }
 
 TEST_CASE_FIXTURE(OnDevice, "the workspace's scale is what a device's moves are multiplied by, within limits")

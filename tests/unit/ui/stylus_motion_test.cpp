@@ -224,7 +224,7 @@ TEST_CASE("states of a device are told in words, the gravest first")
     CHECK(grave[1].text.find("not calibrated") != std::string::npos);
     CHECK(realtime_in_words(true, 0).weight == Weight::done);
     CHECK(realtime_in_words(false, 0).text.find("rtprio") != std::string::npos);
-    CHECK(heat_in_words(0.2, servo.caps) == "cool, 20 % of what the motors may hold for ever");
+    CHECK(heat_in_words(0.2, servo.caps) == "cool, 20 % of the motors' continuous limit");
     CHECK(heat_in_words(0.97, servo.caps).starts_with("hot"));
     servo.caps.outputs_force = false;
     CHECK(heat_in_words(0.97, servo.caps).empty());

@@ -118,7 +118,7 @@ bool bare_fields(LoadForm& form)
         ImGui::EndCombo();
     }
     is_changed |= ImGui::Checkbox("big-endian", &form.is_big_endian);
-    hint("Which byte of a number comes first. Most machines write little-endian.");
+    hint("Byte order of a number. Most machines write little-endian.");
     is_changed |= ImGui::InputInt("bytes to skip at the beginning", &form.offset_bytes);
     form.offset_bytes = std::max(form.offset_bytes, 0);
     return is_changed;

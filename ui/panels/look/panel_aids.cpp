@@ -35,7 +35,7 @@ void shown(const Model& model, Actions& actions)
                          "The volume in three dimensions, painted groups included. Slices show it in any case.");
     ImGui::SameLine();
     is_other |= flag(model, "Nodes, internodes and probe", view.meshes, "meshes",
-                     "Everything that is solid: the trace, surfaces, and the probe's ball.");
+                     "All solid objects: the trace, surfaces and the probe's ball.");
     if (is_other) set(actions, model, [&](Session& s) { s.view = view; });
 }
 
@@ -52,7 +52,7 @@ void marks(const Model& model, Actions& actions)
     is_other |= flag(model, "Names of groups", interaction.group_legend, "group_legend",
                      "Painted and traced groups by name and colour.");
     is_other |= flag(model, "Depth and filling at the probe", interaction.probe_label, "probe_label",
-                     "How deep the probe lies in what is drawn, and how much of it is filled.");
+                     "Depth of the probe in the structure, and its filled share.");
     const bool has_box =
         flag(model, "Edges of the cutting planes", view.cut_box, "cut_box", "Lines along the edges of the uncut part.");
     if (is_other) set(actions, model, [&](Session& s) { s.interaction = interaction; });

@@ -122,7 +122,7 @@ std::string why_not_named(const Model& model)
     const auto there = std::ranges::find_if(model.presets, is_it);
     if (asked.name.empty()) return "type a name";
     if (there == model.presets.end()) return {};
-    if (!there->is_own) return "a transfer function that ships has this name";
+    if (!there->is_own) return "a supplied transfer function has this name";
     return asked.renamed.empty() ? "" : "one that is kept has this name";
 }
 

@@ -407,7 +407,7 @@ void transfer_function_panel(const Model& model, Actions& actions)
     scale_and_help(model, state, actions);
     edit_point(model, edited, actions);
     unpainted(model, actions);
-    if (function.draws_nothing()) ImGui::TextDisabled("Nothing is visible: no opacity is above 0.");
+    if (function.draws_nothing()) ImGui::TextDisabled("Nothing is visible: every opacity is 0.");
 }
 
 }  // namespace shvr::ui
