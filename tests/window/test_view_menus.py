@@ -20,7 +20,7 @@ EXPECTED = {
     "Copy the session": "copy_session", "Revert to the last save": "revert", "Shading": "set light.shaded",
     "Show everything": "reset_cuts", "Go there": "look_from", "Remove this view": "forget_camera",
 }
-BY_MENU = {"Look from": "look_from", "Panels": "prefer", "Group of the selection": "group"}   # of all that is there
+BY_MENU = {"Look from": "look_from", "Panels": "prefer", "Group of the selection": "group"}   # from every entry
 # Entries that say something else than their action, since of their kind there is one for each group or brush.
 IN_PAINT = {"set probe.group", "set probe.brush"}
 NO_ENTRIES = {"Cutting planes": ["Visible range", "from ", "to ", "x", "y", "z"], "view 1": ["view 1", "Rename"]}
