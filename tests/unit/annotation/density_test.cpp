@@ -22,7 +22,7 @@ struct Dab {
     RegionShape shape;
     glm::dvec3 centre;
     double radius;
-    std::vector<uint32_t> words;  ///< of the region's voxels
+    std::vector<uint32_t> words;  ///< bits of the region's voxels
 };
 struct Stroke {
     double offset;

@@ -1,4 +1,4 @@
-// Who may have the voxels that a brush selects: against the definition, voxel by voxel, on random masks.
+// Which of the voxels that a brush selects it may change: against the definition, voxel by voxel, on random masks.
 
 #include "engine/annotation/painting.h"
 

@@ -24,7 +24,7 @@ using namespace shvr;
 
 namespace {
 
-/// What libpng makes of pixels in one of its formats. 16-bit formats count as linear there, so that the file says.
+/// The PNG that libpng makes of pixels in one of its formats. It takes 16-bit formats as linear, and the file says so.
 std::vector<std::byte> png_of(png_uint_32 format, int width, int height, const void* pixels, const void* palette = {},
                               png_uint_32 palette_entries = 0)
 {
@@ -116,7 +116,7 @@ constexpr float ENDLESS = std::numeric_limits<float>::infinity();
 
 TEST_CASE("the sRGB curve goes through its anchors")
 {
-    // As published, to the digits that are told.
+    // Published values, to the published digits.
     for (const auto& [linear, level, digits] :
          {std::array{0.0031308, 10.3, 0.05}, {0.18, 117.65, 0.005}, {0.2140411, 127.50, 0.005}, {0.5, 187.52, 0.005}}) {
         CAPTURE(linear);

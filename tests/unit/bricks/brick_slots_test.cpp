@@ -98,7 +98,7 @@ uint64_t play(uint32_t seed)
             case 2:
                 before = model.need_of(number);
                 model.needs[number] = BrickNeed(below(3));
-                // What is needed more need not be said.
+                // A need that rises need not be reported.
                 if (model.need_of(number) < before || below(2) == 0) slots.needs_changed();
                 break;
             case 3:

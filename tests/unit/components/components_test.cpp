@@ -60,7 +60,7 @@ bool is_on_serpentine(const Size3& voxel, const Size3& size)
     return voxel.x == (row / 2 % 2 == 0 ? size.x - 1 : 0);
 }
 
-/// What the definitions say, found another way: labels spread from voxel to neighbour until none changes any more.
+/// The components by definition, found another way: labels spread from voxel to neighbour until none changes.
 std::vector<int> spread_labels(const BrushRegion& region, const OpenVoxel& open, int connectivity)
 {
     const Size3 size = region.box.size();

@@ -1,4 +1,4 @@
-// What is asked of a device before it is used (engine/gpu/device_needs.h) is what the kernels need, and no more.
+// Requirements on a device, checked before its use (engine/gpu/device_needs.h), are those of the kernels and no more.
 
 #include "engine/gpu/device_needs.h"
 
@@ -16,7 +16,7 @@ using namespace shvr::gpu;
 
 namespace {
 
-/// What a group of the kernel shares, by its SPIR-V: variables of the storage class Workgroup.
+/// Shared memory of a workgroup of the kernel, by its SPIR-V: variables of the storage class Workgroup.
 uint32_t shared_bytes(std::span<const uint32_t> spirv)
 {
     enum : uint32_t { TYPE_INT = 21, TYPE_FLOAT = 22, TYPE_VECTOR = 23, TYPE_ARRAY = 28, TYPE_POINTER = 32 };

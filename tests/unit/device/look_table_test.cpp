@@ -1,4 +1,4 @@
-// How many entries a transfer function's table has, and where they are.
+// The number and positions of entries in a transfer function's table.
 
 #include "engine/device/look_table.h"
 #include "tests/support/bounds.h"

@@ -1,4 +1,4 @@
-// Estimates of what work costs (engine/gpu/pass_costs.h, engine/live/pace.h).
+// Estimates of the cost of work (engine/gpu/pass_costs.h, engine/live/pace.h).
 
 #include <doctest/doctest.h>
 

@@ -258,7 +258,7 @@ TEST_CASE("memory is not shared with what is unequal, imported, filled by the ho
     const std::vector<uint8_t> bytes(64);
     Resource two = pass(graph, "read", {graph.upload<uint8_t>("from the host", bytes)}, out);  // 1
     const Resource x = pass(graph, "write x", {}, graph.create("x", buffer_desc(64)));         // 2
-    const Resource y = pass(graph, "write y", {x}, graph.create("y", buffer_desc(64)));        // 3, beside x
+    const Resource y = pass(graph, "write y", {x}, graph.create("y", buffer_desc(64)));        // 3: x is in use
     two = pass(graph, "read both", {x, y}, two);
     const Resource later = graph.upload<uint8_t>("later", bytes);  // 4: filled before x is used
     pass(graph, "read later", {later}, two);
@@ -347,7 +347,7 @@ TEST_CASE("a write keeps earlier writers, for it may cover only a part")
     pass(graph, "after the last reader", {}, both);
     const Resource y = graph.create("y", buffer_desc(4));
     graph.read_back(pass(graph, "other", {}, y), "back");
-    CHECK(graph.compile().steps.size() == 2);  // nobody reads x
+    CHECK(graph.compile().steps.size() == 2);  // no pass reads x
 
     FrameGraph read;
     const Resource half = pass(read, "left half", {}, read.create("x", buffer_desc(4)));

@@ -25,13 +25,13 @@ struct Access {
     bool earlier = false;  // stands for any earlier work in flight; such accesses do not conflict with each other
 };
 
-/// What the device does, in order: either a barrier or the accesses of one pass.
+/// A step of the device, in its order: either a barrier or the accesses of one pass.
 struct Event {
     std::optional<Barrier> barrier;
     std::vector<Access> accesses;
 };
 
-/// What is known to be ordered after one access.
+/// The stages known to be ordered after one access.
 struct Chain {
     Access access;
     Stages ordered = 0;          // stages that wait for it

@@ -1,4 +1,4 @@
-// What a tick does, counted: words that growing hands on, exactly. tests/cli/instruments/test_haptics_cost.py counts
+// Cost of a tick as a count: words that growing hands on, exactly. tests/cli/instruments/test_haptics_cost.py counts
 // the instructions of step() while these cases run.
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // Guidance along a tube: how much closer to its middle line a hand and a mouse stay with assistance
-// than without, alone, in noise, beside a neighbour and beside one that touches.
+// than without: for a lone tube, in noise, near a neighbour and with one that touches.
 
 #include <algorithm>
 #include <array>

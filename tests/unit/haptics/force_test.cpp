@@ -61,7 +61,7 @@ struct Bench {
         for (int i = 0; i < ticks; ++i) last = tick();
         return last;
     }
-    /// Fully engaged, then `y_m` beside the rod's middle, at rest.
+    /// Fully engages, then rests at distance `y_m` from the rod's middle.
     ForceStep settle(double y_m)
     {
         state.position_m = glm::dvec3(0.0);

@@ -73,7 +73,7 @@ void fill_randomly(RelevancePatch& patch, const glm::ivec3& origin, const glm::i
 {
     const uint32_t percent = 5 + uint32_t(random()) % 90;
     fill_patch(patch, origin, size, glm::dvec3(1), [&](const glm::dvec3&) { return random() % 100 < percent; });
-    // What lies beyond a row's voxels is no voxel, whatever the device left there.
+    // Bits beyond a row's voxels are no voxels, whatever the device left there.
     if (size.x % 32 != 0)
         for (size_t i = size_t(patch.words_per_row) - 1; i < patch.word_count(); i += size_t(patch.words_per_row))
             patch.words[i] |= ~0u << (size.x % 32);
@@ -95,7 +95,7 @@ TEST_CASE("on 10,000 random fields growing from a carried object gives the bits 
     for (int i = 0; i < 10'000; ++i) {
         const glm::ivec3 origin(int(random() % 40) - 20, int(random() % 8) - 4, int(random() % 8) - 4);
         fill_randomly(*field.mask, origin, random_size(random, 12), random);
-        // The object before: some voxels of another box, which overlaps or does not.
+        // The previous object: some voxels of another box, which may overlap.
         const glm::ivec3 before = random_size(random, 12);
         fill_patch(*field.object, {0, 0, 0}, before, glm::dvec3(1),
                    [&](const glm::dvec3&) { return random() % 20 == 0; });

@@ -37,7 +37,7 @@ bool is_locked(const void* address)
     return ::madvise(page_of(address), 1, MADV_COLD) != 0 && errno == EINVAL;
 }
 
-/// Whether this process may keep so much.
+/// Whether this process may lock that many bytes in memory.
 bool may_lock(size_t bytes)
 {
     std::vector<std::byte> some(bytes);

@@ -49,14 +49,14 @@ private:
     }
 };
 
-/// The clock of servo and mirror. A tick of the servo begins once the mirror has done what was due before.
+/// The clock of servo and mirror. A tick of the servo begins once the mirror has done the work due before.
 struct Turns {
     std::mutex mutex;
     std::condition_variable changed;
     uint64_t now_ns = 1'000'000'000, mirror_due_ns = 0;
     bool mirror_waits = false, has_ended = false, may_begin = false;
     int ticks = 0, to_run = 0;
-    bool is_held = false;                 ///< the mirror is not served any more: what a main thread would be
+    bool is_held = false;                 ///< the mirror is not served any more, as by a blocked main thread
     std::function<void(int)> every_tick;  ///< in the servo's thread
 
     void mirror_waits_until(uint64_t until_ns)
@@ -82,7 +82,7 @@ struct Turns {
         ++ticks;
         changed.notify_all();
     }
-    /// Holds the calling thread until so many more ticks have run.
+    /// Blocks the calling thread until `count` more ticks have run.
     void run(int count)
     {
         std::unique_lock lock(mutex);
@@ -113,7 +113,7 @@ private:
     Turns& turns_;
 };
 
-/// A hand 0.4 mm beside the rod's middle, that moves along x at `speed`, m/s.
+/// A hand that moves along x at `speed`, m/s, 0.4 mm from the rod's middle.
 class MovingHand : public HapticDevice {
 public:
     explicit MovingHand(double speed) : speed_(speed) {}
@@ -189,7 +189,7 @@ struct World {
         blind += (state.step.flags & FORCE_NO_REGION) != 0;
         least_n = std::min(least_n, glm::length(state.step.force_n));
     }
-    /// A device that answers `late_ticks` after it was asked, sixty times a second.
+    /// Answers like a device, sixty times a second, `late_ticks` after each request.
     void answer(int late_ticks)
     {
         turns.every_tick = [this, late_ticks, asked = std::optional<RelevanceMirror::Wanted>{},

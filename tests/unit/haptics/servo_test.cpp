@@ -100,7 +100,7 @@ private:
 
 constexpr Servo::Options VIRTUAL{.rate_hz = 1000, .realtime = false};
 
-/// A rod along x, 0.4 mm beside the hand.
+/// A rod along x, 0.4 mm from the hand.
 ForceSettings settings_beside_rod()
 {
     ForceSettings settings{.assistance = true, .probe_radius = 2.5};

@@ -1,4 +1,4 @@
-// Thin sheets: what they hold, and that crossing them at any speed is no jolt. A probe of ten voxels, 2.5 mm in the
+// Thin sheets: the force they hold, and that crossing at any speed is no jolt. A probe of ten voxels, 2.5 mm in the
 // hand, at the default stiffness.
 
 #include <cmath>

@@ -123,7 +123,7 @@ double swing_against_spring(double stiffness, double damping)
         // A push: the wish jumps 5 mm away, later back to the spring's middle.
         device.wish().publish({.position_m = {tick < 1000 ? 0.005 : 0.0, 0.0, 0.0}});
         const DeviceState state = read(device);
-        // As in force.cpp: low-pass of 100 Hz.
+        // Same low-pass as in force.cpp: 100 Hz.
         const double share = 1.0 - std::exp(-2.0 * std::numbers::pi * 100.0 * 1e-3);
         velocity += share * ((state.position_m.x - before.x) / 1e-3 - velocity);
         before = state.position_m;

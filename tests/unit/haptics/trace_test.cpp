@@ -249,8 +249,8 @@ TEST_CASE("where the device was swapped a replay begins anew: no force, no objec
     CHECK(whole.swaps == 0);
     REQUIRE(glm::length(whole.steps[1500].force_n) > 0.02);
     CHECK(glm::length(swapped.steps[1499].force_n) == glm::length(whole.steps[1499].force_n));
-    CHECK(glm::length(swapped.steps[1500].force_n) < 0.01 * glm::length(whole.steps[1500].force_n));  // engages anew
-    // What comes after is what a servo does that begins there.
+    CHECK(glm::length(swapped.steps[1500].force_n) < 0.01 * glm::length(whole.steps[1500].force_n));  // engages again
+    // The later steps are those of a servo that starts there.
     Trace later = trace;
     later.swaps.clear();
     later.ticks.erase(later.ticks.begin(), later.ticks.begin() + 1500);

@@ -18,7 +18,7 @@ struct Times {
     double minimum, median, p95;
 };
 
-/// As profiles and the bench sum up their times.
+/// Sums up times as profiles and the bench do.
 Times times_of(size_t count, const std::function<double()>& draw)
 {
     std::vector<double> values(count);

@@ -75,7 +75,7 @@ TEST_CASE("a job says what it does, how far it is and how long the rest of a str
     jobs.start("exporting", [&](ProgressReporter& reporter) -> Jobs::Completion {
         const Progress progress = reporter.begin("writing a.swc");
         now = 110.0;
-        progress(0.2);  // of which nobody knows how long it took: an import may have been resumed
+        progress(0.2);  // its duration is unknown: an import may have been resumed
         now = 120.0;
         progress(0.6);  // 0.4 in 20 s since the stretch began
         told.count_down();

@@ -27,7 +27,7 @@ Seen seen_of(const glm::dvec3& linear)
     return seen;
 }
 
-/// In the sight that tells them apart least.
+/// Difference in the type of colour vision that distinguishes them least.
 double difference(const Seen& a, const Seen& b)
 {
     double least = 1e9;
@@ -40,7 +40,7 @@ glm::dvec3 linear_of(const char* text)
     return glm::dvec3(color_of(text).value());
 }
 
-/// What groups lie in and before: the default transfer function, between its points as well, and white paper.
+/// Colours around and behind groups: the default transfer function, between its points as well, and white paper.
 std::vector<Seen> surroundings()
 {
     const glm::dvec3 points[] = {linear_of("#5c6066"), linear_of("#e8a860"), linear_of("#fff4e0")};
@@ -122,7 +122,7 @@ TEST_CASE("The colours of the first ten groups can be told apart, and from the d
     CHECK(least_difference(colors) >= MIN_GROUP_DIFFERENCE);
     CHECK(default_group(11).color == default_group(1).color);
 
-    // The ten that shipped before: what they are compared with.
+    // The ten earlier default colours, for comparison.
     std::vector<Seen> before;
     for (const char* color :
          {"#d62728", "#1f77b4", "#2ca02c", "#ff7f0e", "#9467bd", "#17becf", "#e377c2", "#bcbd22", "#8c564b", "#ffdd44"})

@@ -187,7 +187,7 @@ TEST_CASE("slices zoom about what is under the mouse, follow it when they are dr
     glm::dvec3 edge = unproject(across_z.shot.camera, across_z.pixels(), {1.0, 1.0}, 0.0) / volume.spacing;
     edge.z = 480.0;
     CHECK(followed(edge, 1).center == glm::dvec3(probe.x, probe.y, 480.0));
-    // The slice across y shows more at once: what leaves the one across z is seen there still, and it does not move.
+    // The slice across y shows more at once: a position outside the one across z is still visible there, so it stays.
     const Pane across_y = panes_of(settings, looking(), pixels, volume, probe)[2];
     REQUIRE(across_y.axis == 1);
     glm::dvec3 wide = unproject(across_y.shot.camera, across_y.pixels(), {60.0, 80.0}, 0.0) / volume.spacing;

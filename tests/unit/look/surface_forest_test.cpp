@@ -58,8 +58,8 @@ bool same_bytes(const Value& a, const Value& b)
     return std::memcmp(&a, &b, sizeof(Value)) == 0;
 }
 
-/// What a search that opens every box visits, in any order; every surface must be inside all boxes opened for it.
-/// it.
+/// The surfaces that a search which opens every box visits, in any order; every surface must be inside all boxes opened
+/// for it.
 std::vector<gpu::Surface> found_in(const std::vector<gpu::SurfaceNode>& nodes, const std::vector<gpu::Surface>& list)
 {
     std::vector<gpu::Surface> found;

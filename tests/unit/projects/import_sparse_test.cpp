@@ -1,4 +1,4 @@
-// Label images of sparse volumes, made of what is stored, against those made by going through everything.
+// Label images of sparse volumes, made from the stored chunks alone, against those made by a pass over all voxels.
 
 #include "engine/projects/import_sparse.h"
 

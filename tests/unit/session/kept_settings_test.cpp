@@ -86,7 +86,7 @@ TEST_CASE("every key of rendering is lasting, as of the picture, or kept")
         Session session = parse();
         set_lasting_settings(session, lasting_settings(changed));
         CHECK(session == changed);
-        // What is kept knows nothing of it, nor what older journals keep of rendering.
+        // Kept settings do not include it, and render keys that older journals keep do not change it.
         set_kept_settings(session, kept_settings(parse()));
         CHECK(session == changed);
         set_kept_settings(session, {{"render", R"({"background":"#000000","saturation":1,"step_voxels":0.5})"}});

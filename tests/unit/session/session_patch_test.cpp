@@ -6,7 +6,7 @@ using namespace shvr;
 
 namespace {
 
-/// What the patch changes, in words.
+/// Describes the changes that the patch makes.
 std::string words_of(const char* patch, const char* before = "{}")
 {
     const Session was = patched(Session(), before);

@@ -552,7 +552,7 @@ TEST_CASE("cameras are found by name, by side and as JSON")
     CHECK_THROWS_WITH(camera_named(session, R"({"side": "back", "zoom": "x"})", volume),
                       "camera: key zoom is \"x\"; expected a number above 0 (0.001 ... 1000)");
     CHECK_THROWS_AS(camera_named(session, "{", volume), Error);
-    // Nobody chose: the side with the largest face, unless the session says what "front" means.
+    // Without a choice: the side with the largest face, unless the session defines "front".
     VolumeInfo slices = volume;
     slices.spacing = {1, 1, 0.1};
     CHECK(camera_named(session, "", slices) == camera_looking("bottom", slices));

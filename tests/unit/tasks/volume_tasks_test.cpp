@@ -15,7 +15,7 @@ using namespace shvr::test;
 
 namespace {
 
-/// Writes down what it is told, and stops at a call.
+/// Records the reports that it receives, and cancels at a given call.
 class Listener final : public ProgressReporter {
 public:
     explicit Listener(int64_t stop_at = -1) : stop_at_(stop_at) {}

@@ -16,7 +16,7 @@ namespace {
 struct Printed {
     const char* key;         ///< as a chord
     const char* function;    ///< as printed
-    const char* id;          ///< of the shortcut that it means
+    const char* id;          ///< id of the shortcut in question
     bool is_slowed = false;  ///< "Shift - Slow Rate"
 };
 

@@ -1,4 +1,4 @@
-// What stands between the servo and its device, on a clock that the test moves.
+// The tap between the servo and its device, on a clock that the test moves.
 
 #include "engine/workbench/touch/device_tap.h"
 
@@ -148,7 +148,7 @@ TEST_CASE("a recording goes on through a swap of the device, and replays bit for
     const Trace trace = parse_trace(text_of(recorder.take()), "hand.trace");
     CHECK(trace.swaps == std::vector<size_t>{2000});
     REQUIRE(trace.relevance.size() == 2);
-    CHECK(trace.relevance[1].sequence == trace.relevance[0].sequence);  // it counts anew
+    CHECK(trace.relevance[1].sequence == trace.relevance[0].sequence);  // it counts from the start again
     const ReplayResult result = replay_trace(trace, {}, {});
     CHECK(result.told == 4020);
     CHECK(result.told_equal == 4020);
@@ -196,7 +196,7 @@ TEST_CASE("a probe that is held to a plane stays in it, and the hand feels nothi
     CHECK(farthest < 1e-15);
     CHECK(moved > 1e-4);
     CHECK(force > 0.01);
-    // What reached the hand drew it along the plane alone: across it the hand is where it wished to be.
+    // The force drew the hand along the plane alone: perpendicular to it the hand is where it wished to be.
     DeviceState raw;
     bench.device->read(raw);  // the servo waits for the next tick
     const glm::dvec3 drawn = raw.position_m - glm::dvec3(0.001, 0.0, 0.002);

@@ -1,4 +1,4 @@
-// Groups as a tree: listed, found, rearranged; and what a trace has in them.
+// Groups as a tree: listed, found, rearranged; and the parts of a trace in them.
 
 #include "engine/workbench/lists/group_list.h"
 

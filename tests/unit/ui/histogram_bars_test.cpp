@@ -67,7 +67,7 @@ TEST_CASE("values that lie apart have a bar each, centred on them")
 
 TEST_CASE("values that were rounded from steps of a fraction have a bar each, too")
 {
-    // As the stent of the examples: 33 values from 0 to 2000 in steps of 62.5, rounded down.
+    // Like the stent of the examples: 33 values from 0 to 2000 in steps of 62.5, rounded down.
     VolumeStatistics statistics{.minimum = 0.0, .maximum = 2000.0};
     statistics.histogram.assign(256, 0);
     for (int k = 0; k <= 32; ++k)

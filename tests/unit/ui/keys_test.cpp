@@ -214,7 +214,7 @@ TEST_CASE("letters are those of the person's keyboard, and steering keys stay at
     // AZERTY: the key at the place of W bears Z, that at the place of Q bears A.
     CHECK(only<Move>(actions_of(world, 'W', 0, false, "z")).heights.z > 0.0);
     CHECK(only<Move>(actions_of(world, 'Q', 0, false, "a")).heights.y < 0.0);
-    // Brackets need AltGr on both: what bears an umlaut, or a sign without a meaning, does what an American key does.
+    // Brackets need AltGr on both: keys with an umlaut, or a sign without a meaning, act as on an American keyboard.
     const auto factor_of = [&](int key, const char* sign) {
         return only<ScaleProbe>(actions_of(world, key, 0, false, sign)).factor;
     };
@@ -340,7 +340,7 @@ TEST_CASE("End goes through all brushes and keeps the rest of the brush")
 
 namespace {
 
-/// Three linked nodes 10 voxels apart along x, the last one selected; the probe beside it.
+/// Three linked nodes 10 voxels apart along x, the last one selected; the probe near it.
 void trace_three(World& world)
 {
     world.volume.size = Size3(64);

@@ -90,7 +90,7 @@ TEST_CASE("Preferences of look and layout are kept, patched, and given back")
     CHECK(layout.panels.at("groups").at == std::optional(glm::dvec2(3, 4)));
     CHECK(layout.is_folded(*panel_named("trace")));
 
-    // What one patch does not name stays; null takes what ships.
+    // Keys that a patch does not name keep their values; null restores the default.
     const Preferences size_only = patched(preferences, patch_of_panel("groups", {.size = glm::dvec2(20, 10)}));
     CHECK((size_only.layout.place_of(*panel_named("groups")) == PanelPlace::floating));
     CHECK((patched(preferences, R"({"layout":null})").layout == WindowLayout()));

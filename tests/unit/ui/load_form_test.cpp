@@ -1,4 +1,4 @@
-// What is filled in to open a file, as settings.
+// Entries of the form for opening a file, as settings.
 
 #include <doctest/doctest.h>
 

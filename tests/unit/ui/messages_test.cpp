@@ -1,4 +1,4 @@
-// What was said and done, in the words of the status bar and of a report; and the history as a list to jump in.
+// Messages and actions in the words of the status bar and of a report; and the history as a list to jump in.
 
 #include <doctest/doctest.h>
 
@@ -164,7 +164,7 @@ TEST_CASE("the history is a list whose rows are states, and a row is reached by 
     CHECK(text_of(go_to_row(list, 3)) == "(nothing)");
     CHECK(text_of(go_to_row(list, 4)) == "redo count=1");
     CHECK(text_of(go_to_row(list, 5)) == "(nothing)");
-    // A setting that is not a step yet will be the newest, and what was undone goes then.
+    // A setting that is not a step yet will be the newest step, and undone steps will be dropped.
     place.model.undoable = 4;
     const HistoryList ahead = history_list(place.model);
     CHECK(ahead.rows() == 5);
@@ -180,7 +180,7 @@ TEST_CASE("a step is shown in the middle of what it changed")
     place.volume.size = {64, 64, 40};
     place.volume.spacing = {0.5, 0.5, 2.0};
     shvr::Document document{Mask(place.volume.size)};
-    // In the brick beside the first along x: voxels 34 to 37 of row 2, slice 1.
+    // In the second brick along x: voxels 34 to 37 of row 2, slice 1.
     place.history.perform(document, dab("one row", 1, {{1024 + 64 + 2, 1024 + 64 + 5, 0, 3}}));
     // Runs over the ends of rows and of slices take all between.
     place.history.perform(document, dab("two slices", 0, {{1000, 1100, 0, 3}}));

@@ -1,4 +1,4 @@
-// What is written and drawn over pictures, and what motions of the mouse mean.
+// Text and drawings over pictures, and the effects of mouse motions.
 
 #include <cmath>
 
@@ -143,7 +143,7 @@ TEST_CASE("Automatic contrast leaves out the darkest and the brightest few voxel
     CHECK(automatic_contrast(statistics).upper == doctest::Approx(510.0));
     statistics.histogram.clear();
     CHECK(automatic_contrast(statistics).upper == 2560.0);
-    // Of a scan that holds one value alone, too, the session can be read again.
+    // The session of a scan with a single value, too, can be read again.
     for (const double value : {0.0, 7.0, -1e30, 3.4e38}) {
         CAPTURE(value);
         VolumeStatistics constant;

@@ -1,4 +1,4 @@
-// What moves of a stylus mean for view, probe and tools.
+// Effects of stylus motions on view, probe and tools.
 
 #include "engine/workbench/touch/stylus_motion.h"
 
@@ -35,7 +35,7 @@ glm::dvec3 in_view(const Camera& camera, const glm::dvec3& point)
     return {glm::dot(axes.right, away), glm::dot(axes.up, away), -glm::dot(axes.forward, away)};
 }
 
-/// The camera after what a puck asks for, about its target.
+/// The camera after the motion that a puck requests, about its target.
 Camera after(const Actions& actions, Camera camera, double height)
 {
     for (const Action& action : actions) {

@@ -1,4 +1,4 @@
-// A trace as lists: what is in them, in which order, and that they are made once for each state of the trace.
+// A trace as lists: their content and order, and that they are made once for each state of the trace.
 
 #include "engine/workbench/lists/trace_list.h"
 

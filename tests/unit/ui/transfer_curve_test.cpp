@@ -1,4 +1,4 @@
-// Editing the transfer function without a window: places, what lies under the mouse, and what becomes of the points.
+// Editing the transfer function without a window: positions, hits under the mouse, and the resulting points.
 
 #include "engine/workbench/curves/transfer_curve.h"
 
@@ -52,7 +52,7 @@ TEST_CASE("the mouse grabs the nearest point, and lines where no point is near")
     CHECK(curve.under(AXES, {99.0f, 60.0f}, {190.0, 180.0}, REACH).grip == Grip::haptic_threshold);
     // Points go before lines.
     CHECK(curve.under(AXES, first, {50.0, 50.0}, REACH).grip == Grip::point);
-    // Of two lines in one place the one whose label is hit.
+    // If two lines coincide, the one whose label is hit is grabbed.
     CHECK(curve.under(AXES, {105.0f, 25.0f}, {190.0, 190.0}, REACH).grip == Grip::paint_threshold);
     CHECK(curve.under(AXES, {105.0f, 45.0f}, {190.0, 190.0}, REACH).grip == Grip::haptic_threshold);
     // A word is grabbed as its line is, wherever it reaches in its own row.

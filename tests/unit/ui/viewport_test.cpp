@@ -1,4 +1,4 @@
-// What the mouse means in each tool, without a display.
+// Effects of the mouse in each tool, without a display.
 
 #include "ui/viewport.h"
 #include "ui/mouse_feed.h"
@@ -70,7 +70,7 @@ struct Mouse {
         press(LEFT, x, y);
         release(LEFT, x, y);
     }
-    /// A press, some motion, and a release; returns what was asked for.
+    /// A press, some motion, and a release; returns the requested actions.
     std::string drag(int button, double x, double y, int mods = 0)
     {
         said.clear();
@@ -203,7 +203,7 @@ TEST_CASE("A motion that no hand makes lifts the brush, and so does the first af
     Mouse mouse(Tool::turn);
     const auto jumps = [&] { return std::get<ProbeTo>(mouse.last.at(0)).jumps; };
     mouse.move(40.0, 40.0);
-    CHECK(jumps());  // nobody knows where it was
+    CHECK(jumps());  // its last position is unknown
     mouse.move(60.0, 40.0);
     CHECK(!jumps());
     mouse.move(200.0, 40.0);

@@ -71,7 +71,7 @@ TEST_CASE("a session knows the hash of its volume, a project's and a file's alik
     import_volume(source, raw, folder.path / "project", {});
     CHECK(open_session(raw).session.volume_hash == content_hash(source));
     CHECK(open_session(folder.path / "project").session.volume_hash == content_hash(source));
-    // Of a record that is not sound nothing is taken.
+    // Nothing is taken from an invalid record.
     folder.write("project/shvr/volume.json", "{}");
     CHECK(open_session(folder.path / "project").session.volume_hash == content_hash(source));
 }

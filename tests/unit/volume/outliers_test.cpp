@@ -73,7 +73,7 @@ TEST_CASE("several stray values are left out while they are few")
         if (found) CHECK(found->outliers == int64_t(count));
         if (found) CHECK(found->range.upper < 200.0);
     }
-    // A hot pixel beside fill values: one after the other.
+    // A hot pixel in addition to fill values: removed one after the other.
     std::vector<double> values = plain;
     values[7] = values[8] = values[9] = 1e30;
     values[10] = 1000.0;
@@ -132,7 +132,7 @@ TEST_CASE("the range without stray values is exact in any order, and of any size
         CHECK(found->outliers == 2);
     }
     CHECK_FALSE(bulk_of({}).has_value());
-    CHECK_FALSE(bulk_of({1.0, 2.0, 3.0, 1e30}).has_value());  // of four, nobody can say which is usual
+    CHECK_FALSE(bulk_of({1.0, 2.0, 3.0, 1e30}).has_value());  // four values cannot show which is usual
 }
 
 TEST_CASE("a value that occurs many times counts as often")
@@ -155,7 +155,7 @@ TEST_CASE("a value that occurs many times counts as often")
         CHECK(found->range == range_of(values));
         CHECK(found->outliers == strays);
     }
-    // What little a sparse volume stores is not left out.
+    // The few values that a sparse volume stores are not left out.
     OutlierFinder sparse(int64_t{1} << 60);
     for (const double value : tissue(1000)) sparse.add(value);
     sparse.add(0.0, (int64_t{1} << 60) - 1000);

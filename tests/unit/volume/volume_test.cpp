@@ -274,7 +274,7 @@ TEST_CASE("measuring reads at most 32 MiB at a time, also where one slice is lar
 
 TEST_CASE("of a volume too large to go through, a coarser level is measured and said")
 {
-    /// Level 0 is all 7; level 1 all 9: told apart by what is measured.
+    /// Level 0 is all 7, level 1 all 9, so that statistics show which level was measured.
     class Levels : public VolumeSource {
     public:
         explicit Levels(int64_t side) : VolumeSource(info_of(side)) {}

@@ -118,7 +118,7 @@ TEST_CASE("the angles at a branch")
     CHECK(measures.branches[0].group == 3);
     REQUIRE(measures.branches[0].angles_degrees.size() == 3);
     CHECK(measures.branches[0].angles_degrees[0] == 90.0);
-    // So close to 180 that the arc cosine would return exactly 180.
+    // An angle so close to 180 that the arc cosine would return exactly 180.
     CHECK(180.0 - measures.branches[0].angles_degrees[1] ==
           doctest::Approx(1e-9 * 180.0 / std::numbers::pi).epsilon(1e-4));
     CHECK(measures.topology == Topology{2, 0, 0});

@@ -156,7 +156,7 @@ TEST_CASE("a trace that goes along all of a segment and does not reach the node 
     Drawing drawing;
     const uint32_t almost = drawing.line(steps(0, 29.5, 29.5 / 15));
     const uint32_t other = drawing.line({{29.8, 0.5, 0}, {29.8, -0.5, 0}}, 1.0, almost);
-    drawing.link(other, almost);  // a small loop, so that there is no loose end
+    drawing.link(other, almost);  // a small loop, to leave no loose end
     const uint32_t end = drawing.node({30, 0, 0});
     const TraceGraph truth = line_of(steps(0, 30, 2));
     CHECK(compare(drawing.trace, truth, 0.0).segments_found == 0);

@@ -38,8 +38,8 @@ void add_chain(GrowingTrace& drawing, uint32_t from, uint32_t to, const std::vec
     drawing.link(last, to);
 }
 
-/// Nodes anywhere, joined by chains that cross, touch and run beside each other as chance will have it: between the
-/// same two nodes, along the same course, in loops, and with nodes that are joined to nothing.
+/// Random nodes, joined by random chains that cross, touch and run next to each other: between the same two nodes,
+/// along the same course, in loops, and with nodes that are joined to nothing.
 TraceGraph any_multigraph(Random& random)
 {
     GrowingTrace drawing;
@@ -161,7 +161,7 @@ TEST_CASE("both ways around an island are told apart, however thin it is")
         check_counts(compare(moved.drawing.trace, truth.drawing.trace, 0.5), 6, 0, 0, 0);
         // A way that is missing is not found, even if the other one lies near it.
         check_counts(compare(one.drawing.trace, truth.drawing.trace, 0.5), 5, 0, 0, 0);
-        // A way too many is an error: beside the other one, or where there is nothing.
+        // A surplus path is an error: next to the other one, or where the truth has none.
         const TraceComparison more = compare(truth.drawing.trace, one.drawing.trace, 0.5);
         CHECK(more.segments_found == 5);
         CHECK(more.doubled == (apart <= 2.0 ? 1 : 0));
@@ -222,7 +222,7 @@ TEST_CASE("the greatest distance between traces is that of the place farthest aw
     const auto most = [](const TraceGraph& trace, const TraceGraph& truth) {
         return compare(trace, truth, 1.0).centreline_most.value();
     };
-    // A peak beside the truth: one node far away. Beyond the end: the end.
+    // A peak off the truth: its one far node is the farthest point. A trace beyond the end: its end is.
     const TraceGraph truth = line({{0, 0, 0}, {100, 0, 0}});
     CHECK(most(line({{0, 0, 0}, {31, 17, 0}, {100, 0, 0}}), truth) == doctest::Approx(17.0).epsilon(1e-12));
     CHECK(most(line({{0, 0, 0}, {107, 0, 0}}), truth) == doctest::Approx(7.0).epsilon(1e-12));
@@ -235,7 +235,7 @@ TEST_CASE("the greatest distance between traces is that of the place farthest aw
         const double expected = std::max(std::hypot(x, y), std::hypot(beyond, y));
         CHECK(most(straight, legs) == doctest::Approx(expected).epsilon(2e-9));
     }
-    // A helix of chords beside its axis: the chords' ends. Its axis beside the helix: all places, and ends beyond it.
+    // The trace is a helix of chords, the truth its axis: the chords' ends are farthest from it.
     std::vector<glm::dvec3> turns;
     for (int i = 0; i <= 200; ++i) turns.emplace_back(10.0 * std::cos(0.3 * i), 10.0 * std::sin(0.3 * i), 0.2 * i);
     CHECK(most(line(turns), line({{0, 0, 0}, {0, 0, 40}})) == doctest::Approx(10.0).epsilon(1e-12));

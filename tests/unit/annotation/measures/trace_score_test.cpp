@@ -124,7 +124,7 @@ TEST_CASE("the share of a ball in the mask, voxel by voxel, at any spacing")
                     }
             if (all > 0) CHECK(share_in_mask(mask, spacing, at, radius) == double(painted) / double(all));
         }
-    // Too small for the centre of a voxel: the voxel it lies in.
+    // A ball too small to contain the centre of a voxel: the voxel it lies in counts.
     CHECK(share_in_mask(mask, glm::dvec3(1.0), {2.01, 3.01, 4.01}, 0.1) == 1.0);
     CHECK(share_in_mask(mask, glm::dvec3(1.0), {1.99, 3.01, 4.01}, 0.1) == 0.0);
     CHECK(share_in_mask(mask, glm::dvec3(1.0), {-5, 3.01, 4.01}, 0.0) == 0.0);

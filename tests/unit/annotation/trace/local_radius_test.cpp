@@ -96,7 +96,7 @@ TEST_CASE("What is seen on a tube's wall, from any side, has its middle on the a
                     REQUIRE(found.has_value());
                     CHECK(beside_axis(*found, box, along) < 0.3);
                     worst = std::max(worst, beside_axis(*found, box, along));
-                    // The other way there is nothing, but for the wall itself.
+                    // In the other direction there is nothing except the wall itself.
                     CHECK(!ball_behind(density_at, 100.0, voxel - 4.0 * towards, -towards, glm::dvec3(1.0), 20.0));
                 }
     MESSAGE("largest error: ", worst, " voxels");

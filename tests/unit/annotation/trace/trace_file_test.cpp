@@ -225,7 +225,7 @@ TEST_CASE("RSML is read back: trees, places, radii and groups of nodes")
         const TraceGraph read = load_trace(path, SPACE).trace;
         REQUIRE(read.nodes().size() == trace.nodes().size());
         REQUIRE(read.internodes().size() == trace.internodes().size() - notes.size());
-        // Numbers are new; places tell which node is which.
+        // Numbers are new; nodes are matched by position.
         std::map<uint32_t, uint32_t> old_of;
         for (const auto& [number, node] : read.nodes())
             for (const auto& [old, before] : trace.nodes()) {
@@ -487,7 +487,7 @@ TEST_CASE("a trace in physical space lies where the volume's file says, says so,
             CHECK(contains(text, "0 -1 0 1 0 0 0 0 1"));
             const TraceFile read = load_trace(path, space);
             CHECK(farthest_apart(read.trace, trace) < 1e-10);
-            // Files that were written in volume space are kept to the last bit, but for RSML.
+            // Files that were written in volume space keep every bit, except RSML.
             save_trace(path, trace, space);
             CHECK(contains(content_of(path), "positions are voxels times spacing"));
             CHECK(farthest_apart(load_trace(path, space).trace, trace) <

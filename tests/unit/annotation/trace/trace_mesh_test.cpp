@@ -25,7 +25,7 @@ double volume_of(const TracePart& part)
     return sum;
 }
 
-/// Every edge is passed once in each direction.
+/// Whether every edge is passed once in each direction.
 bool is_closed(const TracePart& part)
 {
     std::map<std::pair<uint32_t, uint32_t>, int> edges;
@@ -82,7 +82,7 @@ std::string content_of(const std::filesystem::path& path)
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Of an OBJ, and the comments of a PLY beside it.
+/// Reads the vertices of an OBJ.
 std::vector<glm::dvec3> vertices_of(const std::string& obj)
 {
     std::vector<glm::dvec3> vertices;

@@ -1,4 +1,4 @@
-// Settings that are kept: no steps, but as they were left after whatever happened in between.
+// Kept settings: they are no steps of the history, and return as they were left, whatever happened in between.
 
 #include <algorithm>
 
@@ -104,13 +104,13 @@ TEST_CASE("only looking leaves no file; what was kept before the first command g
         work->perform(dab(1));
     }
     CHECK(desk.open()->kept_settings() == seen_from("left"));
-    // Beside a journal it is written at once, though nothing is done.
+    // If a journal exists, the settings are written at once, even without a command.
     desk.open()->keep_settings(seen_from("back"));
     const auto work = desk.open();
     CHECK(work->kept_settings() == seen_from("back"));
     CHECK(work->history().undoable() == 1);
     work.get()->settle();
-    // Those who look keep theirs to themselves.
+    // Settings of work that is open for viewing only are never written.
     const std::string before = desk.journal();
     const auto looking = desk.open(FRONT, {.only_look = true});
     looking->keep_settings(seen_from("below"));
@@ -130,14 +130,14 @@ TEST_CASE("a session's file that was changed since it was saved is believed, sec
     }
     CHECK(desk.open(seen_from("top", "p1"))->kept_settings() == seen_from("left", "p2"));
     CHECK(!contains(desk.said, "were changed"));
-    // Somebody edits the camera.
+    // The camera is edited in the file.
     {
         const auto work = desk.open(seen_from("edited", "p1"));
         CHECK(contains(desk.said, "these settings of the session were changed since it was saved: cameras; they are"));
         CHECK(work->kept_settings() == seen_from("edited", "p2"));
         work->keep_settings({{"cameras", "moved on"}});
     }
-    // That is remembered: the file is no news, whatever is kept since.
+    // The edit is remembered: the file is not new any more, whatever is kept since.
     CHECK(desk.open(seen_from("edited", "p1"))->kept_settings() == seen_from("moved on", "p2"));
     CHECK(!contains(desk.said, "were changed"));
     // A save that writes no session does not make its file older than it is.
@@ -147,7 +147,7 @@ TEST_CASE("a session's file that was changed since it was saved is believed, sec
         work->save();
     }
     CHECK(desk.open(seen_from("edited", "p1"))->kept_settings() == seen_from("moved on", "p2"));
-    // A section of which the file says nothing, or the journal.
+    // A section that is missing in the file, or in the journal.
     CHECK(desk.open({{"probe", "p1"}})->kept_settings() == seen_from("moved on", "p2"));
     CHECK(desk.open({{"probe", "p1"}, {"new", "n"}})->kept_settings().at("new") == "n");
 }
@@ -170,7 +170,7 @@ TEST_CASE("beside a journal of an older program the file is believed, until sett
     }
     CHECK(desk.open()->kept_settings() == seen_from("top"));
     CHECK(!contains(desk.said, "were changed"));
-    // It saves once more, and skips what it does not know: what it wrote into the session's file is believed.
+    // The older program saves again and skips records that it does not know: its session file is believed.
     {
         WorkFiles older = desk.files();
         older.kept.clear();
@@ -227,6 +227,6 @@ TEST_CASE("opening reads few records, however often settings were kept; states h
         if (record.kind == RecordKind::state && i > 3) CHECK(scan.records.at(i + 1).kind == RecordKind::kept);
     }
     CHECK(longest == 256);
-    CHECK(count_of(RecordKind::state, desk.files().journal) >= 2);  // made beside the work, the last when it closes
+    CHECK(count_of(RecordKind::state, desk.files().journal) >= 2);  // made in the background, the last when it closes
     CHECK(desk.open()->kept_settings() == seen_from("view 2999"));
 }

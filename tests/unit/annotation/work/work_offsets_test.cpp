@@ -187,12 +187,12 @@ TEST_CASE("offsets come from the journal, or from their file, and then no other 
     CHECK(found.at({1, 0, 0}) == 9.0);
     CHECK(messages.size() == 1);  // a step that is not saved
     CHECK(bytes_of_file(files.journal) == before);
-    // A file that nobody can have meant: what the journal holds is taken.
+    // A file that cannot be intentional: the journal's content is used.
     folder.write("a.offset", "short");
     CHECK(offsets_of(files, Belief::ask, messages).voxels() == 3);
     CHECK(contains(messages.back().text, "a.offset: holds 5 bytes"));
     CHECK(messages.back().is_loss);
-    // One that somebody may have meant.
+    // A file that may be intentional.
     painted.put({35, 3, 4}, 2);
     save_offsets(files.density, painted.field);
     CHECK_THROWS_AS(offsets_of(files, Belief::ask, messages), Disputed);

@@ -1,4 +1,4 @@
-// A save beside the work: what was there when it began, and nothing of what was done since.
+// A save in the background: it holds the state at its begin, and no step performed since.
 
 #include <doctest/doctest.h>
 

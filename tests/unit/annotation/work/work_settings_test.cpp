@@ -22,7 +22,7 @@ SettingValues with(SettingValues values, const std::string& name, const std::str
 
 class Desk : public TemporaryFolder {
 public:
-    /// Reopens the work beside a session's file with these settings.
+    /// Reopens the work, as of a session file with these settings.
     std::unique_ptr<Work> open(const SettingValues& in_file) const
     {
         auto work = std::make_unique<Work>(ANNOTATED_SIZE, ANNOTATED_TYPE);

@@ -119,7 +119,7 @@ TEST_CASE(
         CHECK(hash_of(work->document()) == hash_of(unannotated()));
         work->flush();
         const JournalScan scan = scan_journal(desk.files().journal);
-        CHECK(std::ranges::count(scan.records, RecordKind::state, &JournalRecord::kind) > 3);  // made beside the work
+        CHECK(std::ranges::count(scan.records, RecordKind::state, &JournalRecord::kind) > 3);  // made in the background
     }
 }
 
@@ -267,7 +267,7 @@ TEST_CASE("what others write while the work is open is kept by the next save")
     CHECK(contains(saved.notices[0].text, "a.mask: was written by another program"));
     CHECK(bytes_of_file(desk.path / "a.mask.old") == "of somebody else");
     CHECK(work->save().notices.empty());
-    // The trace has not been changed, so it is not written, and what came there is a question next time.
+    // The trace has not been changed, so it is not written, and the foreign file is a question at the next start.
     desk.write("a.graphml", "of somebody else");
     work->perform(dab(3));
     CHECK(work->save().notices.empty());
@@ -371,7 +371,7 @@ TEST_CASE("a second hand is told at opening who writes, and may look")
     CHECK_THROWS_AS(looking->save(), JournalTaken);
     REQUIRE(holder_of(desk.files().journal).has_value());
     CHECK(holder_of(desk.files().journal)->program == "the first");
-    // The same hold serves whoever replaces the first.
+    // The work that replaces the first takes over its hold.
     first->settle();
     auto second = desk.open({.hold = first->hold()});
     first.reset();
@@ -380,7 +380,7 @@ TEST_CASE("a second hand is told at opening who writes, and may look")
     second.reset();
     CHECK_FALSE(holder_of(desk.files().journal).has_value());
     CHECK_FALSE(fs::exists(lock_path(desk.files().journal)));
-    // What a dead process left is no hold.
+    // A lock file of a dead process is no hold.
     desk.write("a.journal.lock", "program: shvr view\nprocess: 999999999\n");
     CHECK_FALSE(holder_of(desk.files().journal).has_value());
     CHECK(desk.open()->document().mask.voxels_by_group()[1] == 2);

@@ -546,7 +546,7 @@ TEST_CASE("damaged DICOM slices are errors, and nothing is written to standard e
     CHECK(std::string(std::istreambuf_iterator<char>(read), {}) == "");
 }
 
-/// What is said of a slice whose only picture is coded as the transfer syntax says.
+/// The error for a slice whose only picture is coded as the transfer syntax says.
 std::string refusal_of_coded(const TemporaryFolder& folder, const std::string& transfer_syntax,
                              const std::string& picture)
 {
@@ -608,7 +608,7 @@ TEST_CASE("what GDCM's decoders would end the program at is refused in words")
     CHECK(contains(encapsulated(start + frame(0xc5, 8, 5, 1) + scan), "unknown kind or depth"));
     CHECK(contains(encapsulated(start + frame(0xc3, 16, 5, 3) + scan), "5x4 pixels of 3 components; expected 5x4"));
     CHECK(contains(encapsulated(start + frame(0xc3, 16, 6, 1) + scan), "6x4 pixels of 1 components; expected 5x4"));
-    // What passes is for GDCM, which has no pixels to decode here.
+    // Pictures that pass are handed to GDCM, which has no pixels to decode here.
     CHECK(contains(
         encapsulated(start + std::string("\xff\xff\xe0\0\x10JFIF\0\x01\x02\0\0\x01\0\x01\0\0", 19) + good + scan),
         "slice 1 cannot be decoded"));

@@ -233,7 +233,7 @@ TEST_CASE("spacing, unit and orientation of an NRRD survive, and what changes is
     const auto backwards = folder.nrrd("spacings:", "spacings: 1 2 -3");
     CHECK(backwards->info().spacing == glm::dvec3(1, 2, 3));
     CHECK(warns_of(*backwards, "in reverse order along z"));
-    CHECK(folder.nrrd("spacings:", "spacings: 1 -2 -3")->info().warnings.empty());  // half a turn
+    CHECK(folder.nrrd("spacings:", "spacings: 1 -2 -3")->info().warnings.empty());  // a rotation by 180 degrees
 }
 
 TEST_CASE("axes that run the other way are turned round, and the first voxel stays where it is")

@@ -38,7 +38,7 @@ TEST_CASE("TIFFs of other writers' layouts are read, and what was assumed is sai
     struct Layout {
         const char* name;
         std::vector<uint8_t> voxels;
-        std::string warns{};  ///< beside that no spacing is stated
+        std::string warns{};  ///< in addition to the warning that no spacing is stated
     };
     const Layout layouts[] = {
         {"directory_cut", grey(), "the directory of page 1 was cut before the offset of a next one"},

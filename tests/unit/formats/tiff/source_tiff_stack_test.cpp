@@ -1,4 +1,4 @@
-// What programs state about a stack as a whole: ImageJ, OME-TIFF, and the resolution fields.
+// Metadata about a stack as a whole: ImageJ, OME-TIFF, and the resolution fields.
 
 #include <doctest/doctest.h>
 

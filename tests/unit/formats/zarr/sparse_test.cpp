@@ -38,7 +38,7 @@ std::vector<Size3> some_chunks(const Size3& counts, uint32_t seed, int in_1000)
     return chunks;
 }
 
-/// Of index 1 along the first axis.
+/// The listed chunks with index 1 along the first axis.
 std::set<std::vector<int64_t>> listed(const ZarrChunks& chunks, int64_t most, bool& all)
 {
     const std::vector<std::optional<int64_t>> at{1, {}, {}, {}};
@@ -49,7 +49,7 @@ std::set<std::vector<int64_t>> listed(const ZarrChunks& chunks, int64_t most, bo
     return found;
 }
 
-/// The same volume for which nobody knows what is stored.
+/// The same volume, without information on which chunks are stored.
 class Unknowing final : public VolumeSource {
 public:
     explicit Unknowing(std::shared_ptr<const VolumeSource> source)
@@ -84,7 +84,7 @@ TEST_CASE("zarr: chunks are listed by their names, nested and flat, and nothing 
         };
         for (const char* name : {"1.0.0.0", "1.3.4.299", "1.2.0.17"}) put(name);
         CHECK(chunks.stray().empty());
-        // Of another channel; outside; other spellings of numbers; too many and too few of them.
+        // Names of another channel; outside; with other spellings of numbers; with too many and too few of them.
         for (const char* name :
              {"0.0.0.0", "1.4.0.0", "1.0.5.1", "1.0.0.300", "1.00.0.1", "1.+1.0.0", "1.1.1.x", "1.1.2.-1", "1.1.3."})
             put(std::string(name) == "1.1.3." ? "1.1.3.y" : name);

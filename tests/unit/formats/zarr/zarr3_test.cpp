@@ -1,5 +1,5 @@
-// What Zarr version 3 and archives have that version 2 lacks: shards, checksums, other spellings, the layouts of other
-// programs (tests/data/make_zarr3.py); and files of both that are damaged or made to harm.
+// Features of Zarr version 3 and of archives that version 2 lacks: shards, checksums, other spellings, the layouts of
+// other programs (tests/data/make_zarr3.py); and damaged or malicious files of both.
 
 #include <algorithm>
 #include <cmath>
@@ -362,7 +362,7 @@ TEST_CASE("zarr 3: an index that is damaged or lies is refused, and what it says
     CHECK(contains(says(1, offset + 1, bytes), "shares bytes with another chunk of its shard"));
     CHECK(contains(says(0, offset, bytes - 1), "(chunk 0,0,0): "));
     CHECK(contains(says(0, 0, 0), "(chunk 0,0,0): "));
-    // Of the others, each can be read.
+    // Each of the other chunks can be read.
     static_cast<void>(says(3, uint64_t{1} << 40, bytes));
     const auto source = open_volume(copy.root);
     CHECK(voxels_in<int16_t>(*source, {{0, 0, 0}, {3, 4, 2}})[0] == phantom(0, 0, 0));
@@ -420,7 +420,7 @@ TEST_CASE("zarr: the chunks that are stored are listed, in folders, archives and
         CHECK(listed(path, version, {any, 1, 0}, 8) == std::pair(true, Numbers{{0, 1, 0}, {1, 1, 0}}));
     }
     for (const fs::path& path : forms_of("shard_end")) {
-        // Of a shard of 2 x 1 x 2 chunks, all in the array.
+        // A shard of 2 x 1 x 2 chunks, all in the array.
         const Numbers all{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 0, 1}};
         CHECK(listed(path, 3, {any, any, any}, 4) == std::pair(true, all));
         CHECK_FALSE(listed(path, 3, {any, any, any}, 3).first);

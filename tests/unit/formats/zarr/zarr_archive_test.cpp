@@ -80,10 +80,10 @@ TEST_CASE("zip: entries are found by name, and whole")
 
 TEST_CASE("zip: unusual archives of OME-Zarr are read")
 {
-    // Of two entries with one name the later counts: the earlier zarr.json has no attributes.
+    // The later of two entries with one name counts: the earlier zarr.json has no attributes.
     CHECK(is_chirality_phantom(*open_volume(DATA / "zip_twice.ozx")));
     CHECK(is_chirality_phantom(*open_volume(DATA / "zip_version_2.zip")));
-    // Names that climb are no names of values; nothing is unpacked.
+    // Names that leave the folder ("..") are no names of values; nothing is unpacked.
     CHECK(is_chirality_phantom(*open_volume(DATA / "zip_climbing.ozx")));
     CHECK_FALSE(fs::exists(DATA / "climbed"));
     CHECK_FALSE(fs::exists("tests/data/climbed"));

@@ -412,7 +412,7 @@ TEST_CASE("ome-zarr: levels count where they lie on level 0 as they should, othe
         CHECK(level_of(*coarse, 0, box) == level_of(*whole, level, box));
         const double wider = std::ldexp(1.0, level);
         CHECK(coarse->info().spacing == wider * whole->info().spacing);
-        // The middle of its first voxel is that of those that it covers.
+        // The centre of its first voxel is the centre of the voxels that it covers.
         const glm::dvec3 apart = coarse->info().origin - whole->info().origin;
         const glm::dvec3 expected = whole->info().directions * (0.5 * (wider - 1.0) * whole->info().spacing);
         CHECK(glm::length(apart - expected) < 1e-12);

@@ -14,7 +14,7 @@ using namespace shvr;
 
 namespace {
 
-/// Sends so many SpaceMouse reports, then nothing, or is gone.
+/// Sends `reports` SpaceMouse reports, then falls silent or (`goes_away`) disconnects.
 class Port : public HidPort {
 public:
     Port(int reports, bool goes_away) : left_(reports), goes_away_(goes_away) {}

@@ -35,7 +35,7 @@ bool comes_true(const Claim& claim)
     return false;
 }
 
-/// Writes like a servo, a force of 1 N that is faded in anew whenever the device was lost, until `claim` holds.
+/// Writes like a servo until `claim` holds: a force of 1 N that is faded in again after each loss of the device.
 template <class Claim>
 bool pulls_until(HapticDevice& device, const Claim& claim)
 {
@@ -47,7 +47,7 @@ bool pulls_until(HapticDevice& device, const Claim& claim)
     });
 }
 
-/// The same by a servo that wants its 1 N whatever it reads: what takes the force back is the link alone.
+/// The same by a servo that requests its 1 N whatever it reads: only the link takes the force back.
 template <class Claim>
 bool insists_until(HapticDevice& device, const Claim& claim)
 {

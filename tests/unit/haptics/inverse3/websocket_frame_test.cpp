@@ -19,7 +19,7 @@ std::string bytes_of(std::initializer_list<int> values)
     return bytes;
 }
 
-/// What is wrong with these bytes for a client; empty if they are read without an end in sight.
+/// The client's error for these bytes; empty if it reads them and waits for more.
 std::string trouble_of(const std::string& bytes)
 {
     WebSocketReader reader;

@@ -21,7 +21,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Built beside the test program.
+/// Path of a stub library, in stubs/ of the test program's folder.
 std::string library(const std::string& name)
 {
     return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "stubs" / name).string();
@@ -123,7 +123,7 @@ TEST_CASE("a force arrives within its limits, and ends with the device, a silent
             device->write({0.0, 9.0, 0.0}, 1);
             return arm.force_n[1] == 3.0;
         }));
-        CHECK(comes_true([&] { return arm.force_n[1] == 0.0; }));  // nobody writes
+        CHECK(comes_true([&] { return arm.force_n[1] == 0.0; }));  // without writes
         CHECK(pulls_until(*device, [&] { return arm.force_n[0] == 1.0; }));
         arm.temperature = 0.96;
         CHECK(pulls_until(*device, [&] { return arm.force_n[0] == 0.0; }));
