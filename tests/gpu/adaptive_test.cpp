@@ -35,14 +35,14 @@ public:
     }
     Picture picture(double tolerance, const RenderOptions& options = {})
     {
-        // Memory of pictures is taken again: without others in between, pixels that are not drawn look right.
+        // Pictures reuse memory: without other pictures in between, pixels that are not drawn would look right.
         session.render.adaptive_tolerance = 0.0;
         for (int i = 0; i < 3 && tolerance > 0.0; ++i)
             renderer().render(session, camera_along(volume(), {-3, 1, -2}, 30.0), options);
         session.render.adaptive_tolerance = tolerance;
         return renderer().render(session, camera, options);
     }
-    /// Values of `tolerance` TINY that are off by more than rounding, of those that `options` give.
+    /// Counts the values of a picture with `tolerance` TINY that are off by more than rounding.
     size_t different(const RenderOptions& options = {})
     {
         const ImageF every = picture(0.0, options).image, some = picture(TINY, options).image;

@@ -1,4 +1,4 @@
-// The probe's ball: translucent, it mixes the picture with an opaque one and the picture without; and what hides it.
+// The probe's ball: a translucent one blends the pictures with an opaque ball and without; and the things that hide it.
 
 #include <algorithm>
 

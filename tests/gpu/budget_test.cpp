@@ -200,7 +200,7 @@ TEST_CASE("light that comes from more bricks than there is room for is told, and
 
 TEST_CASE("what no budget of this size draws is refused before a voxel is read")
 {
-    // Nobody waits for these to be read: 2^30 voxels, a level of 4096 bricks.
+    // No voxel of these is read, since that would take too long: 2^30 voxels, a level of 4096 bricks.
     const Source deep = open_procedural({.kind = "fog", .size = {1024, 1024, 1024}, .levels = 2});
     const Source flat = open_procedural({.kind = "fog", .size = {512, 512, 512}});
     const auto said = [&](Paging paging, uint64_t mib) -> std::string {

@@ -46,7 +46,7 @@ std::string message_of(const std::function<void()>& action)
     return "no error";
 }
 
-/// A pass, after two copies, that a device does not know. `into`: an image of so many cells; null: one of the frame's.
+/// A pass that the device has not seen, after two copies. `into`: an image of `cells` texels; null: a transient one.
 FrameGraph distances_of(const glm::uvec3& cells, bool tiled, const gpu::Storage* into = nullptr)
 {
     FrameGraph graph;
@@ -189,8 +189,8 @@ TEST_CASE_FIXTURE(Fixture, "what goes while a frame uses it is freed once that i
     gpu::Storage some = memory.create("some", buffer_desc(uint64_t(40) << 20));
     gpu::Submission running = start(some);
     some.reset();
-    CHECK(memory.device_bytes() == before);                         // for whoever asks
-    some = memory.create("more", buffer_desc(uint64_t(41) << 20));  // which the budget does not hold beside it
+    CHECK(memory.device_bytes() == before);                         // as reported
+    some = memory.create("more", buffer_desc(uint64_t(41) << 20));  // does not fit the budget together with it
     CHECK(memory.peak_device_bytes() <= memory.device_budget());
     static_cast<void>(running.finish());
     running = start(some);
@@ -344,7 +344,7 @@ TEST_CASE("a long pass is several submissions until it is known to be short")
         // A tile is taken for 25 ms, and all of the pass without tiles for 157 ms; copies come first.
         CHECK(run() == (tiled ? std::pair(96u, 25u) : std::pair(4u, 2u)));
         CHECK(run() == (tiled ? std::pair(96u, 1u) : std::pair(1u, 1u)));
-        // What was not timed is not known to be long, however late its answer is asked for.
+        // A pass that was not timed is not taken for a long one, however late its result is requested.
         gpu::Submission untimed = executor.submit(graph(), {.timestamps = false});
         std::this_thread::sleep_for(std::chrono::seconds(1));
         static_cast<void>(untimed.finish());

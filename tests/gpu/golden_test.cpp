@@ -26,7 +26,7 @@ namespace {
 
 const fs::path FOLDER = "tests/golden";
 
-/// $SHVR_GOLDEN_OUTPUT, or golden/ beside the test program.
+/// $SHVR_GOLDEN_OUTPUT, or golden/ in the folder of the test program.
 fs::path output_folder()
 {
     const char* chosen = std::getenv("SHVR_GOLDEN_OUTPUT");
@@ -97,7 +97,7 @@ const Mistake MISTAKES[] = {
      "facing < 0.5 ? surface"},
 };
 
-/// Of all passes that the golden's picture takes.
+/// Names of the kernels of all passes in the golden's picture.
 std::set<std::string> kernels_of(const Golden& one)
 {
     Studio studio(one);
@@ -226,7 +226,7 @@ TEST_CASE("a lost skip, an extra fetch and a redundant pass fail by their work, 
         CHECK(golden::why_other_work(one, extra_fetch).value_or("").find("density_reads") != std::string::npos);
     }
 
-    // A ball that nobody sees: its passes are drawn for nothing.
+    // A ball out of view: its passes are wasted work.
     Golden needless = one;
     needless.session_text.insert(1,
                                  "\"surfaces\":[{\"from\":[-9000,-9000,-9000],\"radius\":1,\"color\":\"#ff0000\"}],");

@@ -1,4 +1,4 @@
-// Locked groups, and brushes held to unpainted voxels: what every brush leaves alone, whether it is previewed, painted
+// Locked groups, and brushes held to unpainted voxels: no brush changes other voxels, whether it is previewed, painted
 // by a script or by hand. The truth is breadth-first search and the definition, voxel by voxel. Random masks and
 // volumes state their seed.
 

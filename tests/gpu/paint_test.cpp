@@ -215,7 +215,7 @@ int spiral_arm(const Size3& v, int64_t side)
     return share < 0.25 ? 1 : share >= 0.5 && share < 0.75 ? 2 : 0;
 }
 
-/// In a cube of that side: one bar to each face, and beside each a bar that stops one voxel short of it.
+/// In a cube of that side: one bar to each face, and next to each a bar that stops one voxel short of it.
 bool is_bar_to_a_face(const Size3& v, int64_t side)
 {
     for (int axis = 0; axis < 3; ++axis)

@@ -93,7 +93,7 @@ TEST_CASE_FIXTURE(OnDevice, "paint lies over slices as thickly as it is told to"
         session.view.slices.paint_share = share;
         session.groups[3].visible = visible;
         const ImageF image = draw(session, camera);
-        const float* const pixel = &image.rgba[4 * size_t(40 + 20 + 3 + 80 * 17)];  // beside the cross
+        const float* const pixel = &image.rgba[4 * size_t(40 + 20 + 3 + 80 * 17)];  // next to the cross
         return glm::vec3(pixel[0], pixel[1], pixel[2]);
     };
     const glm::vec3 half = colors(0.5, true);

@@ -1,5 +1,5 @@
 #pragma once
-// Parts of a picture beside the picture drawn whole.
+// Parts of a picture compared with the picture drawn whole.
 
 #include <cstring>
 
@@ -8,7 +8,7 @@
 
 namespace shvr::test {
 
-/// Rows of the part `begin` ... `end` whose bits are not those of `whole`.
+/// Counts the rows of the part `begin` ... `end` whose bits differ from those of `whole`.
 inline size_t differing_rows(Renderer& renderer, const Session& session, const Camera& camera, const ImageF& whole,
                              const glm::uvec2& begin, const glm::uvec2& end, const std::optional<ProbeLook>& probe = {})
 {

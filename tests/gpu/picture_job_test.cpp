@@ -55,7 +55,7 @@ public:
         let_ = waited_for_ > 0 ? ALL : reads;
         changed_.notify_all();
     }
-    /// Lets the readers read a little, while nobody waits for them.
+    /// Lets the readers read a little while no thread waits for them.
     void read_a_little()
     {
         let(8);
@@ -275,7 +275,7 @@ TEST_CASE_FIXTURE(SlowlyRead, "a large screenshot waits for its bricks beside th
         was_held = was_held || screen.is_held();
         gated->read_a_little();
     }
-    REQUIRE(gated->waited_for() == 0);  // by a turn of the window
+    REQUIRE(gated->waited_for() == 0);  // by an iteration of the window's loop
     CHECK(is_followed);
     gated->let(ALL);
     CHECK_FALSE(screen.is_held());

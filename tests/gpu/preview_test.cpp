@@ -17,7 +17,7 @@ namespace {
 
 constexpr Size3 SIZE(41, 33, 36);
 
-/// Noise in bytes, slightly smoothed, so that there are pieces of all sizes.
+/// Noise in bytes, slightly smoothed to give connected pieces of all sizes.
 std::shared_ptr<const VolumeSource> noise(uint32_t seed)
 {
     std::mt19937 random(seed);

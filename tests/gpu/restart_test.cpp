@@ -1,4 +1,4 @@
-// A device that is made anew, as after it was lost, while another thread reads the next volume.
+// A device that is re-created, as after a device loss, while another thread reads the next volume.
 
 #include <atomic>
 #include <thread>

@@ -1,5 +1,5 @@
-// The sample bits, read back from the device, against their definition by brute force, and after edits against those
-// made anew.
+// The sample bits, read back from the device, against their definition by brute force, and after edits against
+// rebuilt ones.
 
 #include <algorithm>
 #include <cstring>
@@ -20,7 +20,7 @@ struct Bits {
     glm::ivec3 counts{0};          ///< of cells
     std::vector<uint32_t> texels;  ///< two per cell, one above the other
 
-    /// Of the samples between the voxel and the one before it, along each axis.
+    /// The bit of the samples between the voxel and the previous one along each axis.
     bool at(const glm::ivec3& voxel) const
     {
         const glm::ivec3 cell = voxel / 4, in = voxel % 4;
@@ -105,7 +105,7 @@ TEST_CASE_FIXTURE(WithBits,
 
 TEST_CASE_FIXTURE(WithBits, "after paint and density edits they are those made anew")
 {
-    // Everywhere a few codes below what is seen, within the guard: all bits of a cell beside a visible one are set.
+    // All voxels lie a few codes below visibility, within the guard: all bits of a cell next to a visible one are set.
     const double seen_from = 20000.0;
     load(constant_volume({70, 62, 58}, seen_from - 4.0));
     const Session session = plain_session({{seen_from, RED, 0.1}, {65535.0, RED, 0.2}}, {4, 4});

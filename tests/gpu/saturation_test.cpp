@@ -1,4 +1,4 @@
-// Colour taken out of pictures: what the device draws has the bits of a naive reference on the CPU.
+// Pictures with reduced saturation: the device draws the bits of a naive reference on the CPU.
 
 #include <algorithm>
 #include <bit>

@@ -37,7 +37,7 @@ TEST_CASE_FIXTURE(OnDevice, "a surface in fog is seen through what lies before i
         check_below("colour", glm::distance(glm::dvec3(pixel), fog * (1.0 - through) + through * white), 1e-5);
         const auto seen = renderer().pick(session.look(), camera, {1, 1}, {0, 0});
         REQUIRE(seen.has_value());
-        // Behind less than half, the surface is what is seen; otherwise the fog, which adds most where it begins.
+        // Behind fog of opacity below 0.5 the surface is picked; otherwise the fog, which adds most where it begins.
         const double half = std::log(2.0) / sigma;
         CHECK(std::abs(seen->point.z - (depth < half ? depth : 0.25)) < 1e-4);
         CHECK(std::abs(seen->opacity - 1.0) < 1e-5);

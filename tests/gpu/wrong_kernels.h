@@ -9,7 +9,7 @@
 
 namespace shvr {
 
-/// A line of a kernel's source, and what stands there instead.
+/// A line of a kernel's source, and its replacement.
 struct Mistake {
     const char* name;
     const char* golden;  ///< a golden that must notice

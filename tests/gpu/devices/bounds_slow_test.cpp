@@ -16,7 +16,7 @@ using namespace shvr::test;
 
 namespace {
 
-/// Of the layer, for the devices that are made while this lives.
+/// Turns on the GPU-assisted checks of the validation layer for devices created during its lifetime.
 class Assisted {
 public:
     Assisted()
@@ -38,7 +38,7 @@ private:
     std::optional<std::string> before_;
 };
 
-/// Of everything that pictures and paint take.
+/// Validation messages of all passes that pictures and paint need.
 std::vector<std::string> messages_of_work(Paging paging)
 {
     Renderer renderer({.device = {.validation = true, .robust_buffers = false}, .threads = 1});

@@ -1,5 +1,5 @@
-// What a session costs in calls of the driver: layers (tests/layers) count them, and stand for a device that is
-// infinitely fast or whose clock changes its speed.
+// Driver calls of a session: layers (tests/layers) count them, and simulate a device that is infinitely fast or whose
+// clock changes its speed.
 
 #include <algorithm>
 #include <cstdlib>
@@ -89,7 +89,7 @@ struct Worked {
     }
 };
 
-/// What is done again and again; `grows`: and more of it each time.
+/// The work of one round, which tests repeat; `grows`: more work in each round.
 void do_round(Worked& worked, int round, bool grows)
 {
     worked.paint(0, round % 2 == 0);
@@ -124,7 +124,7 @@ std::map<std::string, int64_t> calls_in(const std::function<void()>& work)
     return calls;
 }
 
-/// In a session of so many rounds.
+/// Counts the driver calls of a session with that number of rounds.
 std::map<std::string, int64_t> calls_of(int rounds, Paging paging, bool grows)
 {
     const auto work = [&] {
@@ -170,7 +170,7 @@ TEST_CASE("turning and painting never wait for the whole device, whatever grows"
     }
 }
 
-/// By a clock that does not vary, and with as many graphs in flight each time: what is counted is what a round needs.
+/// With a constant clock and as many graphs in flight each time, the counts are those of the rounds alone.
 TEST_CASE("once all is there, turning and painting allocate nothing")
 {
     const Environment environment(
@@ -202,8 +202,8 @@ TEST_CASE("once all is there, turning and painting allocate nothing")
 TEST_CASE("no submission takes long on a slow device, whatever is drawn")
 {
     const std::filesystem::path log = std::filesystem::temp_directory_path() / sentence("shvr-longest-", getpid());
-    // 64 rays take 100 us, so a picture over 3 s. What a pass takes is not known before its first part is done, which
-    // has 1680 of such workgroups: only a device that takes 39 s for a picture would need two seconds for that.
+    // 64 rays take 100 us, so a picture takes over 3 s. The cost of a pass is unknown until its first part is done,
+    // which has 1680 such workgroups: only a device that takes 39 s per picture would need two seconds for that part.
     {
         const Environment environment(
             {{"VK_INSTANCE_LAYERS", "VK_LAYER_SHVR_clocks:VK_LAYER_SHVR_limits:VK_LAYER_SHVR_speed"},
@@ -291,7 +291,7 @@ TEST_CASE("sharp tiles of two graphs wait for each other's light nowhere")
     worked.turn("front");
     worked.settle();
     uint64_t sketched = 0;
-    // Of a picture at rest only its tiles are drawn again.
+    // Only the tiles of a picture at rest are drawn again.
     for (int round = 0; round < 4; ++round) {
         worked.view.changed({Size3(0), worked.source->info().size});
         worked.settle();

@@ -19,7 +19,7 @@ using namespace shvr::test;
 
 namespace {
 
-// As GPUs filter: weights of 8 bits, results of 16. The second one also errs by a code, up or down, by place.
+// Filters like GPUs: weights of 8 bits, results of 16. The second one also errs by a code, up or down, by position.
 #define SHVR_FILTER(error)                                                                                             \
     "    const ivec3 size = textureSize(atlas, 0);\n"                                                                  \
     "    const vec3 texel = at * vec3(size) - 0.5;\n"                                                                  \
@@ -69,7 +69,7 @@ private:
     std::optional<Renderer> renderer_;
 };
 
-/// Of all passes that the golden's picture takes.
+/// Names of the kernels of all passes in the golden's picture.
 std::vector<std::string> kernels_in(const golden::Golden& one)
 {
     golden::Studio studio(one);
@@ -142,7 +142,7 @@ TEST_CASE("light on a smooth field, magnified a hundred times, is near the exact
 TEST_CASE("an iso-surface is where it is by arithmetic, whatever the filter rounds")
 {
     Filtering device(EIGHT_BITS, "raycast_filtered_shelled");
-    // Steep and rough: what a filter rounds is a share of the difference between neighbours.
+    // Steep and rough: a filter's rounding is a share of the difference between neighbours.
     const TestVolume volume = noise_volume({24, 20, 22}, 5);
     Session session = plain_session(unseen_points(), {80, 64});
     session.light = {.shaded = true, .ambient = 1.0, .diffuse = 0.0, .specular = 0.0};

@@ -1,5 +1,5 @@
-// Who waits for a driver that compiles: nobody who paints, clicks or moves a probe, even where nothing was ever
-// compiled. By layers that tell which thread compiles (tests/layers/cache.cpp), on a device that says it is a GPU.
+// Threads that wait while the driver compiles: painting, clicking and moving the probe never do, even with an empty
+// cache. A layer counts which thread compiles (tests/layers/cache.cpp); the device says that it is a GPU.
 
 #include <chrono>
 #include <cstdlib>
@@ -91,7 +91,7 @@ struct Worked {
         }
         while (renderer.executor().expected_kernels() > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    /// What a person comes to who paints, clicks and moves the probe, which the first picture shows.
+    /// The work of a user who paints, clicks and moves the probe, which the first picture shows.
     void work()
     {
         PaintOp op;

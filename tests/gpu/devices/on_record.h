@@ -15,7 +15,7 @@
 
 namespace shvr::test {
 
-/// A device of the record; it must not be asked for what it does not have.
+/// A device of the record; the test fails if the program requests anything that it lacks.
 class On {
 public:
     explicit On(const char* record)

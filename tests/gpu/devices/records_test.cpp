@@ -20,7 +20,7 @@ namespace {
 constexpr VolumeStatistics BYTES{.minimum = 0.0, .maximum = 255.0};
 constexpr uint64_t MIB = uint64_t{1} << 20;
 
-/// A voxel is painted in each of so many bricks.
+/// A mask with one painted voxel in each of the first `bricks` bricks.
 Mask mask_of(size_t bricks)
 {
     Mask mask({32 * 32, 32 * 32, 32});
@@ -146,7 +146,7 @@ TEST_CASE("a GPU computes the light of many bricks at once, to the bits of a few
     CHECK(different_bits(drawn(*device, many), expected) == 0);
     CHECK(few == 8);
     CHECK(many == 1);
-    // Paged bricks, too, may take more of it than of a CPU, whose memory is everybody's.
+    // Paged bricks, too, may take more of a GPU's memory than of a CPU's, which all programs share.
     CHECK(Scene::most_atlas_bytes(plain.device().traits(), AtlasCodes::exact16, false) <= 2048 * MIB);
     CHECK(Scene::most_atlas_bytes(device->device().traits(), AtlasCodes::exact16, true) > 2048 * MIB);
 }

@@ -1,5 +1,5 @@
-// Where memory is short, or a submission fails: nothing ends, nothing is half there, the person reads one sentence, and
-// what was left out is made up for.
+// When memory is short or a submission fails, the program goes on, leaves nothing half done, reports one sentence to
+// the user, and later completes the missing work.
 
 #include <cstdlib>
 #include <filesystem>
@@ -64,8 +64,8 @@ std::string all_messages(Renderer& renderer)
     return all;
 }
 
-/// A driver that, once that begins, has no memory of so many bytes in one piece (tests/layers/memory.cpp). Devices made
-/// while it lives have it.
+/// Makes drivers refuse single allocations of `bytes` or more once `begins` was called (tests/layers/memory.cpp). Holds
+/// for devices created during its lifetime.
 class ShortOf {
 public:
     explicit ShortOf(uint64_t bytes)
@@ -112,7 +112,7 @@ TEST_CASE("a window that grows beyond the memory for sharp pictures shows coarse
     CHECK(said.starts_with("pictures stay coarse: device memory: the sharp picture on the screen needs 13.5 MiB"));
     CHECK(std::ranges::count(said, '\n') == 1);
     CHECK(!view.layers().empty());
-    // What is painted meanwhile is shown, coarse as it is.
+    // Paint added meanwhile is shown in the coarse picture.
     const uint64_t before = view.revision();
     shown.paint(0);
     const int64_t brick = 0;
@@ -291,7 +291,7 @@ TEST_CASE("whichever submission of a view fails, it comes to rest on the same pi
             let_fail("");
             const bool has_fired = failures > 0 || renderer.scene().occlusion_has_no_room();
             gave_way += failures == 0 && renderer.scene().occlusion_has_no_room();
-            if (renderer.scene().occlusion_has_no_room()) {  // it gave way: as if it had been switched off and on
+            if (renderer.scene().occlusion_has_no_room()) {  // occlusion was dropped: as if switched off and on
                 Session without = shown.session;
                 without.light.occlusion.strength = 0.0;
                 view.look(without.look(), without.interaction, Shot(shown.camera), without.render.size);

@@ -19,13 +19,13 @@ namespace {
 
 constexpr VolumeStatistics BYTES{.minimum = 0.0, .maximum = 255.0};
 
-/// What is drawn of a volume: rays come by all of its bricks, and a stroke goes through it.
+/// A view of a volume whose rays visit all of its bricks, and a stroke through it.
 struct Stacked {
     Session session = plain_session({{0.0, RED, 0.002}, {255.0, BLUE, 0.01}}, {40, 30});
     std::shared_ptr<const VolumeSource> source;
     Camera camera;
     PaintOp op;
-    size_t bricks;  ///< of the finest level
+    size_t bricks;  ///< number of bricks in the finest level
 
     Stacked(const Size3& size, std::vector<glm::dvec3> path)
         : source(stored_volume("tubes", size, 5)),
@@ -72,8 +72,8 @@ struct Stacked {
         return made;
     }
 
-    /// On a device of the record and on one that holds all bricks in one image. `lights`: the record's device has room
-    /// for the light; where it has none, it says so.
+    /// Compares a device of the record with one that holds all bricks in one image. `lights`: the record's device has
+    /// room for the light; otherwise it must report that.
     void compare(const char* record, Sampling sampling, size_t images, bool lights)
     {
         CAPTURE(std::string(record));

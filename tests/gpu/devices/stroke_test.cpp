@@ -1,5 +1,5 @@
-// A stroke by hand on a device whose calls fail for want of memory (tests/layers/faults.cpp): it paints all that it
-// would have painted, or says that it did not.
+// A stroke by hand on a device whose calls run out of memory (tests/layers/faults.cpp): it paints all that it would
+// have painted, or reports that it did not.
 
 #include <array>
 #include <chrono>
@@ -23,7 +23,7 @@ using namespace shvr::test;
 
 namespace {
 
-/// Lets calls fail from now on, on devices that are made while it lives.
+/// Lets calls fail from now on, on devices created during its lifetime.
 class Faults {
 public:
     Faults()
@@ -69,7 +69,7 @@ struct Desk {
                 .radius_voxels = 5.0,
                 .density = DensityBrush{.offset = 20.0}};
     }
-    /// Moves to and fro, for dozens of queries; `before_turn` comes before each turn. Returns how many turns failed.
+    /// Paints back and forth, for dozens of queries; calls `before_turn` before each iteration. Counts the failures.
     template <class BeforeTurn>
     int paint(Annotator& annotator, const BeforeTurn& before_turn)
     {
@@ -109,7 +109,7 @@ struct Desk {
                 REQUIRE(tries < 10);
             }
     }
-    /// Of the document, in a scene as it is or made anew.
+    /// Draws the document: in the scene as it is, or (`drawn_anew`) in one that is loaded again.
     ImageF drawn()
     {
         return patiently([&] { return renderer.render(session, camera_looking("front", source->info())).image; });

@@ -1,5 +1,5 @@
 // Every pair of features in a picture of its own. features_test.cpp covers all pairs of values with a few pictures of
-// many features, in which one feature could hide what is wrong with two others.
+// many features, in which one feature could hide an error of two others.
 
 #include <doctest/doctest.h>
 

@@ -24,7 +24,7 @@ inline void turn(Camera& camera, double degrees)
                  axis * glm::dot(axis, arm) * (1.0 - cosine);
 }
 
-/// Moves the middle one by 2 % of the range, and pushes along those it would pass.
+/// Moves the middle point by 2 % of the range, and pushes along the points that it would pass.
 inline void move_a_point(Session& session)
 {
     const std::span<const ControlPoint> old = session.transfer_function.points();

@@ -206,8 +206,8 @@ TEST_CASE_FIXTURE(OnDevice, "a curve of points maps the light that arrives as it
     for (int i = 0; i < 16; ++i) square.push_back({i / 15.0, i * i / 225.0});
     // 16 points are off a square by 1/900 at most.
     check_below("a square in 16 points", worst_difference(drawn(square), drawn({}, 2.0)), 2e-3);
-    // All light, for what is lit more than half, and none for the rest: a step, whose mean over the picture lies
-    // between.
+    // All light for voxels that are lit more than half, and none for the rest: a step, whose mean over the picture
+    // lies between.
     const auto bright = drawn({{0.0, 1.0}}), dark = drawn({{0.5, 0.0}}), step = drawn({{0.5, 0.0}, {0.5, 1.0}});
     check_below("all light", worst_difference(bright, drawn({}, 1.0, 1e-9)), 1e-5);
     size_t like_bright = 0, like_dark = 0;
@@ -291,7 +291,7 @@ TEST_CASE_FIXTURE(OnDevice, "a view that rests shows what a picture shows, and t
 
 TEST_CASE_FIXTURE(OnDevice, "asking what is due looks at a brick again only where something about it has changed")
 {
-    // Of 4 * 3 * 3 bricks most are empty: they never get values, and are asked about for ever.
+    // Most of the 4 * 3 * 3 bricks are empty: they never get values, and queries about them never end.
     load(volume_of({128, 96, 96}, [](const glm::dvec3& p) { return p.x < 40.0 ? 50000.0 : 0.0; }));
     const Session session = occluded({{36000.0, RED, 0.0}, {42000.0, GREEN, 0.9}, {65535.0, BLUE, 1.0}}, 6.0, {64, 64});
     static_cast<void>(draw(session, overview(volume())));

@@ -77,7 +77,7 @@ private:
     Source source_;
 };
 
-/// One value everywhere, with all its levels: as large as one likes.
+/// One value everywhere, with all its levels: of any size.
 class Plain final : public VolumeSource {
 public:
     Plain(const Size3& size, int levels) : VolumeSource({.name = "plain", .size = size}), levels_(levels) {}
@@ -92,7 +92,7 @@ private:
     int levels_;
 };
 
-/// Says of its bricks that they hold nothing that is seen, but for those of x below 64.
+/// A source whose brick ranges show that only bricks with x below 64 hold visible values.
 class Sparse final : public VolumeSource {
 public:
     Sparse(const Size3& size, int levels) : VolumeSource({.name = "sparse", .size = size}), levels_(levels) {}

@@ -1,4 +1,4 @@
-// Which bricks a view wants: what listing them costs, and that nobody waits for it.
+// Lists of the bricks that a view wants: their cost, and that no thread waits for them.
 
 #include <chrono>
 #include <ctime>

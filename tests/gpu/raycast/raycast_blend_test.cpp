@@ -88,7 +88,7 @@ TEST_CASE_FIXTURE(OnDevice, "an opaque surface takes the colour in the share tha
         check_below("share, rate 0", std::abs(pixels_of(draw(session, camera))[0].z - 0.8), 1e-6);
         session.blend.size = 2.0;  // clamped at 1
         check_below("share, size above 1", std::abs(pixels_of(draw(session, camera))[0].z - 1.0), 0.0);
-        // Whatever is not at the far end, a high rate leaves alone.
+        // A high rate changes nothing that is not at the far end.
         session.blend = {.size = 1.0, .rate = 1000.0, .color = glm::dvec3(0.0, 0.0, 1.0)};
         check_below("share, rate 1000", std::abs(pixels_of(draw(session, camera))[0].z), 0.0);
     }

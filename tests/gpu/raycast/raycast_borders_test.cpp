@@ -65,7 +65,7 @@ PaintOp random_stroke(std::mt19937& random, const glm::ivec3& size)
     return {.brush = Brush::fill, .group = uint8_t(random() % 4), .radius_voxels = 0.9 + below(7), .path = {at}};
 }
 
-/// Of the first group that the ray meets, and whether rounding may decide about it.
+/// Colour of the first group that the ray meets, and whether rounding may decide about it.
 std::pair<glm::dvec3, bool> expected_color(const Mask& mask, const Size3& size, const reference::Ray& ray, double step)
 {
     double begin = ray.t_min, end = ray.t_max;
@@ -143,7 +143,7 @@ TEST_CASE_FIXTURE(OnDevice, "smooth borders have the same bits after any strokes
                 annotator.paint(random_stroke(random, dark.size));
             pictures.push_back(renderer().render(session, camera).image);
             if (i % 8 != 7) continue;
-            session.render.skip_empty_space = false;  // all is made anew
+            session.render.skip_empty_space = false;  // everything is rebuilt
             check_below("differing bits",
                         double(different_bits(renderer().render(session, camera).image, pictures.back())), 0.0);
             session.render.skip_empty_space = true;

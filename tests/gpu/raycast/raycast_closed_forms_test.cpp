@@ -1,4 +1,4 @@
-// Media whose depth has a closed form, though opacity changes from voxel to voxel: what is left is the error of
+// Media whose depth has a closed form, though opacity changes from voxel to voxel: the remaining error is that of
 // trilinear interpolation, of order 2 in the size of a voxel. And parts of a volume that make up the whole.
 
 #include <cmath>

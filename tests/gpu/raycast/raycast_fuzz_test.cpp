@@ -1,5 +1,5 @@
-// The ray caster's loops end, whatever its parameters are: numbers that are none, infinite, or smaller than any ray
-// needs. The program's own never are; a driver's mistake, or one of ours, must not lose the device.
+// The ray caster's loops end, whatever its parameters are: NaN, infinite, or smaller than any ray needs. The
+// program's own parameters never are; a mistake of a driver, or one of ours, must not lose the device.
 
 #include <cstring>
 #include <functional>

@@ -1,4 +1,4 @@
-// Rays that take more steps than one dispatch draws, and what is said of those that stop short.
+// Rays that take more steps than one dispatch draws, and the message about those that stop short.
 
 #include <cmath>
 
@@ -58,7 +58,7 @@ TEST_CASE_FIXTURE(LongRays, "a ray through 16000 voxels at the usual step reache
 
 TEST_CASE_FIXTURE(LongRays, "what lies far along a ray is seen, picked and hidden as if it were near")
 {
-    // A wall at 900, which skipping and slow steps come to in many dispatches; behind it nothing shows.
+    // A wall at 900, which skipping and slow steps reach after many dispatches; nothing behind it is visible.
     for (const Paging paging : PAGINGS_TRIED)
         for (const bool skipping : {true, false}) {
             CAPTURE(skipping);

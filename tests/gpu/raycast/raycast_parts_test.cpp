@@ -1,4 +1,4 @@
-// What the window needs of the ray caster besides whole pictures: parts, the probe's ball, and the position at a pixel.
+// Ray casting for the window, in addition to whole pictures: parts, the probe's ball, and the position at a pixel.
 
 #include <cmath>
 #include <cstring>
@@ -107,7 +107,7 @@ TEST_CASE_FIXTURE(OnDevice, "the probe lands on what adds most to a ray, in tran
     session = ends(0.0002, 0.0, 0.0);  // 0.8 % in all
     CHECK(!seen(session, camera).has_value());
 
-    // It agrees with what is drawn: cuts, clip planes, offsets of depth from the camera.
+    // It agrees with the drawn picture: cuts, clip planes, offsets of depth from the camera.
     session = ends(0.0, 0.12, 0.1);
     session.cut.lower.y = 20.0;
     CHECK(std::abs(seen(session, camera)->point.y - 20.0) < 0.6);

@@ -27,7 +27,7 @@ VoxelBox random_box(const Size3& of_level, Random& random)
     return {lower, lower + size};
 }
 
-/// Of the same level, a few voxels beside the first and of its size or less.
+/// A box in the same level, shifted by a few voxels and of the same size or less.
 VoxelBox box_near(const VoxelBox& box, const Size3& of_level, Random& random)
 {
     const auto step = [&] { return int64_t(random() % 13) - 6; };
@@ -70,7 +70,7 @@ TEST_CASE_FIXTURE(OnDevice, "bits after the ends of rows are no voxels, of what 
     const std::vector<uint32_t> nothing(4, 0u);
     const RelevanceBits same{.box = box, .words_per_row = 1, .words = {0x11u, 0u, 0u, ~0u}, .level = 0};
     CHECK(grown_from(same) == std::vector<uint32_t>{0x11u, 0u, 0u, 0u});
-    // In a box that ends where the region begins only what is no voxel lies over it.
+    // A box that ends where the region begins overlaps it only with padding bits, which are no voxels.
     const VoxelBox before{Size3(0), Size3(5, 2, 2)};
     const RelevanceBits shifted{.box = beside, .words_per_row = 1, .words = {1u, 1u, 1u, 1u}, .level = 0};
     const RelevanceBits ends{
@@ -101,7 +101,7 @@ TEST_CASE_FIXTURE(OnDevice,
             // Means of coarser levels lie closer to the middle.
             const double spread = (double(random() % 100) - 50.0) / 100.0 / double(1 << level) * 0.5;
             masks.push_back(relevance_on_host(*source, level, random_box(of_level, random), 65535.0 * (0.55 + spread)));
-            // What was the object: some voxels of a box beside or over it.
+            // The previous object: some voxels of a box near or over the new one.
             const VoxelBox box_before =
                 random() % 5 == 0 ? random_box(of_level, random) : box_near(masks.back().box, of_level, random);
             RelevanceBits before{.box = box_before, .words_per_row = 0, .words = {}, .level = level};

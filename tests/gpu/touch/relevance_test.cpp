@@ -1,5 +1,5 @@
-// What can be felt, by the device's compute pass and by the host: the same bits; and growing on the device gives the
-// bits that the servo grows in its tick.
+// Relevant voxels, which can be felt: the device's compute pass and the host give the same bits, and growing on the
+// device gives the bits that the servo grows in its tick.
 
 #include <map>
 #include <random>
@@ -180,7 +180,7 @@ TEST_CASE("limited to groups only what is painted so is left, on any level")
 TEST_CASE("what is painted entirely feels the same limited to its group or not, on every level, also where it is thin")
 {
     // Threads of one voxel, brighter than the threshold by far: most coarse voxels that they make relevant hold one or
-    // two painted voxels, none of them in the middle. A neighbour in another group is not felt beside them.
+    // two painted voxels, none of them in the middle. A neighbour in another group is not felt next to them.
     const Size3 size(96, 80, 72);
     TestVolume threads = constant_volume(glm::ivec3(size), 0.0);
     Mask mask(size);

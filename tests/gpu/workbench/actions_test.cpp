@@ -1,4 +1,4 @@
-// Every action, applied once without a display: what it must change, and that nothing else changes. The table is the
+// Every action, applied once without a display: its changes, and that nothing else changes. The table is the
 // documentation of the actions; engine/workbench/ACTIONS.md is printed from it.
 
 #include <set>
@@ -17,7 +17,7 @@ using namespace shvr::ui;
 namespace {
 
 struct Row {
-    const char* line;                   ///< of the action
+    const char* line;                   ///< the action as a script line
     const char* changes;                ///< keys of the state, in order
     std::vector<const char*> before{};  ///< actions that prepare it
     bool is_saved_before = true;
@@ -257,7 +257,7 @@ TEST_CASE_FIXTURE(OnDevice, "each action changes what it is there for, and nothi
         CHECK(on.bench->messages().count() > 0);
         applied.insert(row_of(action).id);
     }
-    // Those that need what this table does not set up, and the tests that do.
+    // Actions that need conditions which this table does not set up, and the tests that do.
     applied.insert({"choose_belief", "cancel_job", "dismiss_notices", "correct_spacing",
                     // tests/gpu/workbench/hand_test.cpp
                     "grab_volume", "calibrate_device", "record_stylus", "stop_recording"});

@@ -1,4 +1,4 @@
-// Saving and opening beside the work: no turn of the loop waits for a disk, whatever the disk does.
+// Saving and opening in the background: no iteration of the loop waits for a disk, whatever the disk does.
 
 #include <cerrno>
 #include <chrono>
@@ -83,7 +83,7 @@ TEST_CASE_FIXTURE(OnDevice, "while a save waits for the disk everything goes on,
     desk.turn_until([&] { return disk.is_waited_for(); });
     CHECK(desk.bench.model().is_saving);
     CHECK(desk.bench.model().jobs.size() == 1);
-    // The person goes on.
+    // The user goes on.
     desk.stroke(5);
     desk.bench.perform(NodeOp{.at = {10, 12, 14}, .radius_voxels = 2.0, .group = uint8_t{2}});
     desk.bench.perform(UndoOp{1});
@@ -329,7 +329,7 @@ TEST_CASE_FIXTURE(OnDevice, "what is open can be used until the next stands, whi
     CHECK(was_painted);
     CHECK(disk.calls_of_this_thread() == 0);
     settle(desk.bench);
-    // What was painted at the last moment is in the journal.
+    // Paint of the last moment is in the journal.
     CHECK(steps_of(desk.path("scan.journal")) == 1);
 }
 

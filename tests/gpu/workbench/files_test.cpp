@@ -1,5 +1,5 @@
-// Files that are held out to the window: what they are, what loading takes, pictures with their sessions, and what was
-// recovered at opening.
+// Files dropped on the window: their kinds, loading them, pictures with their sessions, and work that was recovered at
+// opening.
 
 #include <doctest/doctest.h>
 
@@ -17,7 +17,7 @@ using namespace shvr::ui;
 
 namespace {
 
-/// Texts as blocks of so many letters.
+/// Images of the texts: a solid block per text, half as wide per letter as it is high.
 std::vector<TextImage> blocks(std::span<const std::string> texts, double pixels)
 {
     std::vector<TextImage> images;
@@ -134,7 +134,7 @@ TEST_CASE_FIXTURE(OnDevice, "what is dropped is taken by its contents, whatever 
     drop("look");
     CHECK(desk.said("is taken; undo takes it back"));
     CHECK(desk.bench.model().undoable == 1);
-    // As transfer functions are kept: in shares of what is tissue in any volume.
+    // A kept transfer function: its positions are shares of the range of tissue, for use in any volume.
     desk.folder.write("kept.json", R"({"note":"Kept.","points":[{"at":0,"color":"#200000","opacity":0},)"
                                    R"({"at":1,"color":"#ffffe0","opacity":0.8}],"extends":false})");
     const TransferFunction before = desk.bench.model().session.transfer_function;

@@ -32,7 +32,7 @@ bool turn_until(Workbench& bench, const Condition& condition, int turns = 5000)
     return false;
 }
 
-/// What is plugged in, as a test changes it.
+/// The devices that are plugged in, which a test changes.
 struct Plugs {
     std::mutex mutex;
     std::vector<DeviceListing> rows;
@@ -145,7 +145,7 @@ TEST_CASE_FIXTURE(OnDevice, "a device is found when it is plugged in, is called 
     CHECK(hand.serial == "17");
     CHECK(bench.messages().last() == "A pen (serial 17) moves the probe");
 
-    // What is chosen is kept, by name and serial number.
+    // The chosen device is remembered by name and serial number.
     CHECK(bench.why_not(UseDevice{"hid:c"}) == "no device hid:c is plugged in");
     bench.perform(UseDevice{"hid:b"});
     REQUIRE(turn_until(bench, [&] { return hand.in_use == "hid:b" && hand.moves_probe; }));
@@ -159,7 +159,7 @@ TEST_CASE_FIXTURE(OnDevice, "a device is found when it is plugged in, is called 
     bench.perform(PlaceProbe{{11.0, 12.0, 13.0}});
     bench.advance();
     CHECK(bench.model().probe_voxel == glm::dvec3(11.0, 12.0, 13.0));
-    // It may come back at another plug.
+    // It may return at another port.
     plugs.plug({listed("hid:a", "A pen", "17"), listed("hid:z", "Another pen", "18")});
     REQUIRE(turn_until(bench, [&] { return hand.in_use == "hid:z" && hand.moves_probe; }));
 
@@ -230,7 +230,7 @@ TEST_CASE_FIXTURE(OnDevice, "guidance by the mouse feels, lets go, and feels no 
     bench.perform(LetGo{false});
     REQUIRE(turn_until(bench, [&] { return step().in_contact && glm::length(step().force_n) > 0.01; }));
 
-    // Tools act at the middle of what is touched, if that is wanted.
+    // Tools act at the middle of the touched object, if that is set.
     CHECK(bench.model().tool_voxel == bench.model().probe_voxel);
     bench.perform(Set{R"({"probe":{"touch":{"at_proxy":true}}})"});
     REQUIRE(turn_until(bench, [&] { return bench.model().tool_voxel == step().proxy; }));
@@ -500,7 +500,7 @@ TEST_CASE_FIXTURE(OnDevice, "a recorded stylus is followed with the present guid
     TemporaryFolder folder;
     Workbench bench(renderer(), {.has_servo = false});
     bench.open(write_tubes_session(folder.path), {});
-    // A path that runs beside a voxel that is felt.
+    // A path that runs past a voxel that is felt.
     write_trace(folder.path / "path.trace", path_along_x({8.0, 18.0, 16.0}, 24.0, 3000));
     const Action follow =
         read_action(sentence(R"({"op":"follow_stylus","path":")", (folder.path / "path.trace").string(), "\"}"), "row");

@@ -1,4 +1,4 @@
-// What hands do: strokes that stay on what they follow, nodes with a radius of their own, cuts that are mended, clicks
+// Work by hand: strokes that stay on what they follow, nodes with a radius of their own, cuts that are mended, clicks
 // that select, distances.
 
 #include <doctest/doctest.h>
@@ -229,7 +229,7 @@ TEST_CASE_FIXTURE(OnDevice,
     on.perform(FitView{1});
     CHECK(!center());
     CHECK(on.bench.model().session.view.slices.zoom == 1.0);
-    // What the slices show is kept as the camera is.
+    // The view of the slices is kept like the camera.
     on.perform(Zoom{2, {24.0, 24.0}, 3.0});
     on.perform(SaveOp{});
     const auto kept = center();
@@ -396,7 +396,7 @@ TEST_CASE_FIXTURE(OnDevice, "what is under the probe is read: value, offset, gro
     REQUIRE(reading.relevant_share.has_value());
     CHECK(*reading.relevant_share == 1.0);  // the threshold is 0
     on.perform(Set{R"({"probe":{"paint_threshold":100}})"});
-    // Of a ball of radius 2 about the middle of a voxel: 33 voxels, of which 1 lies at y = 7 outside the plate.
+    // A ball of radius 2 about the middle of a voxel has 33 voxels, of which 1 lies at y = 7 outside the plate.
     CHECK(*on.bench.model().reading.relevant_share == doctest::Approx(32.0 / 33.0));
     on.perform(Paint{true});
     on.perform(Paint{false});
@@ -465,7 +465,7 @@ TEST_CASE_FIXTURE(OnDevice, "slices of a scan begin with a contrast in which the
     REQUIRE(slices.white.has_value());
     CHECK(*slices.black < 20.0);
     CHECK(*slices.white > 190.0);
-    CHECK(on.bench.model().is_saved);  // which is no change that somebody made
+    CHECK(on.bench.model().is_saved);  // no change by the user
 }
 
 TEST_CASE_FIXTURE(OnDevice, "a stroke that finds nothing says what is there, and the threshold is taken from it")
@@ -540,7 +540,7 @@ TEST_CASE_FIXTURE(OnDevice, "undo after a stroke that changed nothing takes no o
     CHECK_MESSAGE(said.starts_with("The last stroke changed nothing, and nothing is undone; undo once more"), said);
     on.perform(UndoOp{1});
     CHECK(!on.is_painted(16, 10));
-    // What was done after it is taken back at once.
+    // A later action is undone at once.
     on.perform(RedoOp{1});
     on.perform(Paint{true});
     on.perform(Paint{false});

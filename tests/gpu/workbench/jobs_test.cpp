@@ -1,4 +1,4 @@
-// Work beside the work: what is open stays, painting goes on, and whatever ends badly says so and changes nothing.
+// Background jobs: the open volume stays, painting goes on, and a job that fails reports it and changes nothing.
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// Whatever a person does, in whatever order: undo leads back to the start and redo to the end, bit for bit; the log
+// Random actions in random order: undo leads back to the start and redo to the end, bit for bit; the log
 // replays to the same bits; and an action that cannot be applied now changes nothing.
 
 #include <random>
@@ -20,7 +20,7 @@ class Hand {
 public:
     explicit Hand(uint32_t seed) : random_(seed) {}
 
-    /// Paints, traces, sets, looks, undoes and saves, about as often as a person who explores the program would.
+    /// Paints, traces, sets, looks, undoes and saves, about as often as a user who explores the program.
     Action next()
     {
         switch (whole(0, 29)) {
@@ -94,7 +94,7 @@ private:
     std::mt19937 random_;
 };
 
-/// Turns until all that was done is done, but for the picture. A stroke that is open goes on.
+/// Advances until all requested work is done, except the picture. An open stroke stays open.
 void finish_work(Workbench& bench)
 {
     constexpr int TURNS = 3;
@@ -115,7 +115,7 @@ struct Run {
         bench.open(write_tubes_session(folder.path), {});
         settle(bench);
     }
-    /// Applies it; what cannot be applied must change nothing. Most actions come while the picture is still drawn.
+    /// Applies an action; one that cannot be applied must change nothing. Most come while the picture is still drawn.
     void apply(const Action& action)
     {
         constexpr int ACTIONS_A_PICTURE = 8;
@@ -129,7 +129,7 @@ struct Run {
             finish_work(bench);
         if (!why.empty()) CHECK_MESSAGE((lasting_state(bench) == before), line_of(action), ": ", why);
     }
-    /// Ends what is held down, so that there is a last step to undo.
+    /// Ends held actions (painting, dragging), so that their step can be undone.
     void let_go()
     {
         apply(Paint{false});

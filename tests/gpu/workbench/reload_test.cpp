@@ -1,4 +1,4 @@
-// What goes on beside the actions without being a job of the workers: loading the volume once more, and large pictures.
+// Background work that is not a job of the workers: loading the volume again, and large pictures.
 
 #include <chrono>
 #include <thread>
@@ -70,7 +70,7 @@ TEST_CASE("settings that load the volume once more do so beside the work, and wh
     settle(desk.bench);
     CHECK(desk.bench.model().voxels_by_group[3] > 0);
     CHECK(desk.bench.model().view_is_complete);
-    // What was painted meanwhile is on the device: undo and the picture agree with the mask.
+    // Paint added meanwhile is on the device: undo and the picture agree with the mask.
     desk.bench.perform(UndoOp{1});
     settle(desk.bench);
     CHECK(desk.bench.model().voxels_by_group[3] == 0);
@@ -101,7 +101,7 @@ TEST_CASE("where the device has no room for both, the document comes back with i
         CHECK(desk.bench.model().voxels_by_group[3] == painted);
     }
     CHECK(desk.bench.model().undoable == 1);
-    // What cannot be loaded so is refused at once, with nothing changed.
+    // A volume too large for this setting is refused at once, with nothing changed.
     TemporaryFolder folder;
     folder.write("large.json", R"({"shvr_session": 1,
         "volume": {"procedural": "tubes", "size": [340, 340, 340], "seed": 4}, "render": {"paging": "always"}})");

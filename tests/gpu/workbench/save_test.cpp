@@ -90,7 +90,7 @@ TEST_CASE_FIXTURE(OnDevice, "a part of a turn that fails is said once, and every
     bench.set_pixels({48, 40});
     bench.open(write_tubes_session(folder.path), {});
     settle(bench);
-    // A brush that is too large for its preview fails in every turn.
+    // A brush that is too large for its preview fails in every iteration.
     bench.perform(Set{R"({"probe":{"preview":true,"radius_voxels":126}})"});
     for (int turn = 0; turn < 200; ++turn) bench.advance();
     int failures = 0;
@@ -181,7 +181,7 @@ TEST_CASE_FIXTURE(OnDevice, "quitting without saving leaves the files as they ar
     again.perform(UndoOp{1});
     CHECK(again.model().trace.nodes().size() == 2);
     CHECK(again.model().session.light.ambient == 0.9);
-    // What is done after it was refused, or cancelled, is saved as ever.
+    // Actions after a refused or cancelled exit are saved as usual.
     again.perform(Quit{.saves = false});
     again.perform(NodeOp{.at = {30, 12, 14}, .radius_voxels = 2.0, .group = uint8_t{2}});
     std::string why;

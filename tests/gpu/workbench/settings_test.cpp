@@ -1,4 +1,4 @@
-// Settings of the workbench: what is said of a change, and whether it draws the picture anew.
+// Settings of the workbench: the message about a change, and whether the change redraws the picture.
 
 #include <doctest/doctest.h>
 

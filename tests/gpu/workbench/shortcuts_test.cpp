@@ -19,8 +19,8 @@ using namespace shvr::ui;
 
 namespace {
 
-/// Room in both directions for all that keys move; two nodes, of which one is selected, beside the probe; a stroke, and
-/// one that was undone.
+/// Room in both directions for all that keys move; two nodes near the probe, one of them selected; a stroke, and one
+/// that was undone.
 constexpr const char* BEFORE[] = {
     R"({"op":"set","values":{"cut":{"lower":[4,4,4],"upper":[28,28,28]},"blend":{"size":0.5,"rate":1}}})",
     R"({"op":"set","values":{"light":{"occlusion":{"strength":0.5,"automatic":false}},"probe":{"group":2}}})",
@@ -34,7 +34,7 @@ constexpr const char* BEFORE[] = {
     R"({"op":"place_probe","voxel":[11,12,13]})",
 };
 
-/// What has to be there besides.
+/// Further actions that some shortcuts need beforehand.
 const std::map<std::string, std::vector<const char*>> BESIDES{
     {"step_back", {R"({"op":"set","values":{"probe":{"tool":"paint"}}})"}},
     {"tool_turn", {R"({"op":"set","values":{"probe":{"tool":"paint"}}})"}},
@@ -47,10 +47,10 @@ const std::map<std::string, std::vector<const char*>> BESIDES{
     {"stronger", {R"({"op":"set","values":{"probe":{"touch":{"strength":0.5}}}})"}},
 };
 
-/// What is under the pointer is the concern of hands_test.cpp, and what a stylus holds that of hand_test.cpp.
+/// Shortcuts that use the pointer (tested in hands_test.cpp) or what a stylus holds (hand_test.cpp).
 const std::vector<std::string> LEFT_OUT{"large_screenshot", "pivot_at_pointer", "probe_onto", "grab_volume"};
 
-/// Those that change nothing a state tells of: what they say is what they do.
+/// Shortcuts that change nothing in the recorded state: a message is their whole effect.
 const std::vector<std::string> ONLY_SAY{"update_occlusion", "regroup_0", "quit"};
 
 }  // namespace
