@@ -56,7 +56,7 @@ class View(Seen):
 
     def test_the_window_is_divided_and_its_parts_are_used(self):
         session, x, y = self.open_ball()
-        right, below = x + 140, y + 120   # well inside the quarters beside and below the first
+        right, below = x + 140, y + 120   # well inside the quarters right of and below the first
         for number, key in enumerate(["F9", "Shift+F11", "F6"], 1):
             self.do("mousemove", x - 100, y - 100, pause_s=0)
             self.check_key(key, "set view.arrangement")
@@ -275,7 +275,7 @@ class View(Seen):
             render={"paging": "always"}, probe={"radius_voxels": 12, "group": 3, "paint_threshold": 1, "brush": "fill"})
         self.check_follows(lambda: self.put_probe(x - 150, y, pause_s=0), "probe_onto")
         self.see_picture()
-        # All in one turn of the loop: the bricks of the stroke were never requested.
+        # All in one iteration of the loop: the bricks of the stroke were never requested.
         self.program.send_signal(signal.SIGSTOP)
         self.stroke((x, y), (x + 40, y - 20), before_end=("key", "ctrl+s"), pause_s=0.3)
         self.program.send_signal(signal.SIGCONT)

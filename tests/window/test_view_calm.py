@@ -31,7 +31,7 @@ class Calm(Seen):
         self.assertEqual(self.fired(), 0)
         self.assertEqual(self.frame()["frame"], frame)
         x, y = self.middle()
-        for step in range(50):   # and that the layer would have told
+        for step in range(50):   # the layer does log
             if self.fired():
                 break
             self.do("mousemove", x + step % 7, y, pause_s=0.1)

@@ -11,7 +11,7 @@ class Events(Seen):
         self.open_scan(self.session, preferences=only_panel(panel))
 
     def test_density_is_painted_undone_and_saved(self):
-        # What is at the threshold is not visible yet.
+        # Voxels at the threshold are not visible yet.
         self.open_with("probe", probe={"radius_voxels": 5, "group": 3, "paint_threshold": 60})
         self.click_on("raises intensities")
         self.until(lambda: any(action.get("values", {}).get("probe", {}).get("density") for action in self.done()),

@@ -115,7 +115,7 @@ class Faults(Seen):
         self.assertFalse(self.faults_log.exists(), "something waited for the device")
         self.assertEqual(sorted(self.finish()["voxels_in_group"]), ["3"])
         log = self.faults_log.read_text()
-        self.assertIn("fired vkDeviceWaitIdle", log)    # the layer would have told
+        self.assertIn("fired vkDeviceWaitIdle", log)    # the layer does log
         self.assertNotIn("leaked", log)
         made = next(int(line.split()[1]) for line in log.splitlines() if line.startswith("vkCreateSwapchainKHR "))
         self.assertGreater(made, 17)
@@ -133,7 +133,7 @@ class Faults(Seen):
         self.assertNotIn("surface", said)
         self.assertNotIn("Vulkan", said)
         self.assertEqual(sorted(report["voxels_in_group"]), ["3"])
-        # Suboptimal for good, of a surface that stays as it is: nothing is made anew for that.
+        # Permanently suboptimal, for a surface that does not change: the swapchain is not re-created for that.
         self.assertNotIn("vkCreateSwapchainKHR", self.faults_log.read_text().split("suboptimal")[-1])
 
     def test_a_screen_that_never_takes_a_picture_again_keeps_nobody_from_work_and_from_leaving(self):
@@ -252,7 +252,7 @@ class Memory(Seen):
         self.see("Opened ")
         report = self.finish()
         self.assertTrue(any(line.startswith(f"Opened {scan}") for line in report["messages"]), report["messages"])
-        # Nothing of the strokes is lost, though nobody saved them.
+        # The strokes are complete although they were not saved.
         exported = self.check_json("export", self.folder / "session.json", "--mask", self.folder / "mask.nrrd")
         self.assertEqual(set(exported["voxels_by_group"]), {"3", "5"})
         return said

@@ -5,7 +5,7 @@ import unittest
 from seen import Seen
 
 ROUNDS = 4
-# Of the device's work, so much is under way when a frame begins; twice that is left for the machine's own moods.
+# Device work in flight when a frame begins, in ms; the limit allows twice that for the machine's variation.
 IN_FLIGHT_MS = 3.5
 
 
@@ -29,8 +29,8 @@ class Frames(Seen):
         # A pointer that wanders is answered frame by frame: thirty a second at most, and a slow machine makes a third.
         self.assertGreater(frames, ROUNDS * 40 * 0.035 * 30 / 3)
         self.assertGreater(busy["count"], 20)
-        # 1.0 times as long on a quiet machine (ui/MEASURED.md), 1.5 beside two compilers, which take the core from who
-        # has used it; a frame that waits for the picture takes ten times as long.
+        # 1.0 times as long on a quiet machine (ui/MEASURED.md), 1.5 with two compilers running, since the scheduler
+        # takes the core from busy threads; a frame that waits for the picture takes ten times as long.
         self.assertLess(busy["median"], 2.0 * idle["median"] + 2 * IN_FLIGHT_MS, own)
 
 

@@ -15,7 +15,7 @@ EVERY_DAY = {
                "probe_up", "more_blending", "regroup_0", "next_mode"],
 }
 
-# What must be done first, so that there is something to do: other shortcuts, by their id.
+# Shortcuts, by id, that must be pressed first to give a shortcut something to act on.
 FIRST = {
     "redo": ["undo"], "pivot_at_pointer": ["single_view"], "step_back": ["tool_paint"],
     "single_view": ["slices"], "tool_turn": ["tool_paint"],
@@ -27,13 +27,13 @@ FIRST = {
     "smaller_nodes": ["add_node"], "next_node": ["add_node"], "previous_node": ["add_node"],
     **{f"regroup_{group}": ["add_node"] for group in range(1, 10)},
 }
-# What it makes, where the table cannot know: there it is pressed in a state in which nothing is left to be set.
+# The resulting action where the table cannot know it: in the table's state the shortcut has nothing left to set.
 MAKES = {"step_back": "set probe.tool", "single_view": "set view.arrangement", "tool_turn": "set probe.tool",
          "group_1": "set probe.group", "less_blending": "set blend.size",
          "stronger": "set probe.touch.strength", "threshold_here": "set probe.paint_threshold"}
-# Whose answer is a sentence, always.
+# Shortcuts that only ever answer with a sentence.
 REFUSED = {"regroup_0": "roup 0 is the eraser"}
-# They switch a window on that takes keys, or that hides what follows: pressed again, or closed by Escape.
+# Shortcuts that open a window which takes keys or hides what follows: pressed again, or closed by Escape.
 TWICE = {"help", "preferences", "full_screen", "guide", "volume", "meshes"}
 ESCAPED = {"palette": "Find anything", "open": "Open a volume", "focus_panels": "", "focus_menu": ""}   # window of each
 

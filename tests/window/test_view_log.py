@@ -58,7 +58,7 @@ class Log(Seen):
         keys = ["F6", "7", "End", "x"]
         self.check_follows(lambda: self.do(*[word for key in keys for word in ("key", key)], pause_s=0),
                            "set probe.tool")
-        # What was set reaches the journal when the hand has rested for a while.
+        # Settings reach the journal after a pause in the input.
         self.until(lambda: journal.stat().st_size > size, "setting in the journal")
         self.until(lambda: self.stays(lambda: journal.stat().st_size, 2.0), "rest of the journal")
         self.program.send_signal(signal.SIGKILL)

@@ -122,7 +122,7 @@ class Open(Seen):
         self.do("type", "--delay", 40, f"{self.folder}/scans/", pause_s=0)
         self.see("near.nrrd")
         self.see_no_more("Waiting")
-        # What is typed to the end and accepted is waited for, too, until it answers.
+        # A path that is typed in full and accepted is waited for, too, until the folder answers.
         self.press("Ctrl+A")
         self.do("type", "--delay", 40, f"{self.folder}/hung/deep", pause_s=0)
         self.press("Enter")

@@ -15,7 +15,7 @@ from window import Display
 FOLDER = Path(SHVR).resolve().parent / "photographs"
 LONG = "Leitbündel des mittleren Blütenstiels mit seinem Nebenast"
 SCRIPTS = ["维管束与细胞壁的边界", "Проводящий пучок", "Αγγειακή δέσμη"]
-# A minute each: the others are taken when somebody wants to look at them.
+# A minute each: the others are taken on request only, for visual inspection.
 ALL = unittest.skipUnless(os.environ.get("SHVR_ALL_PHOTOGRAPHS"), "SHVR_ALL_PHOTOGRAPHS=1 takes all of them")
 SLACK = 1.5   # pixels by which boxes of ink may touch
 

@@ -26,7 +26,7 @@ class Random(Seen):
         """Events, one after the other: what xdotool is to do."""
         dice = random.Random(seed)
         chords = [row["today"].split()[0] for row in shortcut_rows() if row["today"] and row["id"] not in LEFT_OUT]
-        # What people do most.
+        # The most frequent actions of users.
         often = ["N", "Ctrl+Z", "Ctrl+Y", "Alt+2", "Alt+3", "Alt+4", "Alt+5", "Alt+1", "Escape", "F6", "F10", "."]
         middle_x, middle_y = self.middle_of_picture()
 

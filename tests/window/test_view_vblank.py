@@ -30,7 +30,7 @@ class Vblank(Seen):
         self.finish()
         counts = self.counts()
         self.assertGreater(counts["acquired"], 10)
-        # But for the first images of a swapchain, which some drivers are slow to make.
+        # Except for the first images of a swapchain, which some drivers are slow to make.
         self.assertLessEqual(counts["waited"], 4 * counts["swapchains"])
         self.assertEqual(counts["mailboxes"], counts["swapchains"])  # an X server has them
 
@@ -48,7 +48,7 @@ class Vblank(Seen):
         counts = self.counts()
         self.assertEqual(counts["mailboxes"], 0)
         self.assertGreaterEqual(counts["waited_for_blank"], 30)
-        # None would be without. A slow device has enough under way as it is.
+        # Without that none would be filled. A slow device always has enough work in flight.
         self.assertGreater(counts["filled"], 0)
 
     def test_work_goes_on_while_the_window_is_hidden_and_is_seen_once_it_is_not(self):

@@ -34,7 +34,7 @@ class Waits(Seen):
         self.see_frames(begun + 3)
         self.assertEqual(self.waits(), [])
         self.finish()
-        # And that the layer would have told: the device is idle before it goes.
+        # The layer does log waits: the device must be idle before it is destroyed.
         self.assertIn("main vkDeviceWaitIdle", self.waits())
 
     def rests_in_size(self):

@@ -65,7 +65,7 @@ class Widgets(Seen):
     # ---- Fine drags
 
     FONT = 14                    # pixels, as it ships
-    HEIGHT = 150 - 1.3 * FONT    # of the curve's axes, from opacity 0 to 1
+    HEIGHT = 150 - 1.3 * FONT    # height of the curve's axes, from opacity 0 to 1
 
     def open_panel(self, panel, **keys):
         self.open_scan(self.write_ball(**keys), preferences=only_panel(panel))
@@ -103,7 +103,7 @@ class Widgets(Seen):
         return value
 
     def test_points_and_lines_of_the_curve_are_dragged_a_tenth_as_far_with_shift(self):
-        # Of two lines in one place it is the one that strokes go by, below their words.
+        # Where two lines coincide, the paint threshold is dragged, below their words.
         self.open_panel("transfer_function", probe={"paint_threshold": 120, "haptic_threshold": 120})
         word = self.see("paint")
         top = word["box"][1] - self.FONT / 4
