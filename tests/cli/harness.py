@@ -16,10 +16,10 @@ from pathlib import Path
 SHVR = os.environ.get("SHVR", "build/dev/shvr")
 TIMEOUT_S = 500  # of one start; ctest ends a file after 600
 
-# A line of progress on standard error, which any command has that takes longer than a second.
+# A line of progress on standard error, printed by any command that takes longer than a second.
 PROGRESS = re.compile(r": (\d+ %(, [\d.]+ MB/s)?(, (\d+ (h|min|s) ?)+ left)?|(\d+ (h|min|s) ?)+ so far)$")
 
-# A person's own preferences are neither read nor changed by tests.
+# Tests neither read nor change the user's own preferences.
 CONFIGURATION = tempfile.TemporaryDirectory(prefix="shvr-config-")
 
 # SHVR_SLOW=1 repeats each proof on every input; the everyday run repeats it on a selection that covers all cases.

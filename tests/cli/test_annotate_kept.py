@@ -48,7 +48,7 @@ class Kept(CliTest):
         self.assertEqual(size, [10, 12])
         self.assertIn(changed, said)
         self.assertEqual(self.picture("--size", "5x6", "--quiet"), ([5, 6], ""))
-        # The next who writes takes note of it.
+        # The next writer records it.
         self.assertIn(changed, self.annotate([self.dab(2)]))
         size, said = self.picture()
         self.assertEqual(size, [10, 12])
@@ -139,7 +139,7 @@ class Kept(CliTest):
         journal.write_bytes(kept)
         said = self.check("export", self.session, status=1).stderr
         self.assertIn("paint.zarr: was saved by a later state of the journal", said)
-        # An export is of no journal.
+        # An export belongs to no journal.
         self.annotate([], "--believe", "journal")
         self.export("--mask", self.folder / "out.zarr", "--believe", "journal")
         self.assertNotIn("journal", (self.folder / "out.zarr" / ".zattrs").read_text())

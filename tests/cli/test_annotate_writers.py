@@ -77,7 +77,7 @@ class Writers(CliTest):
             first.send_signal(number)
             first.wait(PATIENCE_S)
             self.annotate([self.dab(1), {"op": "undo"}, {"op": "save"}])
-        self.lock.write_text("program: shvr view\nprocess: 1\nhost: elsewhere\n")  # left there, and locked by nobody
+        self.lock.write_text("program: shvr view\nprocess: 1\nhost: elsewhere\n")  # left behind, held by no process
         self.annotate([{"op": "expect", "voxels_in_group": {"1": 0}}])
 
     def test_every_order_of_two_writers_keeps_what_each_was_told_is_done(self):

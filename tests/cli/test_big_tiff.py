@@ -74,7 +74,7 @@ class BigTiff(CliTest):
         told = self.check_json("info", path)
         self.assertEqual((told["size"], told["type"], told["voxels"]), ([SIDE, SIDE, 5], "uint8", 5 << 32))
         self.assertTrue(any("sample" in warning for warning in told["warnings"]), told["warnings"])
-        # Of the slice whose offset is beyond 2^34, and of all.
+        # Crops from the slice whose offset is beyond 2^34, and through all slices.
         self.check_crop(path, (40000, 65535, 4, 40008, 65536, 5), [value + 40 for value in MARK])
         self.check_crop(path, (40002, 65535, 0, 40004, 65536, 5), [value + 10 * z for z in range(5) for value in (3, 4)])
 

@@ -14,7 +14,7 @@ def density(brush, threshold, radius, path, **keys):
 
 class Density(CliTest):
     SIZE = (20, 17, 13)
-    LOWEST = 60  # of the transfer function of `write_session`
+    LOWEST = 60  # lowest intensity of the transfer function in `write_session`
 
     def prepare(self, volume, **annotation):
         self.volume = volume

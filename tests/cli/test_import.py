@@ -299,7 +299,7 @@ class Refusals(CliTest):
         (self.folder / "mine/text").write_text("keep")
         self.check_refused("import", header, self.folder / "mine", "--overwrite", says=["is not a project"])
         self.assertEqual((self.folder / "mine/text").read_text(), "keep")
-        # Nor does a project that holds what is none of its own.
+        # Nor does a project that holds foreign files.
         (project / "notes.txt").write_text("keep")
         self.check_refused("import", header, project, "--overwrite", says=["notes.txt: is no part of a project"])
         self.assertEqual((project / "notes.txt").read_text(), "keep")

@@ -81,7 +81,7 @@ class Incomplete(CliTest):
         output = self.folder / "labels.nrrd"
         label = self.check_allowed("label", self.image, "--threshold", "200", "-o", output)
         self.assertEqual(label["foreground_voxels"], sum(value >= 200 for value in self.kept(self.volume)))
-        # The same as of a volume that is dark there.
+        # The same result as for a volume that is dark there.
         values = list(self.volume.values)
         for voxel in voxels_of(LOST):
             values[self.volume.index(voxel)] = 0
@@ -112,7 +112,7 @@ class Incomplete(CliTest):
         self.check_refused_without_the_option("profile", self.image, "--frames", "1")
 
     def test_pictures_and_profiles_show_the_rest_where_that_is_allowed(self):
-        # As of a volume that is as low there as its type allows.
+        # The result for a volume with the lowest value of its type there.
         values = list(self.volume.values)
         for voxel in voxels_of(LOST):
             values[self.volume.index(voxel)] = 0

@@ -86,7 +86,7 @@ class Trace(CliTest):
                                      probe={"radius_voxels": 3.5, "group": 6})
         script = self.write_script("script.jsonl", [{"op": "node", "at": [1, 2, 3]}, {"op": "save"}])
         self.check("annotate", session, "--script", script)
-        # Without a trace in the session it lies beside the mask.
+        # If the session names no trace, it is written next to the mask.
         text = (self.folder / "paint.graphml").read_text()
         self.assertIn('<data key="radius">3.5</data>', text)
         self.assertIn('<data key="group">6</data>', text)

@@ -126,7 +126,7 @@ class Written(CliTest):
         for name, data in chunks.items():
             level, rest = name.split("/", 1)
             self.assertEqual(after[f"{level}/c/{rest}"], data, name)
-        # All that is ours is the same.
+        # All of SHVR's own data is the same.
         for name in before:
             if name.startswith("shvr/"):
                 self.assertEqual(after[name], before[name], name)
@@ -265,7 +265,7 @@ class Shards(CliTest):
                         found[f"0/c/{z}/{y}/{8 * number + x}"] = content
                 self.assertEqual(found, {name: data for name, data in before.items() if name.startswith("0/c/")})
                 self.assertEqual(report["bytes"], sum(map(len, after.values())))
-                # All that is ours is the same, but for the metadata of levels.
+                # All of SHVR's own data is the same, except the metadata of levels.
                 for name in before:
                     if name.startswith("shvr/"):
                         self.assertEqual(after[name], before[name], name)

@@ -16,7 +16,7 @@ from harness import ENVIRONMENT, IS_SLOW, SHVR, CliTest
 ROOT = Path(__file__).resolve().parents[3]
 HAS_VTK = bool(shutil.which("xvfb-run") or os.environ.get("DISPLAY")) and subprocess.run(
     ["/usr/bin/python3", "-c", "import vtkmodules"], capture_output=True, check=False).returncode == 0
-# Answers as tools/peers/vtk_raycast.py does: a black picture in so many milliseconds as its step is.
+# Answers as tools/peers/vtk_raycast.py does: with a black picture, and 1000 ms per unit of the step as its time.
 STAND_IN = f"""#!{sys.executable}
 import json, sys
 from array import array

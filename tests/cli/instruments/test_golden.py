@@ -136,7 +136,7 @@ class Golden(CliTest):
             self.assertIn("shvr golden bless 'spheres' --folder 'golden' --reason", one["reason"])
         path.write_text(json.dumps({key: value for key, value in side_car.items() if key != "work"}))
         self.assertIn("work lacks rays, samples", self.golden("run", "spheres", status=3)["goldens"][0]["reason"])
-        # What the sentence says helps, and the picture stays as it is.
+        # The command in the sentence repairs the side-car and leaves the picture unchanged.
         before = (self.folder / "golden/spheres.png").read_bytes()
         self.bless("spheres")
         self.assertEqual(self.golden("run", "spheres")["failed"], [])
@@ -197,7 +197,7 @@ class Golden(CliTest):
         broken = self.golden("run", "bad", status=3)["goldens"][0]
         self.assertEqual(broken["status"], "broken")
         self.assertIn("gone.json", broken["reason"])
-        # To bless what cannot be drawn is no help.
+        # Blessing does not help if the picture cannot be drawn.
         text = subprocess.run([str(Path(SHVR).resolve()), "golden", "run", "bad"], text=True, capture_output=True,
                               timeout=300, cwd=self.folder, env=AT_HOME, check=False).stdout
         self.assertIn("broken  bad", text)
@@ -235,7 +235,7 @@ class Golden(CliTest):
             for variant in VARIANTS:
                 levels = float(row[variant].split(";")[0])
                 self.assertLessEqual(2 * levels, {"exact": 0, "tight": 2, "edge": 255}[row["class"]], (name, variant))
-        # Other instructions do round otherwise, so that the variants are no idle ones.
+        # Other instructions do round differently, so the variants are needed.
         self.assertTrue(any(row["without-fma"] != "0" for row in rows.values()))
 
 

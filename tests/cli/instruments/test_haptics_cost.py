@@ -10,7 +10,7 @@ from pathlib import Path
 
 PROGRAM = Path(os.environ.get("SHVR_UNIT_TESTS", Path(os.environ.get("SHVR", "build/dev/shvr")).parent / "shvr_unit_tests"))
 ONE_CASE = os.environ.get("HAPTICS_CASE")  # for tools/break_haptics
-TICKS = 20  # of each case in tests/unit/haptics/cost_test.cpp
+TICKS = 20  # ticks per case in tests/unit/haptics/cost_test.cpp
 # Case: the most instructions of a tick with a new region, a third above what g++ 12 -O2 takes.
 CEILINGS = {"cost: 64^3 voxels and a ball of 12": 930_000, "cost: 64^3 voxels and a ball of 24": 830_000, "cost: 128^3 voxels and a ball of 48": 4_800_000}
 

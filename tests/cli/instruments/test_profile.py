@@ -573,7 +573,7 @@ class Diff(CliTest):
                             ("number.json", {"passes": [{"name": "a", "median_ms": "fast"}]})]:
             self.check_refused("profile", "diff", good, self.write_json(name, value), says=[name])
         self.check_refused("profile", "diff", good, self.folder / "none.json", says=["none.json"])
-        # Of a session: whole or not at all, and never beside frames.
+        # Profiles of a session must be complete, and are never compared with profiles of frames.
         action = {"line": 1, "action": "orbit", "over_replays": {}}
         self.check_refused("profile", "diff", good, self.write_json("s.json", {"actions": []}),
                            says=["s.json", "expected two of one kind"])

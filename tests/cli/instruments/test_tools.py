@@ -10,14 +10,14 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
 STEPS = 40
-# In place of cmake: configures nothing, and says of each step what ninja says of it.
+# Replaces cmake: configures nothing, and prints the lines that ninja prints for each step.
 CMAKE = f"""#!/bin/bash
 [[ $1 == --build ]] || exit 0
 for i in $(seq {STEPS}); do echo "[$i/{STEPS}] Building CXX object some/folder/part_$i.o"; done
 echo "part.cpp:1: error: made up" >&2
 exit "${{BUILD_STATUS:-0}}"
 """
-# In place of dpkg-query, where nothing is installed, and of apt-get, which says what it was asked for.
+# Replaces dpkg-query, with nothing installed, and apt-get, which prints its arguments.
 APT = """#!/bin/bash
 [[ " $* " != *" install "* ]] || printf '%s\\n' "$@" >> "$ASKED"
 """
