@@ -1,9 +1,9 @@
 // A Vulkan layer for tests: one memory barrier is left out, so that a test of barriers can be tested.
 //
 //   SHVR_DROP_BARRIER=3          the third global memory barrier since the instance was made; 0 or nothing: none
-//   SHVR_BARRIERS_LOG=FILE       at the end: "barriers N", of those that count
+//   SHVR_BARRIERS_LOG=FILE       at the end: "barriers N", the number of those that count
 //
-// What the host waits for by a fence alone is no hazard that validation knows: barriers for the host do not count.
+// Validation reports no hazard where the host waits for a fence alone: barriers for the host do not count.
 
 #include <atomic>
 #include <cstdlib>

@@ -1,12 +1,12 @@
 #pragma once
-// What makes a Vulkan layer of a set of hooks (vk_layer.h, interface version 2). A layer is a struct with
+// Turns a set of hooks into a Vulkan layer (vk_layer.h, interface version 2). A layer is a struct with
 //
 //   static PFN_vkVoidFunction hook(const char* name);     // null: not hooked
-//   static void instance_made(VkInstance);                // those that `Unobtrusive` does not do for it:
+//   static void instance_made(VkInstance);                // these three have defaults in `Unobtrusive`:
 //   static void instance_goes(VkInstance);
 //   static VkDeviceCreateInfo device_info(const VkDeviceCreateInfo&);   // as the driver gets it
 //
-// and `Chain<Layer>::negotiate` is what its manifest names. `Chain<Layer>::next` is a call of whoever comes next. Any
+// and its manifest names `Chain<Layer>::negotiate`. `Chain<Layer>::next` calls the next layer or the driver. Any
 // thread.
 
 #include <algorithm>
@@ -28,7 +28,7 @@ void* table_of(Handle handle)
     return *reinterpret_cast<void**>(handle);
 }
 
-/// The loader's record of who is next, which each layer advances.
+/// The loader's record of the next layer, which each layer advances.
 template <class Record>
 Record* link_in(const void* chain, VkStructureType type)
 {
@@ -48,7 +48,7 @@ Structure* chained(void* query, VkStructureType type)
     return nullptr;
 }
 
-/// What a call of an instance answers that is made twice, first for the count and then for the items.
+/// Answers an enumeration call, which is made twice: first for the count, then for the items.
 template <class Item>
 VkResult answer(const std::vector<Item>& all, uint32_t* count, Item* found)
 {
@@ -75,7 +75,7 @@ inline bool is_added(const char* name)
     return std::ranges::any_of(ADDED_CALLS, [&](const char* one) { return std::strcmp(name, one) == 0; });
 }
 
-/// What a layer does that only hooks calls: the base of those that hide none of these.
+/// Defaults for a layer that only hooks calls: the base of layers that hide none of these.
 struct Unobtrusive {
     static void instance_made(VkInstance) {}
     static void instance_goes(VkInstance) {}
@@ -85,14 +85,14 @@ struct Unobtrusive {
 template <class Layer>
 class Chain {
 public:
-    /// For calls on an instance or a physical device.
+    /// The next layer's function, for calls on an instance or a physical device.
     template <class Call, class Handle>
     static Call next_of_instance(Handle, const char* name)
     {
         const std::lock_guard lock(known().mutex);
         return reinterpret_cast<Call>(known().instances.back().calls.at(name));
     }
-    /// For calls on a device, a queue or a command buffer.
+    /// The next layer's function, for calls on a device, a queue or a command buffer.
     template <class Call, class Handle>
     static Call next(Handle handle, const char* name)
     {
@@ -122,7 +122,7 @@ private:
     };
     struct Known {
         std::mutex mutex;
-        std::vector<Instance> instances;  ///< the last one made is meant: tests make one after another
+        std::vector<Instance> instances;  ///< the last one made is current: tests make one after another
         std::unordered_map<void*, Device> devices;
     };
     static Known& known()
@@ -145,7 +145,7 @@ private:
         {
             const std::lock_guard lock(known().mutex);
             Instance& made = known().instances.emplace_back(Instance{next, *instance, {}});
-            // Now: asked later, the loader gives the last layer the first one's calls.
+            // Queried now: if asked later, the loader gives the last layer the first one's calls.
             for (const char* name : INSTANCE_CALLS) made.calls[name] = next(*instance, name);
         }
         Layer::instance_made(*instance);

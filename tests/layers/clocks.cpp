@@ -1,12 +1,12 @@
-// A Vulkan layer for tests: timestamps of a device whose speed the test chooses. Its clock stands still but for
-// dispatches, as they are recorded, so that times are exact.
+// A Vulkan layer for tests: timestamps of a device whose speed the test chooses. Its clock advances only
+// with dispatches, as they are recorded, so that times are exact.
 //
 //   SHVR_CLOCKS=N                nanoseconds that a workgroup takes, from now on
 //   SHVR_CLOCKS_EARLY=N          nanoseconds by which stamps at the start of passes are early, from now on
 //   SHVR_CLOCKS_LOG=FILE         at the end: "longest N", the nanoseconds of the instance's longest submission, by its
 //                                dispatches
 //
-// Of a device whose ticks are nanoseconds. One thread.
+// For devices whose timestamp ticks are nanoseconds. One thread.
 
 #include <algorithm>
 #include <cstdlib>

@@ -5,15 +5,15 @@
 // CALL:N:ERROR lets the N-th call fail, CALL:N+:ERROR every call from the N-th on. A call that fails does not reach the
 // driver; one that is `suboptimal` does as it should. Once the device is lost, it stays so: all calls that may say so
 // do, until the device is destroyed; a device created afterwards is whole. Faults count from the creation of the
-// instance, and each fires once, so that what is made anew is not lost again.
+// instance, and each fires once, so that re-created objects are not lost again.
 //
 // SHVR_FAULTS_NOW names a file: when it appears, the faults that it lists are added, counted from then on, and it is
 // removed. It must appear whole, by renaming.
 //
 // SHVR_FAULTS_LOG names a file for the faults that fired, and at the end how often each entry point was called, and
-// "leaked CALL N" for what was made by it and never destroyed.
+// "leaked CALL N" for N objects that it made and that were never destroyed.
 //
-// Sits between the loader and whatever comes next (vk_layer.h, interface version 2). Any thread.
+// Sits between the loader and the next layer or driver (vk_layer.h, interface version 2). Any thread.
 
 #include <algorithm>
 #include <cstdio>
@@ -79,7 +79,7 @@ using layers::table_of;
     X(vkGetPhysicalDeviceSurfaceCapabilitiesKHR)                                                                       \
     X(vkGetPhysicalDeviceSurfaceFormatsKHR)
 
-// What destroys what those made.
+// Calls that destroy objects, with the calls that create them.
 #define SHVR_ENDS(X)                                                                                                   \
     X(vkFreeMemory, VkDeviceMemory, vkAllocateMemory)                                                                  \
     X(vkDestroyBuffer, VkBuffer, vkCreateBuffer)                                                                       \
@@ -136,7 +136,7 @@ struct Fault {
     bool has_fired = false;
 };
 
-/// What the layer knows. One instance of it: tests make devices one after another.
+/// State of the layer. One for all devices: tests make them one after another.
 struct State {
     std::mutex mutex;
     struct Instance {
@@ -150,9 +150,9 @@ struct State {
         VkDevice handle = VK_NULL_HANDLE;
         bool is_lost = false;
         PFN_vkVoidFunction calls[DEVICE_CALLS]{};
-        PFN_vkVoidFunction ends[DEVICE_CALLS]{};  ///< of what the call makes
+        PFN_vkVoidFunction ends[DEVICE_CALLS]{};  ///< destroy the object that the call creates
     };
-    std::vector<Instance> instances;            ///< the last one made is meant: tests make one after another
+    std::vector<Instance> instances;            ///< the last one made is current: tests make one after another
     std::unordered_map<void*, Device> devices;  ///< likewise, for queues and command buffers
     std::vector<Fault> faults;
     uint64_t counts[CALLS]{};
@@ -209,7 +209,7 @@ void look_for_faults(State& known)
     for (uint64_t& count : known.counts) count = 0;
 }
 
-/// What a call is to return without reaching the driver, or VK_SUCCESS.
+/// Returns the result of a call that must not reach the driver, or VK_SUCCESS.
 VkResult fault_for(size_t call)
 {
     State& known = state();
@@ -246,7 +246,7 @@ VKAPI_ATTR VkResult VKAPI_CALL device_call(First first, Rest... rest)
         if (owner.is_lost && tells) fault = VK_ERROR_DEVICE_LOST;
     }
     if (fault == VK_ERROR_DEVICE_LOST) {
-        // What runs is let finish, so that the driver may free what the program destroys.
+        // Running work finishes first, so that the driver may free what the program destroys.
         static_cast<void>(reinterpret_cast<PFN_vkDeviceWaitIdle>(wait)(device));
         return fault;
     }
@@ -328,10 +328,10 @@ VKAPI_ATTR VkResult VKAPI_CALL create_instance(const VkInstanceCreateInfo* info,
     const std::lock_guard lock(known.mutex);
     State::Instance& made = known.instances.emplace_back();
     made = {.next = next, .handle = *instance};
-    // Now: asked later, the loader gives the last layer the first one's calls.
+    // Queried now: if asked later, the loader gives the last layer the first one's calls.
     for (size_t call = DEVICE_CALLS; call < CALLS; ++call) made.calls[call] = next(*instance, NAMES[call]);
     made.destroy = reinterpret_cast<PFN_vkDestroyInstance>(next(*instance, "vkDestroyInstance"));
-    // A program that makes its device anew makes an instance anew: what has fired stays so.
+    // A program that re-creates its device re-creates its instance, too: faults that fired do not fire again.
     static const bool is_first = [&] {
         const char* const text = std::getenv("SHVR_FAULTS");
         known.faults = faults_of(text ? text : "");

@@ -1,14 +1,14 @@
 // A Vulkan layer for tests: the device says that it is another one, with other limits, and keeps to them.
 //
 //   SHVR_LIMITS=intel            a name of records.h
-//   SHVR_LIMITS_LOG=FILE         what was asked for beyond the limits, a line each
+//   SHVR_LIMITS_LOG=FILE         requests beyond the limits, a line each
 //
 // Some drivers make a dispatch of each slice of each region of a copy: a copy of more than 256 regions is logged, too.
-// What a driver may refuse is refused as a driver does: memory of a heap that is full, allocations beyond their number.
-// What a program must not ask for is refused with VK_ERROR_INITIALIZATION_FAILED and logged: images and buffers that
-// are too large, memory mapped that cannot be, timestamps that there are not, priorities of memory. Logged alone are
-// memory without a priority, where there are some, and a device without robust access to images, beside which kernels
-// read, or to buffers. All memory types are the driver's first one that a host can map. Any thread.
+// Valid requests that drivers may refuse fail as in a driver: memory from a full heap, allocations beyond their number.
+// Invalid requests fail with VK_ERROR_INITIALIZATION_FAILED and are logged: images and buffers that are too large,
+// mapping memory that cannot be mapped, unsupported timestamps and memory priorities. Only logged: memory without a
+// priority where priorities are supported, and a device without robust access to images (kernels read outside them) or
+// to buffers. All memory types are the driver's first one that a host can map. Any thread.
 
 #include <algorithm>
 #include <cstdio>
@@ -26,7 +26,7 @@ using layers::Record;
 
 const Record* current = nullptr;
 
-/// Of the instance that was made last: tests make one after another.
+/// The record of the instance that was made last: tests make one after another.
 const Record& record()
 {
     return *current;
@@ -306,7 +306,7 @@ struct Limits : layers::Unobtrusive {
         return result;
     }
 
-    // ---- A device that is lost (tests/layers/faults.cpp) tells of one address and one code
+    // ---- A lost device (tests/layers/faults.cpp) reports one address and one code
 
     static VKAPI_ATTR VkResult VKAPI_CALL fault(VkDevice, VkDeviceFaultCountsEXT* counts, VkDeviceFaultInfoEXT* info)
     {

@@ -1,6 +1,6 @@
 // A Vulkan layer for tests: a device that is short of memory. While the file SHVR_DEVICE_SHORT_WHILE is there no memory
-// of SHVR_DEVICE_SHORT_BYTES or more can be allocated, however often it is tried and of whatever type. What was refused
-// is in the file SHVR_DEVICE_SHORT_LOG, a line of bytes each. Any thread.
+// of SHVR_DEVICE_SHORT_BYTES or more can be allocated, of any type, however often it is tried. The file
+// SHVR_DEVICE_SHORT_LOG lists the bytes of each refused allocation, a line each. Any thread.
 
 #include <cstdlib>
 #include <fstream>

@@ -2,7 +2,7 @@
 //
 //   SHVR_NOISE=N                 the first random number, which is not 0
 //
-// Of a device whose memory the host can map. Any thread.
+// For devices whose memory the host can map. Any thread.
 
 #include <cstdlib>
 

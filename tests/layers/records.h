@@ -1,6 +1,6 @@
 #pragma once
 // Limits and memory tables of real devices, in round numbers, as their drivers report them (vulkan.gpuinfo.org), and of
-// the least that is worth running on. Plain values.
+// the minimum that is worth running on. Plain values.
 
 #include <array>
 #include <cstdint>
@@ -27,7 +27,7 @@ struct Record {
     std::vector<VkMemoryType> types;
     bool tells_faults = false;               ///< VK_EXT_device_fault
     bool has_memory_priority = false;        ///< VK_EXT_memory_priority
-    uint32_t max_storage_images = 1u << 20;  ///< in a kernel
+    uint32_t max_storage_images = 1u << 20;  ///< per kernel
 };
 
 inline constexpr VkMemoryPropertyFlags LOCAL = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
@@ -143,7 +143,7 @@ inline std::vector<Record> made_records()
     pieces.device = "record of a device whose images hold little";
     pieces.max_image = 8 * MEBI;
     all.push_back(pieces);
-    Record bare = least;  // the least one, with fewer images than a kernel binds
+    Record bare = least;  // the minimum, with fewer images than a kernel binds
     bare.name = "bare";
     bare.device = "record of a device with too few images";
     bare.max_storage_images = 4;

@@ -1,7 +1,7 @@
 // A Vulkan layer for tests: a screen that is slow to give images back, as real ones are. Two images, one of which is
 // always shown, and a vertical blank every 16.7 ms: an image is free once the next one has taken its place.
 //
-//   SHVR_SCREEN_HIDDEN=FILE      while that file exists no image is free at all, as of a window that nobody sees
+//   SHVR_SCREEN_HIDDEN=FILE      while that file exists no image is free at all, as for a hidden window
 //   SHVR_SCREEN_BLANK_US=N       microseconds between blanks, instead of 16700
 //   SHVR_SCREEN_FIFO=1           images can be shown in turn only, and presenting waits for the next blank, as some
 //                                drivers do
@@ -56,7 +56,7 @@ bool is_hidden()
     return path && access(path, F_OK) == 0;
 }
 
-/// Whether one of the images is neither shown nor waiting for that.
+/// Whether one of the images is neither shown nor waiting to be shown.
 bool has_free_image(State& known)
 {
     if (is_hidden()) return false;

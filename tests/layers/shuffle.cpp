@@ -1,10 +1,10 @@
-// A Vulkan layer for tests: between two barriers commands run in any order, as they may on a GPU. lavapipe runs them as
-// they come, so that a barrier which is missing is never missed.
+// A Vulkan layer for tests: between two barriers commands run in any order, as they may on a GPU. lavapipe runs them in
+// their order, so that a missing barrier goes unnoticed.
 //
 //   SHVR_SHUFFLE=N               the first random number, which is not 0; nothing: they run backwards
-//   SHVR_SHUFFLE_LOG=FILE        at the end: "moved N", of the commands that ran before one that came earlier
+//   SHVR_SHUFFLE_LOG=FILE        at the end: "moved N", the number of commands that ran before an earlier one
 //
-// Of dispatches, copies and fills; each command buffer is one thread's.
+// Shuffles dispatches, copies and fills; each command buffer is one thread's.
 
 #include <atomic>
 #include <cstdlib>
@@ -20,7 +20,7 @@ namespace {
 
 using Command = std::function<void()>;
 
-/// What is recorded in a command buffer and has not been passed on.
+/// Commands recorded in a command buffer and not yet passed on.
 struct Recorded {
     std::vector<Command> waiting;
     Command pipeline, sets, constants;  ///< as they are bound now

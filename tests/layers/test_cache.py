@@ -73,7 +73,7 @@ class Cache(CliTest):
         self.assertEqual(self.start(), first)
 
     def test_a_driver_that_keeps_nothing_gets_no_file(self):
-        (self.folder / "cache.log").write_text("refused 0")   # lavapipe alone: nobody counts
+        (self.folder / "cache.log").write_text("refused 0")   # without the cache layer: refusals are not counted
         self.start("VK_LAYER_SHVR_speed")
         self.assertFalse((self.kept / "shvr").exists())
 

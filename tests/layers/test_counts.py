@@ -16,8 +16,8 @@ class Counts(CliTest):
 
     def test_a_picture_of_a_4k_screen(self):
         counts = self.counts("render", self.write_session(), "-o", self.folder / "a.pfm", "--size", "3840x2160")
-        # A submission for each of twelve parts, and some more for the first one, of which nobody knows how long it is:
-        # one for each of its fifteen tiles.
+        # A submission for each of twelve parts, and more for the first one, whose duration is unknown: one for each of
+        # its fifteen tiles.
         self.assertLessEqual(counts["vkQueueSubmit2"], 27)
         self.assertLessEqual(counts["vkAllocateMemory"], 17)
         self.assertLessEqual(counts["vkDeviceWaitIdle"], 2)   # at the end

@@ -11,13 +11,13 @@ import zlib
 from harness import ENVIRONMENT, PROGRESS, SHVR, TIMEOUT_S, CliTest
 
 HOST, DEVICE, LOST = "out_of_host_memory", "out_of_device_memory", "device_lost"
-# What calls may return; the others are short of the host's memory, or of the device's.
+# Errors that calls may return; calls not listed may run out of host memory or device memory.
 ERRORS = {"vkMapMemory": [HOST], "vkCreatePipelineCache": [HOST], "vkResetFences": [DEVICE],
           "vkQueueSubmit2": [HOST, DEVICE, LOST], "vkGetFenceStatus": [HOST, LOST],
           "vkWaitForFences": [HOST, DEVICE, LOST], "vkGetQueryPoolResults": [HOST, DEVICE, LOST]}
-# Where no failure can be told: it has no result that a program could heed.
+# Calls whose failure cannot be reported: they have no result that a program could check.
 HEEDLESS = ["vkDeviceWaitIdle"]
-# How often depends on the machine: a frame takes these from those before it that are done, which resets them, or makes
+# Calls whose number depends on the machine: a frame reuses (resets) objects of earlier frames that are done, or makes
 # new ones, and waits as long as it must.
 VARYING = ["vkAllocateCommandBuffers", "vkCreateCommandPool", "vkCreateDescriptorPool", "vkCreateFence",
            "vkCreateQueryPool", "vkResetCommandPool", "vkResetDescriptorPool", "vkResetFences", "vkWaitForFences"]
@@ -83,7 +83,7 @@ class Faults(CliTest):
             return f"{fault}: {log}"
         is_whole = made.exists() and made.read_bytes() == self.expected
         if result.returncode == 0:
-            # Memory was had at the second attempt, or what took it gave way, which is said.
+            # Memory was found at the second attempt, or what needed it was dropped with a warning.
             return "" if is_whole or "warning" in result.stderr else f"{fault}: something else, and nothing said"
         lines = [line for line in result.stderr.splitlines()
                  if not line.startswith("warning: ") and not PROGRESS.search(line)]

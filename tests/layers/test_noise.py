@@ -27,7 +27,7 @@ def drawings(first):
     pagings = ["never", "always"] if first == "never" else ["always", "never"]
     for number, feature in enumerate(FEATURES):
         if feature == "filtered":
-            # What a filter makes of a paged brick depends on the slot that it happens to get.
+            # The filtered values of a paged brick depend on the slot that it happens to get.
             yield feature, "never"
         elif IS_SLOW or number == 0:
             yield from ((feature, paging) for paging in pagings)

@@ -1,4 +1,4 @@
-// A Vulkan layer for tests: who waits for the device or the screen.
+// A Vulkan layer for tests: logs which thread waits for the device or the screen.
 //
 //   SHVR_WAITS_LOG=FILE          "main CALL" or "other CALL" at the end of it for each call that does not return at
 //                                once: a wait for fences or semaphores, or for an image of the screen, that are not
