@@ -1,11 +1,11 @@
 #pragma once
-// What a test program does after its tests and before statics are destroyed: those of libraries, too, are gone then.
+// Actions of a test program after its tests, before statics (including those of libraries) are destroyed.
 
 #include <functional>
 
 namespace shvr::test {
 
-/// The last one given comes first.
+/// Registers an action. Actions run in reverse order.
 void at_end(std::function<void()> act);
 
 }  // namespace shvr::test

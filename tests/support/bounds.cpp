@@ -21,11 +21,11 @@ struct Found {
     double error = 0.0, bound = 0.0;
     int64_t inputs = 0, worst_input = 0;  ///< from 1
     std::string worst;
-    /// The share of the bound that was used, by which the worst input is the worst.
+    /// The used share of the bound, which decides on the worst input.
     double share() const { return bound > 0.0 ? error / bound : error; }
 };
 
-/// By file, test case and what was measured.
+/// Results by file, test case and measured quantity.
 using Cases = std::map<std::tuple<std::string, std::string, std::string>, Found>;
 
 Cases& cases()

@@ -10,7 +10,7 @@
 
 namespace {
 
-/// As CMakeLists.txt sets it for tests run by ctest.
+/// Sets the environment as CMakeLists.txt does for tests run by ctest.
 const bool environment_is_set = [] {
     setenv("VK_LAYER_ENABLES", "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT", 0);
     const std::filesystem::path layers = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "layers";

@@ -78,8 +78,8 @@ DeviceCaps caps_of(const ModelledTouch& device, bool is_broken)
     return caps;
 }
 
-/// What the law's potential has given a probe that stands there, J: the depth of its well, or less what a spring to the
-/// pin has taken up. Work beyond it was made by delay, holding and limits.
+/// Energy that the law's potential has given a probe at that position, in J: the depth of its well, or minus the energy
+/// of a spring to the pin. Work beyond it was made by delay, holding and limits.
 double given_by_potential(const ForceSettings& settings, const RelevancePatch& patch, double stiffness,
                           const glm::dvec3& position_m, const SurfaceMemory& surface)
 {

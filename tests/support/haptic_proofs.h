@@ -1,5 +1,5 @@
 #pragma once
-// What the force law must hold over many random cases, through the servo's own step(). Each is a doctest assertion.
+// Properties that the force law must have in many random cases, through the servo's own step(), as doctest assertions.
 
 #include <cstdint>
 
@@ -21,7 +21,7 @@ struct ContactCase {
     uint32_t seed = 1;
     bool clicks = false;
     bool is_tube = false;    ///< a tube that draws the probe in, instead of a surface that holds it
-    bool is_broken = false;  ///< the device claims no latency and any stiffness: what the limits are there for
+    bool is_broken = false;  ///< the device claims no latency and any stiffness, which the limits must catch
 };
 Contact contact(const ContactCase& one);
 

@@ -1,5 +1,5 @@
 #pragma once
-// The Inverse3's link at 1 kHz against the stand-in for its service: what is counted, and how long it takes.
+// The Inverse3's link at 1 kHz against the stand-in for its service: message counts and latencies.
 
 #include <algorithm>
 #include <chrono>
@@ -20,10 +20,10 @@ inline Inverse3Options options_for(const Inverse3Service& service)
             .event_port = service.event_port(),
             .allow_force = true,
             .realtime = false,
-            .connect_timeout = std::chrono::seconds(3)};  // of a busy machine
+            .connect_timeout = std::chrono::seconds(3)};  // long enough for a busy machine
 }
 
-/// From a write to the state that answers it, microseconds; sorted.
+/// Latencies from a write to the state that answers it, in microseconds, sorted.
 struct Pace {
     std::vector<double> added_us;
     Inverse3Counts counts;
@@ -57,7 +57,7 @@ inline Pace pace_of(int ticks)
                 break;
             }
         }
-        // What is still on its way arrives.
+        // Messages in flight arrive.
         const Clock::time_point end = Clock::now() + std::chrono::seconds(10);
         while (Clock::now() < end && device->counts().sent != device->counts().answered)
             std::this_thread::sleep_for(std::chrono::microseconds(100));

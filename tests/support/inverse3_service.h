@@ -1,7 +1,7 @@
 #pragma once
 // A stand-in for the service of the Inverse3, written from its public documentation: an inventory, then one state for
-// each message, and events on a second port. Ports of the own machine that the system chooses. Its thread does all; the
-// calls here take a lock.
+// each message, and events on a second port. It listens on local ports that the system chooses. Its thread does all the
+// work; the calls here take a lock.
 
 #include <chrono>
 #include <cstdint>
@@ -19,7 +19,7 @@ struct Inverse3Heard {
     glm::dvec3 force_n{0.0};  ///< in the service's frame
 };
 
-/// The state of a device at that place, in the service's frame.
+/// The state message of a device at that position, in the service's frame.
 std::string inverse3_state_text(const glm::dvec3& position_m, const std::string& device_id = "049D");
 
 class Inverse3Service {
@@ -31,14 +31,14 @@ public:
     uint16_t port() const;
     uint16_t event_port() const;
 
-    /// The inventory of connections to come; a state at the origin at first.
+    /// Sets the inventory that later connections receive; by default it has a device at the origin.
     void set_inventory(const std::string& text);
-    /// Answers each message; the state at the origin at first. Called on the service's thread.
+    /// Sets the answer to each message; by default the state at the origin. Called on the service's thread.
     void set_answer(const std::function<std::string(const glm::dvec3& force_n)>& answer);
-    /// A service that stalls reads and does not answer; what it owes it sends when it goes on.
+    /// Stalls the service: it reads but does not answer. It sends the pending answers when it resumes.
     void set_stalled(bool is_stalled);
     void send_event(const std::string& text);
-    /// Bytes on the channel of states, as they are.
+    /// Sends raw bytes on the channel of states.
     void send_bytes(const std::string& bytes);
     void end_connections();
     void end_event_connections();

@@ -1,5 +1,5 @@
 #pragma once
-// Everything that a model of the workbench refers to, for tests of what panels, keys and the mouse make of it.
+// Everything that a model of the workbench refers to, for tests of panels, keys and the mouse.
 
 #include <filesystem>
 

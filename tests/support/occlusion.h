@@ -1,5 +1,5 @@
 #pragma once
-// What tests of local ambient occlusion share: scenes, the device's values, and what the reference makes of them.
+// Shared by tests of local ambient occlusion: scenes, the device's values, and the reference's values.
 
 #include <vector>
 
@@ -21,15 +21,15 @@ std::vector<double> occlusion_values(OnDevice& device);
 class ExpectedOcclusion {
 public:
     ExpectedOcclusion(const TestVolume& volume, const Session& session);
-    /// Of a unit; 0 outside and where it is cut away.
+    /// Opacity of a unit; 0 outside the volume and where it is cut away.
     double opacity(const glm::ivec3& voxel) const;
-    /// As the device computes it, sample by sample.
+    /// The value as the device computes it, sample by sample.
     double by_taps(const glm::ivec3& voxel) const;
-    /// As it is defined, between voxels.
+    /// The value by the definition, between voxels.
     double defined(const glm::ivec3& voxel, uint32_t directions, int steps) const;
 
 private:
-    /// Of the function's table: opacities of a stretch, and sums over the entries before each, as the device has them.
+    /// Table of the transfer function: opacities of a stretch, and prefix sums over the entries, as on the device.
     struct Table {
         std::vector<double> opacities, sums, squares;
     };

@@ -1,6 +1,6 @@
 #pragma once
-// Random annotation, for tests of what must hold whatever the user does: commands of all kinds on a small volume, and a
-// hash that distinguishes two documents. Equal seeds give equal commands.
+// Random annotation, for tests of properties that hold whatever the user does: commands of all kinds on a small volume,
+// and a hash that distinguishes two documents. Equal seeds give equal commands.
 
 #include <cstdint>
 #include <random>
@@ -28,7 +28,7 @@ uint64_t hash_of(const Document& document);
 
 /// The groups that the document's settings lock: none, or a quarter of all.
 GroupSet locks_of(const Document& document);
-/// What going back from one document to the other changes; none where they are equal.
+/// The changes that lead from one document back to the other; none if they are equal.
 std::vector<Change> all_changes_between(const Document& from, const Document& to);
 
 /// Paints or erases random parts of a random region: groups, offsets, or both in one command, by a brush that is held
@@ -38,7 +38,7 @@ Command random_painting(const Document& document, std::mt19937& random);
 Command random_tracing(const Document& document, std::mt19937& random);
 /// Sets one of a few sections to one of a few texts; one of them, the locks.
 Command random_setting(const Document& document, std::mt19937& random);
-/// One of a few sections as one of a few texts, to be kept.
+/// One of a few sections with one of a few texts, as settings to keep.
 SettingValues random_kept(std::mt19937& random);
 /// Painting, tracing or setting.
 Command random_command(const Document& document, std::mt19937& random);

@@ -9,8 +9,8 @@
 
 namespace shvr::test {
 
-/// Evaluates the function of `kind` at each voxel once in a process; what is loaded again is read from memory. Bytes,
-/// one level.
+/// Evaluates the function of `kind` at each voxel once per process; later loads read it from memory. Bytes, one
+/// level.
 inline std::shared_ptr<const VolumeSource> stored_volume(const std::string& kind, const Size3& size, uint32_t seed)
 {
     static std::map<std::tuple<std::string, int64_t, int64_t, int64_t, uint32_t>, std::shared_ptr<MemorySource>> stored;

@@ -112,7 +112,7 @@ std::vector<T> level_of(const VolumeSource& source, int level)
     return voxels;
 }
 
-/// A volume without voxels, for what depends on its place and size alone.
+/// A volume without voxels, for code that depends on its position and size alone.
 inline VolumeInfo volume_of_size(const Size3& size, const glm::dvec3& spacing = glm::dvec3(1.0))
 {
     VolumeInfo volume;

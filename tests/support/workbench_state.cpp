@@ -42,7 +42,7 @@ std::string text_of(const TraceSelection& selection)
 
 std::string lasting_state(const ui::Workbench& bench)
 {
-    // What is selected is no step of the history, and numbers of nodes are given once.
+    // The selection is no step of the history, and node numbers are never reused.
     Document document = bench.document().annotator.document();
     document.trace.select({});
     const std::vector<std::byte> bytes = bytes_of(document);

@@ -12,7 +12,7 @@ namespace shvr::test {
 
 /// "light" -> {"ambient":0.3,...}, "voxels" -> "1:144 3:20", "camera", "nodes", "file scan.mask", ...
 using State = std::map<std::string, std::string>;
-/// `folder`: whose files belong to the state, by name and content.
+/// Files in `folder` belong to the state, by name and content.
 State state_of(const ui::Workbench& bench, const std::filesystem::path& folder);
 /// The keys that differ, in order, separated by commas.
 std::string difference(const State& before, const State& after);
@@ -21,7 +21,7 @@ std::string lasting_state(const ui::Workbench& bench);
 
 /// A session of a procedural scan of tubes in that folder, without annotation. Returns its path.
 std::filesystem::path write_tubes_session(const std::filesystem::path& folder);
-/// Turns until nothing is left to do; a stroke that is open stays so.
+/// Advances the workbench until no work is left; an open stroke stays open.
 void settle(ui::Workbench& bench);
 
 }  // namespace shvr::test
