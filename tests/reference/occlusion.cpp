@@ -101,7 +101,7 @@ struct Surface {
     double strength, height;  ///< along the normal
     double wall;
 
-    /// Of a cell's columns along each axis, those that end in it.
+    /// Share of a cell's columns along each axis that end in the cell.
     glm::dvec3 shares_of_cell(const glm::ivec3& cell) const
     {
         constexpr double side = 4.0;

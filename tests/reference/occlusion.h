@@ -1,6 +1,6 @@
 #pragma once
-// Local ambient occlusion in double, two ways: the definition of shaders/occlusion/occlusion.h, over as many directions
-// and steps as one likes, and the few samples a ray by which the device computes it. Positions are in voxels, lengths
+// Local ambient occlusion in double, two ways: the definition of shaders/occlusion/occlusion.h, over any number of
+// directions and steps, and the few samples per ray by which the device computes it. Positions are in voxels, lengths
 // along rays in units.
 
 #include <array>
@@ -32,7 +32,7 @@ struct OcclusionAsked {
 std::vector<glm::dvec3> occlusion_directions(uint32_t count);
 std::vector<glm::dvec3> occlusion_directions(uint32_t count, const OcclusionSide& side, bool full_sphere);
 
-/// How far along its normal a point is from where the medium ends.
+/// Distance of a point, along its normal, from the end of the medium.
 double occlusion_edge(const FieldOpacity& opacity, const OcclusionAsked& asked, const glm::dvec3& centre,
                       const glm::dvec3& normal);
 /// The definition: the light that arrives at a voxel.
@@ -64,16 +64,16 @@ struct OcclusionRamp {
 };
 /// How steeply ramps may rise across their cube (shaders/occlusion/occlusion_ramp.glsl).
 constexpr double STEEPEST_OF_VOXELS = 3.3, STEEPEST_OF_CELLS = 2.6;
-/// From the mean of the opacity in the cube and of its square, of a top of 1, and the direction in which it rises, at
-/// most so steeply.
+/// Makes a ramp from the means over the cube of opacity / `top` (`level`) and of its square, and the direction in which
+/// it rises, with limited slope.
 OcclusionRamp occlusion_ramp(double top, double level, double squares, const glm::dvec3& direction, double steepest);
-/// From the opacities of the eight voxels of a cell, x fastest.
+/// Makes a ramp from the opacities of the eight voxels of a cell, x fastest.
 OcclusionRamp occlusion_ramp(const std::array<double, 8>& opacities);
 
 /// The opacity at a place, if the voxel at the other one is kept: the middle between two samples.
 using EdgeOpacity = std::function<double(const glm::dvec3&, const glm::dvec3&)>;
 
-/// What the device samples of a medium.
+/// The quantities that the device samples in a medium.
 struct OcclusionMedium {
     VoxelOpacity opacity;
     std::function<OcclusionRamp(const glm::ivec3&)> voxel;  ///< over the stretch of the first tap
@@ -82,7 +82,7 @@ struct OcclusionMedium {
 };
 double occlusion_by_taps(const OcclusionMedium& medium, const OcclusionRays& rays, const glm::ivec3& voxel,
                          const OcclusionSide& side);
-/// With every voxel the same throughout.
+/// The same for a medium that is constant inside each voxel.
 double occlusion_by_taps(const VoxelOpacity& opacity, const OcclusionRays& rays, const glm::ivec3& voxel,
                          const OcclusionSide& side);
 
