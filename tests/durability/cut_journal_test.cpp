@@ -1,4 +1,4 @@
-// Cuts a journal of all kinds of records at every byte: what opens is the work after the last whole record, and it goes
+// Cuts a journal of all kinds of records at every byte: it opens as the work after the last whole record, and work goes
 // on from there.
 
 #include <doctest/doctest.h>
@@ -36,8 +36,8 @@ Left left(const Work& work)
     return {hash_of(work.document()), work.kept_settings(), work.history().undoable(), work.history().redoable()};
 }
 
-/// How work is left after each number of whole records in its journal. Between those that are written together there is
-/// none, and what is kept may be as before or after.
+/// The state of the work after each number of whole records in its journal. There is none between records that are
+/// written together, where kept settings may be those before or after.
 std::map<size_t, Left> all_kinds_of_work(const WorkFiles& files)
 {
     std::map<size_t, Left> states;
@@ -104,7 +104,7 @@ TEST_CASE("a journal cut at any byte opens as the work was after its last whole 
     CHECK(lost_notices == 0);
     CHECK(compared > whole.size() * 3 / 4);
     MESSAGE(whole.size(), " cuts of ", scan.records.size(), " records, ", compared, " after a noted step");
-    // What is kept before the first command is of no journal.
+    // Settings kept before the first command belong to no journal.
     const WorkFiles none = files_of(folder.path, "none", kept);
     Work looked(ANNOTATED_SIZE, ANNOTATED_TYPE);
     looked.open(none);

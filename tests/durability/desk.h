@@ -21,8 +21,8 @@ inline std::unique_ptr<Work> open_work(const WorkFiles& files, std::string& said
     return work;
 }
 
-/// A command, an undo, a redo or a revert; or settings are kept, which is no step. False if it made none. For `Work` or
-/// a model of it.
+/// Performs a command, undo, redo or revert, or keeps settings, which is no step. Returns whether it made a step. For
+/// `Work` or a model of it.
 template <class Model>
 bool random_step_of(Model& model, const Document& document, std::mt19937& random)
 {
@@ -61,7 +61,7 @@ inline bool random_step(Work& work, std::mt19937& random)
     return random_step_of(steps, work.document(), random);
 }
 
-/// With the session, which is nothing here.
+/// Saves with an empty session.
 inline Work::Saved save(Work& work)
 {
     return work.save({}, [] {});

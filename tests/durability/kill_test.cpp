@@ -68,7 +68,7 @@ public:
             if (++done % SAVE_EVERY == 0) saves.insert_or_assign(all_steps, *(saved = document));
         }
     }
-    /// What may be kept now, and up to the next step.
+    /// Settings that the files may hold now and until the next step.
     std::vector<SettingValues> kept_until_next_step() const
     {
         Model next = *this;
@@ -130,7 +130,7 @@ TEST_CASE("kills lose at most what was done in the last moments, and never half 
         const pid_t child = ::fork();
         REQUIRE(child >= 0);
         if (child == 0) work_until_killed(folder.path, round, *told);
-        // As many steps on every machine, most of them with a save or two; then somewhere in the next ones.
+        // Waits for as many steps on every machine, mostly with a save or two; then kills within the next ones.
         const size_t until = 1 + random() % (3 * SAVE_EVERY);
         while (told->steps < until) std::this_thread::sleep_for(std::chrono::microseconds(100));
         std::this_thread::sleep_for(std::chrono::microseconds(random() % 2000));

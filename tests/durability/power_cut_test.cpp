@@ -112,7 +112,7 @@ Faults faults_of(const Record& record, const fs::path& folder, size_t cuts, bool
     Faults faults;
     std::mt19937 random(17);
     for (size_t i = 0; i < cuts; ++i) {
-        // Each equal share of the calls has its cut.
+        // Each of several equal parts of the calls has one cut.
         const size_t begin = i * (record.calls.size() + 1) / cuts, end = (i + 1) * (record.calls.size() + 1) / cuts;
         const size_t calls = begin + random() % std::max<size_t>(1, end - begin);
         const PowerCut cut{.calls = calls, .syncs_count = syncs_count};

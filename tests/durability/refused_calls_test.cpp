@@ -1,5 +1,5 @@
-// Makes each call with which a save or the journal changes files fail once, in every way a disk can fail: the files are
-// whole, old or new; no work is lost; and the next try succeeds.
+// Lets each file-changing call of a save or the journal fail once, in every way a disk can fail: the files are whole,
+// old or new; no work is lost; and the next try succeeds.
 
 #include <atomic>
 #include <cerrno>

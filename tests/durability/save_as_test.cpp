@@ -86,7 +86,7 @@ TEST_CASE("every call of saving under other names fails once: nothing of it is l
     using Kind = FileCall::Kind;
     for (const int error : {ENOSPC, EIO, EROFS, EINTR, SHORT_WRITE}) {
         const auto can_happen = [&](Kind kind) {
-            if (kind == Kind::unlink) return false;  // of what is being removed because a call failed
+            if (kind == Kind::unlink) return false;  // only removes files after a failed call
             if (error == EINTR) return kind == Kind::write || kind == Kind::sync || kind == Kind::sync_folder;
             return error != SHORT_WRITE || kind == Kind::write;
         };

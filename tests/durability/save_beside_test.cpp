@@ -79,7 +79,7 @@ TEST_CASE("100 kills during saves beside the work: nothing is disputed, and what
         REQUIRE(::waitpid(child, &status, 0) == child);
         saves += told->saves;
 
-        // What the files hold is a state that the journal knows: of the last save, or of one that had begun.
+        // The files hold a state that the journal knows: that of the last save, or of one that had begun.
         const JournalScan scan = scan_journal(files.journal);
         size_t since_saving = 0;
         bool is_amid = false;

@@ -1,5 +1,5 @@
 // Two processes on one project, in every order of opening, working, saving, closing and being killed: one writes at a
-// time, the other is told so at opening, whatever was acknowledged is there in the end, and both can always be closed.
+// time, the other is warned at opening, all acknowledged work is there in the end, and both can always be closed.
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a process is told to do, and what it answers.
+/// Orders to a process, and its answers.
 constexpr char OPEN = 'o', WORK = 'w', SAVE = 's', CLOSE = 'c', KILL = 'k';
 constexpr char DONE = 'd', TAKEN = 't', FAILED = 'f';
 
@@ -147,7 +147,7 @@ void try_order(const std::array<std::string, 2>& plans, const std::vector<bool>&
                 writes[who] = answer == DONE;
                 wrong += locks && (answer == TAKEN) != writes[!who];
             }
-            // Who may write is refused nothing, and who may not everything.
+            // The writer is refused nothing, and a process that may not write is refused everything.
             if (locks && (what == WORK || what == SAVE)) wrong += (answer == TAKEN) == writes[who];
             if (what == WORK) done[who] += answer == DONE;
             if (what == CLOSE || what == KILL) writes[who] = false;
