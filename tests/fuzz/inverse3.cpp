@@ -1,4 +1,4 @@
-// What listens on the port of the Inverse3's service: handshake, frames, and the messages in them.
+// Bytes from any program on the port of the Inverse3's service: handshake, frames, and the messages in them.
 
 #include <algorithm>
 #include <cmath>

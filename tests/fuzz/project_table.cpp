@@ -24,7 +24,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
             "a record that cannot be read again");
         return 0;
     }
-    // As a reader of a volume of 2 x 2 x 1 bricks of uint8 expects it.
+    // Read as the table of a volume of 2 x 2 x 1 bricks of uint8.
     ProjectTable table;
     if (accepts([&] { table = read_project_table(file, {"ranges", 0, 2, Size3(2, 2, 1)}); })) {
         expect(table.elements.size() == 8, "a table of another size");
