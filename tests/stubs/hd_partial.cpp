@@ -1,4 +1,4 @@
-// A libHD.so of another age: it has the first function only.
+// A libHD.so of another version: it has the first function only.
 
 #include <cstdint>
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a test sets and reads of the stand-in for libHD.so. One device at a time.
+// The state that a test sets and reads in the stand-in for libHD.so. One device at a time.
 
 #include <array>
 #include <atomic>
@@ -20,5 +20,5 @@ struct HdStub {
     std::atomic<int> inits{0}, disables{0}, updates{0}, ticks{0}, unframed{0};
 };
 
-/// The symbol `stub_control`: returns the one of this library.
+/// Type of the symbol `stub_control`, which returns the control block of this library.
 using HdStubControl = HdStub* (*)();
