@@ -263,7 +263,7 @@ void check_space_mouse(const HidProfile& profile)
 int main(int count, char** arguments)
 {
     if (count != 4) return 2;
-    // As the servo runs.
+    // Same scheduling as the servo.
     const sched_param priority{.sched_priority = 40};
     check(sched_setscheduler(0, SCHED_FIFO, &priority) == 0, "the host's thread is a real-time one");
     check_arm(load_hid_profile(arguments[1]), uint32_t(std::atoi(arguments[3])));

@@ -1,5 +1,5 @@
 #pragma once
-// A HID device that the kernel's uhid makes: what the kernel, hidapi and SHVR's link take for a real one. Needs root.
+// A HID device made by the kernel's uhid, which the kernel, hidapi and SHVR's link take for a real one. Needs root.
 
 #include <array>
 #include <atomic>
@@ -19,7 +19,7 @@ public:
         uint16_t vendor, product;
         std::span<const uint8_t> descriptor;  ///< report descriptor
     };
-    /// `feature`: what it answers when a feature report is asked for, its number first.
+    /// `feature`: the answer to a request for a feature report, its number first.
     UhidDevice(const Identity& identity, std::vector<uint8_t> feature);
     ~UhidDevice();  ///< it is unplugged
     bool is_there() const { return descriptor_ >= 0; }
