@@ -115,7 +115,7 @@ FILES = {
     "big.nii": nifti(">", "n+1", 352, STRAIGHT) + BIG,
     "gzip.nii.gz": gzip(nifti("<", "n+1", 368, STRAIGHT) + LITTLE),
     "radiological.nii": nifti("<", "n+1", 352, RADIOLOGICAL) + reversed_along(0),
-    # Half a turn about y and a mirrored z: x alone runs backwards.
+    # Rotated by 180 degrees about y, with z mirrored: only x runs backwards.
     "qform.nii": nifti("<", "n+1", 352, quaternion=(0, 1, 0), qfac=-1.0).replace(
         struct.pack("<f", 10), struct.pack("<f", 12)) + reversed_along(0),
     "pair.hdr": nifti(">", "ni1", 0, STRAIGHT),

@@ -35,7 +35,7 @@ def keep(name, values):
     made.append(name)
 
 
-# ---- What make_zarr.py writes, once more ----------------------------------------------------------------------------
+# ---- The arrays of make_zarr.py, again ------------------------------------------------------------------------------
 
 
 def codec_of(compressor):
@@ -90,7 +90,7 @@ def repeat_version_2():
     version_2.make_images(write_series=False)
 
 
-# ---- What version 3 alone has ---------------------------------------------------------------------------------------
+# ---- Features of version 3 alone ------------------------------------------------------------------------------------
 
 INDEX = [codec("bytes", endian="little"), codec("crc32c")]
 
