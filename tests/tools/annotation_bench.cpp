@@ -1,4 +1,4 @@
-// What annotating costs: a stroke on a device, the picture after it, undoing it, its journal, a node more in a long
+// Costs of annotation: a stroke on a device, the picture after it, undoing it, its journal, one more node in a long
 // trace, and ten thousand strokes on a volume of 1024^3 voxels. Times are of this machine, and of this run; bytes and
 // voxels are always the same.
 
@@ -101,7 +101,7 @@ void one_stroke(const Folder& folder)
     std::vector<double> selecting, painting, undoing, redoing, before, after, journaling;
     int64_t voxels = 0, bytes = 0;
     for (int round = 0; round < ROUNDS; ++round) {
-        draw();  // what the last undo left to do
+        draw();  // the work that the last undo left
         before.push_back(milliseconds_of(draw));
         selecting.push_back(milliseconds_of([&] { annotator.select(op); }));
         annotator.work().flush();

@@ -1,5 +1,5 @@
-// Draws a random part of the pixels of a picture with the double-precision reference renderer: what pictures of large
-// scenes are measured against (README.md).
+// Draws a random part of the pixels of a picture with the double-precision reference renderer, against which pictures
+// of large scenes are measured (README.md).
 
 #include <charconv>
 #include <cstdio>
@@ -75,7 +75,7 @@ Options parse(std::span<char*> arguments)
     return options;
 }
 
-/// Of the session's mask file; null where there is none.
+/// Reads the session's mask file; null if it has none.
 std::optional<Mask> mask_of(const Session& session, const Size3& size)
 {
     if (session.mask_path.empty() || !std::filesystem::exists(session.mask_path)) return std::nullopt;

@@ -1,4 +1,4 @@
-// What drawing 10,000 rods costs, with how many of them in a leaf of the hierarchy, and with every one asked (a
+// Cost of drawing 10,000 rods by the number of rods in a leaf of the hierarchy, and with every rod tested (takes a
 // minute).
 //
 //   cmake --build build/release --target bench_surfaces

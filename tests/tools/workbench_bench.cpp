@@ -57,7 +57,7 @@ int main()
                     ambient = ambient > 0.9 ? 0.0 : ambient + 0.001;
                     bench.perform(ui::edited(bench.model().session, [&](Session& s) { s.light.ambient = ambient; }));
                 }));
-    // What a save or a job takes of the work: a copy that shares bricks and pages of the trace.
+    // The copy of the work for a save or a job, which shares bricks and pages of the trace.
     for (int node = 1000; node < 100'000; ++node)
         bench.perform(NodeOp{.at = {double(node % 500), double(node / 500), 250.0}, .radius_voxels = 1.0});
     while (bench.has_work()) bench.advance();
