@@ -1,5 +1,5 @@
 #pragma once
-// Everything a person can do, without a window: the open document, the actions on it, background work, and
+// Everything the user can do, without a window: the open document, the actions on it, background work, and
 // messages. The window, scripts and tests are its callers; keys, menus and panels only make
 // actions (actions/action.h).
 //
@@ -7,8 +7,8 @@
 //
 // One thread, the one that owns the renderer, besides the servo's (haptics/servo.h), those of jobs and savers, and one
 // that writes a screenshot.
-// `advance` never waits for the device, nor for a disk: files are read and written by jobs, and a volume that is opened
-// goes onto the device in slices of a few milliseconds. A step in which nothing happens costs microseconds
+// `advance` never waits for the device or a disk: jobs read and write files, and a volume that is opened
+// is loaded onto the device in slices of a few milliseconds. A step in which nothing happens costs microseconds
 // (ui/MEASURED.md).
 
 #include <array>
@@ -28,26 +28,26 @@ public:
 
     // ---- Actions
 
-    /// Carries it out. Fails, with nothing changed, with the reason; then the caller says it.
+    /// Carries out an action. If it fails, nothing has changed, and the caller reports the reason.
     void perform(const Action& action);
-    /// The same; a failure other than DeviceLost becomes a message. Returns whether it was carried out.
+    /// Carries out an action; a failure other than DeviceLost becomes a message. Returns whether it succeeded.
     bool apply(const Action& action);
-    /// Opens in the background, with settings as --set takes them, as the action Open does: what is open stays until
-    /// the next is there, and is saved before that. A failure becomes a message.
+    /// Opens in the background, with settings as --set takes them, like the action Open: the open document stays until
+    /// the next one is loaded, and is saved first. A failure becomes a message.
     void begin_open(const std::filesystem::path& path, const std::vector<std::string>& settings)
     {
         services_.opener.begin_open(path, settings);
     }
-    /// The same, and waits until it is there; saves nothing before. Fails where it cannot be opened.
+    /// Opens and waits until it is done; saves nothing before. Fails if it cannot be opened.
     void open(const std::filesystem::path& path, const std::vector<std::string>& settings, Work::Opening how = {})
     {
         services_.opener.open(path, settings, std::move(how));
     }
-    /// Takes what the caller has opened; the renderer's scene is of its volume.
+    /// Takes a document that the caller has opened; the renderer's scene is of its volume.
     void take(Document::Read read) { services_.opener.take(std::move(read)); }
     void say(std::string text, Weight weight = Weight::done) { desk_.say(std::move(text), weight); }
-    /// After the graphics device was lost (DeviceLost, from any function here): drops what the workbench has on it,
-    /// calls `make_anew`, and shows all again. Recorded work survives; the unpainted rest of a stroke under way does
+    /// Call after the graphics device was lost (DeviceLost, from any function here): drops the workbench's objects on
+    /// it, calls `make_anew`, and shows all again. Recorded work survives; the unpainted rest of a running stroke does
     /// not.
     void restart_device(const std::function<void()>& make_anew) { services_.opener.restart_device(make_anew); }
     /// From now on this device moves the probe, whatever is plugged in, and its button paints.
@@ -60,38 +60,38 @@ public:
 
     // ---- Steps of the main loop
 
-    /// Size of the picture; 0, 0: none is drawn.
+    /// Sets the size of the picture; 0, 0: none is drawn.
     void set_pixels(const glm::uvec2& pixels);
-    /// Sets the place of the mouse, which is then read; null: not over the picture.
+    /// Sets the position of the mouse, where values are then read; null: not over the picture.
     void set_pointer(const std::optional<Pointer>& pointer) { services_.viewer.set_pointer(pointer); }
-    /// What was to be copied since the last call; empty: nothing.
+    /// Returns text to copy since the last call; empty: none.
     std::string take_clipboard() { return services_.reader.take_clipboard(); }
-    /// While a hand is setting something no step of the history is made of it: one drag is one step.
+    /// While the hand is changing a setting, no step of the history is made: one drag is one step.
     void set_hand_down(bool is_down) { services_.settings.set_hand_down(is_down); }
-    /// Pixels of one unit of the interface, for what is drawn over pictures.
+    /// Sets the pixels per unit of the interface, for drawing over pictures.
     void set_units(double units) { services_.photographer.set_units(units); }
-    /// Nothing else waits for the device: large screenshots may go on.
+    /// Sets whether the device is idle: then large screenshots may continue.
     void set_still(bool is_still) { services_.photographer.set_still(is_still); }
-    /// Does one step of all background work. Failures become messages, and the failed part is retried a little later:
-    /// the rest goes on and no work is lost. DeviceLost is thrown.
+    /// Runs one step of all background work. Failures become messages, and the failed part is retried a little later:
+    /// the rest continues and no work is lost. DeviceLost is thrown.
     void advance();
-    /// Steps until a running stroke is painted. Returns why part of it was not; empty if all was.
+    /// Runs steps until the current stroke is painted. Returns why part of it was not; empty if all was.
     std::string finish_stroke() { return services_.painter.finish_stroke(); }
-    /// Waits for what is being saved. Returns what was written; fails with the reason where that is not all.
+    /// Waits for the save under way. Returns what was written; fails with the reason if that is not all.
     Work::Saved finish_save() { return services_.saver.finish_save(); }
-    /// Waits until all that was done is on disk, in the journal; fails with the reason if that is not possible.
+    /// Waits until all changes are in the journal on disk; fails with the reason if that is not possible.
     void flush() { desk_.document->annotator.work().flush(); }
-    /// Whether another step at once would find something to do.
+    /// Returns whether another step would find work at once.
     bool has_work() const;
-    /// Whether there is a picture that does not yet show what was done last.
+    /// Returns whether a picture exists that does not yet show the last changes.
     bool is_stirring() const { return services_.viewer.is_stirring(); }
-    /// Whether what is open may be closed: call it once a frame. Saves all work as Save does; if the person only looked
-    /// around, saves the view silently. Where the work is only looked at, nothing is saved, as was said; while it is
-    /// asked what to believe, annotation stays as the journal has it.
+    /// Returns whether the open document may be closed: call it once a frame. Saves all work as Save does; if the user
+    /// only looked around, saves the view silently. Read-only work is not saved, as was reported; while the question
+    /// which files to believe is open, annotation stays as in the journal.
     using Leave = ui::Leave;
     Leave leave(std::string& why) { return services_.saver.leave(why); }
     bool is_saving() const { return services_.saver.is_saving(); }
-    /// Whether anything is to be seen of jobs.
+    /// Returns whether any job is displayed.
     bool shows_jobs() const;
 
     // ---- What there is to see
@@ -104,16 +104,16 @@ public:
     const MessageLog& messages() const { return desk_.messages; }
     bool takes_large_screenshot() const { return services_.photographer.has_large(); }
     void wait_for_screenshots() const { services_.photographer.wait(); }
-    /// Quit was asked for; asking clears it.
+    /// Returns whether Quit was requested, and clears the request.
     bool take_quit() { return services_.saver.take_quit(); }
-    /// What the keyboard was asked to be given to, once; empty: nothing.
+    /// Returns the requested keyboard focus and clears it; empty: none.
     std::string take_focus() { return services_.window.take_focus(); }
-    /// Whether lines show what the cutting planes leave: while they are moved, and a little longer.
+    /// Returns whether the box of the cutting planes is shown: while they are moved, and a little longer.
     bool shows_cut_box() const { return services_.viewer.shows_cut_box(); }
     bool shows_full_screen() const { return services_.window.is_full_screen(); }
-    /// Voxels that the preview showed when the last stroke began, if it had one.
+    /// Number of voxels in the preview when the last stroke began, if it had one.
     std::optional<int64_t> previewed_at_stroke() const { return services_.painter.previewed_at_stroke(); }
-    /// When the open document was opened, and how often one was.
+    /// Time when the open document was opened, and the number of documents opened so far.
     double opened_s() const { return desk_.opened_s; }
     uint64_t openings() const { return desk_.openings; }
 
@@ -123,7 +123,7 @@ private:
     Desk desk_;
     Services services_{desk_};
     RecentActions recent_;
-    /// In the order of a step.
+    /// Services in the order of a step
     const std::array<Service*, 10> turn_{
         &services_.tasks,    &services_.opener,  &services_.reloader, &services_.saver,  &services_.hand,
         &services_.settings, &services_.painter, &services_.viewer,   &services_.reader, &services_.photographer};

@@ -1,5 +1,5 @@
 #pragma once
-// What a person can ask for. Keys, mouse, menus, panels, the stylus and scripts make actions and change nothing; the
+// The actions of the user. Keys, mouse, menus, panels, the stylus and scripts make actions and change nothing; the
 // workbench carries them out in one place, in order. Each has a stable id and arguments as JSON (action_rows.h), so it
 // can be logged, replayed and written in a script. Plain data; any thread.
 
@@ -26,7 +26,7 @@ struct JoinedRows {
 template <class... Joined, class... Rows, class... Tables>
 struct JoinedRows<std::tuple<Joined...>, std::tuple<Rows...>, Tables...>
     : JoinedRows<std::tuple<Joined..., Rows...>, Tables...> {};
-/// In the order in which actions are listed.
+/// The rows in the order in which actions are listed.
 using ActionRows =
     JoinedRows<std::tuple<>, std::remove_const_t<decltype(LOOKING_ACTIONS)>,
                std::remove_const_t<decltype(SETTINGS_ACTIONS)>, std::remove_const_t<decltype(PROBE_ACTIONS)>,
@@ -43,7 +43,7 @@ struct VariantOfRows<std::tuple<Rows...>> {
 using Action = VariantOfRows<ActionRows>::Type;
 using Actions = std::vector<Action>;
 
-/// The place of an alternative of Action, and of its row.
+/// Index of an alternative of Action, and of its row.
 template <class Kind, class Rows = ActionRows>
 inline constexpr size_t INDEX_OF_KIND = 0;
 template <class Kind, class... Rows>

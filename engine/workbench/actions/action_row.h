@@ -22,7 +22,7 @@
 
 namespace shvr::ui {
 
-/// What must be open for an action.
+/// Says whether an action needs an open document.
 enum class Needs : uint8_t { document, nothing };
 
 struct ActionRow {
@@ -44,7 +44,7 @@ struct FullRow : ActionRow {
 };
 
 inline constexpr auto NO_FIELDS = [](auto&, auto&) {};
-/// Those of a task, which engine/tasks states.
+/// The fields of a task, which engine/tasks states.
 inline constexpr auto TASK_FIELDS = [](auto& f, auto& task) { fields(f, task); };
 inline constexpr auto NO_CONDITION = [](const auto&, const auto&) { return std::string(); };
 

@@ -1,6 +1,6 @@
 #pragma once
-// The registry of actions: for each its stable id, name, group and meaning, its arguments as JSON and as text, and why
-// it cannot be applied just now. Keys, menus, palette, scripts and logs all go by ids. Pure; any thread.
+// The registry of actions: for each its stable id, name, group and meaning, its arguments as JSON and as text, and the
+// reason why it is unavailable now. Keys, menus, palette, scripts and logs all refer to ids. Pure; any thread.
 //
 //   {"op":"orbit","right_degrees":3}     a line of a script or of a log
 //   orbit right_degrees=3                the same as text
@@ -15,24 +15,24 @@
 
 namespace shvr::ui {
 
-/// In the order of the alternatives of Action.
+/// Returns the rows in the order of the alternatives of Action.
 std::span<const ActionRow> action_rows();
 const ActionRow& row_of(const Action& action);
 
-/// A line of JSON that `read_action` reads as the same action.
+/// Returns a line of JSON that `read_action` parses as the same action.
 std::string line_of(const Action& action);
-/// Fails at ids, keys and values that it does not know, naming what was expected.
+/// Fails at unknown ids, keys and values, naming what was expected.
 Action read_action(const JsonNode& line);
 /// `origin` names the text in messages.
 Action read_action(std::string_view line, const std::string& origin);
-/// As text; values that hold spaces are JSON texts.
+/// Returns the action as text; values with spaces are JSON texts.
 std::string text_of(const Action& action);
 Action action_of_text(const std::string& text);
 
-/// Why it would do nothing or be refused: "nothing is open", "no node is selected"; empty where nothing speaks against
-/// it. Applying may still fail for reasons that only the device or a file knows.
+/// Returns why the action would do nothing or be refused: "nothing is open", "no node is selected"; empty if it is
+/// available. Applying may still fail for reasons that only the device or a file knows.
 std::string why_not(const Model& model, const Action& action);
-/// Whether it only has to wait for strokes that have ended and are being painted.
+/// Returns whether the action only has to wait until ended strokes are painted.
 bool waits_for_strokes(const Model& model, const Action& action);
 
 }  // namespace shvr::ui

@@ -1,5 +1,5 @@
 #pragma once
-// Ranges of the arguments of actions, and arguments that several of them have.
+// Ranges of action arguments, and arguments that several actions share.
 
 #include <optional>
 

@@ -1,6 +1,6 @@
 #pragma once
-// Conditions that several actions share: why they would do nothing just now, in words that fit after a colon or into a
-// tooltip; empty where nothing speaks against them. Pure; any thread.
+// Conditions that several actions share: the reason why they are unavailable now, in words that fit after a colon or
+// into a tooltip; empty if they are available. Pure; any thread.
 
 #include <cstdint>
 #include <string>
@@ -13,15 +13,15 @@ struct Model;
 
 inline constexpr const char *IS_PAINTING = "a stroke is being painted", *IS_SAVING = "the work is being saved";
 
-/// Holds for every change of annotation.
+/// Condition of every change of annotation.
 std::string why_not_edited(const Model& model);
-/// Holds for every change of the trace.
+/// Condition of every change of the trace.
 std::string why_not_traced(const Model& model);
 std::string why_without_selection(const Model& model);
 std::string why_without_node(const Model& model);
-/// `group`: of what is to be traced.
+/// `group`: group of the new nodes or internodes.
 std::string why_without_group(const Model& model, uint8_t group);
-/// `name`: of a transfer function that the person has kept.
+/// `name`: name of a transfer function that the user has kept.
 std::string why_not_own(const Model& model, const std::string& name);
 
 }  // namespace shvr::ui

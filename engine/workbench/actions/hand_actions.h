@@ -1,5 +1,5 @@
 #pragma once
-// What a person can ask of the hand. Devices are those of haptics/devices; the chosen one is kept for all scans.
+// Actions on the hand. Devices are those of haptics/devices; the choice is kept for all scans.
 
 #include "engine/workbench/actions/action_row.h"
 
@@ -7,7 +7,7 @@ namespace shvr::ui {
 
 class Hand;
 
-struct LetGo {  ///< no force from the next tick on, until it is switched off again
+struct LetGo {  ///< no force from the next tick on, until switched off again
     bool on = true;
 };
 
@@ -16,26 +16,26 @@ struct GrabVolume {  ///< the volume moves and turns with the stylus until relea
 };
 
 struct UseDevice {
-    std::string device;  ///< id of a listed one; empty: the first that can be used, whatever is plugged in
+    std::string device;  ///< id of a listed device; empty: the first usable one
 };
 
 struct FindDevices {};  ///< searches for connected devices again
 
-struct CalibrateDevice {};  ///< opens it again, so that its place of rest becomes its origin
+struct CalibrateDevice {};  ///< opens the device again, so that its rest position becomes its origin
 
-/// What the stylus does and feels, tick by tick, into a file (haptics/replay/README.md).
+/// Records the stylus's motion and forces, tick by tick, into a file (haptics/replay/README.md).
 struct RecordStylus {
-    std::filesystem::path path;  ///< empty: a free name beside the session
+    std::filesystem::path path;  ///< empty: a free name next to the session
 };
 
 struct StopRecording {};
 
-/// Leads the probe along such a file, tick by tick, as a hand would with the present guidance: its first button paints,
+/// Moves the probe along such a file, tick by tick, as a hand would with the present guidance: its first button paints,
 /// or adds nodes in the trace tool.
 struct FollowStylus {
     std::filesystem::path path;
-    bool by_hand = true;             ///< a modelled hand holds a modelled stylus; false: the device's own answers
-    double node_every_voxels = 8.0;  ///< between nodes, along x
+    bool by_hand = true;             ///< a modelled hand holds a modelled stylus; false: the recorded device's answers
+    double node_every_voxels = 8.0;  ///< distance between nodes, along x
 };
 
 inline constexpr const char* HAND_GROUP = "Touch";

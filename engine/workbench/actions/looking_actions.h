@@ -1,5 +1,5 @@
 #pragma once
-// What a person can ask of the view. Angles in degrees; pixels are those of a pane, counted as in Screen::parts.
+// Actions on the view. Angles in degrees; pixels are those of a pane, numbered as in Screen::parts.
 
 #include "engine/workbench/actions/action_row.h"
 
@@ -33,10 +33,10 @@ struct DragInMap {
 };
 
 struct LookFrom {
-    std::string camera;  ///< a camera of the session, or a side
+    std::string camera;  ///< a camera of the session, or a side of the volume
 };
 
-/// Keeps the present view under a name; a camera of that name is replaced. Without a name it gets a new one.
+/// Stores the present view under a name, replacing a camera of that name. Without a name it gets a new one.
 struct KeepCamera {
     std::string name;
 };
@@ -49,49 +49,49 @@ struct RenameCamera {
     std::string name, to;
 };
 
-/// Turning goes about what is seen there, from now on.
+/// Sets the pivot of turning to the visible point at a pixel.
 struct PivotAt {
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
 };
 
-/// The camera looks at a voxel, from the same side and as far away as before.
+/// Moves the camera to look at a voxel, from the same side and distance as before.
 struct GoTo {
     glm::dvec3 voxel{0.0};
 };
 
-/// Cutting planes: axis 0 ... 2, lower or upper plane, as fractions of the volume's size.
+/// Moves a cutting plane: axis 0 ... 2, lower or upper plane, as a fraction of the volume's size.
 struct MoveCut {
     int axis = 0;
     bool upper = false;
     double share = 0.0;
 };
 
-/// Clip planes of the camera, as fractions of the distance to the target.
+/// Moves a clip plane of the camera, as a fraction of the distance to the target.
 struct MoveClip {
     bool far = false;
     double share = 0.0;
 };
 
-/// Both clip planes, as distances from the eye in physical units; 0: no plane.
+/// Sets both clip planes, as distances from the eye in physical units; 0: no plane.
 struct PlaceClips {
     double near = 0.0, far = 0.0;
 };
 
 struct ResetCuts {};
 
-/// Brings the volume, or what the cutting planes leave of it, into sight, from where one looks.
+/// Fits the volume, or its part within the cutting planes, into the view, from the current direction.
 struct FitView {
     size_t pane = 0;  ///< a slice: fits all slices instead of the camera
 };
 
-/// Back to the camera that the session opens with.
+/// Returns to the camera that the session opens with.
 struct ResetView {};
 
-/// Towards what is selected, at the distance there is.
+/// Looks at the selection, at the current distance.
 struct LookAtSelection {};
 
-struct UpdateOcclusion {};  ///< updates it where it does not update by itself
+struct UpdateOcclusion {};  ///< computes it again if it does not update by itself
 
 inline constexpr const char* LOOKING_GROUP = "Looking";
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a person can ask of the brush. Strokes of scripts (PaintOp) are actions, too.
+// Actions of the brush. Strokes of scripts (PaintOp) are actions, too.
 
 #include "engine/annotation/script/script.h"
 #include "engine/session/session.h"

@@ -1,5 +1,5 @@
 #pragma once
-// What a person can ask of the probe.
+// Actions on the probe.
 
 #include "engine/workbench/actions/action_row.h"
 
@@ -13,32 +13,32 @@ inline constexpr double MIN_RADIUS_VOXELS = 0.5, MAX_RADIUS_VOXELS = 60.0;
 struct ProbeTo {  ///< follows the mouse in the plane through the probe
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
-    bool jumps = false;  ///< not by the hand's motion: a stroke that is open paints nothing in between
+    bool jumps = false;  ///< not a motion of the hand: an open stroke paints nothing in between
 };
 
-/// Onto what is seen there: the largest rise of opacity along the ray (Renderer::pick).
+/// Moves it onto the visible structure: the largest rise of opacity along the ray (Renderer::pick).
 struct ProbeOnto {
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
 };
 
-/// Follows the mouse along what is seen. While a stroke is open, its depth changes by no more than its radius and its
-/// way across the picture, so that the stroke stays on the surface that it began on. Where nothing is seen, it keeps
-/// its depth.
+/// Follows the mouse along the visible surface. While a stroke is open, the depth changes by at most the radius and
+/// its way across the picture, so that the stroke stays on the surface where it began. If nothing is visible, the
+/// probe keeps its depth.
 struct ProbeAlong {
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
     bool jumps = false;
 };
 
-struct PushProbe {  ///< away from the viewer of a pane, to the right and up, in voxels
+struct PushProbe {  ///< moves it away from the viewer of a pane, to the right and up, in voxels
     size_t pane = 0;
     double voxels = 0.0, right = 0.0, up = 0.0;
 };
 
-struct PlaceProbe {  ///< a stroke that is open goes there with it
+struct PlaceProbe {  ///< extends an open stroke
     glm::dvec3 voxel{0.0};
-    bool jumps = false;  ///< and paints nothing in between
+    bool jumps = false;  ///< the stroke paints nothing in between
 };
 
 struct ScaleProbe {

@@ -1,5 +1,5 @@
 #pragma once
-// What a person can ask of the settings, and of transfer functions kept for all scans (transfer_presets.h).
+// Actions on the settings, and on transfer functions kept for all scans (transfer_presets.h).
 
 #include "engine/workbench/actions/action_row.h"
 
@@ -8,18 +8,18 @@ namespace shvr::ui {
 class PresetShelf;
 class SettingsEditor;
 
-/// Any settings at once, as a patch of the session (session_patch.h). Lasting settings become a step of the history.
+/// Changes any settings at once, by a patch of the session (session_patch.h). Lasting settings become a history step.
 struct Set {
     std::string patch;
 };
 
-/// The first group that nothing uses yet becomes one of the session's, and the active one.
+/// Adds the first unused group to the session, and activates it.
 struct NewGroup {};
 
-/// What was set since the last step becomes one; it does by itself when the hand lets go.
+/// Makes a step of all changes since the last one; also happens when the hand lets go.
 struct EndStep {};
 
-/// Black and white of slices so that almost all voxels lie between them.
+/// Sets black and white of slices so that almost all voxels lie between them.
 struct AutoContrast {};
 
 struct KeepPreset {
@@ -34,7 +34,7 @@ struct ForgetPreset {
     std::string name;
 };
 
-/// Takes the transfer function of a file, which need not be among those that are kept.
+/// Takes the transfer function of a file, which need not be among the kept ones.
 struct TakePreset {
     std::filesystem::path path;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// What a person can ask of the trace. Operations of scripts on it are actions, too.
+// Actions on the trace. Operations of scripts on it are actions, too.
 
 #include "engine/annotation/script/script.h"
 #include "engine/workbench/actions/action_row.h"
@@ -8,21 +8,21 @@ namespace shvr::ui {
 
 class Tracer;
 
-/// A node counts as near the probe up to this distance, in radii of the probe.
+/// Maximum distance of a node that counts as near the probe, in radii of the probe.
 inline constexpr double NEARBY_RADII = 4.0;
 
 struct DragNode {  ///< the selected node follows the probe until released, as one step of the history
     bool on = false;
 };
 
-/// A node at what is seen there, linked with the selected one.
+/// Adds a node at the visible point, linked with the selected one.
 struct NodeAt {
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
 };
 
-/// Selects the node or internode that is seen there; or else takes the group that is painted there; or else selects
-/// nothing.
+/// Selects the visible node or internode at the pixel; else activates the group painted there; else clears the
+/// selection.
 struct SelectAt {
     size_t pane = 0;
     glm::dvec2 pixel{0.0};

@@ -1,5 +1,5 @@
 #pragma once
-// What a person can ask of the window, its keys and its preferences.
+// Actions on the window, its keys and its preferences.
 
 #include "engine/workbench/actions/action_row.h"
 
@@ -14,23 +14,23 @@ struct AskOpen {  ///< shows or hides the file chooser
     bool on = true;
 };
 
-/// One of the two sets of keys (shortcuts.h).
+/// Selects one of the two sets of keys (shortcuts.h).
 struct ChooseKeys {
     std::string set;
 };
 
-/// Other keys for a shortcut: its id, and chords separated by spaces; none: it has no key.
+/// Binds other keys to a shortcut: its id, and chords separated by spaces; none: it has no key.
 struct BindKeys {
     std::string shortcut, keys;
 };
 
-/// The picture is so large now; what pixels of panes mean depends on it.
+/// Sets the size of the picture, which pixels of panes refer to.
 struct Resize {
     glm::uvec2 pixels{0};
 };
 
-/// The next key that is pressed is bound to that shortcut; Escape leaves it as it is, Delete takes its keys away. An
-/// empty id: none is waited for any more.
+/// Binds the next key that is pressed to that shortcut; Escape keeps the binding, Delete removes its keys. An
+/// empty id: stops waiting for a key.
 struct AwaitKey {
     std::string shortcut;
 };
@@ -39,32 +39,32 @@ struct ShowHelp {
     bool on = true;
 };
 
-/// All that was said, with its weight; while it is shown, all of it has been read.
+/// Shows all messages, with their weight; they count as read while they are shown.
 struct ShowMessages {
     bool on = true;
 };
 
-/// What the device spends on each step of a picture.
+/// Shows the device's time for each pass of a picture.
 struct ShowPasses {
     bool on = true;
 };
 
-/// Writes what the steps of the present picture took, to compare others with.
+/// Writes the pass times of the present picture, for later comparison.
 struct SavePasses {
     std::filesystem::path path;
 };
 
-/// Compares with such a file, or with what `shvr profile --json` printed; an empty path: with nothing any more.
+/// Compares with such a file, or with the output of `shvr profile --json`; an empty path ends the comparison.
 struct ComparePasses {
     std::filesystem::path path;
 };
 
-/// A box to type in, which finds all shortcuts, actions and settings.
+/// Shows a box to type in, which finds all shortcuts, actions and settings.
 struct ShowPalette {
     bool on = true;
 };
 
-/// Changes preferences (preferences.h), as a patch of their file: {"theme": "light"}; null takes what ships.
+/// Changes preferences (preferences.h), by a patch of their file: {"theme": "light"}; null restores a default.
 struct Prefer {
     std::string patch;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// What a person can ask of the work: files, history and tasks (engine/tasks).
+// Actions on the work: files, history and tasks (engine/tasks).
 
 #include "engine/annotation/script/script.h"
 #include "engine/tasks/evaluate_task.h"
@@ -18,12 +18,12 @@ class Saver;
 class SettingsEditor;
 class TaskRunner;
 
-/// Goes on under another name, with the whole history; the files so far stay as they are.
+/// Continues under another name, with the whole history; existing files stay as they are.
 struct SaveAs {
     std::filesystem::path path;  ///< the session's new file
 };
 
-/// Writes all that is shown into files of another name, and goes on as before. An empty path: beside the session.
+/// Writes everything shown into files of another name, and continues as before. Empty path: next to the session.
 struct CopySession {
     std::filesystem::path path;
 };
@@ -40,46 +40,46 @@ struct Screenshot {
 /// Runs in the background: the open document stays until the next one is loaded.
 struct Open {
     std::filesystem::path path;
-    std::string settings{};  ///< for this time, as --set takes them: "volume.channel=red", one a line
+    std::string settings{};  ///< for this opening, as --set takes them: "volume.channel=red", one per line
 };
 
-/// Reads what a file is, without its voxels, for the dialog that opens it: Model::candidate.
+/// Inspects a file without its voxels, for the open dialog: Model::candidate.
 struct LookAtFile {
-    std::filesystem::path path;  ///< empty: none any more
+    std::filesystem::path path;  ///< empty: ends the inspection
     std::string settings{};      ///< as in Open
 };
 
-/// What was dropped onto the window: opens volumes, sessions, projects and pictures, and takes annotation and transfer
-/// functions into what is open, as steps that undo takes back. The contents decide the kind of file. Where one of
-/// several can be opened, the others are taken into that.
+/// Takes a file dropped onto the window: opens volumes, sessions, projects and pictures, and takes annotation and
+/// transfer functions into the open document, as steps that undo takes back. The contents decide the kind of file. If
+/// one of several files can be opened, the others are taken into it.
 struct TakeFile {
     std::filesystem::path path;
-    std::string beside{};  ///< those that were dropped with it, one a line
+    std::string beside{};  ///< paths of files dropped with it, one per line
 };
 
-/// The volume's spacing was wrong: saves the work, and opens it with this one. Positions stay at their voxels.
+/// Corrects the volume's spacing: saves the work, and opens it with this one. Positions stay at their voxels.
 struct CorrectSpacing {
     glm::dvec3 spacing{1.0};
     std::string unit;
 };
 
-/// What was said of recovered work has been read.
+/// Marks the notes about recovered work as read.
 struct DismissNotices {};
 
-/// No longer among what was opened last; the file stays.
+/// Removes a path from the recently opened ones; the file stays.
 struct ForgetRecent {
     std::filesystem::path path;
 };
 
-/// Where another program has changed saved annotation: takes the files, as a step that undo takes back, or the journal.
+/// If another program has changed saved annotation: takes the files, as a step that undo takes back, or the journal.
 struct ChooseBelief {
     bool takes_files = false;
 };
 
-/// Saves all that is shown under names of its own, and opens that.
+/// Saves everything that is shown under names of its own, and opens it.
 struct WorkOnCopy {};
 
-/// Opens the example that ships, as a copy of the person's own.
+/// Opens the example that ships, as the user's own copy.
 struct OpenExample {};
 
 inline constexpr const char* WORK_GROUP = "Work";

@@ -1,5 +1,5 @@
 #pragma once
-// Which characters the font must hold: those of European languages from the start, any other once a text has it. Pure;
+// The characters that the font must hold: European languages from the start, others once a text has them. Pure;
 // one thread.
 
 #include <bitset>
@@ -15,12 +15,12 @@ public:
     static constexpr uint32_t LIMIT = 0x10000;  ///< Dear ImGui knows no characters above
 
     GlyphSet();
-    /// UTF-8; broken bytes are skipped. Returns whether it has a character that no text before had.
+    /// Adds UTF-8 text; skips broken bytes. Returns whether it has a character that no earlier text had.
     bool add(std::string_view text);
     bool add(uint32_t character);
-    /// Whether there is any that not every font has.
+    /// Returns whether a character was added that some fonts lack.
     bool has_rare() const { return has_rare_; }
-    /// First and last of each run, ascending.
+    /// Returns first and last character of each run, ascending.
     std::vector<std::pair<uint16_t, uint16_t>> ranges() const;
 
 private:

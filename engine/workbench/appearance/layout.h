@@ -1,6 +1,6 @@
 #pragma once
-// Which panels there are, where each is, and how much of the window is left for the picture. Lengths are in font sizes
-// where nothing else is said, so that a layout fits every scale. Pure; any thread.
+// The panels, where each is, and how much of the window is left for the picture. Lengths are in font sizes
+// unless stated otherwise, so that a layout fits every scale. Pure; any thread.
 
 #include <map>
 #include <optional>
@@ -14,7 +14,7 @@
 
 namespace shvr::ui {
 
-/// `side`: under the others at the right; `floating`: a window of its own; `hidden`: not there.
+/// `side`: below the others at the right; `floating`: a window of its own; `hidden`: not shown.
 enum class PanelPlace { side, floating, hidden };
 inline constexpr Spelling<PanelPlace> PANEL_PLACES[] = {
     {PanelPlace::side, "side"}, {PanelPlace::floating, "floating"}, {PanelPlace::hidden, "hidden"}};
@@ -26,7 +26,7 @@ constexpr std::span<const Spelling<PanelPlace>> spellings_of(PanelPlace)
 struct PanelRow {
     const char* id = "";     ///< never changes: preferences refer to it
     const char* title = "";  ///< the same in menus, headings and help
-    const char* hint = "";   ///< what it is for
+    const char* hint = "";   ///< purpose of the panel
     PanelPlace place = PanelPlace::side;
     bool is_folded = false;
 };
@@ -35,15 +35,15 @@ std::span<const PanelRow> panel_rows();
 /// Null where there is none.
 const PanelRow* panel_named(std::string_view id);
 
-/// What a person changed of a panel; the rest is as it ships.
+/// Changes that the user made to a panel; everything else keeps its default.
 struct PanelLayout {
     std::optional<PanelPlace> place;
     std::optional<bool> folded;
-    std::optional<glm::dvec2> at, size;  ///< of its own window; `at` from the upper left corner
+    std::optional<glm::dvec2> at, size;  ///< position (from the upper left corner) and size as a floating window
     bool operator==(const PanelLayout&) const = default;
 };
 
-/// Where a window was left: help, messages and the like.
+/// Last position of a window: help, messages and the like.
 struct WindowPlace {
     std::optional<glm::dvec2> at, size;
     bool operator==(const WindowPlace&) const = default;
@@ -51,7 +51,7 @@ struct WindowPlace {
 inline constexpr const char* WINDOW_IDS[] = {"help", "messages", "passes"};
 
 inline constexpr double SIDE_WIDTH = 25.0, MIN_SIDE_WIDTH = 17.0;
-inline constexpr double MAX_SIDE_SHARE = 0.5;  ///< of the window
+inline constexpr double MAX_SIDE_SHARE = 0.5;  ///< share of the window's width
 inline constexpr glm::dvec2 FLOATING_SIZE{26.0, 30.0};
 
 struct WindowLayout {
@@ -62,7 +62,7 @@ struct WindowLayout {
 
     PanelPlace place_of(const PanelRow& row) const;
     bool is_folded(const PanelRow& row) const;
-    /// Whether anything is at the right.
+    /// Returns whether any panel is at the right.
     bool has_side() const;
     bool operator==(const WindowLayout&) const = default;
 };

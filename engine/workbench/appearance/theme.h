@@ -23,8 +23,8 @@ using Shade = std::array<float, 3>;
 enum class ColorRole {
     // Texts
     text,
-    faint_text,  ///< hints, keys, what cannot be done now
-    warning,     ///< beside the word or sign that says so
+    faint_text,  ///< hints, keys, disabled items
+    warning,     ///< stands next to the word or sign that names it
     error,
     accent_text,  ///< headings
     // Surfaces that texts stand on
@@ -40,7 +40,7 @@ enum class ColorRole {
     header,
     header_hovered,
     header_active,
-    chosen,  ///< the one of several that is in use
+    chosen,  ///< the item in use among several
     selection,
     table_header,
     notice,
@@ -62,16 +62,16 @@ enum class ColorRole {
 };
 
 inline constexpr double MIN_TEXT_CONTRAST = 4.5;
-/// What a greyed widget keeps of itself over the window's surface.
+/// Opacity of a greyed widget over the window's surface.
 inline constexpr float DISABLED_SHARE = 0.75f;
 
 Shade shade_of(ColorRole role, Theme theme);
 std::span<const ColorRole> text_roles();
 std::span<const ColorRole> surface_roles();
 
-/// (L1 + 0.05) / (L2 + 0.05) of the relative luminances, 1 ... 21.
+/// Returns (L1 + 0.05) / (L2 + 0.05) of the relative luminances, 1 ... 21.
 double contrast(const Shade& a, const Shade& b);
-/// `share` of `over`, the rest `below`, as the device blends them.
+/// Mixes `share` of `over` with the rest of `below`, as the device blends them.
 Shade blended(const Shade& over, const Shade& below, float share);
 
 }  // namespace shvr::ui

@@ -1,5 +1,5 @@
 #pragma once
-// Which keys mean which shortcuts: a set of keys as it ships, with a person's changes. Pure; any thread.
+// Maps keys to shortcuts: a default set of keys with the user's changes. Pure; any thread.
 
 #include <cstdint>
 #include <map>
@@ -12,7 +12,7 @@
 
 namespace shvr::ui {
 
-/// Buttons of a stylus that can mean something.
+/// Number of stylus buttons that can be bound.
 inline constexpr uint32_t MAX_BUTTONS = 8;
 
 /// A key with its modifiers. Keys are named: "A", "7", "[", "F5", "PageUp", "Space"; the first button of a stylus is
@@ -22,33 +22,33 @@ struct Chord {
     std::string key;
     auto operator<=>(const Chord&) const = default;
 };
-/// "Ctrl+Shift+Z"; nothing where the text is no chord.
+/// Parses "Ctrl+Shift+Z"; nothing if the text is no chord.
 std::optional<Chord> chord_of(std::string_view text);
-/// The text that `chord_of` reads as this chord.
+/// Returns the text that `chord_of` parses as this chord.
 std::string text_of(const Chord& chord);
-/// The same for people: "Ctrl + Shift + Z", "Page Up".
+/// Returns the chord as displayed: "Ctrl + Shift + Z", "Page Up".
 std::string in_words(const Chord& chord);
 
 class Keymap {
 public:
     using Changes = KeyChanges;
-    /// Fails at an id that is no shortcut's and at a text that is no chord.
+    /// Fails if an id names no shortcut or a text is no chord.
     explicit Keymap(KeySet set = KeySet::modern, const Changes& changes = {});
 
-    /// The shortcuts that this press means; one, unless a person's changes give a chord twice. Where a shortcut is
-    /// slowed by Shift, Shift may be down.
+    /// Returns the shortcuts bound to this chord: one, unless the user bound a chord twice. If a shortcut is slowed by
+    /// Shift, it is also returned with Shift down.
     std::vector<const Shortcut*> shortcuts_for(const Chord& chord) const;
-    /// The chords of a shortcut.
+    /// Returns the chords of a shortcut.
     const std::vector<Chord>& chords_of(const Shortcut& shortcut) const;
-    /// The first, in words; empty where there is none.
+    /// Returns the first chord as displayed; empty if there is none.
     std::string text_of(const Shortcut& shortcut) const;
-    /// Others that have one of its chords.
+    /// Returns the other shortcuts that share a chord with this one.
     std::vector<const Shortcut*> rivals_of(const Shortcut& shortcut) const;
-    /// Chords that mean more than one shortcut, each in a sentence.
+    /// Describes each chord that is bound to more than one shortcut, in a sentence.
     std::vector<std::string> conflicts() const;
 
 private:
-    std::vector<std::vector<Chord>> chords_;  ///< in the order of shortcuts()
+    std::vector<std::vector<Chord>> chords_;  ///< one list per shortcut, in the order of shortcuts()
 };
 
 }  // namespace shvr::ui

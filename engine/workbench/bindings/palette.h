@@ -1,5 +1,5 @@
 #pragma once
-// What a text that a person types can mean: shortcuts by words, an action as text ("look_from camera=top"), a setting
+// Interprets text typed into the palette: shortcuts by words, an action as text ("look_from camera=top"), a setting
 // ("light.ambient=0.4"), or the beginning of one of these. Pure; the main thread.
 
 #include <optional>
@@ -14,16 +14,16 @@ namespace shvr::ui {
 
 struct PaletteEntry {
     std::string name, group;
-    std::string keys{};              ///< in words
-    std::string why_not{};           ///< it cannot be done now; empty: it can
-    std::optional<Action> action{};  ///< what it does
-    std::string completion{};        ///< instead of an action: the text to go on with
+    std::string keys{};              ///< keys as displayed
+    std::string why_not{};           ///< reason why the entry is unavailable now; empty: available
+    std::optional<Action> action{};  ///< action that the entry performs
+    std::string completion{};        ///< text that continues the input, in place of an action
 };
 
-/// The most fitting first: the action or setting that is typed, shortcuts, then what the text can be completed to.
+/// Returns entries, best match first: a typed action or setting, shortcuts, then possible completions of the text.
 std::vector<PaletteEntry> palette_entries(const Model& model, std::string_view text);
 
-/// Whether each word of `text` occurs in `where`, in any case of letters.
+/// Returns whether each word of `text` occurs in `where`, ignoring case.
 bool has_words(std::string_view where, std::string_view text);
 
 }  // namespace shvr::ui

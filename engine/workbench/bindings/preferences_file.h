@@ -1,5 +1,5 @@
 #pragma once
-// Reads and writes preferences: one JSON file, $XDG_CONFIG_HOME/shvr/preferences.json, written whole or not at all. Any
+// Reads and writes preferences: one JSON file, $XDG_CONFIG_HOME/shvr/preferences.json, replaced atomically. Any
 // thread.
 
 #include <filesystem>
@@ -10,18 +10,18 @@
 
 namespace shvr::ui {
 
-/// Where they are kept; empty where the environment names no home.
+/// Returns the path of the file; empty if the environment names no home.
 std::filesystem::path preferences_file();
-/// Those of a file that does not exist are the defaults. Fails at unknown keys, shortcuts and chords, naming file, key,
-/// value and what was expected.
+/// Returns defaults if the file does not exist. Fails at unknown keys, shortcuts and chords, naming file, key,
+/// value and the expected value.
 Preferences load_preferences(const std::filesystem::path& file);
-/// With a merge patch of that file applied, as in {"theme": "light"}; null takes what ships. Fails as reading does.
+/// Applies a merge patch of that file, as in {"theme": "light"}; null restores a default. Fails as reading does.
 Preferences patched(const Preferences& preferences, std::string_view patch);
-/// The patch that makes a change of a panel's place; `change` may set any of its parts.
+/// Returns the patch that changes a panel's layout; `change` may set any of its parts.
 std::string patch_of_panel(const std::string& id, const PanelLayout& change);
-/// The patch that says where a window is (layout.h), in font sizes.
+/// Returns the patch that sets a window's position and size (layout.h), in font sizes.
 std::string patch_of_window(const std::string& id, const glm::dvec2& at, const glm::dvec2& size);
-/// Makes the folder where it is missing.
+/// Writes the file; creates its folder if missing.
 void save_preferences(const std::filesystem::path& file, const Preferences& preferences);
 
 }  // namespace shvr::ui

@@ -316,9 +316,9 @@ constexpr Shortcut both(const char* id, const char* group, const char* name, Mod
     return {id, group, name, mode, action, {keys, keys}, is_by_position};
 }
 
-// In the thesis planes and blending have letters, and what goes outwards or back Ctrl with them. Today Ctrl+C, Ctrl+V
-// and Ctrl+Y mean something else, and nobody expects a letter that is typed by mistake to cut the volume: those have no
-// keys until a person gives them some.
+// In the thesis planes and blending have letters, and the keys that push outwards or pull back add Ctrl. Today Ctrl+C,
+// Ctrl+V and Ctrl+Y mean something else, and a letter typed by mistake must not cut the volume: those shortcuts have no
+// keys until the user assigns some.
 constexpr Shortcut SHORTCUTS[] = {
     {"undo", WORK_KEYS, "Undo", Mode::repeated, plain<UndoOp>, {"Ctrl+Z", "Ctrl+Z"}},
     {"redo", WORK_KEYS, "Redo", Mode::repeated, plain<RedoOp>, {"Ctrl+Y Ctrl+Shift+Z", "Ctrl+Shift+Z"}},

@@ -1,6 +1,6 @@
 #pragma once
-// What keys, menu items, the palette and buttons of a stylus are bound to: an action with a name of its own and the
-// arguments that fit the moment. Two sets of keys ship: today's conventions, and the thesis's appendix C as printed.
+// Shortcuts for keys, menu items, the palette and stylus buttons: an action with a name of its own and arguments that
+// depend on the current state. Two sets of keys ship: today's conventions, and the thesis's appendix C as printed.
 // Pure; any thread.
 
 #include <array>
@@ -15,17 +15,17 @@ namespace shvr::ui {
 
 struct Shortcut {
     enum class Mode {
-        tap,        ///< once for each press
-        repeated,   ///< likewise, and again as the keyboard repeats it
-        step,       ///< once for each press, by a fifth with Shift
-        hold,       ///< goes on while held, slowly with Shift
-        while_held  ///< begins when pressed and ends when released
+        tap,        ///< once per press
+        repeated,   ///< once per press, and again with the keyboard's auto-repeat
+        step,       ///< once per press; a fifth of the amount with Shift
+        hold,       ///< continuous while held; slower with Shift
+        while_held  ///< starts when pressed and ends when released
     };
     const char* id = "";     ///< never changes: preferences refer to it
     const char* group = "";  ///< heading in menus, help and palette
     const char* name = "";   ///< "Undo"
     Mode mode = Mode::tap;
-    /// `amount`: 1 for a tap, less with Shift, 5 a second while held; of `while_held` 1 at the beginning and 0 at the
+    /// `amount`: 1 for a tap, less with Shift, 5 per second while held; for `while_held` 1 at the start and 0 at the
     /// end.
     Action (*action)(const Model& model, double amount) = nullptr;
     /// Chords by KeySet, separated by spaces: "Ctrl+Y Ctrl+Shift+Z" (keymap.h).
@@ -35,11 +35,11 @@ struct Shortcut {
     bool is_slowed() const { return mode == Mode::step || mode == Mode::hold; }
 };
 
-/// Shortcuts of a group stand together.
+/// Returns all shortcuts; those of a group are adjacent.
 std::span<const Shortcut> shortcuts();
-/// Null where there is none.
+/// Returns null if there is none.
 const Shortcut* shortcut_named(std::string_view id);
-/// Why it would do nothing now; empty: nothing speaks against it.
+/// Returns why the shortcut is unavailable now; empty if it is available.
 std::string why_not(const Model& model, const Shortcut& shortcut);
 
 }  // namespace shvr::ui

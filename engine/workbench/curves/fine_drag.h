@@ -1,6 +1,6 @@
 #pragma once
-// A drag that goes a tenth as far as the mouse while a modifier is held, which may change on the way: nothing jumps.
-// Pure; any thread.
+// A drag that moves a tenth as far as the mouse while a modifier is held. The modifier may change during the drag:
+// nothing jumps. Pure; any thread.
 
 #include <glm/glm.hpp>
 
@@ -11,9 +11,9 @@ public:
     static constexpr float SHARE = 0.1f;
 
     FineDrag() = default;
-    /// What is dragged may be held beside its middle.
+    /// `mouse`: where the drag begins; `held`: the position of the dragged item, which may differ.
     FineDrag(const glm::vec2& mouse, const glm::vec2& held) : mouse_(mouse), held_(held) {}
-    /// Where it is once the mouse is there.
+    /// Returns the position of the item once the mouse is at `mouse`.
     glm::vec2 follow(const glm::vec2& mouse, bool is_fine)
     {
         held_ += (is_fine ? SHARE : 1.0f) * (mouse - mouse_);

@@ -94,12 +94,12 @@ void add_values(const Lattice& lattice, double lowest, const std::vector<int64_t
     }
 }
 
-/// Values that were made of fewer ones by a curve, as when a scan was brightened, leave out others here and there: each
-/// that there is reaches halfway to the next.
+/// A curve that maps few values to many, as when a scan was brightened, skips values here and there: each bar that has
+/// voxels is extended halfway to the next.
 void join_small_gaps(std::vector<HistogramBar>& bars)
 {
-    constexpr size_t MAX_GAP = 2;    // bars that are left out
-    constexpr size_t MIN_SHARE = 4;  // of so many bars one must be left out, or they stay as they are
+    constexpr size_t MAX_GAP = 2;    // consecutive empty bars
+    constexpr size_t MIN_SHARE = 4;  // bars are joined if at least one is empty per this many filled ones
     std::vector<size_t> filled;
     for (size_t i = 0; i < bars.size(); ++i)
         if (bars[i].voxels > 0.0) filled.push_back(i);

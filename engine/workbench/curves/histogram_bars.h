@@ -9,21 +9,21 @@ namespace shvr::ui {
 
 struct HistogramBar {
     double lower = 0.0, upper = 0.0;  ///< intensities
-    double voxels = 0.0;              ///< for each value that voxels may have within; for floats, in all of the bar
+    double voxels = 0.0;              ///< per value that voxels can have within the bar; for floats, in the whole bar
 };
 struct HistogramBars {
     std::vector<HistogramBar> bars;
-    /// Voxels are multiples of this above the least one, rounded where it is no whole number; 0: floats, or nothing is
-    /// known.
+    /// Voxel values are the minimum plus multiples of this, rounded if it is no whole number; 0: floats, or the values
+    /// are unknown.
     double step = 0.0;
 };
 
-/// Volumes are measured in 256 bins, which hold now more and now fewer of the whole numbers that voxels can be: as they
-/// are drawn, a smooth histogram of a volume of 300 grey values is a comb, and so is one whose values are multiples of
-/// something. So bars count voxels for each value that they may have; where a bar holds none, they are joined.
+/// Volumes are measured in 256 bins, and the number of integer voxel values per bin varies by one: drawn directly, the
+/// smooth histogram of a volume with 300 grey values looks like a comb, and so does one whose values are multiples of
+/// a step. So bars count voxels per possible value, and bars without a possible value are joined with others.
 HistogramBars histogram_bars(VoxelType type, const VolumeStatistics& statistics);
 
-/// Height of a bar, 0 ... 1, where `most` is the largest.
+/// Returns the height of a bar, 0 ... 1; `most` is the maximum count.
 double height_of_bar(double voxels, double most, bool is_logarithmic);
 
 }  // namespace shvr::ui

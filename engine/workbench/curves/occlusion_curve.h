@@ -1,5 +1,5 @@
 #pragma once
-// The curve that maps the light that arrives to the light that is seen, as a hand edits it: points on a square, x and y
+// The curve that maps arriving light to displayed light, as edited by hand: points on a square, x and y
 // from 0 to 1. Pure; any thread.
 
 #include <optional>
@@ -13,17 +13,17 @@ namespace shvr::ui {
 
 using OcclusionPoints = std::vector<OcclusionPoint>;
 
-/// The power as points, to go on from.
+/// Converts a power into points, as a start for editing.
 OcclusionPoints points_of_power(double power);
-/// The nearest within `reach`, along each axis.
+/// Returns the nearest point within `reach`, which is given along each axis.
 std::optional<size_t> point_under(const OcclusionPoints& points, const glm::dvec2& place, const glm::dvec2& reach);
-/// Within the square, and between its neighbours, so that its index stays the same.
+/// Moves a point within the square and between its neighbours, so that its index stays the same.
 OcclusionPoints moved(OcclusionPoints points, size_t point, const OcclusionPoint& to);
-/// Where it was put; without a change where there are MAX_OCCLUSION_POINTS.
+/// Returns the index of the new point. Changes nothing if there are MAX_OCCLUSION_POINTS already.
 size_t add(OcclusionPoints& points, const OcclusionPoint& point);
-/// Two stay.
+/// Removes a point; keeps at least two.
 OcclusionPoints without(OcclusionPoints points, size_t point);
-/// In the middle of the widest gap, on the curve.
+/// Returns the point on the curve in the middle of the widest gap.
 OcclusionPoint in_widest_gap(const OcclusionPoints& points);
 
 }  // namespace shvr::ui

@@ -1,6 +1,6 @@
 #pragma once
-// The transfer function as a curve that a hand edits: where things are on a rectangle, what lies under the mouse, and
-// what becomes of the points. Pure; any thread.
+// The transfer function as a curve edited by hand: positions on a rectangle, hit tests for the mouse, and
+// changes of the points. Pure; any thread.
 //
 // Left to right are intensities; upwards is opacity, as its square root, so that small opacities can be seen and
 // dragged.
@@ -39,13 +39,13 @@ public:
         size_t point = 0;
         bool operator==(const Found&) const = default;
     };
-    /// Vertical lines beside the points, and from where to where their words reach, the first in the first row.
+    /// Threshold lines, and begin and end of their labels along x; the paint threshold's label is in the first row.
     struct Lines {
         double paint_threshold = 0.0, haptic_threshold = 0.0;
         glm::vec2 paint_word{0.0f}, haptic_word{0.0f};
     };
-    /// The mouse grabs points within `pixels`, then words, whose rows are so high as a label, then lines; of lines at
-    /// one place the paint threshold, but for the row of the other one's word.
+    /// Hit distances. The mouse grabs points within `pixels`, then labels, whose rows are `label` high, then lines; of
+    /// two lines at one position the paint threshold, except in the row of the other line's label.
     struct Reach {
         float pixels = 9.0f, label = 17.0f;
     };
@@ -57,25 +57,25 @@ public:
     /// The edited function; values are clamped to what a transfer function takes.
     TransferFunction function() const;
 
-    /// What lies under the mouse: points go before lines, the nearest first.
+    /// Returns the item under the mouse: points before lines, the nearest first.
     Found under(const CurveAxes& axes, const glm::vec2& mouse, const Lines& lines, const Reach& reach) const;
 
     /// Adds a point with the function's colour there. Returns its index.
     size_t add(double intensity, double opacity);
-    /// Two points stay. Returns the index of the point that is selected from then on.
+    /// Removes a point; keeps at least two. Returns the index of the point that is then selected.
     size_t remove(size_t point);
-    /// A point stays between its neighbours, so that its index stays the same.
+    /// Moves a point; it stays between its neighbours, so that its index stays the same.
     void move(size_t point, double intensity, double opacity);
     double held_between_neighbors(size_t point, double intensity) const;
-    /// Part of the function stays within the volume's intensities. Returns how far it went.
+    /// Shifts all points; part of the function stays within the volume's intensities. Returns the distance moved.
     double shift_all(double by, double lowest, double highest);
 
 private:
     Points points_;
 };
 
-/// How far all points go for a notch of the wheel, of the intensities shown; slowly, a tenth of it. Whole numbers where
-/// voxels are, and at least one.
+/// Distance that all points move per wheel notch, a fraction of the displayed range; a tenth of it if slow. A whole
+/// number, at least one, if voxels are integers.
 double wheel_shift(double notches, const CurveRange& range, bool is_slow, bool is_whole);
 
 }  // namespace shvr::ui

@@ -1,5 +1,5 @@
 #pragma once
-// What all services of the workbench share: the open document, the renderer, messages, and the two workers. Main
+// State that all services of the workbench share: the open document, the renderer, messages, and the two workers. Main
 // thread.
 
 #include <functional>
@@ -16,7 +16,7 @@
 
 namespace shvr::ui {
 
-/// The last part of a path, also of a folder with a slash at its end.
+/// Returns the last part of a path, also of a folder with a slash at its end.
 std::string short_name(const std::filesystem::path& path);
 
 struct WorkbenchOptions {
@@ -30,9 +30,9 @@ struct WorkbenchOptions {
     std::function<double()> now_s{};      ///< seconds of any clock; null: the system's
     std::string version{};                ///< the program's, for reports; empty: unknown
     DeviceSource devices{};               ///< where haptic devices come from; without functions: this machine
-    /// Slices go after a probe that leaves their sight, which is logged; false: the log says where they went.
+    /// Slices follow a probe that leaves their plane, and the move is logged; false: the log's own actions move them.
     bool slices_follow = true;
-    TextDrawer draw_texts{};  ///< for pictures in files; null: these have no words
+    TextDrawer draw_texts{};  ///< for picture files; null: they have no labels
 };
 
 struct Desk {
@@ -42,26 +42,26 @@ struct Desk {
     Renderer& renderer;
     WorkbenchOptions options;
     /// Null: nothing is open. Opening replaces it, so services keep a reference to this pointer and never to what it
-    /// points to.
+    /// target.
     std::unique_ptr<Document> document;
     uint64_t openings = 0;  ///< how often a document was opened
     double opened_s = 0.0;  ///< when this one was
     MessageLog messages;
     bool are_messages_shown = false;  ///< then all of them have been read
     std::function<void(const std::string&)> log;
-    std::vector<std::string> logged_instead;  ///< replays the action under way, whatever is seen by then
+    std::vector<std::string> logged_instead;  ///< lines to log in place of the action under way
     Jobs jobs;
-    Jobs savers{{.wake = {}, .seconds = {}, .first = Jobs::Number{1} << 32}};  ///< no save waits for other work
-    /// Those of the workbench; set by it.
+    Jobs savers{{.wake = {}, .seconds = {}, .first = Jobs::Number{1} << 32}};  ///< saves wait for no other job
+    /// Both are the workbench's, which sets them.
     std::function<bool(const Action&)> apply;
     std::function<Model()> model;
 
     void say(std::string text, Weight weight = Weight::done);
-    /// Logs these in place of the action under way: what is seen at a pixel depends on what has been painted and loaded
-    /// by then; where it was does not.
+    /// Logs these in place of the action under way: the point seen at a pixel depends on what is painted and loaded at
+    /// that time; its position does not.
     void log_instead(const Actions& actions);
     DocumentModel document_model() const;
-    /// What a model refers to where nothing is open.
+    /// Targets of a model's references while no document is open.
     struct Nothing {
         Session session;
         VolumeInfo volume;

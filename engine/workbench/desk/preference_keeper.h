@@ -1,5 +1,5 @@
 #pragma once
-// A person's preferences: keys, theme, layout and what was opened last, kept in their file by a saver.
+// The user's preferences: keys, theme, layout and recently opened paths, written to their file by a saver.
 
 #include "engine/workbench/bindings/keymap.h"
 #include "engine/workbench/desk/service.h"
@@ -16,26 +16,26 @@ public:
     void act(const Prefer& action);
     void act(const ForgetRecent& action);
 
-    /// Reads the file. One that cannot be read stays as it is, and nothing is kept until it can.
+    /// Reads the file. An unreadable file stays as it is, and nothing is written until it can be read.
     void load();
-    /// Takes these and keeps them. A failure to keep them is said, and changes nothing else.
+    /// Takes these and saves them. A failed save is reported, and changes nothing else.
     void prefer(Preferences preferences);
-    /// Puts a path first among what was opened last.
+    /// Puts a path first in the list of recently opened paths.
     void note_opened(const std::filesystem::path& path);
     void await_no_key() { awaits_key_.clear(); }
     const Preferences& preferences() const { return preferences_; }
     const Keymap& keymap() const { return keymap_; }
     const std::string& awaits_key() const { return awaits_key_; }
-    /// The keys of a shortcut, in words; empty where it has none.
+    /// Returns the keys of a shortcut as displayed; empty if it has none.
     std::string keys_of(const char* shortcut) const;
-    /// "; Ctrl + T sets that"; empty where the shortcut has no key.
+    /// Returns "; Ctrl + T sets that"; empty if the shortcut has no key.
     std::string with_key(const char* before, const char* shortcut, const char* after) const;
     PreferenceModel model() const;
 
 private:
     Preferences preferences_;
     Keymap keymap_;
-    std::string awaits_key_;  ///< id of the shortcut that the next key is for; empty: none
+    std::string awaits_key_;  ///< id of the shortcut that the next key is bound to; empty: none
     bool are_kept_ = false;
 };
 

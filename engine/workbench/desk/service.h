@@ -1,8 +1,8 @@
 #pragma once
-// The base of all services: the desk under the names that they use, and a step of the main loop.
+// The base of all services: short names for the members of the desk, and a step of the main loop.
 //
-// A service has its own state, carries out the actions whose rows name it (`act`), and tells the model what there is to
-// see of it. It may call other services, which its constructor names. No service is reached before all are made.
+// A service has its own state, carries out the actions whose rows name it (`act`), and contributes its part of the
+// model. It may call other services, which its constructor names. No service is called before all are constructed.
 
 #include <functional>
 #include <string>
@@ -14,9 +14,9 @@ namespace shvr::ui {
 class Service {
 public:
     Service(const Service&) = delete;
-    /// Does the service's step of the main loop (Workbench::advance).
+    /// Runs the service's step of the main loop (Workbench::advance).
     virtual void advance() {}
-    /// Whether it has a part where nothing is open, too.
+    /// Returns whether `advance` is also called while no document is open.
     virtual bool advances_without_document() const { return false; }
 
 protected:
@@ -26,10 +26,10 @@ protected:
     /// State of a step that may fail and is then retried.
     struct Attempt {
         std::string said;       ///< message of the last failure
-        double failed_s = 0.0;  ///< when that was; 0: never
+        double failed_s = 0.0;  ///< time of the last failure; 0: never
         double again_s = 0.0;
     };
-    /// Failures become messages, and the part is tried again a little later. DeviceLost is thrown.
+    /// Runs `part`. A failure becomes a message, and the part is retried a little later. DeviceLost is rethrown.
     void attempt(Attempt& state, const std::function<void()>& part);
     void say(std::string text, Weight weight = Weight::done) { desk_.say(std::move(text), weight); }
     void log_instead(const Actions& actions) { desk_.log_instead(actions); }
@@ -39,7 +39,7 @@ protected:
     Desk& desk_;
     Renderer& renderer_;
     const WorkbenchOptions& options_;
-    std::unique_ptr<Document>& document_;  ///< the desk's own pointer
+    std::unique_ptr<Document>& document_;  ///< the desk's own pointer, by reference
     const std::function<void(const std::string&)>& log_;
     Jobs &jobs_, &savers_;
 

@@ -85,14 +85,14 @@ Document::Document(Renderer& renderer, Read read, const View::Options& view_opti
     take_kept_settings();
     choose_for_volume(session);
     begin_with_turning();
-    if (!is_script_) annotator.work().select_trace({});  // the next node is not linked with one that nobody remembers
+    if (!is_script_) annotator.work().select_trace({});  // so that the next node is not linked with a forgotten one
     renderer.scene().show(annotator.document());
     renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
     note_saved();
 }
 
-/// Nobody who opens a scan changes it by the first drag, whatever was painted last; and older sessions state the tool
-/// that paints where the right button painted. --set may still choose.
+/// Selects a harmless tool, so that the first drag in an opened scan changes nothing, whatever was painted last; older
+/// sessions also state the tool that paints where the right button painted. --set may still choose.
 void Document::begin_with_turning()
 {
     const bool is_chosen =
@@ -106,7 +106,7 @@ void Document::choose_thresholds(Session& of) const
     shvr::choose_thresholds(of, volume(), statistics);
 }
 
-/// The view and the probe come back as they were left, even where nobody could save them.
+/// Restores the last view and probe position, even if they could not be saved.
 void Document::take_kept_settings()
 {
     const SettingValues kept = without_overridden(annotator.work().kept_settings(), overridden_);

@@ -1,4 +1,4 @@
-// Saving a document: in place, beside the work, or under other names.
+// Saving a document: in place, in the background, or under other names.
 
 #include <array>
 #include <utility>

@@ -1,6 +1,6 @@
 #pragma once
 // Saves pictures of the view: as shown, once it is sharp, or larger, rendered part by part while nothing else needs
-// drawing, and written as it is made. Compressing is slow and runs on a thread; everything else runs on the main
+// the device, and written while rendered. Compression is slow and runs on a thread; everything else runs on the main
 // thread.
 
 #include <filesystem>
@@ -20,15 +20,15 @@ class Screenshots {
 public:
     /// Requests a picture of the view as shown.
     void take() { is_wanted_ = true; }
-    /// What a picture of that name keeps in its file.
+    /// Returns the metadata for the file of a picture.
     using Texts = std::function<PictureTexts(const std::filesystem::path& picture)>;
-    /// `stem` as for `advance`. `figure`: drawn over it. Fails where the file cannot be written.
+    /// `stem` as for `advance`. `figure`: drawn over the picture. Fails if the file cannot be written.
     void take_large(const std::filesystem::path& stem, Renderer& renderer, const Session& session, const Camera& camera,
                     const RenderOptions& options, const Texts& texts, Figure figure);
-    /// Abandons a large picture, since its volume changes or goes away.
+    /// Cancels a large picture, because its volume changes or closes.
     void drop_large() { large_.reset(); }
     bool has_large() const { return large_ != nullptr; }
-    /// Of the large one: where it is written, and how much of it is drawn, 0 ... 1.
+    /// Path of the large picture, and the fraction of it that is drawn, 0 ... 1.
     const std::filesystem::path& large_path() const { return large_path_; }
     double progress() const { return large_ ? large_->progress() : 0.0; }
     bool is_writing() const { return written_.valid(); }
@@ -37,11 +37,11 @@ public:
         std::string said;      ///< message for the user; empty: none
         std::string progress;  ///< likewise, but replaced as it changes
     };
-    /// Call every turn. `stem`: of the file, "scan" for scan-view-1.png. `is_still`: nothing else waits for the device.
-    /// `figure`: makes what is drawn over a picture as shown. Fails if a picture cannot be made; then it is abandoned.
+    /// Call every frame. `stem`: base of the file's name, "scan" for scan-view-1.png. `is_still`: the device is idle.
+    /// `figure`: returns the drawing over a picture as shown. Fails if a picture cannot be made; then it is cancelled.
     Turn advance(Screen& screen, const std::filesystem::path& stem, bool is_still, const Texts& texts,
                  const std::function<Figure()>& figure);
-    /// Waits until the last one is written.
+    /// Waits until the last picture is written.
     void wait() const;
 
 private:

@@ -1,5 +1,5 @@
 #pragma once
-// Makes the action that changes settings. Pure; any thread.
+// Makes actions that change settings. Pure; any thread.
 
 #include "engine/session/session_patch.h"
 #include "engine/workbench/actions/action.h"
@@ -7,7 +7,7 @@
 
 namespace shvr::ui {
 
-/// The settings as `edit` leaves them.
+/// Returns the action that sets the settings as changed by `edit`.
 template <class Edit>
 Set edited(const Session& session, const Edit& edit)
 {
@@ -17,7 +17,7 @@ Set edited(const Session& session, const Edit& edit)
     return {patch.empty() ? "{}" : patch};
 }
 
-/// Adds it, where it changes anything. `edit(Session&)`.
+/// Adds that action if it changes anything. `edit(Session&)`.
 template <class Edit>
 void set(Actions& actions, const Model& model, const Edit& edit)
 {

@@ -1,5 +1,5 @@
 #pragma once
-// Groups as a row to step through: those with a key, in use, or described. Pure; any thread.
+// Steps through the groups that have a key, are in use, or are described. Pure; any thread.
 
 #include <vector>
 
@@ -7,11 +7,11 @@
 
 namespace shvr::ui {
 
-/// Ascending, without 0: groups with a key, described by the session, painted, traced or active.
+/// Returns in ascending order, without 0: groups with a key, described by the session, painted, traced or active.
 std::vector<uint8_t> known_groups(const Model& model);
-/// Of those, the next one above the active group (direction 1) or below (-1), around the end.
+/// Returns the next known group above the active one (direction 1) or below it (-1), with wrap-around.
 uint8_t next_group(const Model& model, int direction);
-/// The first that nothing is painted, traced or described with; 0 where there is none.
+/// Returns the first group that is neither painted, traced nor described; 0 if there is none.
 uint8_t unused_group(const Model& model);
 
 }  // namespace shvr::ui

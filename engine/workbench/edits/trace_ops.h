@@ -1,5 +1,5 @@
 #pragma once
-// Turns the keys, menus and buttons of tracing into operations, the same ones that scripts use. Pure; the main thread,
+// Converts the keys, menus and buttons of tracing to operations, the same ones that scripts use. Pure; the main thread,
 // while the model lives.
 
 #include "engine/workbench/actions/action.h"
@@ -8,25 +8,25 @@
 
 namespace shvr::ui {
 
-/// A node at the probe, of the probe's group and as wide as new nodes are, linked to the selected node.
+/// Returns a new node at the probe, with the probe's group and the default radius, linked to the selected node.
 NodeOp node_at_probe(const Model& model);
-/// The same; at a node that the tool acts at, a link of the selected node with it or, where that is there, its choice;
-/// on a centre line, a node that divides it.
+/// Returns the same; if tools act at an existing node, a link of the selected node with it or, if they are linked, its
+/// selection; on a centre line, a node that divides it.
 Action node_or_link_at_probe(const Model& model);
-/// What a new node becomes where something of the trace draws the tools; null where nothing does.
+/// Returns what a new node becomes if part of the trace attracts the tools; null if none does.
 std::optional<Action> trace_op_at(const ToolPlace& place, const TraceGraph& trace, const glm::dvec3& spacing);
-/// Selects the nearest node or, if that is selected already, the nearest of its internodes.
+/// Selects the nearest node or, if it is selected already, the nearest of its internodes.
 SelectOp nearest_selection(const Model& model);
-/// Links the selected node to the nearest other one.
+/// Links the selected node with the nearest other one.
 LinkOp link_with_nearest(const Model& model);
 
 /// Scales the radii of the selected nodes or, if none is selected, of all internodes of the chosen group, which then no
 /// longer taper.
 RadiusOp scaled(const Model& model, double factor);
-/// Gives all nodes of the chosen group the same radius: their mean, times the factor.
+/// Gives all nodes of the chosen group the same radius: their mean, times `factor`.
 RadiusOp scaled_nodes_of_group(const Model& model, double factor);
 
-/// The middle of the box around what is selected, volume space; nothing where nothing is.
+/// Returns the centre of the selection's bounding box, in volume space; nothing if nothing is selected.
 std::optional<glm::dvec3> middle_of_selection(const TraceGraph& trace);
 
 }  // namespace shvr::ui

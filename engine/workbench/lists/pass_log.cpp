@@ -26,7 +26,7 @@ void fields(Fields& f, SavedPass& pass)
     f.number("longest_ms", pass.longest_ms, MILLISECONDS, {});
 }
 
-/// A pass as shvr profile tells of it: one frame's.
+/// Reads a pass from the output of shvr profile: its time per frame.
 View::PassTime of_profile(const JsonNode& node)
 {
     View::PassTime pass{.name = node["name"].text(), .runs = 1};

@@ -1,7 +1,7 @@
 #pragma once
-// The last actions, for reports of what went wrong. What follows the mouse comes many times a second: a run of one kind
-// is one entry, which holds the last. Kept as they are and made into lines only when asked, so that remembering one
-// costs its copy. The main thread.
+// The last actions, for bug reports. Actions that follow the mouse arrive many times a second: a run of one kind is
+// one entry, which holds the last. Actions are stored as they are and formatted only on request, so that recording
+// one costs its copy. The main thread.
 
 #include <cstdint>
 #include <deque>
@@ -17,10 +17,10 @@ public:
     static constexpr size_t MAX_ENTRIES = 50;
 
     void begin(const Action& action);
-    /// The one that began last was carried out.
+    /// Marks the last action begun as carried out.
     void note_done() { entries_.back().is_done = true; }
-    /// Oldest first: lines that replay them (action_rows.h), and after " # " whether it was refused, or the last of how
-    /// many of its kind.
+    /// Returns lines that replay the actions, oldest first (action_rows.h), followed by " # " and a note that the
+    /// action was refused, or the length of its run.
     std::vector<std::string> lines() const;
 
 private:

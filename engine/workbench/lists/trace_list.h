@@ -1,6 +1,6 @@
 #pragma once
-// A trace as lists: its segments, and its nodes. Made once for each state of the trace, so that scrolling through many
-// thousand rows costs what is shown. Pure; the main thread.
+// A trace as lists: its segments, and its nodes. Built once for each state of the trace, so that the cost of scrolling
+// depends on the visible rows alone. Pure; the main thread.
 
 #include <string>
 #include <vector>
@@ -11,13 +11,13 @@
 namespace shvr::ui {
 
 struct SegmentRow {
-    uint32_t internode = 0;        ///< its smallest one, which names it
+    uint32_t internode = 0;        ///< number of its smallest internode, which identifies it
     uint32_t first = 0, last = 0;  ///< nodes at its ends
     size_t nodes = 0;
-    uint8_t group = 0;       ///< of most of its length
-    bool is_mixed = false;   ///< internodes of several groups
+    uint8_t group = 0;       ///< group of most of its length
+    bool is_mixed = false;   ///< its internodes have several groups
     double length = 0.0;     ///< physical units
-    glm::dvec3 middle{0.0};  ///< of its node halfway, in volume space
+    glm::dvec3 middle{0.0};  ///< position of its middle node, in volume space
 };
 struct NodeRow {
     uint32_t node = 0;
@@ -30,10 +30,10 @@ enum class TraceOrder { number, group, nodes, length };
 
 class TraceList {
 public:
-    /// Does nothing where the trace and the order are those of the last call. Returns whether the rows were made anew.
+    /// Rebuilds the rows unless trace and order are those of the last call. Returns whether the rows were rebuilt.
     bool update(const TraceGraph& trace, TraceOrder order, bool is_descending);
     const std::vector<SegmentRow>& segments() const { return segments_; }
-    /// By number; the order is that of segments alone.
+    /// Nodes by number; the order applies to segments alone.
     const std::vector<NodeRow>& nodes() const { return nodes_; }
 
 private:
@@ -52,7 +52,7 @@ Action go_to(const SegmentRow& row, const glm::dvec3& spacing);
 /// The same for a node.
 Actions select_node(const NodeRow& row);
 Action go_to(const NodeRow& row, const TraceGraph& trace, const glm::dvec3& spacing);
-/// Whether the selection is that segment, or part of it.
+/// Returns whether the selection is that segment, or part of it.
 bool is_selected(const SegmentRow& row, const TraceSelection& selection);
 
 }  // namespace shvr::ui

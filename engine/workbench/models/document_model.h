@@ -1,5 +1,5 @@
 #pragma once
-// What the open document shows; without one, an empty session.
+// View of the open document; without one, of an empty session.
 
 #include <filesystem>
 #include <span>
@@ -13,14 +13,14 @@ namespace shvr::ui {
 
 /// Made by the desk.
 struct DocumentModel {
-    bool is_open = false;  ///< false: what follows is of an empty session
+    bool is_open = false;  ///< false: the members below describe an empty session
     const Session& session;
     const VolumeInfo& volume;
     const VolumeStatistics& statistics;
     const Camera& camera;
     const std::filesystem::path& session_path;
     bool has_session_file = false;  ///< false: a bare scan that was never saved
-    std::string_view holder{};      ///< who writes the project, if that is another process: then this window only looks
+    std::string_view holder{};      ///< another process that writes the project: this window then only looks
     const MessageLog& messages;
 };
 

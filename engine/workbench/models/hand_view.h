@@ -1,5 +1,5 @@
 #pragma once
-// What there is to see of the hand and its device, and its states in words of those who use it. Pure; any thread.
+// View of the haptic device and the hand, and texts that describe its states to the user. Pure; any thread.
 
 #include <filesystem>
 #include <optional>
@@ -14,24 +14,24 @@
 namespace shvr::ui {
 
 struct HandView {
-    std::vector<DeviceListing> devices;  ///< as last found
+    std::vector<DeviceListing> devices;  ///< devices last found
     bool has_looked = false, is_looking = false;
-    std::string in_use;   ///< id of the device that is open; empty: none is, and the mouse moves the probe
-    std::string opening;  ///< id of the one that is being opened; empty: none
+    std::string in_use;   ///< id of the open device; empty: none is open, and the mouse moves the probe
+    std::string opening;  ///< id of the device being opened; empty: none
     std::string name = "mouse", serial, connection;
-    std::string trouble;       ///< of the device that is open, or why the last one could not be opened
-    bool is_puck = false;      ///< it states speeds
+    std::string trouble;       ///< trouble of the open device, or why the last one could not be opened
+    bool is_puck = false;      ///< the device reports speeds
     bool moves_probe = false;  ///< a device, and not the mouse, moves the probe
-    bool is_realtime = false;  ///< of the servo that runs
+    bool is_realtime = false;  ///< whether the running servo has realtime priority
     bool is_let_go = false, is_grabbing = false;
     TapState tap;
-    std::optional<double> recorded_s;  ///< of the recording under way
-    std::filesystem::path recording;   ///< its file, or that of the last one; empty: none
+    std::optional<double> recorded_s;  ///< duration of the recording under way
+    std::filesystem::path recording;   ///< file of that recording, or of the last one; empty: none
 };
 
-/// "Touch (serial 1234)".
+/// Returns "Touch (serial 1234)".
 std::string name_in_words(const std::string& name, const std::string& serial);
-/// What a person is told of a row: "moves the probe", "can push the hand", why it cannot.
+/// Describes a listed device: "moves the probe", "can push the hand", or why it cannot.
 std::string state_in_words(const DeviceListing& device, const HandView& hand);
 
 struct Finding {
@@ -39,19 +39,19 @@ struct Finding {
     std::string text;
     bool operator==(const Finding&) const = default;
 };
-/// What the servo does and why, one sentence each, the gravest first. Says nothing of force where none is wanted.
+/// Describes the servo's state and its reasons, one sentence each, the gravest first. Omits force if none is wanted.
 std::vector<Finding> findings_of(const HandView& hand, const ServoState& servo, bool is_guided);
 
-/// "1000 times a second, half of them within 12 us".
+/// Returns "1000 times a second, half of them within 12 us".
 std::string rhythm_in_words(const ServoState& servo);
-/// Whether the system gives the servo the right of way, and what to do where it does not.
+/// Describes whether the servo has realtime priority, and the remedy if it does not.
 Finding realtime_in_words(bool is_realtime, uint64_t allowed_priority);
-/// What this system allows: RLIMIT_RTPRIO.
+/// Returns the limit of this system: RLIMIT_RTPRIO.
 uint64_t allowed_realtime_priority();
-/// "cool", "warm", "hot" with the share of what the motors may hold for ever; empty for a device without motors.
+/// Returns "cool", "warm", "hot" with the share of the motors' continuous limit; empty for a device without motors.
 std::string heat_in_words(double heat, const DeviceCaps& caps);
 
-/// The bars of a plot, oldest first.
+/// Returns the bars of a plot, oldest first.
 std::vector<float> plot_of(const TapState& tap);
 
 }  // namespace shvr::ui

@@ -1,5 +1,5 @@
 #pragma once
-// What the program has told the person at it, with its weight. The main thread.
+// Messages that the program has shown to the user, with their weight. The main thread.
 
 #include <array>
 #include <cstdint>
@@ -11,22 +11,22 @@
 
 namespace shvr::ui {
 
-/// What went wrong, as a person is told.
+/// Returns the message of an exception, as shown to the user.
 inline std::string told_of(const std::exception& error)
 {
     return dynamic_cast<const std::bad_alloc*>(&error) ? "host memory is exhausted" : error.what();
 }
 
 enum class Weight {
-    done,     ///< what an action did
+    done,     ///< the result of an action
     warning,  ///< something is not as expected, and work goes on
     error     ///< something was not done
 };
 
 struct Message {
     uint64_t number = 0;  ///< counted from 1
-    double time_s = 0.0;  ///< of the workbench's clock
-    std::time_t at = 0;   ///< by the clock on the wall
+    double time_s = 0.0;  ///< time by the workbench's clock
+    std::time_t at = 0;   ///< wall-clock time
     Weight weight = Weight::done;
     std::string text;
 };
@@ -42,22 +42,22 @@ public:
         ++unread_[size_t(weight)];
         if (messages_.size() > MAX_MESSAGES) messages_.pop_front();
     }
-    /// Replaces the text of the last message, as progress does; adds one where there is none.
+    /// Replaces the text of the last message, for progress; adds one if there is none.
     void amend(double time_s, std::string text)
     {
         if (messages_.empty()) return add(time_s, Weight::done, std::move(text));
         messages_.back().text = std::move(text);
     }
-    /// Oldest first.
+    /// Returns all kept messages, oldest first.
     const std::deque<Message>& all() const { return messages_; }
-    /// The last one; empty before the first.
+    /// Returns the last message; empty before the first.
     const std::string& last() const
     {
         static const std::string NOTHING;
         return messages_.empty() ? NOTHING : messages_.back().text;
     }
     uint64_t count() const { return count_; }
-    /// The first of that weight beyond the first `count` messages, if it is not forgotten yet; null where there is
+    /// Returns the first message of that weight after message number `count`, unless it was dropped; null if there is
     /// none.
     const Message* first_after(uint64_t count, Weight weight) const
     {
@@ -65,7 +65,7 @@ public:
             if (message.number > count && message.weight == weight) return &message;
         return nullptr;
     }
-    /// Messages of that weight since `note_read`, forgotten ones too.
+    /// Returns the number of messages of that weight since `note_read`, including dropped ones.
     uint64_t unread(Weight weight) const { return unread_[size_t(weight)]; }
     void note_read() { unread_ = {}; }
 
@@ -75,7 +75,7 @@ private:
     std::array<uint64_t, 3> unread_{};
 };
 
-/// With paths cut down to their last names, for where the whole has no room: "Saved .../leaf.json". A path begins a
+/// Shortens paths to their last names, for narrow places: "Saved .../leaf.json". A path begins a
 /// word, and ends before " and " or punctuation that a space follows, or with the text.
 std::string without_folders(const std::string& text);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What opening and other long work show.
+// View of opening and other long work.
 
 #include <filesystem>
 #include <span>
@@ -16,23 +16,23 @@ namespace shvr::ui {
 /// A file that the open dialog describes (LookAtFile).
 struct Candidate {
     std::filesystem::path path;
-    std::string settings;  ///< with which it was looked at
+    std::string settings;  ///< settings used to inspect it
     bool is_being_read = true;
-    std::string failure;            ///< why it cannot be opened so; empty: it can, as far as that is known
-    std::vector<Choice> choices{};  ///< where the reason is that one of several has to be chosen
+    std::string failure;            ///< why it cannot be opened with them; empty: it can, as far as known
+    std::vector<Choice> choices{};  ///< alternatives, if the reason is that one must be chosen
     std::string kind;               ///< "Volume", "Session", "Project", "Picture of a session"
-    bool is_project = false;        ///< nothing is to be imported
-    VolumeInfo volume{};            ///< what follows is known only without a failure
+    bool is_project = false;        ///< the file needs no import
+    VolumeInfo volume{};            ///< this and the members below are known only without a failure
     int levels = 1;
-    std::string memory{};  ///< what it will take of host and device
+    std::string memory{};  ///< required host and device memory
     std::vector<std::string> warnings{};
 };
 
 /// Made by the opener.
 struct OpeningModel {
-    std::span<const std::string> recovered{};  ///< what was recovered or set aside at opening, until it is dismissed
-    std::string_view opening{};                ///< what is being opened; empty: nothing
-    /// Why the last Open failed, and what it was to open; empty: it did not.
+    std::span<const std::string> recovered{};  ///< notes on recovered or set-aside work at opening, until dismissed
+    std::string_view opening{};                ///< name of the file being opened; empty: none
+    /// Why the last Open failed, and its path; empty: it did not fail.
     std::string_view open_failure{};
     const std::filesystem::path* failed_path = nullptr;
 };
@@ -44,7 +44,7 @@ struct CandidateModel {
 
 /// Made by the runner of tasks.
 struct JobModel {
-    std::vector<Jobs::State> jobs{};  ///< the one that runs first
+    std::vector<Jobs::State> jobs{};  ///< jobs, the running one first
 };
 
 }  // namespace shvr::ui

@@ -1,5 +1,5 @@
 #pragma once
-// What a person keeps for all scans: keys, theme and sizes, where panels are, and what was opened last. Plain data; any
+// The user's choices for all scans: keys, theme and sizes, panel layout, and recently opened paths. Plain data; any
 // thread. bindings/preferences_file.h reads and writes it.
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace shvr::ui {
 
-/// Which of the two sets of keys that ship is used (bindings/shortcuts.h).
+/// Selects one of the two default sets of keys (bindings/shortcuts.h).
 enum class KeySet { modern, thesis };
 inline constexpr Spelling<KeySet> KEY_SETS[] = {{KeySet::modern, "modern"}, {KeySet::thesis, "thesis"}};
 constexpr std::span<const Spelling<KeySet>> spellings_of(KeySet)
@@ -21,10 +21,10 @@ constexpr std::span<const Spelling<KeySet>> spellings_of(KeySet)
     return KEY_SETS;
 }
 
-/// Chords by the ids of shortcuts, in place of those that ship; an empty list leaves a shortcut without a key.
+/// Chords by shortcut id, in place of the defaults; an empty list leaves a shortcut without a key.
 using KeyChanges = std::map<std::string, std::vector<std::string>>;
 
-/// What a device that states speeds (a SpaceMouse) moves.
+/// Selects what a device that reports speeds (a SpaceMouse) moves.
 enum class PuckMoves { view, probe };
 inline constexpr Spelling<PuckMoves> PUCK_MOVES[] = {{PuckMoves::view, "view"}, {PuckMoves::probe, "probe"}};
 constexpr std::span<const Spelling<PuckMoves>> spellings_of(PuckMoves)
@@ -32,7 +32,7 @@ constexpr std::span<const Spelling<PuckMoves>> spellings_of(PuckMoves)
     return PUCK_MOVES;
 }
 
-/// A haptic device by what stays the same when it is plugged in elsewhere. Without a name: the first that can be used.
+/// A haptic device by the data that stay the same at another port. Without a name: the first usable one.
 struct ChosenDevice {
     std::string name, serial;
     bool operator==(const ChosenDevice&) const = default;
@@ -44,17 +44,17 @@ struct Preferences {
                             MIN_BUDGET_MIB = 16.0, MAX_BUDGET_MIB = 1048576.0;
 
     KeySet key_set = KeySet::modern;
-    KeyChanges keys;                            ///< in place of those of the set
+    KeyChanges keys;                            ///< changes to the chords of the set
     std::vector<std::filesystem::path> recent;  ///< newest first, each once
     Theme theme = Theme::dark;
     double font_pixels = 14.0;    ///< at a scale of 1
-    std::optional<double> scale;  ///< of everything; none: the screen's
-    /// Of the device's and of the host's memory, from the next start on; none: as much as fits.
+    std::optional<double> scale;  ///< scale of the whole interface; none: the screen's
+    /// Limits of device and host memory, from the next start on; none: as much as fits.
     std::optional<double> budget_device_mib, budget_host_mib;
     WindowLayout layout;
     ChosenDevice device;
     PuckMoves puck = PuckMoves::view;
-    int hints_seen = 0;  ///< of the three for a first start (appearance/hints.h)
+    int hints_seen = 0;  ///< number of dismissed first hints, of three (appearance/hints.h)
 
     void note_opened(const std::filesystem::path& path);
     bool operator==(const Preferences&) const = default;

@@ -1,5 +1,5 @@
 #pragma once
-// What is under the probe and under the pointer: plain data of the model. Any thread.
+// Readings at the probe and at the pointer: plain data of the model. Any thread.
 
 #include <optional>
 
@@ -7,23 +7,23 @@
 
 namespace shvr::ui {
 
-/// Where the mouse is, over a pane of the picture.
+/// Position of the mouse over a pane of the picture.
 struct Pointer {
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
     bool operator==(const Pointer&) const = default;
 };
 
-/// What the volume and the annotation have at a point.
+/// Values of the volume and the annotation at a point.
 struct Reading {
-    glm::dvec3 voxel{0.0};            ///< of the probe; over a slice, of the pointer
-    bool is_inside = false;           ///< the volume; otherwise nothing of the next three is known
+    glm::dvec3 voxel{0.0};            ///< position of the probe; over a slice, of the pointer
+    bool is_inside = false;           ///< within the volume; otherwise the next three are unknown
     std::optional<double> intensity;  ///< in the file's units; null: it cannot be read, or is not read yet
-    double offset = 0.0;              ///< that density painting added there
+    double offset = 0.0;              ///< density offset added by painting
     uint8_t group = 0;
-    /// Physical units, along the view, from where what is drawn of the volume begins. Of the probe, in the first pane.
+    /// Depth of the probe in the first pane: physical units along the view, from the start of the drawn volume.
     double depth = 0.0;
-    /// Of the probe's ball: the share of its voxels at or above the threshold; null: not known.
+    /// Share of the voxels in the probe's ball at or above the threshold; null: unknown.
     std::optional<double> relevant_share;
 };
 

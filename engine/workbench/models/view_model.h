@@ -1,5 +1,5 @@
 #pragma once
-// What view, probe and hand show.
+// View of camera, probe and hand.
 
 #include <optional>
 #include <span>
@@ -19,7 +19,7 @@ struct ViewModel {
     const std::vector<Screen::Part>& panes;
     const Screen* screen = nullptr;            ///< null where nothing is open
     std::optional<Pointer> pointer{};          ///< the mouse, while it is over the picture
-    std::optional<glm::dvec3> picked_pivot{};  ///< volume space; what turning goes about, if the session says so
+    std::optional<glm::dvec3> picked_pivot{};  ///< pivot in volume space, used if the session selects it
     bool view_is_complete = true;
     bool view_is_limited = false;  ///< coarser than the screen, because the visible bricks exceed the budget
 };
@@ -28,22 +28,22 @@ struct ViewModel {
 struct ReadingModel {
     Reading reading{};
     std::span<const Measurement> measurements{};
-    std::optional<glm::dvec3> measuring_from{};  ///< the first end of one that has no second yet
-    std::optional<glm::dvec3> measuring_to{};    ///< where its second end would be now
+    std::optional<glm::dvec3> measuring_from{};  ///< first end of a measurement without a second end
+    std::optional<glm::dvec3> measuring_to{};    ///< candidate for its second end
 };
 
 /// Made by the prober.
 struct ProbeModel {
     glm::dvec3 probe_voxel{0.0};
-    glm::dvec3 tool_voxel{0.0};              ///< where tools act: the probe, or what it touches (FeelSettings)
-    std::optional<uint32_t> tool_node;       ///< the node that they act at
-    std::optional<uint32_t> tool_internode;  ///< the internode that they act on
+    glm::dvec3 tool_voxel{0.0};              ///< where tools act: the probe, or the touched structure (FeelSettings)
+    std::optional<uint32_t> tool_node;       ///< node that tools act at
+    std::optional<uint32_t> tool_internode;  ///< internode that tools act on
 };
 
 /// Made by the hand.
 struct TouchedModel {
     const ServoState* servo = nullptr;  ///< null while no servo runs
-    const HandView* hand = nullptr;     ///< devices and what the hand does; null where nothing is open
+    const HandView* hand = nullptr;     ///< devices and state of the hand; null while nothing is open
     double relevance_age_ms = 0.0;      ///< age of the patch that the servo uses; 0 without assistance
 };
 

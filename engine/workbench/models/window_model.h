@@ -1,5 +1,5 @@
 #pragma once
-// What preferences and the window's own state show.
+// View of preferences and the window's own state.
 
 #include <cstdint>
 #include <map>
@@ -20,7 +20,7 @@ struct Preferences;
 struct PreferenceModel {
     const Keymap& keymap;
     const Preferences& preferences;
-    std::string_view awaits_key{};  ///< id of the shortcut that the next key is for; empty: none
+    std::string_view awaits_key{};  ///< id of the shortcut that the next key is bound to; empty: none
 };
 
 /// Made by the shelf of presets.

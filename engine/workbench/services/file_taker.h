@@ -1,5 +1,5 @@
 #pragma once
-// Files that are opened, described or dropped onto the window. Their contents decide what they are.
+// Opens, describes or takes files, also those dropped onto the window. Their contents decide their kind.
 
 #include "engine/tasks/file_content.h"
 #include "engine/workbench/desk/service.h"

@@ -1,5 +1,5 @@
 #pragma once
-// The hand: which device it holds, what its moves and buttons do, recordings of it.
+// The haptic device in use, the effect of its motion and buttons, and recordings of it.
 
 #include <set>
 
@@ -54,14 +54,14 @@ private:
     Tracer& tracer_;
     Photographer& photographer_;
     PreferenceKeeper& keeper_;
-    std::unique_ptr<DeviceWatch> watch_;    ///< null: no device is looked for
+    std::unique_ptr<DeviceWatch> watch_;    ///< null: no search for devices
     std::shared_ptr<HapticDevice> device_;  ///< null: none is open
     HandView hand_;
-    std::set<std::string> refused_;  ///< ids of devices that could not be opened, until they are asked for again
-    bool is_given_device_ = false;   ///< by the caller
+    std::set<std::string> refused_;  ///< ids of devices that could not be opened, until they are requested again
+    bool is_given_device_ = false;   ///< the caller supplied the device
     double look_again_s_ = 0.0, puck_at_s_ = 0.0;
     std::optional<Grab> grab_;
-    uint32_t buttons_ = 0;  ///< the stylus's buttons in the last step
+    uint32_t buttons_ = 0;  ///< stylus buttons in the last step
     double buttons_at_s_ = 0.0;
     Attempt touching_;
 };

@@ -2,12 +2,12 @@
 // Opening in the background:
 //
 //   worker      session, statistics, coarser levels, saved work     -> Document::Read
-//   main        what is open is saved (saver.cpp)
-//   main        the volume goes onto the device in slices           -> Scene
-//   main        the document takes the place of the one before
+//   main        saves the open document (saver.cpp)
+//   main        loads the volume onto the device in slices          -> Scene
+//   main        replaces the open document
 //
-// Until the last step what is open stays in use. Where the device has no room for both it is put away while the next
-// one is loaded, and comes back where that fails or is cancelled.
+// Until the last step the open document stays in use. If the device has no room for both, it is put away while the next
+// one is loaded, and restored if that fails or is cancelled.
 
 #include <exception>
 
@@ -29,7 +29,7 @@ class Viewer;
 
 class Opener : public Service {
 public:
-    /// Seconds of a step that loading slices of a volume may take.
+    /// Seconds per step that may be spent on loading slices of a volume.
     static constexpr double SLICE_S = 0.005;
 
     explicit Opener(Services& all);
@@ -38,29 +38,29 @@ public:
 
     void advance() override;
     bool advances_without_document() const override { return true; }
-    /// With settings as --set takes them. `taken_into_it`: annotation that was dropped with it.
+    /// Starts opening with settings as --set takes them. `taken_into_it`: annotation dropped together with it.
     void begin_open(const std::filesystem::path& path, const std::vector<std::string>& settings,
                     std::vector<std::filesystem::path> taken_into_it = {});
-    /// The same, and waits until it is there; saves nothing before. Fails where it cannot be opened.
+    /// Opens and waits until it is done; saves nothing before. Fails if it cannot be opened.
     void open(const std::filesystem::path& path, const std::vector<std::string>& settings, Work::Opening how);
-    /// Takes what the caller has opened; the renderer's scene is of its volume.
+    /// Takes a document that the caller has opened; the renderer's scene is of its volume.
     void take(Document::Read read);
     bool is_opening() const { return opening_ != nullptr; }
-    /// What is being opened; empty: nothing.
+    /// Returns the name of the file being opened; empty: none.
     std::string_view opening_name() const;
-    /// Of the job that reads, and of the opening afterwards; 0: nothing is being opened.
+    /// Returns the number of the reading job, afterwards of the opening; 0: nothing is being opened.
     Jobs::Number number() const;
     void cancel();
-    /// The job that reads has failed, in words.
+    /// Handles the end of the reading job; `failure` describes its error.
     void end_reading(const std::string& failure);
-    /// States of what is opened: while it is loaded or comes back, and where `states` lacks its job, which has ended.
+    /// Adds states of the opening: while it loads or is restored, and if `states` lacks its job, which has ended.
     void add_loading(std::vector<Jobs::State>& states) const;
     void add_read(std::vector<Jobs::State>& states) const;
     /// Puts the document away while the device has room for one only.
     void put_away();
-    /// Loads what was put away once more.
+    /// Loads the document again that was put away.
     void bring_back();
-    /// After the graphics device was lost (Workbench::restart_device).
+    /// Shows everything again after the graphics device was lost (Workbench::restart_device).
     void restart_device(const std::function<void()>& make_anew);
     OpeningModel model() const;
 
@@ -90,9 +90,9 @@ private:
     TaskRunner& tasks_;
     Viewer& viewer_;
     std::shared_ptr<Opening> opening_;                     ///< null: nothing is being opened
-    std::shared_ptr<std::exception_ptr> awaited_failure_;  ///< where `open` waits for what ends an opening
-    Jobs::Number next_return_ = Jobs::Number{1} << 48;     ///< so that it is no job's
-    std::unique_ptr<Document> away_;  ///< what was open, without a scene, while the device has room for one only
+    std::shared_ptr<std::exception_ptr> awaited_failure_;  ///< failure of the opening that `open` waits for
+    Jobs::Number next_return_ = Jobs::Number{1} << 48;     ///< number range of its own, apart from jobs
+    std::unique_ptr<Document> away_;  ///< the open document without a scene, while the device has room for one only
     std::vector<std::string> recovered_;
     std::string open_failure_;
     std::filesystem::path failed_path_;

@@ -1,5 +1,5 @@
 #pragma once
-// Strokes: how they begin, go on with the probe and end; the preview of the brush; the state of the journal.
+// Strokes: how they begin, follow the probe and end; the preview of the brush; the state of the journal.
 
 #include "engine/workbench/desk/service.h"
 
@@ -17,21 +17,21 @@ public:
     void act(const PaintOp& op);
 
     void advance() override;
-    /// Forgets what was of the document before.
+    /// Forgets state of the previous document.
     void begin_document() { journal_failure_.clear(); }
-    /// An open stroke goes to where the probe is.
+    /// Extends the open stroke to the probe's position.
     void extend_stroke();
-    /// Turns until a running stroke is painted. Returns why part of it was not; empty if all was.
+    /// Runs steps until the current stroke is painted. Returns why part of it was not; empty if all was.
     std::string finish_stroke();
     /// Waits for strokes that the hand has ended.
     void await_strokes();
-    /// Its bricks are waited for from now on.
+    /// Starts the time limit for the stroke's bricks.
     void note_progress() { stroke_progress_s_ = options_.now_s(); }
-    /// None of its bricks came for so long that it is given up.
+    /// Returns whether no brick has arrived for too long, so that the stroke is given up.
     bool is_stuck() const;
-    /// What is said of a stroke that was.
+    /// Returns the message about a stroke that was given up.
     static std::string why_stuck();
-    /// Voxels that the preview showed when the last stroke began, if it had one.
+    /// Number of voxels in the preview when the last stroke began, if it had one.
     std::optional<int64_t> previewed_at_stroke() const { return previewed_at_stroke_; }
     PaintModel model() const;
 
@@ -46,10 +46,10 @@ private:
     SettingsEditor& settings_;
     Tracer& tracer_;
     PreferenceKeeper& keeper_;
-    double stroke_progress_s_ = 0.0;  ///< when the last of its bricks came
+    double stroke_progress_s_ = 0.0;  ///< time when its last brick arrived
     uint64_t stroke_uploads_ = 0;
-    glm::dvec3 stroke_end_voxel_{0.0};  ///< where an open stroke was extended to
-    std::string journal_failure_;       ///< as last reported
+    glm::dvec3 stroke_end_voxel_{0.0};  ///< last point of the open stroke
+    std::string journal_failure_;       ///< failure last reported
     std::optional<int64_t> previewed_at_stroke_;
     Attempt painting_, previewing_;
 };

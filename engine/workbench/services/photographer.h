@@ -11,7 +11,7 @@ class Viewer;
 
 class Photographer : public Service {
 public:
-    /// Of the large one among the jobs: no job has it.
+    /// Number of the large screenshot among the jobs: no job has it.
     static constexpr Jobs::Number NUMBER = (Jobs::Number{1} << 49) + 1;
 
     explicit Photographer(Services& all);
@@ -21,16 +21,16 @@ public:
     bool has_large() const { return screenshots_.has_large(); }
     bool is_writing() const { return screenshots_.is_writing(); }
     void wait() const { screenshots_.wait(); }
-    /// Cancels the large screenshot, if there is one, and says by what.
+    /// Cancels the large screenshot, if there is one, and reports the cause.
     void drop_large(const char* by);
-    /// Cancels it without a word.
+    /// Cancels it silently.
     void drop_large() { screenshots_.drop_large(); }
     Jobs::State state_of_large() const;
-    /// Of files next to the session: "scan" for scan-view-1.png.
+    /// Returns the base of names for files next to the session: "scan" for scan-view-1.png.
     std::filesystem::path stem() const;
-    /// Pixels of one unit of the interface, for what is drawn over pictures.
+    /// Sets the pixels per unit of the interface, for drawing over pictures.
     void set_units(double units) { units_ = units; }
-    /// Nothing else waits for the device: large screenshots may go on.
+    /// Sets whether the device is idle: then large screenshots may continue.
     void set_still(bool is_still) { is_still_ = is_still; }
 
 private:

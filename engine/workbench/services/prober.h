@@ -1,5 +1,5 @@
 #pragma once
-// The probe: where it goes, and how large it is.
+// Position and size of the probe.
 
 #include "engine/workbench/desk/service.h"
 
@@ -20,7 +20,7 @@ public:
     void act(const PlaceProbe& action);
     void act(const ScaleProbe& action);
 
-    /// A stroke that is open goes there with it.
+    /// Moves the probe, and extends the open stroke.
     void move_probe(const glm::dvec3& point, bool jumps);
     ProbeModel model() const;
 

@@ -1,5 +1,5 @@
 #pragma once
-// What is read under the probe and the pointer, what is measured, and what the scene reports.
+// Readings under the probe and the pointer, measurements, and reports of the scene.
 
 #include "engine/workbench/desk/service.h"
 
@@ -20,7 +20,7 @@ public:
     void advance() override;
     /// Reads the voxel again, since another document is open.
     void begin_document() { read_voxel_.reset(); }
-    /// What was to be copied since the last call; empty: nothing.
+    /// Returns text to copy since the last call; empty: none.
     std::string take_clipboard() { return std::exchange(clipboard_, {}); }
     ReadingModel model() const;
 
@@ -34,9 +34,9 @@ private:
     SettingsEditor& settings_;
     PreferenceKeeper& keeper_;
     Reading reading_;
-    std::optional<glm::dvec3> read_voxel_;  ///< whole numbers: of which `reading_` has the intensity
+    std::optional<glm::dvec3> read_voxel_;  ///< integer coordinates of the voxel whose intensity is in `reading_`
     uint64_t read_revision_ = 0;            ///< revision of the paint
-    double read_again_s_ = 0.0;             ///< reading may take long: not before
+    double read_again_s_ = 0.0;             ///< earliest time of the next read: reading may take long
     std::string clipboard_;
     Attempt reading_turn_;
 };

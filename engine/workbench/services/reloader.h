@@ -1,7 +1,7 @@
 #pragma once
-// Settings that load the volume once more (render.sampling, render.paging): in slices next to the scene that is shown,
-// which stays in use until the next stands. Where the device has no room for both, the document is put away for the
-// time, as for opening.
+// Reloads the volume after changes of render.sampling or render.paging: in slices, next to the displayed scene,
+// which stays in use until the new one is complete. If the device has no room for both, the document is put away for
+// that time, as for opening.
 
 #include "engine/workbench/desk/service.h"
 
@@ -15,7 +15,7 @@ class Viewer;
 
 class Reloader : public Service {
 public:
-    /// No job has this number.
+    /// Number of the reload among the jobs: no job has it.
     static constexpr Jobs::Number NUMBER = Jobs::Number{1} << 49;
 
     explicit Reloader(Services& all);
@@ -23,12 +23,12 @@ public:
 
     void advance() override;
     bool advances_without_document() const override { return true; }
-    /// Where the volume cannot be loaded with the session's settings, that is said at once. `before`: as they were.
+    /// Starts a reload. Reports at once if the session's settings cannot be loaded. `before`: the previous ones.
     void want(const RenderSettings& before);
     bool is_wanted() const { return reload_ != nullptr; }
-    /// Returns whether there was one.
+    /// Cancels the reload. Returns whether there was one.
     bool cancel();
-    /// The volume is loaded as its settings now say, by other means.
+    /// Drops the reload: the volume was loaded with the current settings by other means.
     void forget() { reload_.reset(); }
     Jobs::State state() const;
 
@@ -41,7 +41,7 @@ private:
     Photographer& photographer_;
     SettingsEditor& settings_;
     Viewer& viewer_;
-    std::shared_ptr<Reload> reload_;  ///< null: what is shown is as the settings say
+    std::shared_ptr<Reload> reload_;  ///< null: the displayed scene matches the settings
 };
 
 }  // namespace shvr::ui

@@ -1,5 +1,5 @@
 #pragma once
-// Saving, in place or elsewhere, and leaving: what is to be written is taken at once, and files are written in the
+// Saving, in place or elsewhere, and leaving: data to write is copied at once, and files are written in the
 // background.
 
 #include <set>
@@ -17,11 +17,11 @@ class SettingsEditor;
 class TaskRunner;
 class Viewer;
 
-/// Whether what is open may be closed (Workbench::leave).
+/// Result of asking whether the open document may be closed (Workbench::leave).
 enum class Leave {
     now,
-    later,    ///< something is being saved; all can be used meanwhile
-    refused,  ///< it cannot be saved; `why` says why, once
+    later,    ///< a save is under way; the program stays usable meanwhile
+    refused,  ///< it cannot be saved; `why` is set once
 };
 
 class Saver : public Service {
@@ -35,16 +35,16 @@ public:
     void act(const Quit& action);
 
     void advance() override;
-    /// Forgets what was of the document before.
+    /// Forgets state of the previous document.
     void begin_document();
     bool is_saving() const { return save_ != nullptr || wanted_save_; }
     bool is_copying() const { return !copies_.empty(); }
-    /// A job of the savers has ended.
+    /// Handles the end of a job of the savers.
     void end(const Jobs::Finished& job);
     Leave leave(std::string& why);
-    /// Waits for what is being saved. Returns what was written; fails with the reason where that is not all.
+    /// Waits for the save under way. Returns what was written; fails with the reason if that is not all.
     Work::Saved finish_save();
-    /// Quit was asked for; asking clears it.
+    /// Returns whether Quit was requested, and clears the request.
     bool take_quit() { return std::exchange(quits_, false); }
     SaveModel model() const;
 
@@ -65,23 +65,23 @@ private:
     SettingsEditor& settings_;
     TaskRunner& tasks_;
     Viewer& viewer_;
-    /// What is being saved.
+    /// The save under way.
     struct Save {
         Jobs::Number number = 0;
         std::shared_ptr<Document::Saving> saving;
-        bool is_asked_for = true;  ///< otherwise nothing is said where all goes well
+        bool is_asked_for = true;  ///< false: success is not reported
     };
     std::unique_ptr<Save> save_;
-    /// Once the stroke, or the save, under way has ended. Empty: in place; else under that name.
+    /// A save to start once the stroke or the save under way has ended. Empty path: in place; else under that name.
     std::optional<std::filesystem::path> wanted_save_;
     std::string unpainted_;          ///< why a part of the stroke before the save was not painted
-    std::string save_failure_;       ///< why the last save failed; empty: it went well
-    Work::Saved saved_;              ///< by the last save
-    bool has_tried_view_ = false;    ///< that alone is no reason to stay
-    bool is_leaving_ = false;        ///< that a save fails is a reason to stay
-    std::set<Jobs::Number> copies_;  ///< being written by a saver
+    std::string save_failure_;       ///< why the last save failed; empty: it succeeded
+    Work::Saved saved_;              ///< result of the last save
+    bool has_tried_view_ = false;    ///< the view alone was saved once; a failure does not prevent closing
+    bool is_leaving_ = false;        ///< leaving was requested; a failed save prevents it
+    std::set<Jobs::Number> copies_;  ///< copies that a saver is writing
     bool told_of_writers_ = false;
-    bool reopens_when_saved_ = false;  ///< with the spacing of the session
+    bool reopens_when_saved_ = false;  ///< with the session's new spacing
     bool quits_ = false;
     Attempt saving_;
 };

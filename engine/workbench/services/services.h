@@ -43,7 +43,7 @@ struct Services {
     Saver saver{*this};
     Hand hand{*this};
 
-    /// The service of a type.
+    /// Returns the service of a type.
     template <class Kind>
     Kind& of()
     {

@@ -1,5 +1,5 @@
 #pragma once
-// Settings: how they change, what follows from it, and which of it becomes a step of the history; undo and redo.
+// Changes settings, applies the consequences, and decides which changes become steps of the history; undo and redo.
 
 #include "engine/workbench/desk/service.h"
 
@@ -24,9 +24,9 @@ public:
     void act(const RevertOp& action);
     void act(const ChooseBelief& action);
 
-    /// Makes a step of the history of what was set, and keeps the view in the journal.
+    /// Makes a step of the history of pending changes, and keeps the view in the journal.
     void advance() override;
-    /// Forgets what was of the document before.
+    /// Forgets state of the previous document.
     void begin_document();
     void take_session(Session session);
     /// Updates the window's data about the trace; the annotator passes changes to the scene itself.
@@ -36,16 +36,16 @@ public:
     /// Call after a change of view, probe and the like: they go into the journal when the hand rests, and every few
     /// seconds while it does not.
     void note_to_keep();
-    /// Makes a step of what was set: of what follows, undo is to take back that first.
+    /// Makes a step of pending changes, so that undo reverts them before later steps.
     void record_settings();
     bool has_settings_to_record() const { return settings_to_record_; }
-    /// While a hand is setting something no step of the history is made of it: one drag is one step.
+    /// While the hand is changing a setting, no step of the history is made: one drag is one step.
     void set_hand_down(bool is_down) { is_hand_down_ = is_down; }
-    /// Whether the stroke that ended now changed nothing: undo takes that back first.
+    /// Records whether the stroke that just ended changed nothing: the next undo then takes back that stroke.
     void note_stroke(bool is_empty);
-    /// Files stay as they are. The journal keeps what was done since: undo brings it back next time.
+    /// Discards changes. Files stay as they are. The journal keeps the changes: undo restores them next time.
     void discard();
-    /// Nothing was done since the work was discarded: nothing is to be saved.
+    /// Returns whether nothing was done since the work was discarded: there is nothing to save.
     bool is_discarded() const;
     HistoryModel model() const;
 
@@ -63,12 +63,12 @@ private:
     Reloader& reloader_;
     bool is_hand_down_ = false;
     bool settings_to_record_ = false, was_set_in_this_turn_ = false;
-    std::optional<double> to_keep_since_s_;       ///< since when the journal does not hold the view as it is
-    double last_change_s_ = 0.0;                  ///< time of the last change to be kept
-    std::optional<Session> session_before_hand_;  ///< as it was before the hand began to set something
-    /// Steps that could be undone when the work was discarded: as long as nothing else is done, nothing is saved.
+    std::optional<double> to_keep_since_s_;       ///< time since which the journal lacks the current view
+    double last_change_s_ = 0.0;                  ///< time of the last change to keep
+    std::optional<Session> session_before_hand_;  ///< session before the hand began to change settings
+    /// Number of undoable steps when the work was discarded: while it is unchanged, nothing is saved.
     std::optional<size_t> discarded_steps_;
-    /// Steps that could be undone when the last stroke ended that changed nothing: undo takes that back first.
+    /// Number of undoable steps when the last stroke ended without a change: undo takes back that stroke first.
     std::optional<size_t> steps_at_empty_stroke_;
     Attempt recording_, keeping_;
 };

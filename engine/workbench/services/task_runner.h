@@ -1,6 +1,6 @@
 #pragma once
-// Long work in the background: each job makes its result on a worker; what is done with it happens here. Names and
-// folders are checked by the job, too: that asks the disk.
+// Long work in the background: each job computes its result on a worker, and this service uses it. Names and
+// folders are also checked by the job, since that needs the disk.
 
 #include <set>
 
@@ -25,10 +25,10 @@ public:
     void act(const EvaluateTask& task);
     void act(const CancelJob& action);
 
-    /// Ends the jobs that have ended.
+    /// Handles jobs that have ended.
     void advance() override;
     bool advances_without_document() const override { return true; }
-    /// A job writes files that were asked for: leaving waits for it.
+    /// Returns whether a job writes requested files: leaving waits for it.
     bool is_writing() const { return !writers_.empty(); }
     JobModel model() const;
 

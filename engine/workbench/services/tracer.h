@@ -1,5 +1,5 @@
 #pragma once
-// The trace: the operations that scripts use, as commands of the one history; selecting and adding at what is seen.
+// The trace: the operations that scripts use, as commands of the one history; selecting and adding by pointing.
 
 #include "engine/workbench/desk/service.h"
 #include "engine/workbench/sight/hits.h"
@@ -31,7 +31,7 @@ public:
     void act(const MendCut& action);
 
     void trace(const TraceOp& op);
-    /// A node that draws the tool is linked and selected in place of a new one.
+    /// Adds a node where tools act. A node that attracts the tools is linked and selected instead.
     void add_node_here();
     TraceModel model() const;
 

@@ -132,7 +132,7 @@ void Viewer::follow_look()
     document.screen.advance();
 }
 
-/// As camera and probe are now: the screen follows them once a turn, and several actions may come in one.
+/// Uses the current camera and probe; the screen follows them once a frame, and a frame may carry out several actions.
 Pane Viewer::pane(size_t index) const
 {
     const std::vector<Pane> panes = panes_of(document_->session.view, document_->camera, pixels_,

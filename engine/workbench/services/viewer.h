@@ -1,5 +1,5 @@
 #pragma once
-// The view: cameras, cutting and clipping planes, slices, and what lies under a pixel.
+// The view: cameras, cutting and clipping planes, slices, and picking.
 
 #include "engine/workbench/desk/service.h"
 
@@ -36,19 +36,19 @@ public:
     /// Draws the whole picture again.
     void look_again() { look_is_stale_ = true; }
     void look_from(const Camera& camera);
-    /// As camera and probe are now: the screen follows them once a frame, and several actions may come in one.
+    /// Uses the current camera and probe; the screen follows them once a frame, and a frame may have several actions.
     Pane pane(size_t index) const;
-    /// What is seen at a pixel of a pane, volume space; of a slice, the point of its plane. Null: nothing is.
+    /// Returns the visible point at a pixel of a pane, in volume space; in a slice, the point of its plane. Null: none.
     std::optional<glm::dvec3> seen_at(const Pane& pane, const glm::dvec2& pixel) const;
-    /// What of it lies within `reach` of a depth along the view.
+    /// Returns the visible point within `reach` of a depth along the view.
     std::optional<glm::dvec3> seen_near(const Pane& pane, const glm::dvec2& pixel, double depth, double reach) const;
-    /// Size of the picture; 0, 0: none is drawn.
+    /// Returns the size of the picture; 0, 0: none is drawn.
     const glm::uvec2& pixels() const { return pixels_; }
-    /// Whether there is a picture that does not yet show what was done last.
+    /// Returns whether a picture exists that does not yet show the last changes.
     bool is_stirring() const { return pixels_.x > 0 && pixels_.y > 0 && (look_is_stale_ || camera_moved_); }
     void set_pointer(const std::optional<Pointer>& pointer) { pointer_ = pointer; }
     const std::optional<Pointer>& pointer() const { return pointer_; }
-    /// Lines show what the cutting planes leave: while they are moved, and a little longer.
+    /// Shows the box of the cutting planes: while they are moved, and a little longer.
     void show_cut_box();
     bool shows_cut_box() const { return options_.now_s() < cut_shown_until_s_; }
     ViewModel model() const;
@@ -63,7 +63,7 @@ private:
     glm::uvec2 pixels_{0};
     bool look_is_stale_ = true, camera_moved_ = false;
     std::optional<Pointer> pointer_;
-    glm::dvec3 followed_voxel_{0.0};  ///< the probe's place that the slices have followed
+    glm::dvec3 followed_voxel_{0.0};  ///< probe position that the slices have followed
     double cut_shown_until_s_ = 0.0;
     Attempt looking_;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Scale bar, axes, distances and what a pane shows, as they are drawn into pictures in files (marks.h). Pure; the main
+// Scale bar, axes, distances and pane titles, as they are drawn into picture files (marks.h). Pure; the main
 // thread makes one while the model lives, any thread draws it.
 
 #include <functional>
@@ -12,7 +12,7 @@
 
 namespace shvr::ui {
 
-/// A line of text as a coverage of pixels, whose height is that of a line.
+/// A line of text as pixel coverage; its height is the line height.
 struct TextImage {
     glm::ivec2 pixels{0};
     std::vector<uint8_t> coverage;
@@ -22,17 +22,17 @@ using TextDrawer = std::function<std::vector<TextImage>(std::span<const std::str
 
 struct Figure {
     struct Part {
-        PixelBox box;  ///< of the pane, in the whole picture
+        PixelBox box;  ///< box of the pane, in the whole picture
         std::vector<Stroke> strokes;
         std::vector<Stamp> stamps;
     };
     std::vector<Part> parts;
 };
 
-/// `units`: pixels of one unit of the interface: of its scale and of the picture's. Without a drawer there are no
-/// words.
+/// Builds the figure. `units`: pixels per unit of the interface, times the picture's scale. Without a drawer there are
+/// no labels.
 Figure figure_of(const Model& model, std::span<const Pane> panes, double units, const TextDrawer& draw_texts);
-/// `rows`: of the picture, from `first_row` on.
+/// Draws the figure over `rows`, the part of the picture that starts at `first_row`.
 void draw(const Figure& figure, ImageF& rows, uint32_t first_row);
 void draw(const Figure& figure, Image8& picture);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Which part of a trace is under a pixel. Pure; any thread, while the trace is lent.
+// Finds the part of a trace under a pixel. Pure; any thread, while the trace is lent.
 
 #include <optional>
 
@@ -11,14 +11,14 @@ namespace shvr::ui {
 struct TraceHit {
     std::optional<uint32_t> node, internode;  ///< one of them, or none
     double depth = 0.0;                       ///< physical units along the view
-    double radius = 0.0;                      ///< likewise
+    double radius = 0.0;                      ///< radius in physical units
 };
-/// A node within its ring, or within 6 pixels of its middle; of several, the one nearest to the viewer; or else an
-/// internode within 4 pixels of its middle line. In a slice only what the plane passes through or within half a voxel
-/// of. Visits the whole trace.
+/// Returns a node within its ring, or within 6 pixels of its centre (of several, the one nearest to the viewer), else
+/// an internode within 4 pixels of its centre line. In a slice only parts that cross the plane or lie within half a
+/// voxel of it. Visits the whole trace.
 TraceHit trace_hit(const TraceGraph& trace, const Pane& pane, const glm::dvec2& pixel, const VolumeInfo& volume);
 
-/// Of a slice: how far a point lies behind its plane.
+/// Returns how far a point lies behind the plane of a slice.
 double behind_plane(const Camera& camera, const glm::dvec3& point);
 
 }  // namespace shvr::ui

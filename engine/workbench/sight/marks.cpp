@@ -18,7 +18,7 @@ constexpr std::array<glm::dvec3, 3> AXES{glm::dvec3(0.95, 0.12, 0.08), glm::dvec
                                          glm::dvec3(0.15, 0.4, 1.0)};
 constexpr double DASH = 6.0, GAP = 5.0;
 
-/// Of at most so many characters, whole ones of UTF-8.
+/// Returns at most MOST characters of a name, counted and cut as UTF-8.
 std::string shortened_name(const std::string& name)
 {
     constexpr size_t MOST = 32;
@@ -216,7 +216,7 @@ private:
         measurement(*model_.measuring_from, leads ? *model_.measuring_to : *model_.measuring_from, true);
     }
 
-    /// A small cross where turning goes about, if that is a place that somebody chose.
+    /// Draws a small cross at the pivot of turning, if the user picked one.
     void pivot()
     {
         if (!is_main() || model_.session.interaction.pivot != Pivot::picked || !model_.picked_pivot) return;

@@ -1,7 +1,7 @@
 #pragma once
-// Lines and words that the window draws over a pane: the brush's ring and the trace in slices, the link that a new node
-// would get, distances, a scale bar, directions of the axes, the groups, and what the pane shows. Pictures in files
-// have those that are no help for the hand, where that is wanted (figure.h). Pure; the main thread, while the model
+// Lines and labels that the window draws over a pane: the brush's ring and the trace in slices, the link that a new
+// node would get, distances, a scale bar, directions of the axes, the groups, and the pane's title. Picture files
+// contain those that are no mere help for the hand, if requested (figure.h). Pure; the main thread, while the model
 // lives.
 
 #include <string>
@@ -12,12 +12,12 @@
 
 namespace shvr::ui {
 
-/// Size of the font where a unit of the interface is a pixel.
+/// Font size at one pixel per unit of the interface.
 inline constexpr double FONT_UNITS = 14.0;
 
 struct Label {
     glm::dvec2 at{0.0};      ///< pixels of the pane
-    glm::dvec2 anchor{0.0};  ///< which part of the text is there: 0, 0 its upper left corner, 1, 1 its lower right one
+    glm::dvec2 anchor{0.0};  ///< the part of the text at `at`: 0, 0 its upper left corner, 1, 1 its lower right one
     std::string text;
     glm::dvec3 color{1.0};  ///< linear light
 };
@@ -28,7 +28,7 @@ struct Marks {
 
 enum class MarksFor { screen, picture };
 
-/// `pane`: as it is shown; `index`: its number. `units`: pixels of one unit of the interface, 2 on a HiDPI screen.
+/// `pane`: as displayed; `index`: its number. `units`: pixels per unit of the interface, 2 on a HiDPI screen.
 Marks marks_of(const Model& model, const Pane& pane, size_t index, double units = 1.0,
                MarksFor purpose = MarksFor::screen);
 

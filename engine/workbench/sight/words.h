@@ -1,5 +1,5 @@
 #pragma once
-// Places, lengths and readings as a person reads them. Pure; any thread.
+// Formats positions, lengths and readings for display. Pure; any thread.
 
 #include <span>
 #include <string>
@@ -11,25 +11,25 @@
 
 namespace shvr::ui {
 
-/// "12.35 mm"; four digits. Micrometres are spelled with the Greek letter.
+/// Returns "12.35 mm"; four digits. Micrometres are spelled with the Greek letter.
 std::string length_in_words(double length, const std::string& unit);
-/// The physical length of a measurement.
+/// Returns the physical length of a measurement.
 double length_of(const Measurement& measurement, const glm::dvec3& spacing);
-/// "voxel 120, 80, 33 (1.2, 0.8, 0.33 mm)"; voxels count from 0. Without a unit the voxel alone.
+/// Returns "voxel 120, 80, 33 (1.2, 0.8, 0.33 mm)"; voxels count from 0. Without a unit the voxel alone.
 std::string place_in_words(const glm::dvec3& voxel, const VolumeInfo& volume);
-/// "value 1234 + 30", "value ...", "outside".
+/// Returns "value 1234 + 30", "value ...", "outside".
 std::string value_in_words(const Reading& reading);
-/// All of it in one line, for the status bar; `group_name`: of the group there.
+/// Formats the whole reading in one line, for the status bar; `group_name`: of its group.
 std::string in_words(const Reading& reading, const VolumeInfo& volume, const std::string& group_name);
-/// "z 214 of 512, 1.284 mm": slices count from 1, and lie where their middle is.
+/// Returns "z 214 of 512, 1.284 mm": slices count from 1; their position is that of their middle.
 std::string slice_in_words(int axis, const glm::dvec3& voxel, const VolumeInfo& volume);
-/// A table with a heading, its columns separated by tabs: number, length, unit, and both ends in voxels.
+/// Returns a table with a heading and tab-separated columns: number, length, unit, and both ends in voxels.
 std::string table_of(std::span<const Measurement> measurements, const VolumeInfo& volume);
 
-/// How far a point lies behind the place where what is drawn of the volume begins, along the view; at least 0.
+/// Returns the depth of a point along the view, from the start of the drawn volume; at least 0.
 double depth_below_surface(const Camera& camera, const CutBox& cut, const VolumeInfo& volume, const glm::dvec3& point);
 
-/// A length that is drawn as a bar: the longest of 1, 2 and 5 times a power of ten that is at most `longest_pixels`.
+/// A length drawn as a bar: the longest of 1, 2 and 5 times a power of ten that is at most `longest_pixels`.
 struct ScaleBar {
     double pixels = 0.0;
     std::string text;  ///< "200 µm"

@@ -1,13 +1,13 @@
 #pragma once
-// Stands between the servo and its device, on the servo's thread: holds the probe in a plane, hands settings over at
-// the beginning of a tick, and notes what happens for plots and recordings.
+// Stands between the servo and its device, on the servo's thread: holds the probe in a plane, passes settings on at
+// the beginning of a tick, and records ticks for plots and recordings.
 //
 //   main thread --orders()--> TapPacing --> Servo::settings()        Servo <--> DeviceTap <--> device
 //   main thread <--take()---- ring of ticks <------ DeviceTap        main thread <--state()-- DeviceTap
 //
-// Settings go through the tap, so that a recording knows in which tick they took effect; of relevance it notes in each
-// tick which one the servo took. On the servo's thread nothing here locks, allocates, logs or throws; where a recording
-// is not fetched in time, it ends.
+// Settings go through the tap, so that a recording knows in which tick they took effect; for relevance it records per
+// tick which one the servo used. On the servo's thread nothing here locks, allocates, logs or throws; a recording
+// that is not fetched in time ends.
 
 #include <array>
 #include <atomic>
@@ -20,11 +20,11 @@
 
 namespace shvr::ui {
 
-/// A plane in the device's frame; the force along its normal is left out. Off: none.
+/// A plane in the device's frame; the force along its normal is removed. Off: no plane.
 struct PlaneHold {
     bool is_on = false;
     glm::dvec3 normal{0.0, 0.0, 1.0}, point_m{0.0};
-    uint32_t count = 0;  ///< of planes so far: a change places the probe anew, and is no glitch
+    uint32_t count = 0;  ///< number of planes so far: a change moves the probe, and is no glitch
     bool operator==(const PlaneHold&) const = default;
 };
 
@@ -35,14 +35,14 @@ struct TapOrder {
     bool operator==(const TapOrder&) const = default;
 };
 
-/// Forces of the last seconds, and what the servo's state does not hold.
+/// Forces of the last seconds, and values that the servo's state lacks.
 struct TapState {
     static constexpr size_t BARS = 250;
     static constexpr uint32_t TICKS_A_BAR = 20;
-    std::array<float, BARS> force_n{};  ///< the largest of 20 ticks each; `bars` % BARS is the oldest
+    std::array<float, BARS> force_n{};  ///< maximum force of each 20 ticks; `bars` % BARS is the oldest
     uint64_t bars = 0;
-    double heat = 0.0;         ///< share of what the motors may hold for ever, of the model in haptics/safety.h
-    uint64_t lost_states = 0;  ///< gaps in the device's numbers
+    double heat = 0.0;         ///< share of the motors' continuous limit, from the model in haptics/safety.h
+    uint64_t lost_states = 0;  ///< gaps in the device's sequence numbers
 };
 
 struct RecordedTick {
@@ -50,13 +50,13 @@ struct RecordedTick {
     bool has_settings = false;
     TraceSettings settings;
     DeviceCaps caps;
-    uint64_t relevance = 0;  ///< sequence of that in use; 0: none
+    uint64_t relevance = 0;  ///< sequence of the relevance in use; 0: none
     uint32_t recording = 0;
 };
 
 class TapLink {
 public:
-    /// `recording`: the number of one that begins with the first tick.
+    /// `recording`: number of the recording that begins with the first tick.
     explicit TapLink(uint32_t recording = 0) : ring_(RING), recording_(recording)
     {
         if (recording != 0) relevance_log_.begin();
@@ -64,7 +64,7 @@ public:
     // Main thread
     Latest<TapOrder>& orders() { return orders_; }
     Latest<TapState>& state() { return state_; }
-    /// Where settings go, and what the servo feels.
+    /// Sets where settings go, and the relevance that the servo feels.
     void connect(Latest<ForceSettings>& settings, const Latest<RelevancePatch>& relevance)
     {
         relevance_.store(&relevance, std::memory_order_release);
@@ -72,7 +72,7 @@ public:
     }
     RelevanceLog& relevance_log() { return relevance_log_; }
     bool take(RecordedTick& tick);
-    /// Ticks were not fetched in time, and are missing.
+    /// Returns whether ticks are missing because they were not fetched in time.
     bool has_overrun() const { return has_overrun_.load(std::memory_order_relaxed); }
 
     // The servo's thread
@@ -85,7 +85,7 @@ public:
     const PlaneHold& plane() const noexcept { return orders_.value().plane; }
 
 private:
-    static constexpr uint64_t RING = 4096;  ///< ticks: four seconds of a window that hangs
+    static constexpr uint64_t RING = 4096;  ///< ticks: four seconds of a stalled window
     void put() noexcept;
     void add_to_plot(double force_n) noexcept;
 
@@ -156,7 +156,7 @@ private:
 struct TappedServo {
     explicit TappedServo(std::shared_ptr<HapticDevice> with, std::unique_ptr<Pacing> pacing = real_pacing(),
                          uint32_t recording = 0);
-    /// What the servo shall feel: fill the first, then publish it. One thread, which need not be the main one.
+    /// The relevance for the servo: fill the first, then publish it. One thread, which need not be the main one.
     RelevancePatch& relevance() { return servo.relevance().writing(); }
     void publish_relevance();
     std::shared_ptr<HapticDevice> device;

@@ -15,19 +15,19 @@
 
 namespace shvr::ui {
 
-/// Where devices come from; tests have their own. Called on the watch's thread.
+/// Functions that list and open devices; tests have their own. Called on the watch's thread.
 struct DeviceSource {
     std::function<std::vector<DeviceListing>()> list;
-    /// Null for the mouse. Fails with a sentence.
+    /// Returns null for the mouse. Fails with a sentence.
     std::function<std::unique_ptr<HapticDevice>(const std::string& id)> open;
 };
-/// Those of this machine, with the profiles that ship.
+/// Returns the source for this machine, with the profiles that ship.
 DeviceSource devices_of_machine(bool allow_force);
 
 class DeviceWatch {
 public:
     explicit DeviceWatch(DeviceSource source);
-    /// Waits for what is being opened.
+    /// Waits for the device being opened.
     ~DeviceWatch();
     DeviceWatch(const DeviceWatch&) = delete;
 
@@ -38,14 +38,14 @@ public:
     struct Opened {
         std::string id;
         std::unique_ptr<HapticDevice> device;
-        std::string failure;  ///< a sentence; empty: it is open
+        std::string failure;  ///< a sentence; empty: the device is open
     };
     struct News {
         std::optional<std::vector<DeviceListing>> devices;
         std::optional<Opened> opened;
-        std::string failure;  ///< of looking
+        std::string failure;  ///< failure of the search
     };
-    /// What came since the last call.
+    /// Returns results since the last call.
     News take();
 
 private:

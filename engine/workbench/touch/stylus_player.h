@@ -1,5 +1,5 @@
 #pragma once
-// What a recorded stylus does with the present guidance, through the servo's own step, without a device or a clock:
+// Replays a recorded stylus with the present guidance, through the servo's own step, without a device or a clock:
 // the same recording, volume and settings give the same path, bit for bit. One thread; reads the volume's file.
 
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace shvr::ui {
 
-/// As the servo is told it.
+/// Guidance settings as the servo receives them.
 struct GuideSettings {
     bool assists = false;
     ProxyLaw law = ProxyLaw::potential;
@@ -25,10 +25,10 @@ struct StylusPoint {
     glm::dvec3 probe{0.0}, proxy{0.0};  ///< physical units; equal without contact
     bool in_contact = false;
     double relevant_share = 0.0;
-    bool is_pressed = false;  ///< the first button
+    bool is_pressed = false;  ///< state of the first button
 };
-/// `by_hand`: a modelled hand and stylus are drawn along the recording; otherwise the probe is where it was. `source`
-/// holds density offsets already.
+/// `by_hand`: a modelled hand and stylus are pulled along the recording; otherwise the probe follows it. `source`
+/// includes density offsets already.
 std::vector<StylusPoint> play_stylus(const Trace& trace, const GuideSettings& guide, bool by_hand,
                                      std::shared_ptr<const VolumeSource> source, const Mask& mask);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Gathers what the tap of a device noted into a stylus trace (haptics/replay). Main thread.
+// Collects a device tap's records into a stylus trace (haptics/replay). Main thread.
 
 #include <filesystem>
 #include <optional>
@@ -11,18 +11,18 @@ namespace shvr::ui {
 
 class StylusRecorder {
 public:
-    /// `unit`: of the volume's lengths. `number`: of the recording, above 0, as orders to the tap have it.
+    /// `unit`: unit of the volume's lengths. `number`: number of the recording, above 0, as in orders to the tap.
     StylusRecorder(std::filesystem::path path, std::string unit, uint32_t number);
-    /// From now on another device answers another servo, whose tap is fetched from; the former's was fetched before.
+    /// Continues with the tap of another device and servo; fetch from the former tap first.
     void swap_device();
-    /// Fetches what is new.
+    /// Fetches new ticks.
     void advance(TapLink& link);
     const std::filesystem::path& path() const { return path_; }
     uint32_t number() const { return number_; }
     double seconds() const { return double(trace_.ticks.size()) / trace_.rate_hz; }
-    /// Why it cannot go on; empty: it can.
+    /// Returns why the recording cannot continue; empty: it can.
     const std::string& end() const { return end_; }
-    /// The trace. Fails where there is no tick.
+    /// Returns the trace. Fails if there is no tick.
     Trace take();
 
 private:
@@ -32,7 +32,7 @@ private:
     uint32_t number_ = 0;
     Trace trace_;
     std::string end_;
-    uint64_t relevance_ = 0;  ///< sequence of the last one that the trace has
+    uint64_t relevance_ = 0;  ///< sequence of the trace's last relevance
     RecordedTick tick_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// What is said of changed settings. Pure; any thread.
+// Messages about changed settings. Pure; any thread.
 
 #include <string>
 
@@ -7,7 +7,7 @@
 
 namespace shvr::ui {
 
-/// A sentence about a change for which there is more to say than what was set; empty for others.
+/// Returns a sentence about a change that needs more than its new value; empty for others.
 std::string special_sentence(const Session& was, const Session& is);
 
 }  // namespace shvr::ui

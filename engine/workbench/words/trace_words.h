@@ -1,5 +1,5 @@
 #pragma once
-// What is said of operations of the trace. Pure; any thread.
+// Messages about trace operations. Pure; any thread.
 
 #include <string>
 
@@ -12,8 +12,8 @@ struct TraceSize {
     size_t nodes = 0, internodes = 0;
 };
 
-/// The result, for the status bar. `selects`: the operation does. `done`: null where nothing changed. `before`: how
-/// much there was.
+/// Returns the result for the status bar. `selects`: the operation selects. `done`: null if nothing changed.
+/// `before`: size of the trace before.
 std::string said_of(const TraceOp& op, bool selects, const Command* done, const TraceGraph& trace,
                     const TraceSize& before);
 
