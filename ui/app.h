@@ -1,11 +1,11 @@
 #pragma once
-// The application: a window on a workbench. It receives input, turns it into actions, and draws what there is to see.
+// The application: a window on a workbench. It receives input, converts it to actions, and draws the state.
 //
 //   events -> Viewport, Keyboard, panels -> Actions -> Workbench -> View -> Window
 //
-// One thread (main). Brush, relevance, probe, sketch, tiles and user interface share the device's queue in turns of a
-// few milliseconds. The interface is drawn when something changed, at most at the session's frame rate; with nothing to
-// do the loop sleeps.
+// One thread (main). Brush, relevance, probe, sketch, tiles and user interface share the device's queue in slices of a
+// few milliseconds. The interface is drawn when something changed, at most at the session's frame rate; the loop sleeps
+// while idle.
 
 #include <atomic>
 #include <memory>
@@ -27,12 +27,12 @@ struct AppOptions {
     gpu::Budget budget;
     int threads = 0;
     bool validation = false;
-    const std::atomic<bool>* stop = nullptr;  ///< once it is true, the window is asked to close, as by its button
+    const std::atomic<bool>* stop = nullptr;  ///< once true, the window is asked to close, as by its button
     bool allow_force = false;                 ///< lets a haptic device with a verified profile push the hand
-    std::filesystem::path preferences{};      ///< the file (workbench/preferences.h); empty: none are read or kept
-    std::filesystem::path log{};              ///< each action is written there as a line that replays it; empty: none
-    std::filesystem::path screen_texts{};     ///< each frame's texts are written there (screen_text.h); empty: none
-    std::string version{};                    ///< of the program, for reports
+    std::filesystem::path preferences{};      ///< the file (preferences_file.h); empty: none are read or kept
+    std::filesystem::path log{};              ///< receives each action as a line that replays it; empty: none
+    std::filesystem::path screen_texts{};     ///< receives each frame's texts (screen_text.h); empty: none
+    std::string version{};                    ///< version of the program, for reports
     glm::uvec2 window_size{1280, 800};
 };
 
@@ -41,7 +41,7 @@ public:
     explicit App(const AppOptions& options);
     ~App();
 
-    /// Returns when the window is closed.
+    /// Runs the main loop; returns when the window is closed.
     void run();
     AppReport report();
 
@@ -87,24 +87,24 @@ private:
     Viewport viewport_;
     Keyboard keyboard_;
     Actions actions_;
-    std::vector<InputEvent> held_back_;  ///< until a frame after this one:
+    std::vector<InputEvent> held_back_;  ///< for a frame after held_back_in_frame_
     int held_back_in_frame_ = -1;
-    bool was_asked_to_close_ = false;  ///< and could not save everything; nothing was done since
-    bool was_stopped_ = false;         ///< from outside (AppOptions::stop)
+    bool was_asked_to_close_ = false;  ///< closing was refused, since saving failed; nothing was done since
+    bool was_stopped_ = false;         ///< the program was asked to stop from outside (AppOptions::stop)
     std::string frame_failure_;
-    std::optional<double> undrawn_since_s_;  ///< every frame has failed since then
+    std::optional<double> undrawn_since_s_;  ///< time since which every frame has failed
 
     Appearance appearance_;
-    uint64_t read_messages_ = 0;  ///< whose characters the fonts have
+    uint64_t read_messages_ = 0;  ///< number of messages whose characters the fonts contain
 
     // Pace
     double next_frame_s_ = 0.0;
-    std::optional<double> undrawable_since_s_;  ///< there has been no image to draw in since then, or the last was lost
+    std::optional<double> undrawable_since_s_;  ///< time since which no image is available, or of the last one's loss
     double ui_until_s_ = 1.0;                   ///< the interface is drawn at least until then
-    uint64_t ui_until_frame_ = 3;               ///< and until so many frames are presented
+    uint64_t ui_until_frame_ = 3;               ///< likewise, at least until that many frames are presented
     double last_keys_s_ = 0.0;
     uint64_t drawn_revision_ = ~uint64_t(0);
-    bool drew_complete_ = false;  ///< the interface says whether the picture is sharp
+    bool drew_complete_ = false;  ///< the interface indicates whether the picture is sharp
     bool drew_cut_box_ = false;
     uint64_t drawn_messages_ = 0, drawn_openings_ = 0;
     glm::dvec3 drawn_probe_voxel_{0.0};

@@ -55,7 +55,7 @@ void App::follow_appearance()
     appearance_ = wanted;
     set_style(appearance_);
     window_.renew_fonts();
-    keep_drawing(0.5);  // panels find their places anew
+    keep_drawing(0.5);  // while panels settle into their new places
 }
 
 /// After panels or the menu were used by keyboard: otherwise what is framed there would take the next Space.

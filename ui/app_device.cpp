@@ -1,4 +1,4 @@
-// The window's graphics device: attached at the start, and made anew after it was lost.
+// The window's graphics device: attached at the start, and re-created after a loss.
 
 #include <chrono>
 #include <thread>
@@ -13,8 +13,8 @@ void App::attach()
     attached_.reset(&window_);
 }
 
-/// A driver that is reset needs a moment. What is open stays open, and nothing is lost but what was not recorded yet.
-/// If no device can be had, the program ends with the reason; what is not saved is in the journal.
+/// Retries, because a driver needs a moment after a reset. The document stays open; only unrecorded changes are lost.
+/// If no device can be created, the program ends with the reason; unsaved work is in the journal.
 void App::restart_device(const std::string& why)
 {
     constexpr int TRIES = 5;

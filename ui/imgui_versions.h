@@ -1,6 +1,6 @@
 #pragma once
-// What differs between the versions of Dear ImGui that the window is built with: 1.86 (Debian 12) and 1.90 (Debian 13,
-// Ubuntu 24.04). Until 1.86 a program writes the state of keys and buttons before each frame; since 1.87 it hands over
+// Differences between the supported versions of Dear ImGui: 1.86 (Debian 12) and 1.90 (Debian 13,
+// Ubuntu 24.04). Until 1.86 a program writes the state of keys and buttons before each frame; since 1.87 it passes
 // events, which Dear ImGui applies in NewFrame. Either way a frame here sees the state that it would see in 1.86.
 //
 // The main thread.
@@ -20,22 +20,22 @@ namespace shvr::ui {
 #error "expected Dear ImGui 1.86 to 1.91: later ones handle fonts in another way"
 #endif
 
-/// After ImGui::CreateContext.
+/// Call after ImGui::CreateContext.
 void set_up_imgui_input();
-/// A key that went down or up. `mods`: as GLFW has them.
+/// Reports a pressed or released key. `mods`: as in GLFW.
 void tell_imgui_key(GLFWwindow* window, int key, bool pressed, int mods);
 void tell_imgui_character(GLFWwindow* window, unsigned character);
-/// The state of the buttons, and where one of them changed. After ImGui_ImplGlfw_NewFrame.
+/// Reports the state of the buttons, and where one of them changed. Call after ImGui_ImplGlfw_NewFrame.
 void tell_imgui_buttons(GLFWwindow* window, const MouseFeed::Frame& frame);
-/// ImGui::NewFrame, with these keys down: they were pressed since the frame before, and may be up again. `mods`: those
-/// that are held now.
+/// Calls ImGui::NewFrame with these keys down: they were pressed since the previous frame, and may be up again. `mods`:
+/// modifiers that are held now.
 void begin_imgui_frame(GLFWwindow* window, const std::vector<int>& pressed, int mods);
 
-/// ImGui_ImplVulkan_Init, for pictures drawn in this pass.
+/// Calls ImGui_ImplVulkan_Init, for pictures drawn in this pass.
 void init_imgui_vulkan(ImGui_ImplVulkan_InitInfo info, VkRenderPass pass);
-/// Makes the texture of the fonts: records it, or (since 1.90) does it at once and records nothing.
+/// Creates the font texture: records the upload, or (since 1.90) does it at once and records nothing.
 void upload_imgui_fonts(VkCommandBuffer commands);
-/// Once what was recorded is done.
+/// Call once the recorded upload is done.
 void end_imgui_font_upload();
 
 }  // namespace shvr::ui

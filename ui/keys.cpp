@@ -11,7 +11,7 @@ namespace shvr::ui {
 namespace {
 
 constexpr double SLOWED = 0.2;
-constexpr double TAPS_PER_SECOND = 5.0;  ///< of a held key
+constexpr double TAPS_PER_SECOND = 5.0;  ///< equivalent tap rate of a held key
 constexpr double MAX_FRAME_S = 0.5;      ///< after a hung frame a held key must not throw the view far away
 
 /// Keys that stand for no character.

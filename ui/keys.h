@@ -1,6 +1,6 @@
 #pragma once
-// Turns the keyboard into actions, by the keymap (engine/workbench/bindings/keymap.h). Letters and signs are those of
-// the person's layout; keys that steer like a joystick are those at the same place on every keyboard. Main thread.
+// Converts the keyboard to actions, by the keymap (engine/workbench/bindings/keymap.h). Letters and signs are those of
+// the user's layout; keys that steer like a joystick are those at the same place on every keyboard. Main thread.
 
 #include <vector>
 
@@ -11,30 +11,30 @@ namespace shvr::ui {
 
 class Keyboard {
 public:
-    /// A press or a release. `ui_has_keys`: a text is being typed, so presses mean nothing here.
+    /// Handles a press or a release. `ui_has_keys`: text is being typed, so presses are ignored here.
     void handle(const KeyEvent& event, const Model& model, bool ui_has_keys, Actions& actions);
-    /// The actions of keys held down, `seconds` after the last call. Keys that `is_down` does not know any more are let
-    /// go.
+    /// Adds the actions of held keys, `seconds` after the last call. Keys that `is_down` no longer reports are
+    /// released.
     void hold(double seconds, int mods, const std::function<bool(int key)>& is_down, const Model& model,
               Actions& actions);
 
 private:
     struct Held {
         KeyEvent pressed;
-        const Shortcut* lasting = nullptr;  ///< that ends when the key is released
+        const Shortcut* lasting = nullptr;  ///< the action that ends with the key's release
     };
     static void release(const Held& held, const Model& model, Actions& actions);
     std::vector<Held> held_;
 };
 
-/// Arrows, Tab, Space, Enter and Escape, without Ctrl and Alt: what Dear ImGui is used with by keyboard.
+/// Returns whether Dear ImGui navigates with this key: arrows, Tab, Space, Enter and Escape, without Ctrl and Alt.
 bool moves_in_panels(const KeyEvent& event);
-/// Whether Dear ImGui would take this key, pressed over the picture, for a move into a panel. Tab is the key for that.
+/// Returns whether Dear ImGui would take this key, pressed over the picture, for a move into a panel: Tab alone may.
 bool moves_focus(const KeyEvent& event);
-/// Gives the keyboard back to the picture.
+/// Returns whether the key gives the keyboard back to the picture.
 bool leaves_panels(const KeyEvent& event);
 
-/// GLFW_MOD_* of the modifiers that are down.
+/// Returns GLFW_MOD_* of the modifiers that are down.
 int mods_held(const Window& window);
 
 }  // namespace shvr::ui

@@ -1,7 +1,7 @@
 #pragma once
-// Buttons of the mouse for Dear ImGui, which (1.86) asks for their state once a frame: where a frame takes longer than
-// a click, it takes two clicks for one. Here presses wait, and each frame is told one of them, with the place and the
-// time at which it happened. Any thread, one at a time.
+// Mouse buttons for Dear ImGui, which (1.86) polls their state once a frame: if a frame takes longer than
+// a click, it takes two clicks for one. Presses wait here, and each frame gets one of them, with its position and
+// time. Any thread, one at a time.
 
 #include <array>
 #include <deque>
@@ -19,16 +19,16 @@ public:
 
     struct Frame {
         std::array<bool, BUTTONS> down{};
-        std::optional<glm::dvec2> at;  ///< where the button was pressed or let go of, in pixels; none: nothing changed
-        bool is_double = false;  ///< the same button can have been pressed that soon before; not how far from here
+        std::optional<glm::dvec2> at;  ///< where the button was pressed or released, in pixels; none: nothing changed
+        bool is_double = false;  ///< the same button may have been pressed shortly before; the distance is not checked
     };
 
-    /// Happened at some time between the two: what comes while a long frame is drawn is received after it. Other
-    /// buttons are passed over.
+    /// Adds a change that happened between the two times: input during a long frame is received after it. Other
+    /// buttons are ignored.
     void add(int button, bool pressed, const glm::dvec2& at, double earliest_s, double latest_s);
-    /// What the next frame is told.
+    /// Returns the state for the next frame.
     Frame next();
-    /// Whether a frame after this one has something to be told.
+    /// Returns whether a later frame still has changes to receive.
     bool is_waiting() const { return !waiting_.empty(); }
 
 private:

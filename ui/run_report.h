@@ -16,12 +16,12 @@ namespace shvr::ui {
 /// Measurements of a run, for profiling and tests.
 struct AppReport {
     std::string gpu_name;
-    uint64_t frames = 0;           ///< of the user interface
-    std::vector<double> frame_ms;  ///< one interface frame: from its first call until the device has finished it
-    /// The same without the wait for what was under way on a software device: while nothing refines, and beside a
-    /// picture that does.
+    uint64_t frames = 0;           ///< number of frames of the user interface
+    std::vector<double> frame_ms;  ///< per interface frame: from its first call until the device has finished it
+    /// frame_ms without the wait for running work on a software device: while nothing refines, and while a picture
+    /// does.
     std::vector<double> own_idle_ms, own_busy_ms;
-    std::vector<double> interval_ms;  ///< between two frames while something was moving
+    std::vector<double> interval_ms;  ///< time between two frames while something was moving
     std::vector<double> input_ms;     ///< from a key or button until the frame that shows its effect is finished
     /// From opening the last volume until the device finished the first frame that showed any of it, and all of it
     /// sharp.
@@ -33,18 +33,18 @@ struct AppReport {
     glm::dvec3 probe_voxel{0.0};
     std::array<int64_t, 256> voxels_by_group{};
     size_t undoable = 0, redoable = 0;
-    std::optional<int64_t> previewed_voxels;  ///< at the start of the last stroke, if it had a preview
+    std::optional<int64_t> previewed_voxels;  ///< preview at the start of the last stroke, if there was one
     std::string status;
-    std::vector<std::string> messages;  ///< the last ones, as said
+    std::vector<std::string> messages;  ///< last messages
     std::vector<std::string> validation_messages;
 };
 
 class RunReport {
 public:
-    /// Of each kind of time at least so many are kept, and at most twice as many.
+    /// Times kept per kind: at least this many, at most twice as many.
     static constexpr size_t KEPT = 50'000;
 
-    /// Another scan was opened: its first pictures are measured from here.
+    /// Starts the measurement of first pictures: another scan was opened.
     void opened(double time_s);
     /// Reports a key or button; the next frame shows its effect.
     void asked(double time_s) { unanswered_s_.push_back(time_s); }
@@ -54,18 +54,18 @@ public:
     struct Frame {
         uint64_t number = 0;
         double begun_s = 0.0;
-        double waited_s = 0.0;  ///< for what was under way
+        double waited_s = 0.0;  ///< wait for running work
         bool moves = false;     ///< drawn because something moves
         bool shows_picture = false, shows_sharp_picture = false;
     };
     void presented(const Frame& frame);
-    /// The device has finished all frames up to this one.
+    /// Reports that the device has finished all frames up to this one.
     void done(uint64_t number, double time_s);
     double last_begun_s() const { return last_begun_s_; }
-    /// Median of the last frames; 0 if there is none.
+    /// Returns the median of the last frames; 0 if there is none.
     double recent_frame_ms() const;
 
-    /// The report, without the entries that only the application knows.
+    /// Returns the report, without the entries that only the application knows.
     const AppReport& measured() const { return report_; }
 
 private:

@@ -199,7 +199,7 @@ void Swapchain::renew_fonts()
     create_imgui();
 }
 
-/// Nobody waits for the device: what the swapchain before still needs goes later. False where the window is minimised.
+/// Does not wait for the device: resources of the previous swapchain are freed later. False if the window is minimised.
 bool Swapchain::create_swapchain()
 {
     if (!surface_) create_surface();  // which could not be had when it was lost

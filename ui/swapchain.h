@@ -1,5 +1,5 @@
 #pragma once
-// The window's swapchain, and Dear ImGui's Vulkan back end: swapchain.cpp makes them, swapchain_frame.cpp draws with
+// The window's swapchain, and Dear ImGui's Vulkan back end: swapchain.cpp creates them, swapchain_frame.cpp draws with
 // them. The only files outside engine/gpu that call Vulkan.
 //
 //   layers of the views -> copied into the swapchain's image -> the interface drawn over them -> presented
@@ -24,24 +24,24 @@ public:
     /// Fails if the device cannot present to the window.
     Swapchain(gpu::Device& device, gpu::Memory& memory, GLFWwindow* window);
     ~Swapchain();
-    /// Called once the frame is on its way to the device, where a call that waits for the screen comes next: for about
-    /// so many milliseconds.
+    /// Called once the frame is submitted to the device, before a call that waits for the screen: for about `wait_ms`
+    /// milliseconds.
     using Meanwhile = std::function<void(double wait_ms)>;
     Swapchain(const Swapchain&) = delete;
     Swapchain& operator=(const Swapchain&) = delete;
 
     /// Layers must have blue first (View::Options).
     bool swaps_red_and_blue() const { return format_.format == VK_FORMAT_B8G8R8A8_UNORM; }
-    /// Uploads Dear ImGui's fonts anew. Between frames; waits for the device.
+    /// Uploads Dear ImGui's fonts again. Call between frames; waits for the device.
     void renew_fonts();
-    /// Before ImGui::NewFrame.
+    /// Call before ImGui::NewFrame.
     static void begin_ui();
-    /// Whether a frame can be drawn and shown without waiting: there is an image for it. There may be none for long,
-    /// while the window is hidden. Never waits, but for some milliseconds where the swapchain was just made. Fails as
+    /// Returns whether a frame can be drawn and shown without waiting, because an image is available. There may be none
+    /// for long while the window is hidden. Never waits, except some milliseconds for a new swapchain. Fails as
     /// present() does.
     bool is_ready();
-    /// As Window::present, after ImGui::Render. A frame that fails leaves nothing behind that later ones trip over; a
-    /// surface that is lost is made anew, and the frame is not shown.
+    /// As Window::present, after ImGui::Render. A failed frame leaves no state behind that breaks later ones; a
+    /// lost surface is re-created, and the frame is not shown.
     bool present(const std::vector<View::Layer>& layers, const glm::uvec2& origin, const Meanwhile& meanwhile);
 
     uint64_t frames_presented() const { return presented_; }
@@ -49,32 +49,32 @@ public:
 
 private:
     static constexpr uint32_t FRAMES_IN_FLIGHT = 2;
-    static constexpr uint32_t IMAGES = 3;  ///< one is shown, one waits for its turn, one is drawn
+    static constexpr uint32_t IMAGES = 3;  ///< one is displayed, one is queued, one is drawn
     struct Target {
         VkImage image = VK_NULL_HANDLE;
         VkImageView view = VK_NULL_HANDLE;
         VkFramebuffer framebuffer = VK_NULL_HANDLE;
         VkSemaphore drawn = VK_NULL_HANDLE;
-        uint64_t presented = 0;  ///< number of the last frame that was shown by it
+        uint64_t presented = 0;  ///< number of the last frame that it displayed
     };
     struct Frame {
         VkCommandBuffer commands = VK_NULL_HANDLE;
         VkSemaphore acquired = VK_NULL_HANDLE;
         VkFence done = VK_NULL_HANDLE;
-        uint64_t number = 0;      ///< last frame that used it
-        uint64_t submission = 0;  ///< its number (gpu::Device)
+        uint64_t number = 0;      ///< number of the last frame that used it
+        uint64_t submission = 0;  ///< submission number of that frame (gpu::Device)
         uint64_t follows = 0;     ///< number of the frame that the same image showed before
     };
     /// A swapchain that another one has replaced: the screen may still be reading from it.
     struct Retired {
         VkSwapchainKHR swapchain = VK_NULL_HANDLE;
         std::vector<Target> targets;
-        VkSemaphore acquired = VK_NULL_HANDLE;  ///< of an image that nothing was drawn in
-        uint64_t submission = 0;                ///< the last that uses it
-        uint64_t presented = 0;                 ///< its last frame
+        VkSemaphore acquired = VK_NULL_HANDLE;  ///< semaphore of an image in which nothing was drawn
+        uint64_t submission = 0;                ///< last submission that uses it
+        uint64_t presented = 0;                 ///< number of its last frame
     };
 
-    /// Is made anew; other failures are the caller's.
+    /// The surface is re-created; other failures are the caller's.
     class SurfaceLost : public Error {
     public:
         using Error::Error;
@@ -120,20 +120,20 @@ private:
     VkCommandPool pool_ = VK_NULL_HANDLE;
     VkSwapchainKHR swapchain_ = VK_NULL_HANDLE;
     VkExtent2D extent_{};
-    glm::ivec2 made_for_{0};              ///< pixels of the window
-    VkSurfaceCapabilitiesKHR made_of_{};  ///< the surface, when the swapchain was made
+    glm::ivec2 made_for_{0};              ///< window size in pixels
+    VkSurfaceCapabilitiesKHR made_of_{};  ///< surface capabilities when the swapchain was created
     std::optional<uint32_t> acquired_;    ///< index of the image for the next frame
-    uint32_t patient_acquisitions_ = 0;   ///< of a new swapchain, that may wait a little
+    uint32_t patient_acquisitions_ = 0;   ///< acquisitions of a new swapchain that may still block
     std::vector<Target> targets_;
     std::deque<Retired> retired_;  ///< the oldest first
     std::array<Frame, FRAMES_IN_FLIGHT> frames_;
     uint32_t next_frame_ = 0;
     VkPresentModeKHR mode_ = VK_PRESENT_MODE_FIFO_KHR;
-    std::array<double, 3> waits_ms_{};  ///< of the last frames for the screen
+    std::array<double, 3> waits_ms_{};  ///< waits of the last frames for the screen
     uint64_t presented_ = 0;
     uint64_t taken_ = 0;            ///< number of the last frame that the screen is known to have taken from the queue
-    uint64_t last_submission_ = 0;  ///< of all frames
-    bool is_stale_ = false;         ///< must be made anew before the next frame
+    uint64_t last_submission_ = 0;  ///< last submission of any frame
+    bool is_stale_ = false;         ///< the swapchain must be re-created before the next frame
     bool imgui_is_ready_ = false;
 };
 

@@ -109,9 +109,9 @@ void Swapchain::record(const Frame& frame, const Target& target, const std::vect
     // The writes of the view's frames and the clear come before the copy of the layers.
     memory_barrier(commands, WORK, WRITES, TRANSFER, VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
     draw_layers(commands, target.image, layers, origin);
-    // The view's next frames must wait for the copy before they write: their graphs do not know this reader. What was
-    // written before becomes visible as well, at no cost here: validation (1.3.239) takes whatever it thought was in
-    // flight when an image was presented as in flight once more when that image is acquired, and told of reads after
+    // The view's next frames must wait for the copy before they write: their graphs do not know this reader. Earlier
+    // writes become visible as well, at no cost here: when an image is acquired, validation (1.3.239) counts everything
+    // as in flight that it considered in flight when the image was presented, and otherwise reports reads after
     // writes of frames that had long been waited for.
     memory_barrier(commands, WORK, WRITES, WORK, WRITES | VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_TRANSFER_READ_BIT);
     image_barrier(commands, target.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
@@ -193,7 +193,7 @@ bool Swapchain::prepare(Frame& frame)
     glm::ivec2 size(0);
     glfwGetFramebufferSize(window_, &size.x, &size.y);
     if (size.x <= 0 || size.y <= 0) return false;
-    // Of a swapchain that is out of date when it is made another one is made at once: nobody else asks for the frame.
+    // If a new swapchain is out of date at once, another one is made here: no other caller retries the frame.
     for (int tries = 0; tries < 2; ++tries) {
         if (!swapchain_ || size != made_for_) is_stale_ = true;
         if (is_stale_ && !create_swapchain()) return false;
@@ -204,7 +204,7 @@ bool Swapchain::prepare(Frame& frame)
     return false;
 }
 
-/// Takes an image if there is one. After that a swapchain may have to be made anew.
+/// Acquires an image if there is one. Afterwards the swapchain may have to be re-created.
 bool Swapchain::acquire(Frame& frame)
 {
     constexpr uint64_t PATIENCE_NS = 10'000'000;  // some drivers have no image yet just after they have made them
@@ -230,7 +230,7 @@ bool Swapchain::acquire(Frame& frame)
     return true;
 }
 
-/// Some surfaces are suboptimal however often their swapchain is made anew: only what differs is a reason to do so.
+/// Compares capabilities, since some surfaces stay suboptimal however often their swapchain is re-created.
 bool Swapchain::surface_has_changed() const
 {
     VkSurfaceCapabilitiesKHR now{};

@@ -14,7 +14,7 @@ namespace shvr::ui {
 
 namespace {
 
-constexpr double DEGREES_PER_HEIGHT = 180.0;  ///< a drag across the window turns the view by half a turn
+constexpr double DEGREES_PER_HEIGHT = 180.0;  ///< a drag across the window rotates the view by 180 degrees
 constexpr double DOUBLE_CLICK_PIXELS = 5.0;
 constexpr double ZOOM_PER_STEP = 1.12;
 

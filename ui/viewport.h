@@ -1,5 +1,5 @@
 #pragma once
-// Turns the mouse in the graphics window into actions. Its state is the layout of that window and the gesture in
+// Converts the mouse in the graphics window to actions. Its state is the layout of that window and the gesture in
 // progress. Main thread.
 //
 // What the left button does is the session's tool (engine/session/session.h):
@@ -34,31 +34,31 @@ public:
     const Layout& layout() const { return layout_; }
     glm::uvec2 pixels() const { return layout_.end - layout_.begin; }
 
-    /// All events but keys. `ui_has_mouse`: Dear ImGui uses it.
+    /// Handles all events except keys. `ui_has_mouse`: Dear ImGui uses it.
     void handle(const InputEvent& event, const Model& model, bool ui_has_mouse, Actions& actions);
-    /// What time alone brings about: a click of the turn tool selects once it cannot become a double click any more.
+    /// Handles timeouts: a click of the turn tool selects once it can no longer become a double click.
     void wait(double time_s, Actions& actions);
-    /// Whether there is anything to wait for.
+    /// Returns whether a timeout is pending.
     bool is_waiting() const { return click_.has_value(); }
-    /// Where the mouse is over the picture; null: elsewhere.
+    /// Returns the mouse position over the picture; null: elsewhere.
     const std::optional<Pointer>& pointer() const { return pointer_; }
     bool contains(const glm::dvec2& at) const;
 
 private:
     enum class Gesture {
         none,
-        press,  ///< may become a click, or a drag
+        press,  ///< may become a click or a drag
         turn,
         move,
         move_in_map,
         paint,   ///< at the probe, in its plane
-        stroke,  ///< along what is seen
-        node,    ///< moves the node that was pressed
+        stroke,  ///< along the visible surface
+        node,    ///< moves the pressed node
         cross,   ///< moves the cross of the slices
         contrast
     };
     struct When {
-        double earliest_s = 0.0, latest_s = 0.0;  ///< it happened between the two
+        double earliest_s = 0.0, latest_s = 0.0;  ///< the event happened between the two times
     };
     void press(const ButtonEvent& event, const When& when, const Model& model, Actions& actions);
     void press_left(const ButtonEvent& event, const When& when, const Model& model, Actions& actions);
@@ -77,21 +77,21 @@ private:
 
     Layout layout_;
     Gesture gesture_ = Gesture::none;
-    size_t pane_ = 0;  ///< under the mouse, or where the gesture began
+    size_t pane_ = 0;  ///< pane under the mouse, or where the gesture began
     int button_ = 0;
     glm::dvec2 last_{0.0}, pressed_{0.0};
     std::optional<uint32_t> pressed_node_;
-    bool was_elsewhere_ = true;  ///< the pointer, before the next motion
+    bool was_elsewhere_ = true;  ///< the pointer was outside before the next motion
     std::optional<Pointer> pointer_;
-    double pressed_s_ = 0.0;              ///< the left button, at the latest
-    bool is_second_ = false;              ///< that press, of a double click
-    std::optional<double> last_click_s_;  ///< when it was pressed
+    double pressed_s_ = 0.0;              ///< latest time of the left button's press
+    bool is_second_ = false;              ///< that press is the second of a double click
+    std::optional<double> last_click_s_;  ///< press time of the last click
     glm::dvec2 last_click_{0.0};
     struct Click {
         SelectAt what;
         double pressed_s = 0.0;
     };
-    std::optional<Click> click_;  ///< of the turn tool, not yet carried out
+    std::optional<Click> click_;  ///< click of the turn tool, not yet carried out
 };
 
 }  // namespace shvr::ui

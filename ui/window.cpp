@@ -55,7 +55,7 @@ GLFWmonitor* monitor_of(const glm::ivec2& point)
 struct Window::Input {
     GLFWwindow* window = nullptr;
     std::vector<InputEvent> events;
-    glm::ivec2 place{0}, size{0};  ///< of the window before it took the whole screen
+    glm::ivec2 place{0}, size{0};  ///< position and size of the window before full screen
     std::vector<int> pressed;      ///< keys, since the last frame
     MouseFeed mouse;
     double asked_s = 0.0, answered_s = 0.0;  ///< when events were last waited for, and when that ended
@@ -75,8 +75,8 @@ struct Window::Input {
     {
         of(window).events.push_back({std::move(event), glfwGetTime(), of(window).earliest_s()});
     }
-    /// The mouse position at the time of the event: GLFW reports only the current one, which is too late if one turn of
-    /// the loop receives a whole gesture.
+    /// The mouse position at the time of the event: GLFW reports only the current one, which is too late if one
+    /// iteration of the loop receives a whole gesture.
     std::optional<glm::dvec2> last_cursor;
     static glm::dvec2 cursor(GLFWwindow* window)
     {

@@ -28,9 +28,9 @@ struct KeyEvent {
     int mods = 0;  ///< GLFW_MOD_*
     bool pressed = false;
     bool repeated = false;
-    std::string character{};  ///< that it stands for in the person's layout, without modifiers; empty: none, or unknown
+    std::string character{};  ///< character in the user's layout, without modifiers; empty: none, or unknown
 };
-/// A character that was typed, by whatever keys.
+/// A typed character, whatever its keys.
 struct TextEvent {
     char32_t character = 0;
 };
@@ -56,8 +56,8 @@ struct DamageEvent {};
 /// Positions are in pixels of the frame buffer.
 struct InputEvent {
     std::variant<KeyEvent, TextEvent, ButtonEvent, MoveEvent, ScrollEvent, DropEvent, DamageEvent> what;
-    double time_s = 0.0;         ///< when it was received
-    double earliest_s = time_s;  ///< it happened no sooner: what comes while a long frame is drawn is received after it
+    double time_s = 0.0;         ///< time of receipt
+    double earliest_s = time_s;  ///< earliest time of the event: input during a long frame is received after it
 };
 
 class Swapchain;
@@ -80,38 +80,38 @@ public:
     void stay_open();
     void set_title(const std::string& title);
     glm::uvec2 pixels() const;
-    double content_scale() const;  ///< 2 on a HiDPI screen; another once the window is on another
+    double content_scale() const;  ///< 2 on a HiDPI screen; changes when the window moves to another screen
     double now_s() const;
-    /// Takes the whole of the screen that the window is on, or gives it back.
+    /// Covers the whole screen that the window is on, or restores the window.
     void set_full_screen(bool is_full);
 
-    /// Waits for events, at most that long (0: not at all), and returns them.
+    /// Waits for events, at most `timeout_s` (0: not at all), and returns them.
     std::vector<InputEvent> wait_events(double timeout_s);
-    /// Lets the interface know a key or a character in its next frame: in the order of events, and no sooner than it is
-    /// its turn.
+    /// Passes a key or a character to the interface in one of its next frames: in the order of events, and no earlier
+    /// than its predecessors.
     void tell_ui(const InputEvent& event);
     /// Whether a key is held down.
     bool is_down(int key) const;
-    /// Whether the interface has not been told of all presses of buttons yet: each frame tells one.
+    /// Returns whether presses of buttons are still queued for the interface: each frame takes one.
     bool has_clicks() const;
 
     /// Layers must have blue first (View::Options).
     bool swaps_red_and_blue() const;
 
-    /// Whether a frame can be drawn and shown without waiting. While the window is hidden that may not be for long:
+    /// Returns whether a frame can be drawn and shown without waiting. It may stay false while the window is hidden:
     /// ask again a little later. Never waits.
     bool is_ready();
     void begin_ui();
-    /// Uploads Dear ImGui's fonts anew, before the next frame. Waits for the device; rare.
+    /// Uploads Dear ImGui's fonts again, before the next frame. Waits for the device; rare.
     void renew_fonts();
     /// Draws the layers with their upper left corner at `origin`, the interface over them, and shows the frame. False
-    /// if there is nothing to draw on (minimised, hidden), or if the frame was lost: draw it again.
-    /// Where that will wait for the screen, `meanwhile` is called with for how long, once the frame is on its way to
+    /// if there is nothing to draw on (minimised, hidden), or if the frame was lost: draw it again. Before the call
+    /// waits for the screen, `meanwhile` is called with the expected wait, once the frame is submitted to
     /// the device; it may be empty.
     bool present(const std::vector<View::Layer>& layers, const glm::uvec2& origin,
                  const std::function<void(double wait_ms)>& meanwhile);
 
-    /// Frames submitted to the device, and those it has finished, which are visible. Never waits.
+    /// Numbers of frames submitted to the device, and finished by it, which are visible. Never wait.
     uint64_t frames_presented() const;
     uint64_t frames_done() const;
 

@@ -1,6 +1,6 @@
 #pragma once
-// A question to the file system that is asked beside the main thread. A network that does not answer takes minutes, so
-// nobody has to wait for it, at the end of the program either: what nobody wants to know any more is forgotten.
+// A question to the file system, answered in the background. A network that does not answer takes minutes, so the
+// main thread never has to wait for it, not even at exit: unneeded answers are dropped.
 
 #include <chrono>
 #include <condition_variable>
@@ -13,14 +13,14 @@
 
 namespace shvr::ui {
 
-/// What a disk answers within this time is taken in the same frame of the window.
+/// Answers that arrive within this time are used in the same frame of the window.
 inline constexpr std::chrono::milliseconds AT_ONCE{20};
 
 template <class Answer>
 class Asked {
 public:
     Asked() = default;
-    /// `ask`, which must own all that it uses, is called on a thread of its own.
+    /// Calls `ask`, which must own all that it uses, on a thread of its own.
     template <class Ask>
     explicit Asked(Ask ask) : state_(std::make_shared<State>())
     {
@@ -37,7 +37,7 @@ public:
     }
 
     bool is_pending() const { return state_ != nullptr; }
-    /// The answer, once, if there is one by then.
+    /// Returns the answer, once, if it arrives within `patience`.
     std::optional<Answer> take(std::chrono::milliseconds patience = {})
     {
         if (!state_) return std::nullopt;

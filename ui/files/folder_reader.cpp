@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Names that are looked at to tell what a folder holds.
+/// Number of names sampled to determine a folder's kind.
 constexpr int SAMPLED_NAMES = 64;
 
 constexpr const char* ANNOTATION_ENDINGS[] = {".mask", ".offsets", ".graphml", ".swc", ".journal"};
@@ -155,7 +155,7 @@ void FolderReader::wait(std::chrono::milliseconds patience)
     shared_->changed.wait_for(lock, patience, [&] { return !shared_->news.is_reading; });
 }
 
-/// The thread: names first, with answers in between, then answers until nobody wants any.
+/// Runs on the thread: lists names, with answers in between, then answers until the reader is abandoned.
 void FolderReader::read(Shared& shared, size_t at_once)
 {
     std::error_code error, ignored;
@@ -195,7 +195,7 @@ void FolderReader::read(Shared& shared, size_t at_once)
     }
 }
 
-/// What was asked first. Returns false where nothing is asked, or nobody listens any more.
+/// Answers the oldest request. Returns false if there is none, or if the reader was abandoned.
 bool FolderReader::answer(Shared& shared)
 {
     std::string name;

@@ -1,6 +1,6 @@
 #pragma once
-// Reads the names in a folder, and what is asked about them, on a thread of its own; a folder that does not answer
-// holds up nobody, and what becomes of it is forgotten with the reader. One thread uses a reader.
+// Reads the names in a folder, and requested details, on a thread of its own; a folder that does not answer
+// blocks no caller, and its results are dropped with the reader. One thread uses a reader.
 
 #include <chrono>
 #include <condition_variable>
@@ -14,7 +14,7 @@
 
 namespace shvr::ui {
 
-/// The folders before `other` are opened as a whole, as a volume or a project.
+/// The kinds before `folder` are opened as a whole, as a volume or a project.
 enum class FileKind { project, zarr, dicom_series, tiff_series, folder, volume, session, annotation, other };
 inline bool is_opened_whole(FileKind kind)
 {
@@ -24,10 +24,10 @@ inline bool is_opened_whole(FileKind kind)
 struct FileDetails {
     FileKind kind = FileKind::other;
     std::string kind_text;         ///< "NRRD volume", "folder"
-    std::optional<int64_t> bytes;  ///< of a file
-    std::string changed;           ///< local time, "2026-11-22 17:49"; empty where it is not known
+    std::optional<int64_t> bytes;  ///< size of a file
+    std::string changed;           ///< local time of the last change, "2026-11-22 17:49"; empty if unknown
 };
-/// By its name, and for a folder by a few names in it. Asks the file system.
+/// Determines the kind by name, for a folder by a few names in it. Asks the file system.
 FileDetails details_of(const std::filesystem::path& path);
 
 struct FolderEntry {
@@ -37,7 +37,7 @@ struct FolderEntry {
 
 class FolderReader {
 public:
-    /// Names that are listed between two looks at what was asked: a few milliseconds.
+    /// Names that are listed between two checks for requests: a few milliseconds.
     static constexpr size_t READ_AT_ONCE = 4096;
 
     explicit FolderReader(std::filesystem::path folder, size_t at_once = READ_AT_ONCE);
@@ -47,13 +47,13 @@ public:
     struct News {
         std::vector<FolderEntry> entries;
         std::vector<std::pair<std::string, FileDetails>> details;
-        std::string failure;  ///< why the folder, or the rest of it, cannot be listed, as a sentence; empty: it can
+        std::string failure;  ///< why the folder, or the rest of it, cannot be listed, in a sentence; empty: it can
         bool is_reading = true;
     };
-    /// What was found since it was last asked.
+    /// Returns results since the last call.
     News take();
     void ask_about(std::string name);
-    /// Waits until all names are read, or that time is over.
+    /// Waits until all names are read, or for `patience`.
     void wait(std::chrono::milliseconds patience);
 
 private:

@@ -1,7 +1,7 @@
 #pragma once
-// Whose the keys are. Dear ImGui (1.86) hands the keyboard to a field some frames after it is asked to, and tells a
-// frame late that a field has it or has let go of it. Beside a heavy picture a frame takes long enough to type in: what
-// is typed meanwhile would be lost, or be shortcuts. Main thread.
+// Tracks the owner of the keyboard. Dear ImGui (1.86) gives it to a field some frames after the request, and reports a
+// frame late that a field has it or has released it. During a heavy picture a frame takes long enough to type in: text
+// typed meanwhile would be lost, or act as shortcuts. Main thread.
 
 #include <vector>
 
@@ -9,27 +9,27 @@
 
 namespace shvr::ui {
 
-/// The keyboard's way to one field, which all that is typed on the way reaches. Between Window::begin_ui and
+/// Passes the keyboard to one field, with all text typed in the meantime. Between Window::begin_ui and
 /// Window::present.
 class FieldKeys {
 public:
-    /// Before the field. `are_asked_for`: it is to have the keyboard from now on.
+    /// Call before the field. `are_asked_for`: requests the keyboard for it from now on.
     void before_field(bool are_asked_for);
-    /// When the field is the item drawn last.
+    /// Call when the field is the item drawn last.
     void after_field();
-    /// Typed before its turn came.
+    /// Stores a character typed before the field has the keyboard.
     void type(ImWchar character) { early_.push_back(character); }
-    /// It was asked for, and the field does not have it yet.
+    /// Returns whether the keyboard was requested, and the field does not have it yet.
     bool are_awaited() const { return awaited_since_ >= 0; }
 
 private:
-    int awaited_since_ = -1;  ///< the frame; -1: not awaited
-    int last_frame_ = -1;     ///< that the field was drawn in
-    bool are_here_ = false;   ///< the field has the keyboard, and not yet what was typed early
+    int awaited_since_ = -1;  ///< frame of the request; -1: not awaited
+    int last_frame_ = -1;     ///< last frame in which the field was drawn
+    bool are_here_ = false;   ///< the field has the keyboard, but not yet the early characters
     std::vector<ImWchar> early_;
 };
 
-/// Whether keys are for a field, after the frame that was drawn last. Between frames.
+/// Returns whether keys go to a field, after the frame that was drawn last. Between frames.
 bool field_has_keys();
 
 }  // namespace shvr::ui

@@ -21,7 +21,7 @@ namespace shvr::ui {
 
 namespace {
 
-constexpr float CHOSEN_ALPHA = 0.45f;  ///< of the accent colour
+constexpr float CHOSEN_ALPHA = 0.45f;  ///< opacity of the accent colour
 constexpr const char* DRAGGED = "group";
 constexpr float MAX_GROUP_LINES = 16.0f;
 
@@ -29,7 +29,7 @@ constexpr float MAX_GROUP_LINES = 16.0f;
 struct GroupsState {
     std::string search;
     bool shows_sizes = false;
-    uint64_t revision = ~uint64_t{0};  ///< of the trace that `traced` is of
+    uint64_t revision = ~uint64_t{0};  ///< revision of the trace that `traced` describes
     std::array<TracedGroup, 256> traced{};
     std::vector<uint8_t> in_trace;
 };
@@ -340,7 +340,7 @@ void rename_button(const Model& model, Actions& actions)
     ImGui::EndPopup();
 }
 
-/// Search, new group, and which of two things are shown beside the name.
+/// Draws the search, the button for a new group, and the choice of the values next to the name.
 void tools(const Model& model, Actions& actions)
 {
     const uint8_t next = free_group(model.session.groups, model.voxels_by_group, groups_state.in_trace);

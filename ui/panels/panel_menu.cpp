@@ -192,7 +192,7 @@ void view_menu(const Model& model, Actions& actions)
 
 // ---- Paint, Probe and Help
 
-/// The keys of a shortcut that there is once for each of the first groups.
+/// Returns the keys of a shortcut that exists once per each of the first groups.
 std::string keys_of(const char* prefix, uint8_t group, const Model& model)
 {
     const Shortcut* const shortcut = shortcut_named(sentence(prefix, int(group)));
@@ -339,7 +339,7 @@ std::string reading_of(const Model& model)
     return in_words(model.reading, model.volume, group > 0 ? group_of(model.session.groups, group).name : "");
 }
 
-/// What of the picture is switched off, so that nobody wonders where it is.
+/// Names the hidden parts of the picture, so that the user knows why they are missing.
 std::string hidden_in_words(const Model& model)
 {
     const ViewSettings& view = model.session.view;
@@ -362,7 +362,7 @@ void align_right(const std::string& text)
     ImGui::TextUnformatted(text.c_str());
 }
 
-/// The last message, and how many errors and warnings nobody has looked at; a click shows all.
+/// Draws the last message, and the number of unread errors and warnings; a click shows all.
 void said(const Model& model, const std::string& right, Actions& actions)
 {
     const std::string unread = unread_in_words(model.messages);

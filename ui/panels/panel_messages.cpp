@@ -1,4 +1,4 @@
-// All that was said, and a report of it for whoever mends what went wrong.
+// All messages, and a report of them for developers.
 
 #include <vector>
 
@@ -40,7 +40,7 @@ void head(const Model& model, Shown& shown)
     hint("Copies a bug report: version, device, session path, last actions and messages.");
 }
 
-/// One beside the other: when, how grave, what; the newest at the bottom, which is in view unless scrolled away.
+/// Lists messages in columns: time, weight, text; the newest at the bottom, which is visible unless scrolled away.
 void list(const Model& model, Shown shown)
 {
     const ImGuiTableFlags flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit;

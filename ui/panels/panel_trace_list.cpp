@@ -17,7 +17,7 @@ namespace shvr::ui {
 namespace {
 
 constexpr float MAX_TRACE_LINES = 14.0f;
-constexpr float SELECTED_ALPHA = 0.45f;  ///< of the accent colour
+constexpr float SELECTED_ALPHA = 0.45f;  ///< opacity of the accent colour
 
 /// Between frames.
 struct TraceListState {

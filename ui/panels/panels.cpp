@@ -55,7 +55,7 @@ void change(const PanelRow& row, const PanelLayout& changed, Actions& actions)
     actions.push_back(Prefer{patch_of_panel(row.id, changed)});
 }
 
-/// Where nobody has chosen, tracing opens once there is a trace, or one is being made.
+/// Without a choice of the user, tracing is open once a trace exists or is being made.
 bool is_folded(const PanelRow& row, const Model& model)
 {
     const WindowLayout& layout = model.preferences.layout;
@@ -168,7 +168,7 @@ std::optional<double> splitter(const ImVec2& at, float height, float window_widt
 
 // ---- Windows of their own
 
-/// Where it was left, or one beside the other in the picture.
+/// Places a window where it was left, or cascaded in the picture.
 void place_window(const PanelRow& row, size_t number, const Model& model, const ImVec2& window)
 {
     const double font = ImGui::GetFontSize();

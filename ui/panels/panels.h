@@ -14,20 +14,20 @@ struct Layout {
     glm::uvec2 begin{0}, end{0};
 };
 
-/// The window of the panels at the side, for those who give it the keyboard.
+/// Name of the window of the panels at the side, for code that gives it the keyboard.
 inline constexpr const char* SIDE_PANEL = "Side panel";
 
-/// Whether a window of the interface was at that place in the last frame; units of the interface.
+/// Returns whether a window of the interface was at that position in the last frame; units of the interface.
 bool covers(const glm::dvec2& at);
 
 /// Draws menu bar, tool bar, panels, status bar and the windows that are shown; adds to `actions`. Returns the area
-/// left. While nothing is open, the start page is there instead of tools and panels.
+/// left. While nothing is open, the start page replaces tools and panels.
 Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& actions);
 
-// What panels show, each in its own file; which there are and where is in engine/workbench/appearance/layout.h.
+// The panels' contents, each in its own file; engine/workbench/appearance/layout.h lists the panels and their places.
 void probe_panel(const Model& model, Actions& actions);
 void touch_panel(const Model& model, Actions& actions);
-/// In it: the devices that are there, and how the one in use fares.
+/// Within the touch panel: the connected devices, and the state of the one in use.
 void device_section(const Model& model, Actions& actions);
 void trace_panel(const Model& model, Actions& actions);
 void transfer_function_panel(const Model& model, Actions& actions);
@@ -39,44 +39,44 @@ void aids_panel(const Model& model, Actions& actions);
 void views_panel(const Model& model, Actions& actions);
 void groups_panel(const Model& model, Actions& actions);
 void trace_list_panel(const Model& model, Actions& actions);
-/// What the device spends on each step of a picture, in a window of its own.
+/// Device time per pass of a picture, in a window of its own.
 void passes_window(const Model& model, Actions& actions);
 void history_panel(const Model& model, Actions& actions);
-/// Below the menu, over the whole width: the tools, the active group, and what the mouse does.
+/// Below the menu, over the whole width: the tools, the active group, and the mouse's functions.
 float tool_bar_height();
 void tool_bar(const ImVec2& at, float width, const Model& model, Actions& actions);
-/// Until all are dismissed, at the upper edge of the picture.
-/// Before Begin: puts a window where it was left (layout.h), or into the middle, with the usual size in font sizes.
+/// Call before Begin: puts a window where it was left (layout.h), or into the middle, with the usual size in font
+/// sizes.
 void place_kept_window(const char* id, const glm::dvec2& usual_size, const Model& model);
-/// After Begin: keeps where it is, once the mouse is let go.
+/// Call after Begin: stores the window's position and size, once the mouse is released.
 void keep_window(const char* id, const Model& model, Actions& actions);
-void first_hints(const Model& model, const ImVec2& top_middle, Actions& actions);
+void first_hints(const Model& model, const ImVec2& top_middle, Actions& actions);  ///< at the top, until dismissed
 void preferences_window(const Model& model, Actions& actions);
 void help_window(const Model& model, Actions& actions);
 void palette_window(const Model& model, Actions& actions);
 void messages_window(const Model& model, Actions& actions);
 void menu_bar(const Model& model, Actions& actions);
-/// The menu item of a shortcut. Where it would do nothing now it is grey and says why.
+/// Draws the menu item of a shortcut. If it is unavailable now, it is grey and says why.
 void shortcut_item(const char* id, const Model& model, Actions& actions, bool is_checked = false);
-/// Items of the menu View: views that were kept, what turning goes about, what is drawn over pictures.
+/// Items of the menu View: kept views, the pivot of turning, drawings over pictures.
 void kept_views_menu(const Model& model, Actions& actions);
 void sight_items(const Model& model, Actions& actions);
-/// In the section of tracing: how wide new nodes are.
+/// Within the trace panel: the radius of new nodes.
 void new_nodes(const Model& model, Actions& actions);
-/// The file chooser, while the model says that it is asked what to open.
+/// Shows the file chooser while the model requests it.
 void open_dialog(const Model& model, Actions& actions);
-/// Whether keys are for a file chooser; and whether one, or a dialog of a task, wants another frame, since it waits for
-/// the disk.
+/// Returns whether keys go to a file chooser; and whether one, or a dialog of a task, needs another frame, since it
+/// waits for the disk.
 bool choosers_have_keys();
 bool choosers_are_busy();
-/// Shows the dialog that asks for another name to go on under, from the next frame on.
+/// Shows the dialog for saving under another name, from the next frame on.
 void ask_for_name(const Model& model);
 /// Shows the dialog that asks for a file with annotation or a transfer function, from the next frame on.
 void ask_what_to_take(const Model& model);
 void name_and_take_dialogs(const Model& model, Actions& actions);
-/// Items of the menu File for exporting, importing, labelling and comparing; and the dialogs that they show.
+/// Items of the menu File for exporting, importing, labelling and comparing; and their dialogs.
 void task_menu(const Model& model);
-/// Whether one of these dialogs, as it was drawn last, waits for what the disk says of its files.
+/// Returns whether one of these dialogs, as last drawn, waits for the disk.
 bool task_dialog_waits();
 /// Shows the dialog that makes a project of that volume, from the next frame on.
 void ask_to_import(const std::filesystem::path& volume);
@@ -84,12 +84,12 @@ void ask_to_import(const std::filesystem::path& volume);
 void load_menu(const Model& model);
 void load_dialogs(const Model& model, Actions& actions);
 void task_dialogs(const Model& model, Actions& actions);
-/// What goes on beside the work; its lower edge is there, in the middle.
+/// Lists background jobs; its lower edge is at `lower_middle`, centred.
 void jobs_window(const Model& model, const glm::vec2& lower_middle, Actions& actions);
-/// What is there while nothing is open.
+/// Draws the page shown while nothing is open.
 void start_page(const Model& model, Actions& actions);
 void status_bar(const Model& model, const glm::uvec2& window, Actions& actions);
-/// That this window only looks, at the upper edge of the graphics window; and the question which files to believe.
+/// Draws the read-only notice at the upper edge of the graphics window, and the question which files to believe.
 /// Returns the height that they take.
 float notices(const Model& model, const glm::vec2& begin, float width, Actions& actions);
 

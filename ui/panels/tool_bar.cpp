@@ -19,8 +19,8 @@ namespace shvr::ui {
 
 namespace {
 
-constexpr float NAMED_FROM = 74.0f;   ///< font sizes of width from which tools have their names beside them
-constexpr float GROUP_WIDTH = 13.0f;  ///< of the active group's name, in font sizes
+constexpr float NAMED_FROM = 74.0f;   ///< minimum width, in font sizes, at which tools have their names next to them
+constexpr float GROUP_WIDTH = 13.0f;  ///< width of the active group's name, in font sizes
 
 /// Draws lines into a square of the unit size at `corner`.
 struct Pen {

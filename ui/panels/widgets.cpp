@@ -92,7 +92,7 @@ bool slider_scalar(const char* id, ImGuiDataType type, void* value, const void* 
     const ImGuiStyle& style = ImGui::GetStyle();
     ImDrawList& list = *ImGui::GetWindowDrawList();
     if (!is_typed) {
-        constexpr float SPARE = 2.0f;  // pixels beside the number
+        constexpr float SPARE = 2.0f;  // pixels next to the number
         std::array<char, 64> text{};
         ImGui::DataTypeFormatString(text.data(), int(text.size()), type, value, format);
         const ImVec2 size = ImGui::CalcTextSize(text.data());

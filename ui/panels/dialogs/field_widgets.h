@@ -1,5 +1,5 @@
 #pragma once
-// Widgets for the options of a task or any other object that states its keys (engine/session/fields.h): each key by its
+// Widgets for the options of a task or any other object that visits its keys (engine/session/fields.h): each key by its
 // name, with its meaning as a tooltip. Between Window::begin_ui and Window::present, main thread.
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace shvr::ui {
 
-/// Draws the keys and changes the values, each with its name at the left. `beside`: a path without an ending that new
-/// files are called after, "/scans/spike", which a chooser then begins with; empty: none. Keys that need a form of
+/// Draws the keys and changes the values, each with its name at the left. The path, without suffix, gives new files
+/// their names, "/scans/spike": a chooser begins with it; empty: none. Keys that need a form of
 /// their own (Fields::other, lists) are left out. Returns whether a chooser of one of them was in front, which Escape
 /// then closed.
 bool draw_fields(const Fields::Visit& visit, const std::filesystem::path& beside = {});

@@ -82,7 +82,7 @@ void FileChooser::ask(const fs::path& begin, std::vector<Place> places)
     forget_questions();
     const std::string kept = text_;
     if (begin.empty() && !list_.folder().empty()) {
-        enter(list_.folder());  // anew, since it may have changed
+        enter(list_.folder());  // again, since it may have changed
         text_ = kept;
     } else {
         const fs::path whole = begin.empty() ? home_folder() : fs::absolute(begin).lexically_normal();

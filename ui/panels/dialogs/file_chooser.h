@@ -1,7 +1,7 @@
 #pragma once
-// A dialog that asks for a file or a folder of this machine: places, a list, and a field for a typed path. Why a path
-// cannot be taken is said in it, and the path stays. The file system is asked beside the frames (asked.h): what answers
-// at once is there at once, and for what does not, the dialog says that it waits. Between Window::begin_ui and
+// A dialog that asks for a file or a folder of this machine: places, a list, and a field for a typed path. If a path
+// is refused, the dialog shows the reason and keeps the path. The file system is asked in the background (asked.h):
+// fast answers appear at once, and during slow ones the dialog shows that it waits. Between Window::begin_ui and
 // Window::present, main thread.
 
 #include <optional>
@@ -24,17 +24,17 @@ public:
     };
 
     explicit FileChooser(const Question& question) : question_(question), all_files_(question.wanted == Wanted::file) {}
-    /// Shows it from the next `draw` on. `begin`: a path to begin with; empty: where it was left, or home.
+    /// Shows the dialog from the next `draw` on. `begin`: a path to begin with; empty: the last one, or home.
     void ask(const std::filesystem::path& begin, std::vector<Place> places);
-    /// The same, with why the path could not be taken.
+    /// Shows it again, with the reason why the path was refused.
     void ask_again(const std::filesystem::path& path, std::vector<Place> places, std::string failure);
     bool is_open() const { return is_open_ || is_asked_for_; }
     void close() { closes_ = true; }
-    /// In the same window each time. Returns the path that was accepted, once.
+    /// Draws the dialog, in the same window each time. Returns the path that was accepted, once.
     std::optional<std::filesystem::path> draw();
-    /// One of all choosers is shown: keys are for it.
+    /// Returns whether any chooser is shown: keys go to it.
     static bool has_keys();
-    /// One is reading a folder: another frame is wanted.
+    /// Returns whether any chooser is reading a folder: another frame is needed.
     static bool is_busy();
 
 private:
@@ -55,22 +55,22 @@ private:
     Question question_;
     FileList list_;
     std::vector<Place> places_;
-    std::string text_;     ///< of the path field
+    std::string text_;     ///< text of the path field
     std::string failure_;  ///< why the path was not taken
     std::optional<size_t> selected_;
-    std::string wanted_name_;  ///< to be selected as soon as it is listed
+    std::string wanted_name_;  ///< name to select as soon as it is listed
     std::optional<std::filesystem::path> accepted_;
-    Asked<Verdict> verdict_;  ///< on `judged_`
+    Asked<Verdict> verdict_;  ///< verdict on `judged_`
     std::filesystem::path judged_;
-    Asked<bool> is_folder_;  ///< whether `followed_`, which may be one, is to be listed
+    Asked<bool> is_folder_;  ///< whether `followed_` is a folder, which is then listed
     std::filesystem::path followed_;
-    std::optional<double> waiting_since_;  ///< of Dear ImGui's clock
+    std::optional<double> waiting_since_;  ///< start of the wait, by Dear ImGui's clock
     bool all_files_ = false;
     bool hidden_ = false;
     bool is_asked_for_ = false, is_open_ = false, closes_ = false;
     FieldKeys field_keys_;
     bool field_wants_keys_ = false, field_has_keys_ = false, scrolls_ = false;
-    int field_number_ = 0;  ///< another field forgets that it was being edited
+    int field_number_ = 0;  ///< changed to give the field another id, so that Dear ImGui drops its edit state
 };
 
 }  // namespace shvr::ui

@@ -39,8 +39,8 @@ std::vector<Place> places_of(const Model& model)
     return places(model.is_open ? model.session.volume_path : std::filesystem::path(), model.preferences.recent);
 }
 
-/// Which paths are gone is found out when the list changes, beside the frames, and nobody waits for it, at the end
-/// either: a network that does not answer takes minutes.
+/// Returns whether a path is gone. The paths are checked when the list changes, in the background, and no caller waits
+/// for the check, not even at exit: a network that does not answer takes minutes.
 bool is_gone(const std::filesystem::path& path, const std::vector<std::filesystem::path>& recent)
 {
     struct Search {
@@ -115,7 +115,7 @@ void open_dialog(const Model& model, Actions& actions)
 {
     static bool was_asked = false;
     if (model.asks_what_to_open && !std::exchange(was_asked, true)) {
-        // The first time beside what is open or was opened last; later where it was left.
+        // The first time next to the file opened last; later in the folder used last.
         static bool was_shown = false;
         const auto& recent = model.preferences.recent;
         const std::filesystem::path begin =

@@ -90,7 +90,7 @@ struct TaskDialog {
     }
 
 private:
-    /// What is written is called after the scan, beside its session or its file. What is compared is there already.
+    /// Output files are named after the scan, next to its session or its file. Files to compare exist already.
     static std::filesystem::path beside(const Model& model)
     {
         if (!model.is_open || !WRITES_FILES<Task>) return {};
@@ -109,7 +109,7 @@ private:
         if (is_known_) return known_.refusal;
         return asked_.is_pending() ? "Waiting for the disk" : "";
     }
-    /// Asked beside the window: of each change at once, and again now and then, since files come and go.
+    /// Asks the disk in the background: after each change, and again now and then, since files come and go.
     void ask_disk()
     {
         constexpr double AGAIN_S = 1.0;
@@ -130,7 +130,7 @@ private:
 
     Asked<Verdict> asked_;
     Verdict known_;
-    bool is_known_ = false;  ///< of the task as it is now
+    bool is_known_ = false;  ///< `known_` answers for the current task
     std::string asked_of_;
     double asked_s_ = 0.0;
 };

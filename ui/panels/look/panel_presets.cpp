@@ -25,7 +25,7 @@ struct NameState {
 };
 NameState asked;
 
-constexpr float COLORS_WIDTH = 6.0f;  ///< of a row in the list, in font sizes
+constexpr float COLORS_WIDTH = 6.0f;  ///< width of the colours in a list row, in font sizes
 constexpr const char* ASK_NAME = "Name of the transfer function";
 
 void ask_for_preset_name(const std::string& renamed)

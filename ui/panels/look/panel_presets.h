@@ -1,5 +1,5 @@
 #pragma once
-// The line above the curve: whole transfer functions to begin from, and those that a person keeps.
+// The line above the curve: whole transfer functions to start from, and the user's own.
 
 #include "engine/workbench/actions/action.h"
 #include "engine/workbench/models/model.h"

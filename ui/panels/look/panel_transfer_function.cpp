@@ -28,7 +28,7 @@ namespace {
 using Points = TransferCurve::Points;
 using Grip = TransferCurve::Grip;
 
-constexpr float HEIGHT = 150.0f / 14.0f;  ///< of the curve, in font sizes
+constexpr float HEIGHT = 150.0f / 14.0f;  ///< height of the curve, in font sizes
 constexpr float POINT_RADIUS = 0.36f;     ///< in font sizes
 constexpr float MARGIN = 0.65f;           ///< around the axes, so that circles at the edge are whole
 constexpr float REACH = 0.65f;            ///< the mouse grabs things within this distance, in font sizes
@@ -42,7 +42,7 @@ constexpr ThemeColor BACKGROUND{ColorRole::chart}, BARS{ColorRole::chart_bars}, 
 struct WidgetState {
     Grip grip = Grip::nothing;
     size_t selected = 0;
-    CurveRange range;         ///< of the horizontal axis; fixed while dragging
+    CurveRange range;         ///< range of the horizontal axis; fixed while dragging
     double grabbed_at = 0.0;  ///< intensity under the mouse when it last moved all points
     FineDrag held;            ///< the centre of the grabbed item
     bool is_logarithmic = true;
@@ -302,7 +302,7 @@ std::string digits(double value)
     return text;
 }
 
-/// Chooses, adds and removes points without the mouse, beside what is before on the line.
+/// Draws buttons that choose, add and remove points without the mouse, after the other items of the line.
 void point_buttons(const Model& model, WidgetState& state, Actions& actions)
 {
     TransferCurve curve(model.session.transfer_function);
