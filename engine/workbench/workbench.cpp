@@ -14,7 +14,7 @@ Workbench::Workbench(Renderer& renderer, WorkbenchOptions options) : desk_(rende
     services_.keeper.load();
 }
 
-/// What is being written, preferences among it, is written to its end.
+/// Finishes writing files, preferences among them.
 Workbench::~Workbench()
 {
     static_cast<void>(desk_.savers.wait());

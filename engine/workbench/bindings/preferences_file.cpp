@@ -122,7 +122,7 @@ Preferences patched(const Preferences& preferences, std::string_view patch)
     return read;
 }
 
-/// Only what changes: what a patch does not name stays.
+/// States only changes: members missing from a patch stay.
 std::string patch_of_panel(const std::string& id, const PanelLayout& change)
 {
     std::string parts;

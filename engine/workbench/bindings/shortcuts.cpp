@@ -39,7 +39,7 @@ Action choose(const Model& model, double)
     return edited(model.session, [](Session& s) { s.probe.brush.group = GROUP; });
 }
 
-/// What has no place of its own takes that of the pointer; without one, the middle of the first pane.
+/// Actions without a position take the pointer's; without a pointer, the middle of the first pane.
 template <class Kind>
 Action at_pointer(const Model& model, double)
 {
@@ -69,7 +69,7 @@ Action step_probe(const Model& model, double amount)
     return PushProbe{model.pointer ? model.pointer->pane : 0, AWAY * amount, RIGHT * amount, UP * amount};
 }
 
-/// The views that a person has kept, in the order of their names: not the one that the window keeps for itself.
+/// Returns the views that the user kept, in the order of their names, without the window's own one.
 template <size_t NUMBER>
 Action look_from_kept(const Model& model, double)
 {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int64_t MAX_VALUES = 65536;  ///< what integers of 16 bits can be
 
-/// As VolumeSource::measure fills bins; values are above the least one.
+/// Bins like VolumeSource::measure; values are relative to the minimum.
 size_t bin_of(double value, int64_t span, size_t bins)
 {
     return std::min(bins - 1, size_t(value / double(span) * double(bins)));
@@ -25,7 +25,7 @@ struct Lattice {
     double upper(int64_t k) const { return std::ceil(double(k) * double(span) / double(intervals)); }
 };
 
-/// How many of the values fall into each bin; where they may be rounded, into which they may.
+/// Counts the values that fall into each bin; if they may be rounded, those that may fall into it.
 std::vector<int64_t> values_in_bins(const Lattice& lattice, size_t bins)
 {
     std::vector<int64_t> values(bins, 0);
@@ -38,7 +38,7 @@ std::vector<int64_t> values_in_bins(const Lattice& lattice, size_t bins)
     return values;
 }
 
-/// Whether there are voxels where no value is.
+/// Returns whether there are voxels in a bin without a value.
 bool is_refuted(const std::vector<int64_t>& values, const std::vector<int64_t>& counts)
 {
     for (size_t bin = 0; bin < counts.size(); ++bin)
@@ -46,7 +46,7 @@ bool is_refuted(const std::vector<int64_t>& values, const std::vector<int64_t>& 
     return false;
 }
 
-/// How much a histogram leaps up and down from one bin that can hold something to the next.
+/// Measures how much a histogram jumps from one bin that can hold values to the next.
 double roughness(const std::vector<int64_t>& values, const std::vector<int64_t>& counts)
 {
     double sum = 0.0, last = std::numeric_limits<double>::quiet_NaN();
@@ -59,7 +59,7 @@ double roughness(const std::vector<int64_t>& values, const std::vector<int64_t>&
     return sum;
 }
 
-/// What voxels may be, as far as a histogram shows it. The greatest value is one of them.
+/// Determines the possible voxel values, as far as a histogram shows them. The greatest value is one of them.
 Lattice lattice_of(int64_t span, const std::vector<int64_t>& counts)
 {
     const double bin_width = double(span) / double(counts.size());

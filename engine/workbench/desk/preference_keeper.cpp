@@ -26,7 +26,7 @@ void PreferenceKeeper::act(const BindKeys& action)
     std::vector<std::string>& keys_of_it = preferences.keys[action.shortcut];
     keys_of_it.clear();
     for (const std::string_view chord : words_of(action.keys)) keys_of_it.emplace_back(chord);
-    // What ships is no change, so that it goes along with another choice of the set.
+    // A default is no change, so that it follows another choice of the set.
     if (Keymap(preferences.key_set, preferences.keys).chords_of(*shortcut) ==
         Keymap(preferences.key_set).chords_of(*shortcut))
         preferences.keys.erase(action.shortcut);
@@ -70,7 +70,7 @@ void PreferenceKeeper::load()
     for (const std::string& conflict : keymap_.conflicts()) say(conflict, Weight::warning);
 }
 
-/// Whether they can be kept is told, and changes nothing else.
+/// A failure to save is reported, and changes nothing else.
 void PreferenceKeeper::prefer(Preferences preferences)
 {
     if (preferences == preferences_) return;

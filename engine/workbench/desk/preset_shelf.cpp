@@ -13,7 +13,7 @@ std::filesystem::path PresetShelf::folder() const
     return options_.preferences.parent_path() / "transfer_functions";
 }
 
-/// Those that ship, then a person's own.
+/// Loads the presets that ship, then the user's own.
 void PresetShelf::load()
 {
     presets_.clear();

@@ -118,7 +118,7 @@ void Document::take_kept_settings()
     if (probe.voxel) touch.place(*probe.voxel * volume().spacing);
 }
 
-/// What neither the file nor the journal says. Later than both, so that it counts as no change of either.
+/// Chooses settings that neither the file nor the journal states. Later than both, so it is no change of either.
 void Document::choose_for_volume(Session& of) const
 {
     if (!of.probe.node_radius_voxels) of.probe.node_radius_voxels = automatic_node_radius(volume());

@@ -76,7 +76,7 @@ std::shared_ptr<Document::Saving> Document::begin_save(Parts parts)
     return saving;
 }
 
-/// What another program wrote there since is kept, and the notice tells where.
+/// Keeps contents that another program wrote there since; the notice names their place.
 void Document::Saving::write_session()
 {
     if (const std::optional<std::string> there = text_of_session(session_path_); there && there != text_there_) {

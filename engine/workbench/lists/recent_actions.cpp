@@ -7,7 +7,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Whether it follows the mouse or a key that is held.
+/// Returns whether the action follows the mouse or a held key.
 bool comes_in_runs(const Action& action)
 {
     return std::visit(

@@ -34,7 +34,7 @@ bool is_opened(FileContent content)
            content == FileContent::picture;
 }
 
-/// Whether the points of a transfer function lie in the tissue of any volume, as in files of those that are kept, and
+/// Returns whether the points of a transfer function are relative to the tissue of any volume, as in preset files, and
 /// not at intensities.
 bool is_preset(const std::string& text, const std::filesystem::path& path)
 {
@@ -127,7 +127,7 @@ void FileTaker::act(const TakeFile& action)
     });
 }
 
-/// What is annotation of a scan that comes with it must not go into the one that is still open.
+/// Annotation that comes with a scan must not go into the one that is still open.
 void FileTaker::take_together(std::vector<std::filesystem::path> paths)
 {
     jobs_.start(sentence("looking at ", paths.size(), " files"), [this, paths](ProgressReporter&) {

@@ -209,7 +209,7 @@ void Hand::act(const FollowStylus& action)
         });
 }
 
-/// As a hand would: while the first button is down it paints, or adds nodes in the trace tool.
+/// Acts like a hand: while the first button is down it paints, or adds nodes in the trace tool.
 void Hand::follow_points(const std::vector<StylusPoint>& points, double node_every)
 {
     constexpr double APART_VOXELS = 0.5;

@@ -54,7 +54,7 @@ void Hand::leave_device()
     hand_ = std::move(hand);
 }
 
-/// The one that a person has chosen, or the first that can be used; null: none, or the mouse.
+/// Returns the device that the user chose, or the first usable one; null: none, or the mouse.
 const DeviceListing* Hand::wanted_device() const
 {
     const ChosenDevice& chosen = keeper_.preferences().device;
@@ -85,7 +85,7 @@ void Hand::choose_device()
     watch_->open(wanted->id);
 }
 
-/// What is plugged in while the program runs is found, and what is pulled out is left.
+/// Finds devices that are plugged in while the program runs, and leaves those that are unplugged.
 void Hand::follow_devices()
 {
     if (!options_.has_servo || options_.is_script) return;

@@ -19,7 +19,7 @@ bool is_one_journal(const std::filesystem::path& a, const std::filesystem::path&
     return std::filesystem::absolute(a).lexically_normal() == std::filesystem::absolute(b).lexically_normal();
 }
 
-/// What is opened for a picture: the project it was made of, or the bare volume. Empty where it is no picture, or one
+/// Returns the path to open for a picture: its project, or the bare volume. Empty if it is no picture, or one
 /// of bare voxels, which only its session describes.
 std::filesystem::path opened_for_picture(const std::filesystem::path& path, const OpenedSession& opened)
 {
@@ -30,7 +30,7 @@ std::filesystem::path opened_for_picture(const std::filesystem::path& path, cons
     return has_file ? opened.session.volume_path : std::filesystem::path();
 }
 
-/// Who opens a scan once more wants what was saved beside it: its session, if that is of this very file. Empty: there
+/// Returns the session saved next to a volume, if it belongs to this very file: reopening a scan uses it. Empty: there
 /// is none.
 std::filesystem::path session_saved_for(const std::filesystem::path& volume)
 {
@@ -99,7 +99,7 @@ void Opener::open(const std::filesystem::path& path, const std::vector<std::stri
     if (*failure) std::rethrow_exception(*failure);
 }
 
-/// Begins to read on the worker; once more where what is open has changed the journal since.
+/// Starts reading on the worker; again if the open document has changed the journal since.
 void Opener::read_next()
 {
     Opening& opening = *opening_;
@@ -172,7 +172,7 @@ void Opener::advance()
     }
 }
 
-/// What is open is saved, and its journal is as it was read.
+/// Returns whether the open document is saved, and its journal is as it was read.
 bool Opener::is_ready_to_load()
 {
     if (!document_) return true;
@@ -233,7 +233,7 @@ void Opener::finish()
     for (const std::filesystem::path& taken : opening->taken_into_it) taker_.act(TakeFile{.path = taken});
 }
 
-/// What was put away.
+/// Shows the document again that was put away.
 void Opener::show_again()
 {
     try {

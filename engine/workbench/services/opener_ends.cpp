@@ -104,7 +104,7 @@ void Opener::put_away()
     away_->touch.use(nullptr);  // one servo at a time on a device
 }
 
-/// Loads what was put away once more.
+/// Loads the document again that was put away.
 void Opener::bring_back()
 {
     opening_ = std::make_shared<Opening>(Opening{.path = away_->session_path,

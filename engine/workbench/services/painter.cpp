@@ -13,10 +13,10 @@ namespace shvr::ui {
 
 namespace {
 
-/// How long the bricks of a stroke are waited for.
+/// Maximum wait for the bricks of a stroke.
 constexpr double PATIENCE_S = 20.0;
 
-/// Of what the brush reaches at a place.
+/// Returns whether a stroke found hardly any voxels to paint within the brush's reach.
 bool is_hardly_any(const StrokeResult& result, const glm::dvec3& spacing)
 {
     constexpr double HARDLY = 0.05;
@@ -176,7 +176,7 @@ void Painter::stroke_ended()
     say(said, is_as_meant && !found_nothing ? Weight::done : Weight::warning);
 }
 
-/// Where what is under the probe is below the paint threshold: what it is, and the key that changes that.
+/// If the voxel under the probe is below the paint threshold, describes it and names the key that sets the threshold.
 std::string Painter::how_to_reach_this() const
 {
     const Model now = desk_.model();

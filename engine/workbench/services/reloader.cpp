@@ -19,7 +19,7 @@ Reloader::Reloader(Services& all)
 
 Reloader::~Reloader() = default;
 
-/// Where the volume cannot be loaded with the session's settings, that is said at once.
+/// Reports at once if the volume cannot be loaded with the session's settings.
 void Reloader::want(const RenderSettings& before)
 {
     if (opener_.is_opening()) fail(opener_.opening_name(), " is being opened; expected that to have ended");
@@ -90,7 +90,7 @@ Jobs::State Reloader::state() const
             .fraction = reload_->scene ? reload_->scene->loaded() : -1.0};
 }
 
-/// What was asked of the scene that goes.
+/// Drops pending requests to the scene that is replaced.
 void Reloader::drop_queries()
 {
     document_->previewer.drop();

@@ -107,7 +107,7 @@ void Saver::act(const WorkOnCopy&)
     start_copy({}, true);
 }
 
-/// Of what is there now, whatever is done meanwhile.
+/// Copies the present state, whatever is done meanwhile.
 void Saver::start_copy(const std::filesystem::path& path, bool opens_it)
 {
     if (!document_->only_looks()) settings_.record_settings();

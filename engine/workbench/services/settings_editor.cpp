@@ -13,7 +13,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Whether pictures of the volume are the same: these settings are drawn over them, or not at all.
+/// Returns whether pictures of the volume are the same: the other settings are drawn over them, or not at all.
 bool look_the_same(Session before, const Session& after)
 {
     before.probe = after.probe;  // which is drawn by itself, as distances are
@@ -175,7 +175,7 @@ void SettingsEditor::follow_settings()
     record_settings();
 }
 
-/// Of what follows, undo is to take back that first.
+/// Makes a step now, so that undo reverts these settings before later changes.
 void SettingsEditor::record_settings()
 {
     if (document_->annotator.stroke_is_running() || document_->annotator.work().is_saving_as()) return;
@@ -202,7 +202,7 @@ void SettingsEditor::step(int count, const char* done, const char* nothing, Way 
     say(steps == 1 ? sentence(done, ": ", last) : sentence(done, ": ", steps, " steps, the last: ", last));
 }
 
-/// Whether undo would take back another step than what a person did last: a stroke that changed nothing is none.
+/// Returns whether undo would revert an earlier step than the user's last: a stroke that changed nothing is no step.
 /// Asked once after such a stroke. Scripts count steps.
 bool SettingsEditor::follows_empty_stroke()
 {

@@ -21,7 +21,7 @@ std::optional<std::pair<uint32_t, uint32_t>> ends_of_cut(const TraceGraph& trace
     return trace.internode_between(ends.first, ends.second) ? std::nullopt : std::optional(ends);
 }
 
-/// Whether the selected node does, though near enough to be allowed.
+/// Returns whether the selected node lies outside the volume, though near enough to be allowed.
 bool lies_outside(const TraceGraph& trace, const VolumeInfo& volume)
 {
     const std::optional<uint32_t> node = trace.selection().node();
@@ -132,7 +132,7 @@ std::optional<ToolPlace> Tracer::line_at(const Pane& seen, const glm::dvec2& pix
     const glm::dvec3 there = unproject(seen.shot.camera, seen.pixels(), pixel, hit.depth);
     const glm::dvec3 way = glm::normalize(sight_through(seen.shot.camera, there));
     const glm::dvec3 a = trace.node(internode.a).position, b = trace.node(internode.b).position;
-    // Where it comes nearest to the line of sight.
+    // The point of the line that is nearest to the line of sight.
     const auto across = [&](const glm::dvec3& v) { return v - way * glm::dot(v, way); };
     const glm::dvec3 begin = across(a - there), along = across(b - a);
     const double square = glm::dot(along, along);

@@ -87,7 +87,7 @@ void Viewer::act(const Zoom& action)
                               document_->probe_voxel()));
 }
 
-/// Where they are looked at is kept as the camera is: it is no change of the work.
+/// Shows the slices; their position is kept like the camera, and is no change of the work.
 void Viewer::show_slices(SliceSettings slices)
 {
     document_->session.view.slices = slices;
@@ -95,7 +95,7 @@ void Viewer::show_slices(SliceSettings slices)
     settings_.note_to_keep();
 }
 
-/// A probe that went out of their sight takes them along, wherever it was sent from.
+/// Moves the slices with a probe that left their plane, whatever moved it.
 void Viewer::follow_slices()
 {
     constexpr double STIR_VOXELS = 0.05;  // a stylus is never quite at rest, and slices may be moved away from it

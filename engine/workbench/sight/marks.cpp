@@ -73,7 +73,7 @@ private:
         const auto at = project(pane_.shot.camera, pixels_, point);
         return at ? std::optional(at->pixel) : std::nullopt;
     }
-    /// With a halo, so that it is seen on any picture.
+    /// Draws a line with a halo, so that it is visible on any picture.
     void line(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec3& color, double width = 1.5)
     {
         marks_.strokes.push_back({from, to, DARK, (width + 2.0) * units_});
@@ -125,7 +125,7 @@ private:
                color_);
     }
 
-    /// What of the trace the plane passes through, or within a voxel of.
+    /// Draws the part of the trace that crosses the plane, or lies within a voxel of it.
     void trace_in_slice()
     {
         const Camera& camera = pane_.shot.camera;
@@ -162,7 +162,7 @@ private:
                glm::all(glm::lessThan(glm::min(a, b), glm::dvec2(pixels_)));
     }
 
-    /// Where a node or a centre line has drawn the tools.
+    /// Marks the node or centre line that attracts the tools.
     void drawn_tool()
     {
         if (!model_.tool_node && !model_.tool_internode) return;
@@ -285,7 +285,7 @@ private:
         if (named < drawn.size()) label(at, {1.0, 0.5}, "and " + std::to_string(drawn.size() - named) + " more groups");
     }
 
-    /// What the pane shows, in its upper left corner; of a slice also what is under the pointer.
+    /// Draws the pane's title in its upper left corner; for a slice also the reading under the pointer.
     void title()
     {
         if (model_.panes.size() < 2) return;
@@ -312,7 +312,7 @@ private:
             text = std::to_string(std::lround(100.0 * *model_.reading.relevant_share)) + " % full, " + text;
             meter(at->pixel, reach + 4.0 * units_, *model_.reading.relevant_share);
         }
-        // Where there is no room at the right it lies at the left; a character is at most that wide.
+        // Without room at the right the text lies at the left; a character is at most this wide.
         constexpr double CHARACTER = 8.0;
         const double beside = 0.75 * reach + 6.0 * units_;
         const bool has_room =

@@ -47,7 +47,7 @@ void TapLink::note_now(uint64_t now_ns) noexcept
 
 void TapLink::note_read(ReadResult result, const DeviceState& state) noexcept
 {
-    // As the servo takes it: a device that could not be written to is gone, unless it says something new.
+    // Result as the servo sees it: a device whose last write failed is lost unless it reports a new state.
     now_.tick.read = !was_written_ && result != ReadResult::fresh ? ReadResult::lost : result;
     now_.tick.state = state;
     if (const Latest<RelevancePatch>* const relevance = relevance_.load(std::memory_order_acquire)) {

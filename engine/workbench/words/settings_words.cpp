@@ -46,7 +46,7 @@ std::string sentence_about_solo(const Session& session)
                       : sentence("Only group ", int(*solo), " is drawn: ", group_of(session.groups, *solo).name);
 }
 
-/// How far all points were moved, where that is all.
+/// Returns how far all points were moved, if that is the only change.
 std::optional<double> shift_between(const TransferFunction& was, const TransferFunction& is)
 {
     const auto before = was.points(), after = is.points();
@@ -67,7 +67,7 @@ std::string sentence_about(const TransferFunction& was, const TransferFunction& 
     return sentence("Transfer function of ", is.points().size(), " points, from ", is.lower(), " to ", is.upper());
 }
 
-/// How the light that arrives is mapped to what is seen.
+/// Describes the mapping of arriving light to displayed light.
 std::string sentence_about(const OcclusionSettings& was, const OcclusionSettings& is)
 {
     const auto &before = was.mapping, &after = is.mapping;
@@ -95,7 +95,7 @@ std::string sentence_about(ProxyLaw guidance)
     return {};
 }
 
-/// Empty where only numbers changed, which say enough themselves.
+/// Empty if only numbers changed, which need no sentence.
 std::string sentence_about(const FeelSettings& was, const FeelSettings& is)
 {
     if (was.mode != is.mode) {
