@@ -24,7 +24,7 @@ constexpr double SHARPEN_S = 0.12;
 /// Widgets settle, hover and blink for that long after the last event.
 constexpr double AFTERGLOW_S = 0.3;
 
-/// What the command line leaves open is as the person's preferences say; what is wrong with them the workbench says.
+/// Takes budgets that the command line leaves open from the preferences; the workbench reports errors in these.
 gpu::Budget budget_of(const AppOptions& options)
 {
     gpu::Budget budget = options.budget;
@@ -63,7 +63,7 @@ App::App(const AppOptions& options) : options_(options), window_("SHVR", options
         if (!*log_) fail(options.log.string(), ": cannot be written; expected a file for the log of actions");
         bench_->log_to([this](const std::string& line) { *log_ << line << std::endl; });
     }
-    // What cannot be opened is said over the start page.
+    // Errors of opening are shown over the start page.
     if (!options.input.empty())
         bench_->begin_open(options.input, options.settings);
     else
@@ -112,7 +112,7 @@ void App::turn()
     next_frame_s_ = std::max(next_frame_s_ + 1.0 / frames_per_second, now);
 }
 
-/// What the window itself has to do about what was done.
+/// Applies changes of the workbench to the window.
 void App::follow_workbench()
 {
     if (const std::string text = bench_->take_clipboard(); !text.empty()) ImGui::SetClipboardText(text.c_str());
@@ -211,7 +211,7 @@ bool App::something_moves() const
 double App::next_reason_to_draw_s() const
 {
     if (undrawable_since_s_) return 0.0;
-    // Until there is something to see, the first picture has the device to itself.
+    // Until a picture exists, the first one has the device to itself.
     const bool waits_for_picture =
         bench_->is_open() && !bench_->document().screen.shows_anything() && viewport_.pixels().x > 0;
     if (waits_for_picture && !report_.has_unanswered()) return report_.last_begun_s() + SHARPEN_S;
@@ -242,7 +242,7 @@ bool is_overtaken(const std::vector<InputEvent>& events, const InputEvent& event
 
 }  // namespace
 
-/// What Dear ImGui says is of the frame before; where nothing is held or popped up, the windows under the pointer tell.
+/// Dear ImGui's answer is of the previous frame; if nothing is held or popped up, the windows under the pointer decide.
 bool App::ui_has_mouse(const InputEvent& event) const
 {
     const ImGuiIO& io = ImGui::GetIO();
@@ -266,7 +266,7 @@ bool App::ui_has_key(const KeyEvent& event) const
     return panels_have_keyboard() && moves_in_panels(event);
 }
 
-/// Whether a field, a menu or a dialog is open, or a person moves through a panel by keys.
+/// Returns whether a field, a menu or a dialog is open, or the user moves through a panel by keys.
 bool App::panels_have_keyboard() const
 {
     const bool has_popup = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);

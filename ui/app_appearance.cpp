@@ -1,4 +1,4 @@
-// How the interface looks and who has the keyboard: theme, scale, fonts, and panels used without a mouse.
+// Appearance of the interface and keyboard focus: theme, scale, fonts, and panels used without a mouse.
 
 #include <algorithm>
 
@@ -24,7 +24,7 @@ void want_glyphs_of(const Model& model)
     for (const std::filesystem::path& path : model.preferences.recent) want_glyphs(path.native());
 }
 
-/// As if a key of navigation had been pressed: the first thing of the window is framed and takes the keys.
+/// Acts as if a navigation key had been pressed: the first item of the window is framed and takes the keys.
 void give_keyboard_to(ImGuiWindow* window, ImGuiNavLayer layer)
 {
     if (!window) return;

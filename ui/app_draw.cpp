@@ -64,7 +64,7 @@ bool App::draw_ui()
         drawn_probe_voxel_ = document.probe_voxel();
     }
     viewport_.set_layout(layout);
-    // Of a software device the wait would be for this, too, and grow with it.
+    // On a software device the wait would include this work, and grow with it.
     std::function<void(double)> go_on;
     if (is_open && !renderer_->device().traits().is_cpu)
         go_on = [this](double wait_ms) { bench_->screen().submit_ahead(wait_ms); };
@@ -85,7 +85,7 @@ bool App::draw_ui()
     return true;
 }
 
-/// Whole, or not at all: others read it while frames are drawn.
+/// Writes the file atomically: other processes read it while frames are drawn.
 void App::write_screen_texts() const
 {
     const ImDrawData* const drawn = ImGui::GetDrawData();
@@ -97,7 +97,7 @@ void App::write_screen_texts() const
     std::filesystem::rename(written, options_.screen_texts);
 }
 
-/// Until there is a picture.
+/// Shows a notice until there is a picture.
 void App::say_that_it_is_coming() const
 {
     const glm::dvec2 middle = 0.5 * glm::dvec2(viewport_.layout().begin + viewport_.layout().end);

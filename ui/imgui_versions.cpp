@@ -30,7 +30,7 @@ ImVec2 place_of(const glm::dvec2& pixels)
     return {float(pixels.x) / scale.x, float(pixels.y) / scale.y};
 }
 
-/// Whether a press counts as the second of two is decided by the times of the events, not of the frames.
+/// Lets event times, not frame times, decide whether a press counts as the second of two.
 void allow_double_click(bool is_double)
 {
     ImGui::GetIO().MouseDoubleClickTime = is_double ? std::numeric_limits<float>::max() : 0.0f;
@@ -77,7 +77,7 @@ bool is_alt(int key)
     return key == GLFW_KEY_LEFT_ALT || key == GLFW_KEY_RIGHT_ALT;
 }
 
-/// Where the pointer is now: after a click that was told at its own place no event may follow.
+/// Returns the current pointer position: after a click reported at its own position no event may follow.
 ImVec2 pointer_of(GLFWwindow* window)
 {
     const bool is_here = glfwGetWindowAttrib(window, GLFW_FOCUSED) || glfwGetWindowAttrib(window, GLFW_HOVERED);

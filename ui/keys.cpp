@@ -75,7 +75,7 @@ std::vector<const Shortcut*> shortcuts_for(const KeyEvent& event, int mods, cons
     const std::string in_layout = name_in_layout(event), at_place = name_at_place(event.key);
     add(in_layout, false);
     add(at_place, true);
-    // What an American keyboard has there and this one perhaps nowhere without Shift: brackets under German umlauts.
+    // Keys of an American keyboard that this one perhaps has only with Shift: brackets under German umlauts.
     const bool is_letter = in_layout.size() == 1 && std::isalnum(static_cast<unsigned char>(in_layout[0]));
     if (found.empty() && !is_letter && in_layout != at_place) add(at_place, false);
     return found;
@@ -86,7 +86,7 @@ double rate(const Shortcut& shortcut, int mods)
     return shortcut.is_slowed() && (mods & GLFW_MOD_SHIFT) ? SLOWED : 1.0;
 }
 
-/// The key that a person chose for a shortcut. Modifiers alone are waited on.
+/// Binds the key that the user chose to a shortcut. Modifiers alone do not count.
 void bind(const KeyEvent& event, const Model& model, Actions& actions)
 {
     const Shortcut* const shortcut = shortcut_named(model.awaits_key);

@@ -15,7 +15,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Of pixels: glyphs are moved to whole pixels.
+/// Tolerances in pixels: glyphs are moved to whole pixels.
 constexpr float NEAR = 0.75f, CUT = 1.0f;
 constexpr int MAX_SPACES = 3;  ///< in a row within one text
 
@@ -120,7 +120,7 @@ public:
     }
 
 private:
-    /// Whether the glyph goes on with the text before; spaces between are added.
+    /// Returns whether the glyph continues the current text; adds the spaces between.
     bool continues(float pen, float top, float size, bool is_seen)
     {
         if (!has_text_ || std::abs(top - top_) > NEAR) return false;

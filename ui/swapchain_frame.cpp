@@ -173,7 +173,7 @@ bool Swapchain::is_ready()
 
 bool Swapchain::present(const std::vector<View::Layer>& layers, const glm::uvec2& origin, const Meanwhile& meanwhile)
 {
-    // What fails meanwhile is told after the frame, which is on its way by then.
+    // A failure in `meanwhile` is thrown after the frame, which is submitted by then.
     std::exception_ptr failure;
     const Meanwhile safely = [&](double wait_ms) {
         try {
@@ -187,7 +187,7 @@ bool Swapchain::present(const std::vector<View::Layer>& layers, const glm::uvec2
     return is_shown;
 }
 
-/// Whether the frame has an image to be drawn in.
+/// Returns whether the frame has an image to draw in.
 bool Swapchain::prepare(Frame& frame)
 {
     glm::ivec2 size(0);

@@ -73,7 +73,7 @@ glm::dvec2 Viewport::in_pane(const glm::dvec2& at, const Model& model) const
     return at - glm::dvec2(layout_.begin + origin);
 }
 
-/// What turning means in the pane.
+/// Returns the effect of a turning drag in the pane.
 Viewport::Gesture Viewport::turning(const Model& model) const
 {
     switch (kind_of_pane(model)) {

@@ -107,7 +107,7 @@ bool FileList::is_shown(const Entry& entry) const
     if (!shows_hidden_ && entry.name.starts_with('.')) return false;
     if (entry.is_folder || shows_all_files_) return true;
     const std::string name = lower_case(entry.name);
-    // What belongs to a mask is taken with it; DICOM files often have no ending.
+    // Companion files of a mask are taken with it; DICOM files often have no suffix.
     return is_volume_name(entry.name) || (name.ends_with(".json") && !name.ends_with(".mask.json")) ||
            fs::path(entry.name).extension().empty();
 }
@@ -217,7 +217,7 @@ Verdict verdict_on(const fs::path& path, Wanted wanted, bool enters_folders)
     const fs::file_status status = fs::status(path, error);
     const bool is_folder = fs::is_directory(status);
     if (wanted == Wanted::scan) {
-        // What lies within an archive is no path of the file system.
+        // A path within an archive does not exist in the file system.
         if (!fs::exists(status) && !is_within_archive(path)) {
             const bool is_gone = !error || error == std::errc::no_such_file_or_directory;
             return {false,
@@ -250,7 +250,7 @@ std::vector<Place> places(const fs::path& open, const std::vector<fs::path>& rec
         const std::string name = folder.filename().string();
         found.push_back({name.empty() ? folder.string() : name, folder});
     };
-    // The files of a project lie in a folder of their own, within what a person would call the project.
+    // The files of a project lie in a folder of their own, within the folder that the user calls the project.
     const fs::path whole = open.empty() ? open : fs::absolute(open).lexically_normal();
     if (whole.parent_path().filename() == "shvr")
         add(whole.parent_path().parent_path().parent_path());

@@ -19,7 +19,7 @@ constexpr const char* FONTS[] = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.tt
                                  "/usr/share/fonts/TTF/DejaVuSans.ttf",                // Arch
                                  "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf",
                                  "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"};
-/// What the one before has not, the next may have. Read only once a rare character is known:
+/// Fonts tried in order for missing characters. They are read only once a rare character is known:
 /// they are large.
 constexpr const char* FALLBACKS[] = {
     "/usr/share/fonts/truetype/droid/DroidSansFallbackFull.ttf",  // fonts-droid-fallback

@@ -74,7 +74,7 @@ bool locked_cell(bool is_locked, GroupSettings& settings)
     return changed;
 }
 
-/// Only this group is drawn; the settings of the others stay.
+/// Switches to drawing only this group; the settings of the others stay.
 void solo_cell(uint8_t group, const Model& model, Actions& actions)
 {
     ImGui::TableNextColumn();
@@ -227,7 +227,7 @@ void size_cells(uint8_t group, const Model& model, Actions& actions)
 
 // ---- Rows
 
-/// Of the volume where nothing is painted.
+/// Draws the row for the volume without paint.
 void unpainted_row(const GroupRow& row, const Model& model, Actions& actions)
 {
     Unpainted unpainted = model.session.unpainted;

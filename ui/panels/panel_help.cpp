@@ -92,7 +92,7 @@ void keys_of(const Shortcut& shortcut, const Model& model, Actions& actions)
                : "Click, then press another key for it. Escape leaves it as it is; Delete takes the key away.");
 }
 
-/// What it means; who else has its keys; and the way back to what ships.
+/// Shows the meaning of a shortcut, other shortcuts with its keys, and the way back to the default.
 void meaning_of(const Shortcut& shortcut, const Model& model, Actions& actions)
 {
     ImGui::AlignTextToFramePadding();

@@ -17,7 +17,7 @@ namespace {
 
 constexpr float MAX_HISTORY_LINES = 14.0f;
 
-/// Why the last step that was asked for cannot be shown; empty: it can.
+/// why the last requested step cannot be shown; empty: it can
 std::string why_not_shown;
 
 void show_where(const HistoryList& list, const Model& model, size_t row, Actions& actions)

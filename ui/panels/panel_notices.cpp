@@ -1,4 +1,4 @@
-// What a person must know before working: that another process writes the project, and that saved files were changed.
+// Notices before work begins: another process writes the project, or saved files were changed.
 
 #include <algorithm>
 
@@ -17,7 +17,7 @@ constexpr ImGuiWindowFlags BANNER = ImGuiWindowFlags_NoDecoration | ImGuiWindowF
                                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
                                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
 
-/// What was recovered or set aside, until it is dismissed. Returns its height.
+/// Lists recovered or set-aside work, until dismissed. Returns its height.
 float recovered_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions)
 {
     ImGui::SetNextWindowPos({begin.x, begin.y});

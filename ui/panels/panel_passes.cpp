@@ -1,4 +1,4 @@
-// What the device spends on each step of a picture, and on what its memory goes: a window for those who measure.
+// GPU time per pass of a picture, and the use of device memory: a window for measurements.
 
 #include <algorithm>
 #include <cstdio>
@@ -126,7 +126,7 @@ void graph()
     hint(help.c_str());
 }
 
-/// What the device's memory holds, the largest first.
+/// Lists the allocations in device memory, the largest first.
 void memory(const Model& model)
 {
     constexpr double MEBIBYTE = 1024.0 * 1024.0;

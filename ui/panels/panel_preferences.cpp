@@ -1,4 +1,4 @@
-// What a person keeps for all scans: theme, sizes, keys.
+// The user's choices for all scans: theme, sizes, keys.
 
 #include <algorithm>
 

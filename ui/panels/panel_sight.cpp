@@ -1,4 +1,4 @@
-// Menus of what is seen: kept views, what turning goes about, what is drawn over pictures; and the size of new nodes.
+// Menus of the view: kept views, the pivot of turning, drawings over pictures; and the size of new nodes.
 
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>

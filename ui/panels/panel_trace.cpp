@@ -159,7 +159,7 @@ void buttons(const Model& model, Actions& actions)
     ImGui::EndDisabled();
 }
 
-/// Whether the internodes of the chosen group taper from node to node or have their own radius.
+/// Selects whether the internodes of the chosen group taper from node to node or have their own radius.
 void tapering(const Model& model, Actions& actions)
 {
     if (model.trace.internodes().empty() || model.brush().group == 0) return;

@@ -35,7 +35,7 @@ std::string in_digits(double value)
     return text;
 }
 
-/// With a square of the group's colour; a click selects.
+/// Draws a cell with a square of the group's colour; a click selects.
 void first_cell(const std::string& text, bool is_selected, uint8_t group, const Model& model, const Actions& selects,
                 Actions& actions)
 {

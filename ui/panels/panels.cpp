@@ -21,7 +21,7 @@ struct PanelBody {
     const char* id = "";
     void (*draw)(const Model& model, Actions& actions) = nullptr;
 };
-/// What each panel shows; their order and titles are in engine/workbench/appearance/layout.cpp.
+/// The panels' contents; their order and titles are in engine/workbench/appearance/layout.cpp.
 constexpr PanelBody BODIES[] = {
     {"transfer_function", transfer_function_panel},
     {"groups", groups_panel},
@@ -181,7 +181,7 @@ void place_window(const PanelRow& row, size_t number, const Model& model, const 
     ImGui::SetNextWindowPos({float(at.x), float(at.y)}, ImGuiCond_Appearing);
 }
 
-/// Once the mouse is let go.
+/// Stores the window's place once the mouse is released.
 void keep_place(const PanelRow& row, const Model& model, Actions& actions)
 {
     if (ImGui::IsAnyMouseDown() || ImGui::IsWindowAppearing()) return;

@@ -97,7 +97,7 @@ void draw_sign(Tool tool, const Pen& pen)
     }
 }
 
-/// What it is, its key, and what a click does then.
+/// Returns name, key, and the effect of a click with the tool.
 std::string explanation(const ToolRow& row, const Keymap& keymap)
 {
     return sentence(row.name, key_in_brackets(row.shortcut, keymap), "\n", row.hint);
@@ -202,7 +202,7 @@ void active_group(const Model& model, Actions& actions)
     step_button("+", "new_group", model, actions);
 }
 
-/// What the buttons do now, as far as there is room; all of it when the mouse is over it.
+/// Shows the functions of the mouse buttons, as far as there is room; all of them in a tooltip.
 void mouse_words(const Model& model)
 {
     const bool is_over_pane = model.pointer && model.pointer->pane < model.panes.size();

@@ -169,13 +169,13 @@ private:
         if (beside_.empty() || (ending.empty() && name != "project")) return beside_.parent_path();
         return beside_.string() + "-" + std::string(name) + ending;
     }
-    /// What a widget that holds no text is for, right of it.
+    /// Describes a widget without text, right of it.
     static void words_beside(const About& about, float fonts)
     {
         ImGui::SameLine();
         ImGui::TextDisabled("%s", shortened(about.meaning, fonts * ImGui::GetFontSize()).c_str());
     }
-    /// What an empty field is for, as far as there is room.
+    /// Describes an empty field, as far as there is room.
     static std::string words_for(const About& about, float width)
     {
         return shortened(about.meaning, width - 2.0f * ImGui::GetStyle().FramePadding.x);

@@ -181,7 +181,7 @@ void FileChooser::settle(std::chrono::milliseconds patience)
     accepted_ = judged_;
 }
 
-/// For what it waits so long that a person notices; empty: for nothing.
+/// Returns the reason of a noticeable wait; empty: none.
 std::string FileChooser::waits_in_words()
 {
     constexpr double NOTICED_S = 0.5;

@@ -35,7 +35,7 @@ struct LoadDialog {
 };
 LoadDialog loading;
 
-/// What there is to choose from stays known once one is chosen.
+/// Keeps the available choices known after one of them is chosen.
 void follow_choices(const Candidate* candidate)
 {
     if (!candidate || candidate->path != loading.path) return;
@@ -66,7 +66,7 @@ bool choice_field(const char* label, const char* key, std::string& value)
     return is_changed;
 }
 
-/// Which of its sizes, where a file has several.
+/// Selects a level, if a file has several.
 bool level_field(int& level)
 {
     if (loading.levels < 2) return false;

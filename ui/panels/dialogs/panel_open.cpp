@@ -65,7 +65,7 @@ bool is_gone(const std::filesystem::path& path, const std::vector<std::filesyste
     return std::ranges::find(search->gone, path) != search->gone.end();
 }
 
-/// What was opened last: the name, its folder, and a cross that takes it from the list where it is gone.
+/// Lists recently opened paths: the name, its folder, and a cross that removes a missing one from the list.
 void recent_list(const Model& model, Actions& actions)
 {
     const auto& recent = model.preferences.recent;

@@ -33,7 +33,7 @@ std::string replacement(const Task& task)
     return count == 0 ? "" : names + (count == 1 ? " exists and will be replaced" : " exist and will be replaced");
 }
 
-/// What the disk says of a task.
+/// Result of checking a task on disk.
 struct Verdict {
     std::string refusal;      ///< why it cannot be; empty: nothing is in its way
     std::string replacement;  ///< what it replaces
@@ -143,7 +143,7 @@ struct Dialogs {
 };
 Dialogs dialogs;
 
-/// What another scan was exported to would be replaced by what this one is.
+/// Forgets the tasks of another scan, whose exported files this one's would replace.
 void forget_another_scan(const Model& model)
 {
     static std::filesystem::path session;

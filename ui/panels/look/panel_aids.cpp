@@ -1,4 +1,4 @@
-// What is drawn beside the volume: the probe's look, aids to find it, nodes and internodes.
+// Drawings next to the volume: the probe's look, aids to find it, nodes and internodes.
 
 #include <cmath>
 
@@ -14,7 +14,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// With the key that does the same.
+/// Adds a tooltip with the key of the same function.
 void explain(const Model& model, const char* shortcut, const std::string& text)
 {
     const std::string key = model.keymap.text_of(*shortcut_named(shortcut));
@@ -39,7 +39,7 @@ void shown(const Model& model, Actions& actions)
     if (is_other) set(actions, model, [&](Session& s) { s.view = view; });
 }
 
-/// What is drawn over the picture to read it by; screenshots have it where the menu File says so.
+/// Selects the drawings over the picture; screenshots contain them if the menu File says so.
 void marks(const Model& model, Actions& actions)
 {
     InteractionSettings interaction = model.session.interaction;

@@ -1,4 +1,4 @@
-// Local ambient occlusion: how much of the ambient light reaches a place, and how that is mapped to what is seen.
+// Local ambient occlusion: how much of the ambient light reaches a point, and how it is mapped to displayed light.
 
 #include <algorithm>
 
@@ -92,7 +92,7 @@ void curve_field(const OcclusionSettings& settings, const Model& model, Actions&
     draw_curve(settings, begin, end);
 }
 
-/// The same in numbers, for hands that use no mouse.
+/// Edits the curve as numbers, without the mouse.
 void curve_numbers(const OcclusionSettings& settings, const Model& model, Actions& actions)
 {
     const OcclusionPoints& points = settings.mapping;

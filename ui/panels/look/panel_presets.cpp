@@ -18,7 +18,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// What is typed or asked about, between frames.
+/// State of the name dialogs between frames.
 struct NameState {
     std::string name;     ///< typed
     std::string renamed;  ///< the preset that gets it; empty: the present curve is kept under it
@@ -115,7 +115,7 @@ bool list(const Model& model, Actions& actions)
     return asks;
 }
 
-/// What speaks against the typed name; empty: nothing.
+/// Returns the objection to the typed name; empty: none.
 std::string why_not_named(const Model& model)
 {
     const auto is_it = [](const TransferPreset& preset) { return preset.name == asked.name; };

@@ -1,4 +1,4 @@
-// What a picture costs and how exact it is.
+// Cost and exactness of pictures.
 
 #include <algorithm>
 #include <string>

@@ -148,7 +148,7 @@ void draw_threshold(const CurveAxes& axes, double intensity, const char* word, f
     list.AddText({left, top}, color, word);
 }
 
-/// How far density painting raises what is at the paint threshold.
+/// Draws how far density painting raises values at the paint threshold.
 void draw_density_offset(const CurveAxes& axes, const Model& model, ImDrawList& list)
 {
     const auto& density = model.brush().density;

@@ -58,7 +58,7 @@ void puck(const Model& model, const HandView& hand, Actions& actions)
     if (ImGui::RadioButton("the probe", moves == PuckMoves::probe)) actions.emplace_back(Prefer{R"({"puck":"probe"})"});
 }
 
-/// Of the last five seconds.
+/// Draws the force of the last five seconds.
 void force_plot(const HandView& hand, const ServoState& servo)
 {
     const std::vector<float> bars = plot_of(hand.tap);

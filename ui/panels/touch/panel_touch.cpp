@@ -1,4 +1,4 @@
-// What is felt and how it pulls: guidance, ways of touching, groups, and where tools act.
+// Settings of touch: guidance, modes of pulling, groups, and where tools act.
 
 #include <algorithm>
 #include <cmath>
@@ -100,7 +100,7 @@ void finer(const Model& model, Actions& actions)
     ImGui::TreePop();
 }
 
-/// Which groups are felt: everything, or those that are ticked.
+/// Selects the groups that are felt: all, or the ticked ones.
 void groups(const Model& model, Actions& actions)
 {
     const std::vector<uint8_t>& felt = model.session.probe.touch.groups;
