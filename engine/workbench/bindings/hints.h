@@ -11,7 +11,7 @@ inline constexpr int FIRST_HINTS = 3;
 /// Returns hint 0 ... FIRST_HINTS - 1, with the current keys.
 std::string first_hint(int number, const Keymap& keymap);
 
-/// Returns "Undo (Ctrl + Z)", or "Undo" without a key. `id`: of a shortcut.
+/// Returns "Undo (Ctrl + Z)", or "Undo" without a key. `id`: a shortcut's id.
 std::string name_with_key(const char* id, const Keymap& keymap);
 /// Returns " (Ctrl + Z)", or an empty text without a key.
 std::string key_in_brackets(const char* id, const Keymap& keymap);

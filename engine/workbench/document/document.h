@@ -142,7 +142,7 @@ struct Document {
     /// Returns whether settings must be saved; false while any is overridden for this run.
     bool has_settings_to_save() const { return !edits_are_saved() && overridden_.empty(); }
     /// Saves under another name, under which the work continues with the whole history; existing files stay as they
-    /// are. Until it has ended, commands are refused. `path`: of the session. Fails if a file of that name exists.
+    /// are. Until it has ended, commands are refused. `path`: the session's. Fails if a file of that name exists.
     std::shared_ptr<Saving> begin_save_as(const std::filesystem::path& path);
     /// Returns a function that writes mask, offsets, trace and session as they are now into new files, on any thread,
     /// and returns the session's path. `path`: that path; empty: a free one next to this session. Fails if it exists.

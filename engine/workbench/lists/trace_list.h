@@ -46,10 +46,10 @@ private:
     std::vector<NodeRow> nodes_;
 };
 
-/// Selects the segment and looks at its middle; `spacing`: of the volume.
+/// Selects the segment and looks at its middle; `spacing`: the volume's.
 Actions select_segment(const SegmentRow& row);
 Action go_to(const SegmentRow& row, const glm::dvec3& spacing);
-/// The same for a node.
+/// Does the same for a node.
 Actions select_node(const NodeRow& row);
 Action go_to(const NodeRow& row, const TraceGraph& trace, const glm::dvec3& spacing);
 /// Returns whether the selection is that segment, or part of it.

@@ -166,7 +166,7 @@ void Opener::advance()
         }
         if (opening_->scene && opening_->scene->load_on(SLICE_S)) finish();
     } catch (const DeviceLost&) {
-        throw;  // it goes on once there is a device again
+        throw;  // the opening continues once a device is available
     } catch (...) {
         end(std::current_exception());
     }
@@ -274,7 +274,7 @@ void Opener::welcome(const std::filesystem::path& path, const std::vector<std::s
     recovered_ = losses;
     for (const Notice& notice : document_->messages) recovered_.push_back(notice.text);
     std::string status = "Opened " + path.string();
-    const std::filesystem::path& session = document_->session_path;  // of a scan, saved beside it
+    const std::filesystem::path& session = document_->session_path;  // a scan's session, saved next to it
     if (document_->has_session_file() && session != path && session.parent_path() == path.parent_path())
         status += ", and goes on with " + session.filename().string();
     if (document_->only_looks()) status += "; read only, for it is open for writing in " + document_->holder;

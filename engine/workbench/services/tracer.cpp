@@ -85,7 +85,7 @@ void Tracer::trace(const TraceOp& asked)
     say(said);
 }
 
-/// Tracing goes on from one of the ends.
+/// Stores the ends of a cut, and selects one to continue tracing from.
 void Tracer::note_cut(std::optional<std::pair<uint32_t, uint32_t>> ends)
 {
     document_->cut_ends = ends;

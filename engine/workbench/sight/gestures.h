@@ -16,7 +16,7 @@ bool is_jump(const glm::dvec2& way_pixels, const glm::uvec2& pane_pixels);
 
 /// Returns black and white of slices after a drag, in heights of the pane: sideways scales their distance about the
 /// middle, by a factor of 4 for half a height; down makes the picture darker, by their distance for a whole height.
-/// `range`: of the volume; a thousandth of it is the minimum distance.
+/// `range`: the volume's; a thousandth of it is the minimum distance.
 ValueRange dragged_contrast(const ValueRange& contrast, const ValueRange& range, const glm::dvec2& heights);
 
 /// Returns the paint threshold for a picked value: half-way to the lowest drawn value, where the wall between them

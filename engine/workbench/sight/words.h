@@ -19,7 +19,7 @@ double length_of(const Measurement& measurement, const glm::dvec3& spacing);
 std::string place_in_words(const glm::dvec3& voxel, const VolumeInfo& volume);
 /// Returns "value 1234 + 30", "value ...", "outside".
 std::string value_in_words(const Reading& reading);
-/// Formats the whole reading in one line, for the status bar; `group_name`: of its group.
+/// Formats the whole reading in one line, for the status bar; `group_name`: its group's name.
 std::string in_words(const Reading& reading, const VolumeInfo& volume, const std::string& group_name);
 /// Returns "z 214 of 512, 1.284 mm": slices count from 1; their position is that of their middle.
 std::string slice_in_words(int axis, const glm::dvec3& voxel, const VolumeInfo& volume);

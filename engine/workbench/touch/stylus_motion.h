@@ -27,7 +27,7 @@ struct Grab {
     glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
 };
 /// Returns Eq. 4.9 of the thesis, M_volume = M_probe M_probe_start^-1 M_volume_start, as a camera: since the grab the
-/// volume has moved and turned in the view with the stylus, about the stylus. `units_per_m`: of the workspace. The
+/// volume has moved and turned in the view with the stylus, about the stylus. `units_per_m`: the workspace's. The
 /// probe then stays on its voxel.
 Camera camera_of_grab(const Grab& grab, const glm::dvec3& position_m, const glm::dquat& rotation, double units_per_m);
 
