@@ -90,7 +90,7 @@ public:
     /// Passes a key or a character to the interface in one of its next frames: in the order of events, and no earlier
     /// than its predecessors.
     void tell_ui(const InputEvent& event);
-    /// Whether a key is held down.
+    /// Returns whether a key is held down.
     bool is_down(int key) const;
     /// Returns whether presses of buttons are still queued for the interface: each frame takes one.
     bool has_clicks() const;

@@ -128,7 +128,7 @@ void draw_points(const CurveAxes& axes, const Points& points, size_t selected, I
 
 constexpr const char *PAINT_WORD = "paint", *FELT_WORD = "haptic";
 
-/// From where to where the word of a line reaches: beside it, on the side with room.
+/// Returns begin and end of a line's label along x: next to the line, on the side with room.
 glm::vec2 extent_of_word(const CurveAxes& axes, double intensity, const char* word)
 {
     const float x = axes.x_of(intensity), width = ImGui::CalcTextSize(word).x, gap = 0.25f * ImGui::GetFontSize();
