@@ -90,7 +90,7 @@ add_executable(shvr_surfaces_bench EXCLUDE_FROM_ALL tests/tools/surfaces_bench.c
 target_link_libraries(shvr_surfaces_bench PRIVATE ${shvr_modules})
 add_custom_target(bench_surfaces DEPENDS shvr_surfaces_bench USES_TERMINAL WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
     COMMAND shvr_surfaces_bench)
-# What a turn of the workbench costs:  cmake --build build/release --target bench_workbench
+# Cost of an update of the workbench:  cmake --build build/release --target bench_workbench
 add_executable(shvr_workbench_bench EXCLUDE_FROM_ALL tests/tools/workbench_bench.cpp)
 target_link_libraries(shvr_workbench_bench PRIVATE ${shvr_modules})
 add_custom_target(bench_workbench DEPENDS shvr_workbench_bench USES_TERMINAL WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
@@ -114,7 +114,7 @@ function(shvr_test_program kind program timeout)
             $<TARGET_FILE:${program}> --no-colors=true --no-skip=false --source-file=*/${file})
         # doctest is content when its filter finds nothing. A file without a test case is a mistake.
         set_tests_properties(${kind}/${name} PROPERTIES FAIL_REGULAR_EXPRESSION "test cases: *0 [|]")
-        # What tests measure against bounds is kept for tests/STABILITY.md, which cli/stability compares with it.
+        # Values measured against bounds are kept for cli/stability, which compares them with tests/STABILITY.md.
         file(STRINGS ${source} bounds REGEX "check_below\\(" LIMIT_COUNT 1)
         if(bounds)
             set_property(TEST ${kind}/${name} APPEND PROPERTY ENVIRONMENT
@@ -183,6 +183,7 @@ set_property(TEST cli/stability APPEND PROPERTY ENVIRONMENT SHVR_STABILITY_CASES
 
 shvr_test(style layers 60 ${Python3_EXECUTABLE} tools/check_layers.py)
 shvr_test(style layers_self_test 60 ${Python3_EXECUTABLE} tools/check_layers.py --self-test)
+shvr_test(style prose 60 ${Python3_EXECUTABLE} tools/check_prose.py)
 shvr_test(style changed_tests 60 ${Python3_EXECUTABLE} tools/changed_tests --self-test)
 shvr_test(style format 60 tools/check_format)
 shvr_test(style shell 60 tools/check_shell)
