@@ -181,6 +181,10 @@ endforeach()
 set_tests_properties(cli/stability PROPERTIES FIXTURES_REQUIRED stability)
 set_property(TEST cli/stability APPEND PROPERTY ENVIRONMENT SHVR_STABILITY_CASES=${stability_folder})
 
+# Builds and tries the program on another release, in a root below build/ (tools/test_in_release).
+shvr_test(release trixie_slow 1200 tools/test_in_release trixie)
+set_tests_properties(release/trixie_slow PROPERTIES RUN_SERIAL ON)
+
 shvr_test(style layers 60 ${Python3_EXECUTABLE} tools/check_layers.py)
 shvr_test(style layers_self_test 60 ${Python3_EXECUTABLE} tools/check_layers.py --self-test)
 shvr_test(style prose 60 ${Python3_EXECUTABLE} tools/check_prose.py)

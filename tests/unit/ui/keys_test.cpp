@@ -196,7 +196,7 @@ TEST_CASE("a person's keys replace those that ship, and a chord that means two t
     REQUIRE(keymap.conflicts().size() == 1);
     CHECK(keymap.conflicts()[0] == "F5 stands for 'Redo' and for 'Preview of the brush'; change one of them");
     CHECK_THROWS_WITH(Keymap(KeySet::modern, {{"undoo", {"Ctrl+U"}}}),
-                      "keys: 'undoo' is no shortcut; expected one that the help window lists");
+                      "keys: 'undoo' is no shortcut; expected one listed in the help window");
     CHECK_THROWS_WITH(Keymap(KeySet::modern, {{"undo", {"Ctrl+"}}}),
                       "keys: undo is 'Ctrl+'; expected a key such as Ctrl+Z, F5, PageUp or [");
     for (const char* bad : {"", "Ctrl", "ctrl+Z", "Z+Ctrl", "F26", "F0", "ZZ", "z", "Shift+Ctrl+Z"}) {
