@@ -370,7 +370,7 @@ class Archives(CliTest):
         script = self.write_script("script.jsonl", [
             {"op": "paint", "brush": "fill", "region": "box", "group": 1, "threshold": -200, "radius": 1,
              "path": [[2, 2, 1]]}, {"op": "save"}])
-        self.check_refused("annotate", archive, "--script", script, "--quiet", says=["expected the key annotation.mask"])
+        self.check_refused("annotate", archive, "--script", script, "--quiet", says=["annotation is kept only in projects"])
         self.assertEqual(archive.read_bytes(), before)
         self.assertNotIn("archive", self.check("info", project).stderr)
 

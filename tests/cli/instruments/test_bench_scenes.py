@@ -1,4 +1,4 @@
-"""shvr bench: every scene and every sweep, in one run of the smallest pictures beside another program."""
+"""shvr bench: every scene and every sweep, in one run of small pictures next to another program."""
 import csv
 import json
 import tempfile
@@ -23,7 +23,7 @@ class AllScenes(BenchTest):
         cls.addClassCleanup(folder.cleanup)
         one.folder = Path(folder.name)
         cls.output = one.folder / "all"
-        cls.result = one.check("bench", "--quick", "--side", 16, "--size", "8,8", "--rounds", 1, "--peer",
+        cls.result = one.check("bench", "--quick", "--side", 16, "--size", "24,18", "--rounds", 1, "--peer",
                                one.stand_in(), "--examples", one.folder, "-o", cls.output, "--json")
         cls.page = (cls.output / "report.html").read_text()
 
