@@ -537,7 +537,8 @@ TEST_CASE_FIXTURE(OnDevice, "undo after a stroke that changed nothing takes no o
     on.perform(UndoOp{1});
     CHECK(on.is_painted(16, 10));
     const std::string said = on.bench.messages().last();
-    CHECK_MESSAGE(said.starts_with("The last stroke changed nothing, and nothing is undone; the next undo reverts: fill"), said);
+    CHECK_MESSAGE(
+        said.starts_with("The last stroke changed nothing, and nothing is undone; the next undo reverts: fill"), said);
     on.perform(UndoOp{1});
     CHECK(!on.is_painted(16, 10));
     // A later action is undone at once.

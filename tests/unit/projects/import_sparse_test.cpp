@@ -9,6 +9,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/projects/import_volume.h"
+#include "tests/support/slow.h"
 #include "tests/support/volume_files.h"
 
 using namespace shvr;
@@ -105,8 +106,10 @@ TEST_CASE("a label image made of what is stored has the bytes of one made of eve
                            int(random() % uint64_t(last.x + 1))});
         for (const auto& [z, y, x] : blocks) stored.blocks.emplace_back(x, y, z);
         const OmeZarrVersion version = round < 2 ? OmeZarrVersion::v0_4 : OmeZarrVersion::v0_5;
-        compare<uint8_t>(size, VoxelType::uint8, stored, version);
-        compare<uint32_t>(size, VoxelType::uint32, stored, version);
+        // Every day any two of block, version and type meet.
+        const bool is_wide = round == 1 || round == 2;
+        if (!is_wide || is_slow()) compare<uint8_t>(size, VoxelType::uint8, stored, version);
+        if (is_wide || is_slow()) compare<uint32_t>(size, VoxelType::uint32, stored, version);
     }
 }
 
