@@ -135,6 +135,7 @@ private:
     uint64_t last_submission_ = 0;  ///< last submission of any frame
     bool is_stale_ = false;         ///< the swapchain must be re-created before the next frame
     bool imgui_is_ready_ = false;
+    mutable int max_vertices_ = 0, max_indices_ = 0;  ///< maxima over all frames: the totals handed to Dear ImGui
 };
 
 }  // namespace shvr::ui

@@ -123,7 +123,12 @@ void Swapchain::record(const Frame& frame, const Target& target, const std::vect
                                      .framebuffer = target.framebuffer,
                                      .renderArea = {{0, 0}, extent_}};
     vkCmdBeginRenderPass(commands, &pass, VK_SUBPASS_CONTENTS_INLINE);
-    ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), commands);
+    // The back end grows its buffers to these totals. They never fall, so that a buffer that could not be allocated is
+    // requested again, not used.
+    ImDrawData& drawn = *ImGui::GetDrawData();
+    drawn.TotalVtxCount = max_vertices_ = std::max(max_vertices_, drawn.TotalVtxCount);
+    drawn.TotalIdxCount = max_indices_ = std::max(max_indices_, drawn.TotalIdxCount);
+    ImGui_ImplVulkan_RenderDrawData(&drawn, commands);
     vkCmdEndRenderPass(commands);
     device_.end_label(commands);
     SHVR_VK(vkEndCommandBuffer(commands));

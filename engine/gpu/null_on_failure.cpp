@@ -1,0 +1,24 @@
+// Handles that a failed call leaves are null. Vulkan leaves them undefined, and Dear ImGui's back end then frees memory
+// twice: it destroys a vertex buffer, fails to create a larger one and keeps the handles of the first. The linker sends
+// every call of this program here (--wrap in CMakeLists.txt).
+#include <vulkan/vulkan.h>
+
+extern "C" {
+
+VkResult __real_vkCreateBuffer(VkDevice, const VkBufferCreateInfo*, const VkAllocationCallbacks*, VkBuffer*);
+VkResult __real_vkAllocateMemory(VkDevice, const VkMemoryAllocateInfo*, const VkAllocationCallbacks*, VkDeviceMemory*);
+
+VkResult __wrap_vkCreateBuffer(VkDevice device, const VkBufferCreateInfo* info, const VkAllocationCallbacks* allocator,
+                               VkBuffer* buffer)
+{
+    *buffer = VK_NULL_HANDLE;
+    return __real_vkCreateBuffer(device, info, allocator, buffer);
+}
+
+VkResult __wrap_vkAllocateMemory(VkDevice device, const VkMemoryAllocateInfo* info,
+                                 const VkAllocationCallbacks* allocator, VkDeviceMemory* memory)
+{
+    *memory = VK_NULL_HANDLE;
+    return __real_vkAllocateMemory(device, info, allocator, memory);
+}
+}
