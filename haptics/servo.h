@@ -81,8 +81,8 @@ public:
     Latest<ProbePlace>& place() { return place_; }
     /// Whether the system granted SCHED_FIFO; if not, only the timer slack is reduced.
     bool is_realtime() const { return is_realtime_; }
-    /// Whether the system lets it lock all memory needed in a tick (kept_memory.h), which is known once it ticks; if
-    /// not, that memory is present at the first tick, and may be evicted after hours.
+    /// Whether all memory needed in a tick could be locked (kept_memory.h). Valid after the first tick. If false, that
+    /// memory is present at the first tick, but may be paged out when the program has run for long.
     bool keeps_memory() const { return keeps_memory_; }
 
 private:

@@ -337,7 +337,7 @@ void App::apply_all()
 {
     for (const Action& action : std::exchange(actions_, {})) {
         was_asked_to_close_ &= std::holds_alternative<Quit>(action);
-        // Keys mean nothing while nothing is open, and a message for each would hide what to do.
+        // With nothing open such actions are ignored: an error for each key would cover the hint of what to do.
         if (!bench_->is_open() && !bench_->why_not(action).empty()) continue;
         static_cast<void>(bench_->apply(action));
     }

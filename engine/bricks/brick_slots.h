@@ -47,9 +47,9 @@ public:
         uint32_t slot = 0;
         std::optional<BrickKey> evicted;  ///< the brick that previously occupied the slot
     };
-    /// Places a brick that has no slot and marks it as used now: in a free slot, or in that of a brick that is not
-    /// needed; for a region, also in that of a brick that only the picture needs. Null if there is no such slot. Pinned
-    /// bricks stay until they are removed.
+    /// Places a brick that has no slot and marks it as used now. Takes a free slot, or evicts a brick that is not
+    /// needed; if `need` is that of a region, also one that only the picture needs. Null if no slot can be had. Pinned
+    /// bricks are never evicted, only removed.
     std::optional<Placed> place(const BrickKey& key, BrickNeed need, bool is_pinned);
     void remove(const BrickKey& key);
 

@@ -63,7 +63,7 @@ bool device_extension_is_present(VkPhysicalDevice physical, const char* name)
     });
 }
 
-/// The most capable queue family that supports compute: able to present, if required, and to draw.
+/// A queue family that supports compute, and what else it can do.
 struct Family {
     uint32_t index = 0;
     bool presents = false;

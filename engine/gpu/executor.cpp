@@ -78,7 +78,7 @@ void Executor::trim(uint64_t runs)
 
 Submission Executor::submit(FrameGraph graph, const Options& options)
 {
-    constexpr uint64_t RUNS_KEPT = 512;  // sizes change with brushes and windows: unused ones are freed
+    constexpr uint64_t RUNS_KEPT = 512;  // buffers of sizes no longer in use are freed then
     ++runs_;
     trim(RUNS_KEPT);
     auto frame = std::make_unique<Submission::Frame>(*this, std::move(graph), options);

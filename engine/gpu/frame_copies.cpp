@@ -53,7 +53,7 @@ void Submission::Frame::record_fill(const PassData& data, Prepared& state)
         });
 }
 
-/// Clears with one command: ten thousands of bricks as separate regions would take a driver seconds to record.
+/// Clears with one command: tens of thousands of bricks as separate regions would take a driver seconds to record.
 void Submission::Frame::record_clear(const PassData& data, const Memory::Object& image, Prepared& state)
 {
     const uint32_t value = data.fill_value;

@@ -253,7 +253,7 @@ void Submission::Frame::record_dispatches(const PassData& data, Prepared& state)
     in_use = VK_NULL_HANDLE;
 }
 
-/// Binds once per submission; tiles share the bindings.
+/// Binds the resources of a pass unless they are bound already, so that all tiles of a pass share them.
 void Submission::Frame::bind(const PassData& data, const Prepared& state)
 {
     const Kernel& kernel = *state.kernel;

@@ -63,7 +63,7 @@ public:
 
     /// Collects what the device has finished and loaded, and submits what is due next.
     void advance();
-    // The parts of advance(), for owners of several views, which take the scene's changes and report them to each view.
+    // advance() in steps, for owners of several views, who take the scene's changes and report them to each view.
     void collect() { reap(); }
     // `ahead_ms`: extra time beyond `in_flight_ms` that may be in flight, since the caller will not poll for that long.
     void submit_sketches(double ahead_ms = 0.0);  ///< only the work that is_sketched() waits for

@@ -33,8 +33,8 @@ struct VolumeBinding {
     Resource page_table;                   ///< uint per brick: slot
     Resource leap;                         ///< r32ui per cell, see shaders/leap.h
     std::array<Resource, 2> leap_scratch;  ///< intermediate results of its stages
-    std::optional<Resource> sample_bits;   ///< r32ui, two per cell, see shaders/leap.h; only for exact texels, if
-                                           ///< wanted
+    std::optional<Resource> sample_bits;   ///< r32ui, two per cell (shaders/leap.h); optional, and only with exact
+                                           ///< texels
     // Paged volumes:
     std::optional<PageBinding> pages;
     glm::uvec3 brick_counts{1};

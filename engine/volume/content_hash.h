@@ -36,9 +36,9 @@ std::string content_hash(std::span<const SliceHash> slices);
 /// Hashes all of level 0, slice by slice. Any thread may call it.
 std::string content_hash(const VolumeSource& source);
 
-/// Forwards to another source, which must outlive it, and hashes the voxels that `read` returns of level 0. The reads
-/// must fetch whole rows, each once and in order, of one or more slices at a time, as `content_hash` does, and
-/// `measure` if it reads everything. One thread at a time.
+/// Forwards to another source, which must outlive it, and hashes the voxels that `read` returns of level 0. Callers
+/// must read whole rows, each once and in order, one or more slices a call. `content_hash` does so, and so does
+/// `measure` when it reads the whole volume. One thread at a time.
 class HashedSource final : public VolumeSource {
 public:
     explicit HashedSource(const VolumeSource& source);

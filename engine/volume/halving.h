@@ -43,7 +43,7 @@ T mean_of(HalvingSum<T> sum)
         return static_cast<T>(sum);
     } else {
         constexpr int SHIFT = COUNT == 8 ? 3 : COUNT == 4 ? 2 : 1;
-        // Half of the divisor minus one, plus one more if that rounds a tie to even.
+        // Rounds to nearest, ties to even: adds divisor / 2 - 1, and 1 more if the quotient is odd.
         const HalvingSum<T> odd = (sum >> SHIFT) & 1;
         return static_cast<T>((sum + (HalvingSum<T>{1} << (SHIFT - 1)) - 1 + odd) >> SHIFT);
     }

@@ -27,7 +27,7 @@ public:
         glm::ivec3 brick{0};
         std::shared_ptr<const OffsetBrick> offsets;
     };
-    /// For each coarser level, costs an eighth of the work per brick.
+    /// Replaces the offsets of these bricks and updates coarser levels, each at an eighth of the cost of the finer.
     void set(std::span<const Brick> bricks);
     /// Whether no voxel has an offset.
     bool empty() const { return !any_.load(std::memory_order_acquire); }

@@ -89,7 +89,7 @@ struct OcclusionCellsParams {
     vec3 lower;  ///< box that blocks light, in voxels of level 0; everything outside is empty
     vec3 upper;
     uvec3 brick_counts;  ///< of level 0
-    float far_exponent;  ///< converts the opacities in this table to those of cells of 4, per voxel
+    float far_exponent;  ///< exponent of transmittances from the table, for cells of 4^3 voxels
 };
 
 /// A brick whose values are computed: OCCLUSION_SPLIT workgroups.

@@ -210,7 +210,7 @@ void take_samples(const RaycastParams params, const Ray ray, const Lattice latti
             goes_on = goes_on && !march.waits && march.i < end_step && march.unseen < patience &&
                       march.sum.a < params.opacity_limit;
         } while (goes_on);
-        // Drivers may round positions in one loop differently from the other, and the two then disagree about a border.
+        // If the loops, which may round differently, disagree about a border, neither advances: force a step.
         march.i += uint(march.i == step_before && !march.waits && !is_behind);
         if (COUNT_WORK != 0u) ++work.turns;
         searches_on = march.i < end_step && march.sum.a < params.opacity_limit && !march.waits && !is_behind;

@@ -83,7 +83,7 @@ std::string csv_of(const Results& results);
 std::string front_csv(const Results& results);
 /// The fastest run of each scene and family that has at most this RMSE.
 std::string equal_error_csv(const Results& results);
-/// The most exact run of each scene and family that takes no longer than each quality.
+/// For each scene, family and preset of quality: the run with the least error that is no slower than the preset.
 std::string equal_time_csv(const Results& results);
 
 /// Another program's run, and SHVR's runs with an error that is no larger: its fastest run, and the one with the same

@@ -246,7 +246,7 @@ void take_settings(Session& session, const Work& left, const std::vector<std::st
     set_kept_settings(session, without_overridden(left.kept_settings(), overridden));
 }
 
-/// A volume that may be partly unreadable, with its required data.
+/// A volume that may be partly unreadable; owns the sources that `source` refers to.
 struct Readable {
     Readable(std::shared_ptr<const VolumeSource> whole, std::shared_ptr<Gaps> what_is_not)
         : base(std::move(whole)), gaps(std::move(what_is_not)), source(*base, *gaps)

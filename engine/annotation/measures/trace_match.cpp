@@ -100,7 +100,7 @@ void TraceMatch::pair_segments()
     }
 }
 
-/// The segments of the truth that all internodes of a segment stay near.
+/// Returns the segments of the truth that lie near every internode of `segment`.
 std::vector<size_t> TraceMatch::near_all(const TraceSegment& segment) const
 {
     std::vector<size_t> all = near_.at(segment.internodes.front());

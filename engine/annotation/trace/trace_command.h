@@ -25,8 +25,8 @@ struct TraceEffect {
     std::optional<TraceSelection> selection;  ///< the new selection
 };
 
-/// Fails if the operation cannot be carried out, if its target is farther away than it allows, or if it would put a
-/// node farther outside the volume than its radius plus the longest side of a voxel.
+/// Fails if the operation is impossible, if the nearest target exceeds the operation's search distance, or if a node
+/// would lie outside the volume by more than the node's radius plus the longest side of a voxel.
 TraceEffect effect_of(const TraceOp& op, const TraceGraph& trace, const TraceDefaults& defaults);
 
 }  // namespace shvr

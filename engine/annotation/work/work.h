@@ -5,7 +5,7 @@
 // continues where it ended, including unsaved work. Saved files (mask, trace, offsets) are for other programs. They are
 // loaded if there is no journal; a missing file is restored from the journal; a file changed by another program
 // requires a decision of the user. Nothing is ever overwritten that the journal does not hold (README.md has the
-// table). The journal begins with the first command: only viewing leaves no file.
+// table). The first command creates the journal: looking alone leaves no file.
 //
 // One thread at a time: the one that opens it, then the main one. Other threads write the journal (journal.h) and saves
 // (Work::Saving).

@@ -1,5 +1,5 @@
-// Settings as part of the work: which version counts at opening, and their changes; then kept settings, which are
-// restored as they were and are not steps: which version counts at opening, and how they are written.
+// Settings that can be undone: the choice between journal and session file at opening, and the records of changes.
+// Kept settings, restored but no steps of the history: the same choice, and how they are written.
 
 #include <utility>
 

@@ -82,7 +82,7 @@ struct ResetCuts {};
 
 /// Fits the volume, or its part within the cutting planes, into the view, from the current direction.
 struct FitView {
-    size_t pane = 0;  ///< a slice: fits all slices instead of the camera
+    size_t pane = 0;  ///< if it shows a slice, all slices are fitted and the camera stays
 };
 
 /// Returns to the camera that the session opens with.

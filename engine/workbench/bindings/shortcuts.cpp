@@ -69,7 +69,7 @@ Action step_probe(const Model& model, double amount)
     return PushProbe{model.pointer ? model.pointer->pane : 0, AWAY * amount, RIGHT * amount, UP * amount};
 }
 
-/// Returns the views that the user kept, in the order of their names, without the window's own one.
+/// Looks from the NUMBER-th view that the user kept, in the order of names, without the window's own one.
 template <size_t NUMBER>
 Action look_from_kept(const Model& model, double)
 {

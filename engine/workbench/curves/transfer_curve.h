@@ -67,7 +67,7 @@ public:
     /// Moves a point; it stays between its neighbours, so that its index stays the same.
     void move(size_t point, double intensity, double opacity);
     double held_between_neighbors(size_t point, double intensity) const;
-    /// Shifts all points; part of the function stays within the volume's intensities. Returns the distance moved.
+    /// Shifts all points by `by`, limited so that the curve still overlaps [lowest, highest]. Returns the actual shift.
     double shift_all(double by, double lowest, double highest);
 
 private:

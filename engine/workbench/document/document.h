@@ -46,7 +46,7 @@ struct Document {
     Document(const Document&) = delete;
 
     std::filesystem::path session_path;  ///< where the session is saved
-    Session session;                     ///< the probe's thresholds are set, from the volume where the file states none
+    Session session;                     ///< has thresholds of the probe: the file's, or the volume's
     std::shared_ptr<const VolumeSource> source;
     VolumeStatistics statistics;
     Camera camera;

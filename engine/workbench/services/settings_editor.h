@@ -24,7 +24,7 @@ public:
     void act(const RevertOp& action);
     void act(const ChooseBelief& action);
 
-    /// Makes a step of the history of pending changes, and keeps the view in the journal.
+    /// Records pending changes as one step of the history, and keeps the view in the journal.
     void advance() override;
     /// Forgets state of the previous document.
     void begin_document();
