@@ -36,18 +36,6 @@ void expect_trace(const AnnotationView& annotation)
          ": does not exist: nothing is traced; expected the trace that the window or shvr annotate saves");
 }
 
-/// The topology of all painted voxels (-1), and of each group.
-std::map<int, Topology> topology_by_group(const Mask& mask, const Progress& progress)
-{
-    std::map<int, Topology> topology{{-1, topology_of(mask)}};
-    const std::array<int64_t, 256> voxels = mask.voxels_by_group();
-    for (int group = 1; group < 256; ++group) {
-        tell(progress, double(group) / 256.0);
-        if (voxels[size_t(group)] > 0) topology[group] = topology_of(mask, uint8_t(group));
-    }
-    return topology;
-}
-
 ExportResult summary_of(const AnnotationView& annotation)
 {
     ExportResult result{.nodes = annotation.trace.nodes().size(),

@@ -11,6 +11,7 @@
 #include "engine/annotation/mask.h"
 #include "engine/annotation/trace/trace_file.h"
 #include "engine/annotation/trace/trace_segments.h"
+#include "engine/base/progress.h"
 
 namespace shvr {
 
@@ -56,9 +57,12 @@ Topology topology_of(const TraceGraph& trace);
 /// The topology of all painted voxels, or of one group's: painted voxels are connected over faces, edges and corners
 /// (26), unpainted ones over faces (6); voxels outside the volume are unpainted. b1 follows from the Euler
 /// characteristic of the union of the voxels as closed cubes, vertices - edges + faces - cubes = b0 - b1 + b2 (Kong and
-/// Rosenfeld 1989). Takes time and memory proportional to the box of bricks around the voxels; fails if that has more
-/// than 2^36 voxels.
+/// Rosenfeld 1989). Takes time and memory proportional to the painted bricks.
 Topology topology_of(const Mask& mask, std::optional<uint8_t> group = {});
+
+inline constexpr int ALL_GROUPS = -1;
+/// The topology of all painted voxels (ALL_GROUPS), and of each group that has any: each group's bricks are read once.
+std::map<int, Topology> topology_by_group(const Mask& mask, const Progress& progress = {});
 
 /// A table, one measure per row: item, number, group, measure, value, unit (RFC 4180).
 std::string metrics_csv(const TraceMeasures& trace, const std::array<int64_t, 256>& voxels_by_group,

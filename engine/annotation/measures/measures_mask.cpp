@@ -1,9 +1,17 @@
-// The topology of a mask, slice by slice, over rows of bits. Union-find joins runs of equal voxels (Rosenfeld and
-// Pfaltz 1966; Wu, Otoo and Suzuki 2009 for the arrays); the Euler characteristic counts cells by population counts.
+// The topology of a mask, from runs of voxels along x. Only rows that cross painted bricks are read; everything else is
+// one unpainted set around them, so that cost follows what is painted. Union-find joins runs (Rosenfeld and Pfaltz
+// 1966; Wu, Otoo and Suzuki 2009 for the arrays).
+//
+// The Euler characteristic needs the number of runs alone. A union of n voxels of a row in r runs has n + r planes
+// across x. With R a row, P and Q its union with the previous row along y or z, and A the union of all four, the cells
+// between the row and the previous ones are |A| + r(A) vertices, |A| + |P| + r(P) + |Q| + r(Q) edges, |R| + r(R) + |P|
+// + |Q| faces and |R| cubes; what is left is r(R) - r(P) - r(Q) + r(A).
 
 #include <algorithm>
-#include <bit>
+#include <array>
+#include <cstring>
 #include <limits>
+#include <set>
 
 #include "engine/annotation/measures/measures.h"
 #include "engine/annotation/trace/trace_forms.h"
@@ -13,10 +21,6 @@
 namespace shvr {
 
 namespace {
-
-constexpr int64_t MAX_VOXELS = int64_t{1} << 36;
-
-using Words = std::vector<uint64_t>;
 
 class Sets {
 public:
@@ -50,158 +54,247 @@ private:
     int64_t count_ = 0;
 };
 
-/// Bits [first, last] of a row, and the set that the run belongs to.
+/// Painted voxels `first` to `last` of a row, their set, and the set of the unpainted voxels before them.
 struct Run {
-    int64_t first, last;
-    uint32_t set;
+    int64_t first = 0, last = 0;
+    uint32_t set = 0, gap = 0;
+};
+using Runs = std::vector<Run>;
+
+struct Row {
+    Runs painted;
+    Runs with_previous;  ///< united with the same row of the slice before
 };
 
-/// Position of the next bit equal to `value`, from `at` on; `width` if there is none.
-int64_t find(const uint64_t* row, int64_t at, int64_t width, bool value)
+/// Whether the first run ends before the second begins, with a voxel between them.
+bool is_apart(const Run& a, const Run& b)
 {
-    while (at < width) {
-        const uint64_t word = (value ? row[at / 64] : ~row[at / 64]) >> (at % 64);
-        if (word != 0) return std::min(width, at + std::countr_zero(word));
-        at += 64 - at % 64;
-    }
-    return width;
+    return a.last + 1 < b.first;
 }
 
-/// Joins runs of two neighbouring rows that touch; with `reach` 1 edges and corners count, too.
-void join_rows(const std::vector<Run>& a, const std::vector<Run>& b, int64_t reach, Sets& sets)
+/// Calls `take` for each run of the union of two rows, in ascending order.
+template <class Take>
+void unite(const Runs& a, const Runs& b, const Take& take)
+{
+    size_t i = 0, j = 0;
+    const auto next = [&] { return j == b.size() || (i < a.size() && a[i].first <= b[j].first) ? a[i++] : b[j++]; };
+    if (a.empty() && b.empty()) return;
+    Run run = next();
+    while (i < a.size() || j < b.size()) {
+        const Run following = next();
+        if (is_apart(run, following)) {
+            take(run);
+            run = following;
+        }
+        run.last = std::max(run.last, following.last);
+    }
+    take(run);
+}
+
+int64_t runs_in_union(const Runs& a, const Runs& b)
+{
+    if (a.empty() || b.empty()) return int64_t(a.size() + b.size());
+    int64_t count = 0;
+    unite(a, b, [&](const Run&) { ++count; });
+    return count;
+}
+
+/// Joins painted runs of two neighbouring rows that touch, over edges and corners, too.
+void join_painted(const Runs& a, const Runs& b, Sets& parts)
 {
     for (size_t i = 0, j = 0; i < a.size() && j < b.size();) {
-        if (a[i].first <= b[j].last + reach && b[j].first <= a[i].last + reach) sets.join(a[i].set, b[j].set);
+        if (!is_apart(a[i], b[j]) && !is_apart(b[j], a[i])) parts.join(a[i].set, b[j].set);
         (a[i].last < b[j].last ? i : j)++;
     }
 }
 
-/// The rows of one slice, with one extra row on each side of the mask's box.
-struct Slice {
-    Words bits;                                        ///< painted
-    std::vector<std::vector<Run>> painted, unpainted;  ///< by row
+constexpr uint32_t OUTSIDE = 0;  ///< the set of gaps that reaches to infinity
+
+/// Joins unpainted runs of two neighbouring rows that touch over faces. A row of n painted runs has n + 1 gaps, of
+/// which the first and the last have no end.
+void join_gaps(const Runs& a, const Runs& b, Sets& gaps)
+{
+    constexpr int64_t FAR = std::numeric_limits<int64_t>::max();
+    const auto begin = [](const Runs& runs, size_t gap) { return gap == 0 ? -FAR : runs[gap - 1].last + 1; };
+    const auto end = [](const Runs& runs, size_t gap) { return gap == runs.size() ? FAR : runs[gap].first; };
+    const auto set = [](const Runs& runs, size_t gap) { return gap == runs.size() ? OUTSIDE : runs[gap].gap; };
+    for (size_t i = 0, j = 0; i <= a.size() && j <= b.size();) {
+        if (begin(a, i) < end(b, j) && begin(b, j) < end(a, i)) gaps.join(set(a, i), set(b, j));
+        (end(a, i) < end(b, j) ? i : j)++;
+    }
+}
+
+/// The voxels that are counted: those of one group, or all that are painted.
+class Chosen {
+public:
+    explicit Chosen(std::optional<uint8_t> group)
+        : group_(group), pattern_(group ? *group * uint64_t{0x0101010101010101} : 0)
+    {}
+    /// Appends the runs of a brick's row, whose first voxel is at `x`.
+    void append(const uint8_t* voxels, int64_t x, Runs& runs) const
+    {
+        for (int64_t at = 0; at < BRICK_SIDE; at += WORD) {
+            uint64_t word = 0;
+            std::memcpy(&word, voxels + at, WORD);
+            word ^= pattern_;
+            const bool has_zero = ((word - uint64_t{0x0101010101010101}) & ~word & uint64_t{0x8080808080808080}) != 0;
+            const bool holds_none = group_ ? !has_zero : word == 0;
+            if (holds_none) continue;
+            if (group_ ? word == 0 : !has_zero) {
+                extend(runs, x + at, x + at + WORD - 1);
+                continue;
+            }
+            for (int64_t i = at; i < at + WORD; ++i)
+                if (group_ ? voxels[i] == *group_ : voxels[i] != 0) extend(runs, x + i, x + i);
+        }
+    }
+
+private:
+    static constexpr int64_t WORD = sizeof(uint64_t);
+    static void extend(Runs& runs, int64_t first, int64_t last)
+    {
+        if (!runs.empty() && runs.back().last + 1 == first)
+            runs.back().last = last;
+        else
+            runs.push_back({.first = first, .last = last});
+    }
+    std::optional<uint8_t> group_;
+    uint64_t pattern_;
 };
+
+/// Bricks with the same y and z, ascending along x; none in the rows after painted ones, where cells end, too.
+struct BrickRow {
+    int64_t y = 0;
+    std::vector<std::pair<int64_t, const MaskBrick*>> bricks;  ///< x of the first voxel
+    std::array<Row, BRICK_SIDE> rows, previous;                ///< of this slice, and of the slice before
+};
+/// Rows of bricks with the same z, ascending along y. Those after a painted one along y, z or both are in it.
+using Layer = std::vector<BrickRow>;
 
 class Counter {
 public:
-    Counter(const Mask& mask, std::optional<uint8_t> group, const Size3& lower, const Size3& upper)
-        : mask_(mask), group_(group), lower_(lower), upper_(upper), size_(upper - lower + Size3(2))
-    {}
+    Counter(const Mask& mask, std::optional<uint8_t> group) : mask_(mask), chosen_(group) { gaps_.add(); }
 
-    Topology count()
+    /// `bricks` ascend, and hold every chosen voxel.
+    Topology count(const std::vector<int64_t>& bricks)
     {
-        Slice last = slice_at(lower_.z - 1);
-        for (int64_t z = lower_.z; z <= upper_.z; ++z) {
-            Slice next = slice_at(z);
-            for (int64_t y = 0; y < size_.y; ++y) {
-                for (int64_t near = std::max<int64_t>(0, y - 1); near <= std::min(y + 1, size_.y - 1); ++near)
-                    join_rows(next.painted[size_t(y)], last.painted[size_t(near)], 1, parts_);
-                join_rows(next.unpainted[size_t(y)], last.unpainted[size_t(y)], 0, gaps_);
-            }
-            count_cells(last, next);
-            last = std::move(next);
+        for (auto at = bricks.begin(); at != bricks.end() || !last_.empty();) {
+            const int64_t z = last_.empty() ? mask_.position_of(*at).z : last_z_ + 1;
+            const auto end =
+                std::find_if(at, bricks.end(), [&](int64_t brick) { return mask_.position_of(brick).z != z; });
+            const bool holds_any = at != bricks.end() && mask_.position_of(*at).z == z;
+            Layer layer = layer_of({at, holds_any ? end : at});
+            for (int64_t slice = 0; slice < (holds_any ? BRICK_SIDE : 1); ++slice) count_slice(layer, slice);
+            last_ = holds_any ? std::move(layer) : Layer();
+            last_z_ = z;
+            if (holds_any) at = end;
         }
         const int64_t b0 = parts_.count(), b2 = gaps_.count() - 1;
         return {.components = b0, .loops = b0 + b2 - euler_, .cavities = b2};
     }
 
 private:
-    size_t words() const { return size_t((size_.x + 63) / 64); }
-
-    void fill_row(uint64_t* row, int64_t y, int64_t z) const
+    Layer layer_of(std::span<const int64_t> bricks)
     {
-        if (y < 0 || z < 0 || y >= mask_.size().y || z >= mask_.size().z) return;
-        const glm::i64vec3 counts = mask_.brick_counts();
-        const int64_t first_brick = counts.x * (y / BRICK_SIDE + counts.y * (z / BRICK_SIDE));
-        for (int64_t x = lower_.x; x < upper_.x; x = (x / BRICK_SIDE + 1) * BRICK_SIDE) {
-            const MaskBrick* brick = mask_.brick(first_brick + x / BRICK_SIDE).get();
-            if (!brick) continue;
-            const uint8_t* voxels = brick->data() + BRICK_SIDE * (y % BRICK_SIDE + BRICK_SIDE * (z % BRICK_SIDE));
-            for (int64_t i = x % BRICK_SIDE; i < std::min(BRICK_SIDE, upper_.x - x / BRICK_SIDE * BRICK_SIDE); ++i) {
-                const bool is_painted = group_ ? voxels[i] == *group_ : voxels[i] != 0;
-                const int64_t bit = x / BRICK_SIDE * BRICK_SIDE + i - lower_.x + 1;
-                row[bit / 64] |= uint64_t{is_painted} << (bit % 64);
+        std::set<int64_t> places;
+        for (const int64_t brick : bricks) places.insert({mask_.position_of(brick).y, mask_.position_of(brick).y + 1});
+        for (const BrickRow& row : last_)
+            if (!row.bricks.empty()) places.insert({row.y, row.y + 1});
+        Layer layer;
+        auto last = last_.begin();
+        auto brick = bricks.begin();
+        for (const int64_t y : places) {
+            layer.push_back({.y = y});
+            for (; brick != bricks.end() && mask_.position_of(*brick).y == y; ++brick)
+                layer.back().bricks.emplace_back(BRICK_SIDE * mask_.position_of(*brick).x, mask_.brick(*brick).get());
+            while (last != last_.end() && last->y < y) ++last;
+            if (last != last_.end() && last->y == y) layer.back().rows = std::move(last->rows);
+        }
+        return layer;
+    }
+
+    void count_slice(Layer& layer, int64_t slice)
+    {
+        for (BrickRow& row : layer) std::swap(row.rows, row.previous);
+        for (size_t i = 0; i < layer.size(); ++i) {
+            const bool follows = i > 0 && layer[i - 1].y + 1 == layer[i].y;
+            const bool precedes = i + 1 < layer.size() && layer[i].y + 1 == layer[i + 1].y;
+            for (int64_t y = 0; y < BRICK_SIDE; ++y) {
+                read(layer[i], y, slice);
+                const BrickRow* const before = y > 0 ? &layer[i] : follows ? &layer[i - 1] : nullptr;
+                const BrickRow* const after = y + 1 < BRICK_SIDE ? &layer[i] : precedes ? &layer[i + 1] : nullptr;
+                const size_t y_before = size_t(y + BRICK_SIDE - 1) % BRICK_SIDE, y_after = size_t(y + 1) % BRICK_SIDE;
+                static const Row NONE;
+                join(layer[i].rows[size_t(y)], layer[i].previous[size_t(y)], before ? before->rows[y_before] : NONE,
+                     before ? before->previous[y_before] : NONE, after ? after->previous[y_after] : NONE);
             }
         }
     }
 
-    std::vector<Run> runs_of(const uint64_t* row, bool value, Sets& sets) const
+    /// Reads the voxels of row `y` of a slice, each run as a set of its own, and each gap between two runs.
+    void read(BrickRow& bricks, int64_t y, int64_t slice)
     {
-        std::vector<Run> runs;
-        for (int64_t at = find(row, 0, size_.x, value); at < size_.x;) {
-            const int64_t end = find(row, at, size_.x, !value);
-            runs.push_back({at, end - 1, sets.add()});
-            at = find(row, end, size_.x, value);
+        Runs& runs = bricks.rows[size_t(y)].painted;
+        runs.clear();
+        const int64_t first = BRICK_SIDE * (y + BRICK_SIDE * slice);
+        for (const auto& [x, brick] : bricks.bricks) chosen_.append(brick->data() + first, x, runs);
+        for (Run& run : runs) {
+            run.set = parts_.add();
+            run.gap = &run == runs.data() ? OUTSIDE : gaps_.add();
         }
-        return runs;
     }
 
-    Slice slice_at(int64_t z)
+    /// Joins a row with its neighbours in this slice and the one before, and counts the cells between them.
+    void join(Row& row, const Row& below, const Row& before, const Row& before_below, const Row& after_below)
     {
-        Slice slice;
-        slice.bits.assign(words() * size_t(size_.y), 0);
-        for (int64_t y = 0; y < size_.y; ++y) {
-            uint64_t* row = slice.bits.data() + words() * size_t(y);
-            fill_row(row, lower_.y + y - 1, z);
-            slice.painted.push_back(runs_of(row, true, parts_));
-            slice.unpainted.push_back(runs_of(row, false, gaps_));
-            if (y == 0) continue;
-            join_rows(slice.painted[size_t(y)], slice.painted[size_t(y) - 1], 1, parts_);
-            join_rows(slice.unpainted[size_t(y)], slice.unpainted[size_t(y) - 1], 0, gaps_);
-        }
-        return slice;
-    }
-
-    /// Counts cells between `last` and `next`, and those of `next` within the slice. A cell counts if any cube that it
-    /// bounds does. Bit x of a shifted word stands for the plane between x - 1 and x.
-    void count_cells(const Slice& last, const Slice& next)
-    {
-        for (int64_t y = 1; y < size_.y; ++y) {
-            uint64_t carry_r = 0, carry_p = 0, carry_q = 0, carry_a = 0;
-            for (size_t w = 0; w < words(); ++w) {
-                const size_t here = words() * size_t(y) + w, before = here - words();
-                const uint64_t r = next.bits[here];                          // the cube
-                const uint64_t p = r | next.bits[before];                    // two along y
-                const uint64_t q = r | last.bits[here];                      // two along z
-                const uint64_t a = p | last.bits[here] | last.bits[before];  // four
-                const auto both = [](uint64_t word, uint64_t& carry) {
-                    const uint64_t shifted = word << 1 | carry;
-                    carry = word >> 63;
-                    return std::popcount(word | shifted);
-                };
-                const int cubes = std::popcount(r);
-                const int faces = both(r, carry_r) + std::popcount(p) + std::popcount(q);
-                const int edges = std::popcount(a) + both(p, carry_p) + both(q, carry_q);
-                const int vertices = both(a, carry_a);
-                euler_ += vertices - edges + faces - cubes;
-            }
-        }
+        row.with_previous.clear();
+        const Runs& painted = row.painted;
+        if (painted.empty() && below.painted.empty() && before.painted.empty() && below.with_previous.empty()) return;
+        join_painted(painted, before.painted, parts_);
+        for (const Row* near : {&before_below, &below, &after_below}) join_painted(painted, near->painted, parts_);
+        join_gaps(painted, before.painted, gaps_);
+        join_gaps(painted, below.painted, gaps_);
+        unite(painted, before.painted, [&](const Run& run) { row.with_previous.push_back(run); });
+        euler_ += int64_t(painted.size()) - int64_t(row.with_previous.size()) - runs_in_union(painted, below.painted) +
+                  runs_in_union(row.with_previous, below.with_previous);
     }
 
     const Mask& mask_;
-    std::optional<uint8_t> group_;
-    Size3 lower_, upper_;  ///< the bounding box of the painted voxels
-    Size3 size_;           ///< size of that box, with one layer around it
+    Chosen chosen_;
+    Layer last_;          ///< the layer before, or none if no brick of it is painted
+    int64_t last_z_ = 0;  ///< its place along z
     Sets parts_, gaps_;
     int64_t euler_ = 0;
 };
+
+/// The bricks that hold each group, ascending.
+std::map<uint8_t, std::vector<int64_t>> bricks_by_group(const Mask& mask)
+{
+    std::map<uint8_t, std::vector<int64_t>> found;
+    for (const int64_t index : mask.painted_bricks()) {
+        std::array<bool, 256> holds{};
+        for (const uint8_t group : *mask.brick(index)) holds[group] = true;
+        for (size_t group = 1; group < holds.size(); ++group)
+            if (holds[group]) found[uint8_t(group)].push_back(index);
+    }
+    return found;
+}
 
 }  // namespace
 
 Topology topology_of(const Mask& mask, std::optional<uint8_t> group)
 {
-    Size3 lower = mask.size(), upper(0);
-    for (const int64_t brick : mask.painted_bricks()) {
-        const VoxelBox box = mask.box_of(brick);
-        lower = glm::min(lower, box.lower);
-        upper = glm::max(upper, box.upper);
+    return Counter(mask, group).count(mask.painted_bricks());
+}
+
+std::map<int, Topology> topology_by_group(const Mask& mask, const Progress& progress)
+{
+    std::map<int, Topology> topology{{ALL_GROUPS, topology_of(mask)}};
+    for (const auto& [group, bricks] : bricks_by_group(mask)) {
+        tell(progress, double(group) / 256.0);
+        topology[group] = Counter(mask, group).count(bricks);
     }
-    if (lower.x >= upper.x) return {};
-    const Size3 size = upper - lower;
-    if (size.x * size.y > MAX_VOXELS / size.z)
-        fail("the mask: its painted bricks lie in a box of ", digits_of(size), " voxels; expected at most ", MAX_VOXELS,
-             " to count its components, loops and cavities");
-    return Counter(mask, group, lower, upper).count();
+    return topology;
 }
 
 }  // namespace shvr

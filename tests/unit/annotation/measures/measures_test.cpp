@@ -9,6 +9,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/volume/unit.h"
+#include "tests/support/slow.h"
 #include "tests/support/traces.h"
 #include "tests/support/volume_files.h"
 
@@ -17,22 +18,23 @@ using namespace shvr::test;
 
 namespace {
 
-/// A mask with the groups of `group_at`.
-Mask mask_of(const Size3& size, const std::function<int(int64_t, int64_t, int64_t)>& group_at)
+/// A mask with the groups of `group_at`, `scale` voxels wide along each axis.
+Mask mask_of(const Size3& size, const std::function<int(int64_t, int64_t, int64_t)>& group_at, int64_t scale = 1)
 {
-    Mask mask(size);
-    constexpr int64_t SIDE = gpu::BRICK_SIZE;
-    for (int64_t z = 0; z < size.z; ++z)
-        for (int64_t y = 0; y < size.y; ++y)
-            for (int64_t x = 0; x < size.x; ++x) {
-                const int group = group_at(x, y, z);
-                if (group == 0) continue;
-                const Size3 counts = mask.brick_counts();
-                const auto place = uint16_t(x % SIDE + SIDE * (y % SIDE + SIDE * (z % SIDE)));
-                mask.apply(
-                    {x / SIDE + counts.x * (y / SIDE + counts.y * (z / SIDE)), {{place, place, 0, uint8_t(group)}}},
-                    Direction::forwards);
-            }
+    Mask mask(size * scale);
+    const Size3 counts = mask.brick_counts();
+    for (int64_t brick = 0; brick < counts.x * counts.y * counts.z; ++brick) {
+        MaskBrickChange change{brick, {}};
+        const VoxelBox box = mask.box_of(brick);
+        for (int64_t z = box.lower.z; z < box.upper.z; ++z)
+            for (int64_t y = box.lower.y; y < box.upper.y; ++y)
+                for (int64_t x = box.lower.x; x < box.upper.x; ++x) {
+                    const size_t place = index_in_brick({x, y, z});
+                    append_run(change.runs, place, place, uint8_t{0},
+                               uint8_t(group_at(x / scale, y / scale, z / scale)));
+                }
+        if (!change.runs.empty()) mask.apply(change, Direction::forwards);
+    }
     return mask;
 }
 
@@ -60,7 +62,7 @@ int64_t parts_of(Cells rest, bool over_corners)
 }
 
 /// By the definition: all cells of all cubes in one set, parts by flooding.
-Topology slow_topology(const Mask& mask)
+Topology slow_topology(const Mask& mask, std::optional<uint8_t> group = {})
 {
     Cells painted, unpainted, cells;
     const Size3 size = mask.size();
@@ -68,7 +70,7 @@ Topology slow_topology(const Mask& mask)
         for (int y = -1; y <= size.y; ++y)
             for (int x = -1; x <= size.x; ++x) {
                 const bool inside = x >= 0 && y >= 0 && z >= 0 && x < size.x && y < size.y && z < size.z;
-                const bool is_painted = inside && mask.at({x, y, z}) != 0;
+                const bool is_painted = inside && (group ? mask.at({x, y, z}) == *group : mask.at({x, y, z}) != 0);
                 (is_painted ? painted : unpainted).insert({x, y, z});
                 // In doubled coordinates a cube is odd along three axes, a vertex along none.
                 for (int step = 0; is_painted && step < 27; ++step)
@@ -191,6 +193,47 @@ TEST_CASE("Betti numbers of random masks are those of their definition")
     const Mask wide = mask_of({131, 5, 4}, [&](auto...) { return random() % 10 < 3; });
     CHECK(topology_of(wide) == slow_topology(wide));
     CHECK(topology_of(wide).loops > 100);
+}
+
+TEST_CASE("Betti numbers of each group are those of its own voxels, in whole, cut and missing bricks")
+{
+    for (uint32_t seed = 1; seed <= repeats(10u, 500u); ++seed) {
+        CAPTURE(seed);
+        std::mt19937 random(seed);
+        const Size3 size(1 + random() % 5, 1 + random() % 5, 1 + random() % 5);
+        const auto share = 2 + random() % 8;
+        std::map<std::array<int64_t, 3>, int> groups;
+        const auto group_at = [&](int64_t x, int64_t y, int64_t z) {
+            const auto [found, is_new] = groups.try_emplace({x, y, z});
+            if (is_new) found->second = random() % 10 < share ? int(1 + random() % 2) : 0;
+            return found->second;
+        };
+        // Larger voxels have the same topology: whole bricks (32), and parts of them.
+        const Mask small = mask_of(size, group_at);
+        std::map<int, Topology> expected{{ALL_GROUPS, slow_topology(small)}};
+        for (const uint8_t group : std::initializer_list<uint8_t>{1, 2})
+            if (small.voxels_by_group()[group] > 0) expected[group] = slow_topology(small, group);
+        for (const int64_t scale : {1, 8, 11, 32}) {
+            CAPTURE(scale);
+            CHECK(topology_by_group(mask_of(size, group_at, scale)) == expected);
+        }
+    }
+}
+
+TEST_CASE("Betti numbers of voxels at the corners of the largest volume cost what is painted")
+{
+    Mask mask{Size3(MAX_SIDE)};
+    const Size3 last = mask.brick_counts() - int64_t{1};
+    uint8_t group = 0;
+    for (const int64_t z : {int64_t{0}, last.z})
+        for (const int64_t y : {int64_t{0}, last.y})
+            for (const int64_t x : {int64_t{0}, last.x})
+                mask.apply({index_of({x, y, z}, mask.brick_counts()), {{0, 0, 0, ++group}, {2, 2, 0, group}}},
+                           Direction::forwards);
+    std::map<int, Topology> expected{{ALL_GROUPS, {16, 0, 0}}};
+    for (int one = 1; one <= group; ++one) expected[one] = {2, 0, 0};
+    CHECK(topology_by_group(mask) == expected);
+    CHECK(topology_by_group(Mask(Size3(MAX_SIDE))) == std::map<int, Topology>{{ALL_GROUPS, {}}});
 }
 
 TEST_CASE("units of length")
