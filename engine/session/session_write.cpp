@@ -93,9 +93,11 @@ public:
     void entries(std::string_view name, std::vector<std::string> keys, std::string_view, const VisitEntry& visit,
                  const About&) override
     {
-        OrderedJson object = OrderedJson::object();
-        for (const std::string& key : keys) object[key] = write(folder_, [&](Fields& f) { visit(f, key); });
-        put(name, std::move(object));
+        // Appended: an ordered object searches all of its members for a key, and there may be 100,000 cameras.
+        OrderedJson::object_t members;
+        for (const std::string& key : keys)
+            members.emplace_back(key, write(folder_, [&](Fields& f) { visit(f, key); }));
+        put(name, OrderedJson(std::move(members)));
     }
     bool has(std::string_view, bool is_set) override { return is_set; }
     void mention(std::string_view, const About&) override {}

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <ctime>
 #include <fstream>
 
 #include <doctest/doctest.h>
@@ -561,6 +562,25 @@ TEST_CASE("cameras are found by name, by side and as JSON")
     CHECK(camera_named(session, "front", slices) == camera_looking("front", slices));
     for (const std::string& side : camera_sides())
         CHECK(parse(with("\"camera\": \"" + side + "\"")).camera_name == side);
+}
+
+TEST_CASE("cost of writing cameras is linear in their number")
+{
+    // CPU time of many cameras over that of few, on the same machine; the square would be 64.
+    const auto seconds_for = [](int count) {
+        Session session = parse(with(""));
+        for (int i = 0; i < count; ++i) session.cameras[sentence("camera ", 100'000 + i)] = SideView{.side = "left"};
+        double least = INFINITY;
+        for (int i = 0; i < 3; ++i) {
+            const std::clock_t begun = std::clock();
+            CHECK(to_text(session, "/").size() > 20u * size_t(count));
+            least = std::min(least, double(std::clock() - begun));
+        }
+        return least;
+    };
+    const double growth = seconds_for(24'000) / seconds_for(3'000);
+    MESSAGE("8 times the cameras: " << growth << " times the CPU time");
+    CHECK(growth < 16.0);
 }
 
 TEST_CASE("groups without an entry have ten colours in turn")
