@@ -238,9 +238,8 @@ void add_bench(CLI::App& program)
             "--scenes", options->scenes,
             "Scenes, with commas between: tubes, noisy-surface, tissue, fog, peaks, uint16, anisotropic, paged, "
             "painted, occluded, surfaces; tubes-matt, noisy-surface-matt, tissue-matt, which VTK draws the same; "
-            "stent, "
-            "cranium, stent-matt, cranium-matt (tools/fetch_example); or paths of sessions. Without it all that are "
-            "there")
+            "stent, cranium, stent-matt, cranium-matt (tools/fetch_example); or paths of sessions; unless given, all "
+            "that exist")
         ->delimiter(',');
     command
         ->add_option("--sweeps", options->sweeps,
@@ -264,16 +263,15 @@ void add_bench(CLI::App& program)
                         "Folder of the scans; that of tools/fetch_example, unless given");
     command->add_flag("--quick", options->quick, "Small volumes, few runs: seconds a scene");
     command
-        ->add_option(
-            "--mixed", options->mixed,
-            "So many more runs that turn step, resolution, opacity limit, pre-integration and sampling at once")
+        ->add_option("--mixed", options->mixed,
+                     "Number of additional runs, each with its own step, resolution, opacity limit, pre-integration "
+                     "and sampling")
         ->check(CLI::Range(0, 1024));
-    command->add_option("--rounds", options->rounds, "Timed pictures of each run, in turns")
+    command->add_option("--rounds", options->rounds, "Timed pictures of each run, alternating between runs")
         ->check(CLI::Range(1, 1000));
     command->add_option("-o,--output", options->output,
                         "Folder for bench.json, bench.csv, equal_*.csv, pareto*.svg and .png, insets.png, sweep-*, "
-                        "report.html; references are "
-                        "kept there, too");
+                        "report.html, and the references");
     command->add_option("--compare", options->compared, "Two bench.json instead: exit 3 where the second is worse")
         ->expected(2);
     command->add_flag("--ignore-time", options->ignores_time, "With --compare: errors and exact work alone");

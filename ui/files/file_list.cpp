@@ -235,6 +235,11 @@ Verdict verdict_on(const fs::path& path, Wanted wanted, bool enters_folders)
     return {};
 }
 
+std::string names_of_formats(std::string_view conjunction)
+{
+    return format_names(conjunction);
+}
+
 bool is_within_archive(const fs::path& path)
 {
     return leads_into_archive(path);

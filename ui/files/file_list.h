@@ -85,6 +85,8 @@ struct Verdict {
 /// `enters_folders`: folders are entered unless they are opened as a whole. Asks the file system.
 Verdict verdict_on(const std::filesystem::path& path, Wanted wanted, bool enters_folders);
 
+/// Returns the names of the formats that a chosen file may have, "TIFF, NRRD and DICOM" with the conjunction "and".
+std::string names_of_formats(std::string_view conjunction);
 /// Returns whether it leads into a zipped volume, as scan.ozx/0 does.
 bool is_within_archive(const std::filesystem::path& path);
 

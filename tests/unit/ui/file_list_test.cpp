@@ -160,6 +160,9 @@ TEST_CASE("endings that the chooser offers are those that readers answer to")
     CHECK(format_of_name("SCAN.NII.GZ") == "NIfTI");
     CHECK(format_of_name("scan.txt") == "");
     CHECK(format_of_name(".tif") == "");
+    // Dialogs name each format that has such an ending and states the size of its volume.
+    for (const char* name : {"a.tif", "a.nrrd", "a.mhd", "a.nii", "a.dcm", "a.ozx"})
+        CHECK(names_of_formats("or").find(format_of_name(name)) != std::string::npos);
 }
 
 TEST_CASE("a folder that cannot be listed says why in one sentence, and stays the folder")

@@ -217,10 +217,9 @@ std::optional<fs::path> FileChooser::draw()
     return result;
 }
 
-std::optional<fs::path> FileChooser::contents()
+/// Takes what the file system has answered since the last frame.
+void FileChooser::take_answers()
 {
-    want_glyphs(text_);
-    want_glyphs(failure_);
     list_.show(all_files_, hidden_);
     list_.read_on();
     settle();
@@ -235,7 +234,13 @@ std::optional<fs::path> FileChooser::contents()
     }
     // Rows move while a folder is read.
     if (selected_ && *selected_ >= list_.size()) selected_.reset();
+}
 
+std::optional<fs::path> FileChooser::contents()
+{
+    want_glyphs(text_);
+    want_glyphs(failure_);
+    take_answers();
     path_field();
     keys();
     const float below = 3.0f * ImGui::GetFrameHeightWithSpacing() + ImGui::GetStyle().ItemSpacing.y;
@@ -243,16 +248,35 @@ std::optional<fs::path> FileChooser::contents()
     place_list();
     ImGui::SameLine();
     file_table(height);
-
     const std::string waits = waits_in_words();
-    const std::string& why = !waits.empty() ? waits : failure_.empty() ? list_.failure() : failure_;
-    if (why.empty()) {
-        ImGui::TextDisabled("%s", question_.note);
+    note_line(!waits.empty() ? waits : failure_.empty() ? list_.failure() : failure_);
+    filter_row();
+
+    const ImVec2 button{7.0f * ImGui::GetFontSize(), 0.0f};
+    if (ImGui::Button(question_.verb, button)) accept(text_, false);
+    ImGui::SameLine();
+    const bool cancelled = ImGui::Button("Cancel", button) || is_pressed(ImGuiKey_Escape, false) || closes_;
+    if (!accepted_ && !cancelled) return std::nullopt;
+    closes_ = is_open_ = false;
+    ImGui::CloseCurrentPopup();
+    return accepted_;
+}
+
+/// The line below the list: why a path or a folder is refused, otherwise the note.
+void FileChooser::note_line(const std::string& failure)
+{
+    if (failure.empty()) {
+        ImGui::TextDisabled("%s", question_.note.c_str());
     } else {
         ImGui::PushStyleColor(ImGuiCol_Text, WARNING);
-        ImGui::TextUnformatted(why.c_str());
+        ImGui::TextUnformatted(failure.c_str());
         ImGui::PopStyleColor();
     }
+}
+
+/// The selection of names that are listed, and their number.
+void FileChooser::filter_row()
+{
     bool changed = false;
     const char* const filters[] = {"What SHVR opens", "All files"};
     int filter = all_files_;
@@ -270,15 +294,6 @@ std::optional<fs::path> FileChooser::contents()
                                        : sentence(list_.size(), " shown, ", list_.left_out(), " left out",
                                                   list_.is_reading() ? ", reading..." : "");
     ImGui::TextDisabled("%s", count.c_str());
-
-    const ImVec2 button{7.0f * ImGui::GetFontSize(), 0.0f};
-    if (ImGui::Button(question_.verb, button)) accept(text_, false);
-    ImGui::SameLine();
-    const bool cancelled = ImGui::Button("Cancel", button) || is_pressed(ImGuiKey_Escape, false) || closes_;
-    if (!accepted_ && !cancelled) return std::nullopt;
-    closes_ = is_open_ = false;
-    ImGui::CloseCurrentPopup();
-    return accepted_;
 }
 
 void FileChooser::path_field()

@@ -19,7 +19,7 @@ public:
     struct Question {
         const char* title = "";
         const char* verb = "Open";
-        const char* note = "";  ///< below the list
+        std::string note{};  ///< below the list
         Wanted wanted = Wanted::scan;
     };
 
@@ -39,6 +39,9 @@ public:
 
 private:
     std::optional<std::filesystem::path> contents();
+    void take_answers();
+    void note_line(const std::string& failure);
+    void filter_row();
     void enter(const std::filesystem::path& folder);
     void select(size_t row);
     void path_field();

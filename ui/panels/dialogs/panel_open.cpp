@@ -19,11 +19,10 @@ namespace shvr::ui {
 
 namespace {
 
-FileChooser opening(
-    {.title = "Open a volume, a session or a project",
-     .verb = "Open",
-     .note =
-         "TIFF, DICOM, NIfTI, NRRD, MetaImage and OME-Zarr; bare voxels: Open with options. Tab completes a path."});
+FileChooser opening({.title = "Open a volume, a session or a project",
+                     .verb = "Open",
+                     .note = names_of_formats("and") +
+                             "; voxels without a header: Open with options. Tab completes a path."});
 FileChooser saving({.title = "Continue under another name",
                     .verb = "Save",
                     .note = "Session (.json); mask, trace and history are written next to it. Existing files stay.",
@@ -177,10 +176,9 @@ void start_page(const Model& model, Actions& actions)
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("a scan of your own, or drop it here");
-    hint(
-        "TIFF, DICOM, NIfTI, NRRD, MetaImage or OME-Zarr; a folder of slices, a session or a project. Bare voxels: "
-        "File, "
-        "Open with options.");
+    hint((names_of_formats("or") +
+          "; a folder of slices, a session or a project. Voxels without a header: File, Open with options.")
+             .c_str());
     if (ImGui::Button("Open the example", {12.0f * font, 0.0f})) actions.push_back(OpenExample{});
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
