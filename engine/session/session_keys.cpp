@@ -56,20 +56,24 @@ namespace {
 
 // ---- volume ---------------------------------------------------------------------------------------------------------
 
-const About PROCEDURAL{.meaning = "instead of `path`: a function", .standard = "none"};
-const About PATH{.meaning = "the file", .allowed = "path", .standard = "required for files", .is_required = true};
-const About RAW{
-    .meaning =
-        "for bare voxels: `\"256x256x108:int16:little:0\"`, size, type, byte order and bytes to skip; the last "
-        "two may be left out. `volume.path` may then be the first of numbered files with a slice each, or their folder",
-    .allowed = "text",
-    .standard = "none"};
+const About PROCEDURAL{.meaning = "synthetic volume to compute, instead of `path`", .standard = "none"};
+const About PATH{.meaning = "path of the volume's file or folder",
+                 .allowed = "path",
+                 .standard = "required for files",
+                 .is_required = true};
+const About RAW{.meaning =
+                    "layout of a file without a header, `\"256x256x108:int16:little:0\"`: size, type, byte order and "
+                    "bytes to skip; the last two are optional. `volume.path` may then be the first of numbered files "
+                    "with one slice each, or their folder",
+                .allowed = "text",
+                .standard = "none"};
 
-const About SPACING{.meaning = "of a voxel, for a file that states none, or instead of what it states",
+const About SPACING{.meaning = "size of a voxel along x, y and z; overrides the file's",
                     .allowed = "physical units per voxel, above 0",
                     .standard = "the file's; `[1, 1, 1]` with `raw` or `procedural`"};
-const About UNIT{
-    .meaning = "of that spacing", .allowed = "text", .standard = "the file's; `\"voxel\"` with `raw` or `procedural`"};
+const About UNIT{.meaning = "unit of the spacing",
+                 .allowed = "text",
+                 .standard = "the file's; `\"voxel\"` with `raw` or `procedural`"};
 
 void spacing_fields(Fields& f, glm::dvec3& spacing, std::string& unit)
 {
@@ -91,13 +95,14 @@ void procedural_fields(Fields& f, ProceduralSpec& spec)
     const std::vector<std::string> kinds = procedural_kinds();
     f.choice("procedural", spec.kind, {kinds.begin(), kinds.end()}, PROCEDURAL);
     std::vector<int64_t> size{spec.size.x, spec.size.y, spec.size.z};
-    f.wholes("size", size, 1, MAX_SIDE, {"with `procedural`", "voxels"});
+    f.wholes("size", size, 1, MAX_SIDE, {"size of the `procedural` volume", "voxels"});
     spec.size = {size[0], size[1], size[2]};
-    f.whole("seed", spec.seed, 0, std::numeric_limits<uint32_t>::max(), {"with `procedural`"});
+    f.whole("seed", spec.seed, 0, std::numeric_limits<uint32_t>::max(),
+            {"seed of the `procedural` volume's random numbers"});
     std::vector<std::string_view> types;
     for (const VoxelType type : VOXEL_TYPES) types.push_back(name_of(type));
     std::string type = name_of(spec.type);
-    f.choice("type", type, types, {"with `procedural`"});
+    f.choice("type", type, types, {"voxel type of the `procedural` volume"});
     spec.type = voxel_type_of(type).value_or(spec.type);
     spacing_fields(f, spec.spacing, spec.unit);
 }
@@ -134,23 +139,22 @@ void volume_fields(Fields& f, Session& session)
     f.path("path", session.volume_path, PATH);
     f.mention("raw", RAW);
     f.mention("procedural", PROCEDURAL);
-    f.text(
-        "channel", session.open_options.channel,
-        {.meaning =
-             "of a file with several: `\"red\"`, `\"green\"`, `\"blue\"`, `\"alpha\"`, a name in the file, or a number "
-             "from 1",
-         .allowed = "text",
-         .standard = "none: such a file is refused"});
+    f.text("channel", session.open_options.channel,
+           {.meaning = "channel to read from a file with several: `\"red\"`, `\"green\"`, `\"blue\"`, `\"alpha\"`, a "
+                       "name in the file, or a number from 1",
+            .allowed = "text",
+            .standard = "none: such a file is refused"});
     f.text("frame", session.open_options.frame,
-           {.meaning = "of a file with several time points: a number from 1",
+           {.meaning = "time point to read from a file with several: a number from 1",
             .allowed = "text",
             .standard = "none: such a file is refused"});
     std::optional<int64_t> level = session.open_options.level;
     if (level == 0) level.reset();
     f.any_whole(
         "level", level, 0, MAX_LEVEL,
-        {.meaning = "of a file with several sizes, as OME-Zarr has: 0 the finest, and each twice as coarse as the "
-                    "one before. It is opened as a volume of its own, whose paint and trace fit it alone",
+        {.meaning =
+             "resolution level to read from a file with several, as OME-Zarr has: 0 is the finest, each further level "
+             "twice as coarse. It is opened as a volume of its own; its paint and trace fit no other level",
          .standard = "0"});
     session.open_options.level = int(level.value_or(0));
     spacing_fields(f, session.open_options);
@@ -160,15 +164,14 @@ void volume_fields(Fields& f, Session& session)
 
 void transfer_fields(Fields& f, Session& session)
 {
-    const About points_about{
-        .meaning =
-            "control points; opacity and colour are linear in between and 0 outside; points at one "
-            "intensity make a step",
-        .allowed = "array",
-        .standard = "without `transfer_function` one is made from the histogram, with a warning",
-        .is_required = true};
+    const About points_about{.meaning =
+                                 "control points; opacity and colour are linear between them and 0 outside; two points "
+                                 "at one intensity make a step",
+                             .allowed = "array",
+                             .standard = "without `transfer_function` one is made from the histogram, with a warning",
+                             .is_required = true};
     const About preset_about{
-        .meaning = "instead of `points`: one of `assets/transfer_functions`, laid over the volume's intensities",
+        .meaning = "preset from `assets/transfer_functions`, fitted to the volume's intensities, instead of `points`",
         .allowed = "`\"bundles\"`, `\"haze\"`, `\"heat\"`, `\"layers\"`, `\"surface\"`",
         .standard = "none"};
     if (f.has("preset", !session.transfer_preset.empty())) {
@@ -185,19 +188,19 @@ void transfer_fields(Fields& f, Session& session)
 
 void group_fields(Fields& f, GroupSettings& group)
 {
-    f.flag("visible", group.visible, {"false: neither its voxels nor those of groups below it are drawn"});
+    f.flag("visible", group.visible, {"whether its voxels are drawn; false hides the groups below it, too"});
     f.flag("locked", group.locked,
-           {"true: no brush changes which voxels are in it, nor in groups below it; undo and redo do"});
-    f.text("name", group.name, {.meaning = "what a person calls it", .allowed = "text", .standard = "`\"group N\"`"});
+           {"true: no brush adds voxels to it or to groups below it, or removes any; undo and redo still do"});
+    f.text("name", group.name, {.meaning = "name of the group", .allowed = "text", .standard = "`\"group N\"`"});
     std::optional<int64_t> parent = group.parent == 0 ? std::nullopt : std::optional<int64_t>(group.parent);
     f.any_whole("parent", parent, 0, 255,
-                {.meaning = "the group that it belongs to, or 0; what is not set for N is the parent's",
+                {.meaning = "number of the parent group, from which N inherits all that it does not set; 0: none",
                  .allowed = "0 ... 255, no cycle",
                  .standard = "0"});
     group.parent = uint8_t(parent.value_or(0));
     f.color("color", group.color, {.meaning = "colour", .standard = "the parent's, or one of ten"});
     f.number("opacity", group.opacity, SHARE,
-             {.meaning = "opacity", .unit = "per reference length", .standard = "the parent's, or 1"});
+             {.meaning = "opacity of its voxels", .unit = "per reference length", .standard = "the parent's, or 1"});
 }
 
 std::optional<uint8_t> group_number(const std::string& name)
@@ -219,39 +222,41 @@ void density_fields(Fields& f, DensityBrush& density)
     };
     const auto written = [&] { return density.offset ? digits_of(*density.offset) : std::string("\"automatic\""); };
     f.other("offset", read, written,
-            {.meaning = "by how much; `\"automatic\"`: as makes the paint threshold visible",
+            {.meaning = "offset added to intensities at the centre of the brush; `\"automatic\"`: lifts the paint "
+                        "threshold to the lowest visible intensity",
              .allowed = "the file's intensities, or `\"automatic\"`",
              .standard = "`\"automatic\"`"});
-    f.choice("falloff", density.falloff, {"whether less of it towards the brush's edge"});
+    f.choice(
+        "falloff", density.falloff,
+        {"profile of the offset over the brush: the same everywhere (flat), or falling to 0 at its edge (distance)"});
 }
 
 void annotation_fields(Fields& f, Session& session)
 {
-    f.path("mask", session.mask_path,
-           {.meaning = "the mask's file, which need not exist yet: bare bytes (`.mask`), `.nrrd`, `.tif`, or an "
-                       "OME-Zarr label image "
-                       "(`.zarr`), whose names and colours are those of groups that `groups` does not list",
-            .allowed = "path",
-            .standard = "none"});
+    f.path(
+        "mask", session.mask_path,
+        {.meaning = "file of the mask, created when first saved: raw bytes (`.mask`), `.nrrd`, `.tif`, or an OME-Zarr "
+                    "label image (`.zarr`), which also names and colours groups that `groups` does not list",
+         .allowed = "path",
+         .standard = "none"});
     f.path("trace", session.trace_path,
-           {.meaning = "the trace's file, which need not exist yet: `.graphml`, which keeps everything, `.txt`, `.swc` "
-                       "or `.rsml`",
+           {.meaning = "file of the trace, created when first saved: `.graphml`, which keeps everything, `.txt`, "
+                       "`.swc` or `.rsml`",
             .allowed = "path",
-            .standard = "beside the mask, with its name and `.graphml`"});
+            .standard = "next to the mask, with its name and `.graphml`"});
     if (session.trace_path.empty() && !session.mask_path.empty())
         session.trace_path = std::filesystem::path(session.mask_path).replace_extension(".graphml");
     f.check("trace", session.trace_path.empty() || is_trace_file(session.trace_path),
             "a path that ends in .graphml, .txt, .swc or .rsml");
     f.path("density", session.density_path,
-           {.meaning =
-                "the file of density offsets, which need not exist yet: bare numbers (`.offset`), `.nrrd` or `.tif`",
+           {.meaning = "file of density offsets, created when first saved: raw numbers (`.offset`), `.nrrd` or `.tif`",
             .allowed = "path",
-            .standard = "beside the mask, with its name and `.offset`"});
+            .standard = "next to the mask, with its name and `.offset`"});
     if (session.density_path.empty() && !session.mask_path.empty())
         session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
 }
 
-/// Groups by number, each once; none: everything can be felt.
+/// Group numbers, each once; empty: everything can be felt.
 void felt_groups_field(Fields& f, std::vector<uint8_t>& groups)
 {
     const auto read = [&](const JsonNode& node) {
@@ -267,7 +272,7 @@ void felt_groups_field(Fields& f, std::vector<uint8_t>& groups)
         return text + "]";
     };
     f.other("groups", read, written,
-            {.meaning = "the groups that are felt; 0: what no group holds",
+            {.meaning = "groups that can be felt; 0 stands for unpainted voxels",
              .allowed = "numbers from 0 to 255",
              .standard = "none: everything"});
 }
@@ -284,10 +289,11 @@ void fields(Fields& f, Groups& groups)
         GroupSettings unnumbered;
         group_fields(entry, number ? groups[*number] : unnumbered);
     };
-    f.entries("groups", names, "N", visit,
-              {.meaning = "colour group N, 1 ... 255, which replaces the transfer function where a voxel is painted",
-               .allowed = "object",
-               .standard = "one of ten colours in turn"});
+    f.entries(
+        "groups", names, "N", visit,
+        {.meaning = "colour group N, 1 ... 255, whose colour and opacity replace the transfer function in its voxels",
+         .allowed = "object",
+         .standard = "one of ten colours in turn"});
     if (const std::optional<uint8_t> group = group_in_cycle(groups))
         f.check(sentence("groups.", int{*group}, ".parent"), false, "a group other than itself and those below it");
 }
@@ -295,26 +301,27 @@ void fields(Fields& f, Groups& groups)
 void fields(Fields& f, FeelSettings& touch)
 {
     f.choice("mode", touch.mode,
-             {"what pulls the probe: all that is felt in its ball (proximity), a surface that holds it (surface), or "
-              "the object first touched (object)"});
-    f.number("strength", touch.strength, SHARE, {"of the force"});
+             {"target of the pull on the probe: everything felt in its ball (proximity), a surface that holds it "
+              "(surface), or the object touched first (object)"});
+    f.number("strength", touch.strength, SHARE, {"factor of the force"});
     f.number("surface_share", touch.surface_share, above_zero(0.01, 1.0),
-             {"of the probe's ball: a surface holds where more of it is felt"});
+             {"fraction of the probe's ball that must be felt for a surface to hold it"});
     f.number("stiffness", touch.stiffness, {0.0, MAX_STIFFNESS},
-             {.meaning = "of the pull, for a probe of 2.5 mm in the hand; a device's own limit holds besides",
+             {.meaning = "stiffness of the pull for a 2.5 mm probe in the hand; the device's own limit also applies",
               .allowed = "N/m, 0 ... 1000"});
     f.number("damping", touch.damping, {0.0, MAX_FELT_DAMPING},
-             {.meaning = "of the hand in contact", .allowed = "N s/m, 0 ... 1.2"});
+             {.meaning = "damping of the hand in contact", .allowed = "N s/m, 0 ... 1.2"});
     felt_groups_field(f, touch.groups);
     f.flag("at_proxy", touch.at_proxy,
-           {"tools paint and trace at the middle of what the probe touches, where it is guided"});
-    f.flag("overlap_radius", touch.overlap_radius,
-           {"new nodes get the radius of a tube that fills the probe's ball as much as what is felt does"});
-    f.flag("to_nodes", touch.to_nodes, {"tools act at the nearest node that lies in the probe's ball"});
+           {"tools paint and trace at the centre of the touched structure while the probe is guided"});
+    f.flag(
+        "overlap_radius", touch.overlap_radius,
+        {"new nodes get the radius of a tube that would fill the same share of the probe's ball as the felt voxels"});
+    f.flag("to_nodes", touch.to_nodes, {"tools act at the nearest node inside the probe's ball"});
     f.flag("to_lines", touch.to_lines,
-           {"tools act at the nearest point of a centre line in the probe's ball, and a new node divides it there"});
-    f.flag("clicks", touch.clicks, {"a haptic device gives a short push where the probe begins to touch something"});
-    f.choice("plane", touch.plane, {"the probe stays in its plane of voxels across that axis"});
+           {"tools act at the nearest point of a centre line inside the probe's ball, where a new node divides it"});
+    f.flag("clicks", touch.clicks, {"a haptic device gives a short pulse when the probe begins to touch something"});
+    f.choice("plane", touch.plane, {"axis across which the probe stays in its plane of voxels"});
 }
 
 void fields(Fields& f, ProbeSettings& probe)
@@ -322,48 +329,55 @@ void fields(Fields& f, ProbeSettings& probe)
     BrushSettings& brush = probe.brush;
     constexpr const char* INTENSITIES = "the file's intensities";
     f.number("radius_voxels", brush.radius_voxels, above_zero(1e-3, 127.0),
-             {.meaning = "of the probe and its brush, along x", .allowed = "voxels, above 0 ... 127"});
-    f.whole("group", brush.group, 0, 255, {"the group it paints; 0 erases"});
-    f.choice("brush", brush.brush, {"which voxels of its region it paints"});
-    f.choice("region", brush.region, {"the region's shape"});
+             {.meaning = "radius of the probe and its brush, along x", .allowed = "voxels, above 0 ... 127"});
+    f.whole("group", brush.group, 0, 255, {"group that the brush paints; 0 erases"});
+    f.choice("brush", brush.brush,
+             {"voxels of the region that the brush paints: all at or above the threshold (fill), those connected with "
+              "the centre (flood), or whole components (speckle)"});
+    f.choice("region", brush.region, {"shape of the brush's region"});
     f.whole("connectivity", brush.connectivity, 6, 26,
-            {.meaning = "neighbours of a voxel, for flood and speckle", .allowed = "6 or 26"});
+            {.meaning = "number of neighbours of a voxel, for flood and speckle", .allowed = "6 or 26"});
     f.check("connectivity", brush.connectivity == 6 || brush.connectivity == 26, "6 or 26");
     f.flag("only_unpainted", brush.only_unpainted,
-           {"true: it paints unpainted voxels alone, and takes none from any group; offsets are changed all the same"});
+           {"true: the brush paints only unpainted voxels and takes none from other groups; density offsets change "
+            "everywhere"});
     f.vector("voxel", probe.voxel, {-double(MAX_SIDE), 2.0 * double(MAX_SIDE)},
-             {.meaning = "where the probe is", .unit = "voxels", .standard = "the volume's middle"});
+             {.meaning = "position of the probe", .unit = "voxels", .standard = "the volume's middle"});
     f.number("paint_threshold", brush.threshold, INTENSITY,
-             {.meaning = "voxels at or above it are painted",
+             {.meaning = "lowest intensity that brushes paint",
               .allowed = INTENSITIES,
               .standard = "the middle of what the transfer function shows"});
     f.number("haptic_threshold", probe.haptic_threshold, INTENSITY,
-             {.meaning = "voxels at or above it are felt", .allowed = INTENSITIES, .standard = "the paint threshold"});
-    f.flag("shown", probe.shown, {"`shvr render` draws it as a ball in its group's colour; the window always does"});
+             {.meaning = "lowest intensity that is felt", .allowed = INTENSITIES, .standard = "the paint threshold"});
+    f.flag("shown", probe.shown,
+           {"true: `shvr render` draws the probe as a ball in its group's colour; the window always does"});
     f.flag("shell", probe.shell,
-           {"an iso-surface at the paint threshold in the probe's region: what density painting would lift over it"});
-    f.number("shell_opacity", probe.shell_opacity, SHARE, {"of one crossing of it"});
+           {"true: shows an iso-surface at the paint threshold in the probe's region, the boundary of what painting "
+            "reaches"});
+    f.number("shell_opacity", probe.shell_opacity, SHARE, {"opacity of one crossing of the iso-surface"});
     f.flag("preview", probe.preview,
-           {"the voxels that painting would change now, in pictures and slices; striped where it would erase"});
-    f.choice("tool", probe.tool, {"what the left mouse button does in the window"});
-    f.flag("guided", probe.guided, {"the window pulls the probe to what is at or above the haptic threshold"});
-    f.choice("guidance", probe.guidance, {"the law that pulls it"});
+           {"true: highlights the voxels that painting would change now, in pictures and slices; striped where it "
+            "would erase"});
+    f.choice("tool", probe.tool, {"function of the left mouse button in the window"});
+    f.flag("guided", probe.guided, {"true: the window pulls the probe to voxels at or above the haptic threshold"});
+    f.choice("guidance", probe.guidance, {"force law of the pull"});
     f.section("touch", probe.touch);
     f.number("node_radius", probe.node_radius_voxels, above_zero(1e-3, 127.0),
-             {.meaning = "of new nodes of the trace, along x",
+             {.meaning = "radius of new nodes of the trace, along x",
               .allowed = "voxels, above 0 ... 127",
-              .standard = "in the window 1/500 of the volume's diagonal, at least 1; in scripts the probe's"});
+              .standard = "in the window 1/500 of the volume's diagonal, at least 1; in scripts the probe's radius"});
     f.flag("measured_radius", probe.measured_radius,
-           {"the window makes new nodes as wide as what they lie in, above the paint threshold"});
+           {"true: the window gives new nodes the radius of the structure around them, above the paint threshold"});
     f.flag("centered_nodes", probe.centered_nodes,
-           {"nodes that are clicked in the window go into the middle of what is seen there, above the paint "
+           {"true: nodes clicked in the window go to the centre of the structure seen there, above the paint "
             "threshold; false: onto its wall"});
-    f.color("color", probe.color, {.meaning = "colour of its ball, silhouette and arrow", .standard = "its group's"});
-    f.number("opacity", probe.opacity, SHARE, {"of its ball; 0: none is drawn"});
-    f.flag("silhouette", probe.silhouette, {"its outline is drawn over whatever hides it"});
-    f.flag("arrow", probe.arrow, {"an arrow points towards it where it is out of sight"});
+    f.color("color", probe.color,
+            {.meaning = "colour of the probe's ball, silhouette and arrow", .standard = "its group's"});
+    f.number("opacity", probe.opacity, SHARE, {"opacity of the probe's ball; 0: not drawn"});
+    f.flag("silhouette", probe.silhouette, {"true: draws the probe's outline over whatever hides it"});
+    f.flag("arrow", probe.arrow, {"true: an arrow points towards the probe when it is out of sight"});
     const About density{
-        .meaning = "density painting: the brush raises intensities, too; an object with the two keys below",
+        .meaning = "density painting, in which the brush also raises intensities; an object with the two keys below",
         .allowed = "object",
         .standard = "none"};
     if (f.has("density", brush.density.has_value())) {
@@ -373,7 +387,7 @@ void fields(Fields& f, ProbeSettings& probe)
     } else {
         f.mention("density", density);
     }
-    f.flag("paints_group", brush.paints_group, {"false, with `probe.density`: offsets alone"});
+    f.flag("paints_group", brush.paints_group, {"false, with `probe.density`: the brush changes offsets only"});
     f.check("paints_group", brush.paints_group || brush.density, "true where probe.density is not given");
 }
 
@@ -386,17 +400,17 @@ void fields(Fields& f, SurfaceLook& surface)
     std::optional<glm::dvec2> radii =
         is_even ? std::nullopt : std::optional(glm::dvec2(surface.radius_from, surface.radius_to));
     f.vector("from", surface.from, COORDINATE,
-             {.meaning = "one end of a rod, or where a ball is", .allowed = "physical units", .is_required = true});
+             {.meaning = "first end of a rod, or centre of a ball", .allowed = "physical units", .is_required = true});
     f.vector("to", to, COORDINATE,
-             {.meaning = "its other end", .allowed = "physical units", .standard = "`from`: a ball"});
+             {.meaning = "other end of the rod", .allowed = "physical units", .standard = "`from`: a ball"});
     surface.to = to.value_or(surface.from);
     const bool has_radii = f.has("radii", !is_even);
     f.check("radius", !has_radii || !f.has("radius", false), "either radius or radii");
-    const About one{.meaning = "of both ends",
+    const About one{.meaning = "radius of both ends",
                     .allowed = "physical units, above 0",
                     .standard = "required, or `radii`",
                     .is_required = true};
-    const About two{.meaning = "of the ends, `[from, to]`",
+    const About two{.meaning = "radii of the two ends, `[from, to]`",
                     .allowed = "physical units, above 0",
                     .standard = "required, or `radius`"};
     if (has_radii) {
@@ -434,9 +448,8 @@ void fields(Fields& f, Measurement& measurement)
 
 namespace {
 
-const About MEASUREMENTS{.meaning = "distances that were measured, which the window shows",
-                         .allowed = "array of at most 1000",
-                         .standard = "none"};
+const About MEASUREMENTS{
+    .meaning = "measured distances, shown in the window", .allowed = "array of at most 1000", .standard = "none"};
 static_assert(MAX_MEASUREMENTS == 1000);
 
 void work_fields(Fields& f, Session& session)
@@ -496,7 +509,7 @@ void fields(Fields& f, Session& session)
     else
         f.mention("measurements", MEASUREMENTS);
     f.section("probe", session.probe);
-    const About surfaces{.meaning = "opaque balls and rods that rays stop at, whatever is cut away of the volume",
+    const About surfaces{.meaning = "opaque balls and rods, which cutting planes do not affect",
                          .allowed = "array of at most 100000",
                          .standard = "none"};
     if (f.has("surfaces", !session.surfaces.empty()))

@@ -28,26 +28,26 @@ void fields(Fields& f, SideView& view)
 {
     const std::vector<std::string> sides = camera_sides();
     f.choice("side", view.side, views_of(sides),
-             {.meaning = "the eye on the -y side (front), +y (back), -x (left) or +x (right), all with z up, +z (top) "
-                         "or -z (bottom) "
-                         "with y up; the volume's bounding sphere fits a square picture with 5 % to spare",
+             {.meaning =
+                  "side from which the volume is seen: -y (front), +y (back), -x (left), +x (right) with z up; +z "
+                  "(top), -z (bottom) with y up. The volume's bounding sphere fits a square picture with 5 % to spare",
               .standard = "instead of the keys above"});
-    f.number("zoom", view.zoom, above_zero(1e-3, 1e3), {"with `side`: the eye's distance is divided by it"});
+    f.number("zoom", view.zoom, above_zero(1e-3, 1e3), {"with `side`: divisor of the eye's distance"});
     f.number("turn_degrees", view.turn_degrees, {-360.0, 360.0},
-             {"with `side`: the eye moves round the volume to the viewer's right", "degrees"});
+             {"with `side`: rotation of the eye around the volume, to the viewer's right", "degrees"});
     f.number("tilt_degrees", view.tilt_degrees, {-90.0, 90.0},
-             {"with `side`: then it rises, at 90 to look straight down", "degrees"});
+             {"with `side`: elevation of the eye after that; 90 looks straight down", "degrees"});
 }
 
 void fields(Fields& f, Camera& camera)
 {
     constexpr const char* UNITS = "physical units";
-    f.choice("projection", camera.projection, {"how the view widens with distance"});
-    f.vector("eye", camera.eye, COORDINATE, {.meaning = "where the eye is", .allowed = UNITS, .is_required = true});
+    f.choice("projection", camera.projection, {"projection of the camera"});
+    f.vector("eye", camera.eye, COORDINATE, {.meaning = "position of the eye", .allowed = UNITS, .is_required = true});
     f.vector("target", camera.target, COORDINATE,
-             {.meaning = "what it looks at", .allowed = UNITS, .is_required = true});
+             {.meaning = "point that the eye looks at", .allowed = UNITS, .is_required = true});
     f.vector("up", camera.up, COORDINATE,
-             {.meaning = "what is up in the picture; not parallel to the view", .allowed = "any length but 0"});
+             {.meaning = "up direction of the picture; not parallel to the view", .allowed = "any length but 0"});
     if (camera.projection == Camera::Projection::perspective)
         f.number("fov_y_degrees", camera.fov_y_degrees,
                  {1e-12, std::nextafter(180.0, 0.0), "a number of degrees above 0 and below 180"},
@@ -56,15 +56,15 @@ void fields(Fields& f, Camera& camera)
         f.number(
             "height", camera.height, above_zero(1e-12, 1e15),
             {.meaning = "orthographic: height of the view", .allowed = "physical units, above 0", .is_required = true});
-    f.number("near", camera.near_distance, {0.0, 1e15},
-             {.meaning = "near clip plane, its distance from the eye along the view; nothing behind the eye is seen",
-              .allowed = "physical units, 0 or more"});
+    f.number(
+        "near", camera.near_distance, {0.0, 1e15},
+        {.meaning = "distance of the near clip plane from the eye, along the view; nothing behind the eye is visible",
+         .allowed = "physical units, 0 or more"});
     f.number("far", camera.far_distance, {0.0, 1e15},
-             {.meaning = "far clip plane; 0: none", .allowed = "physical units, 0 or more"});
-    const About about{
-        .meaning = "off-axis: the middle of the picture lies so far to the right of the line from eye to target",
-        .unit = "heights of the view",
-        .standard = "0"};
+             {.meaning = "distance of the far clip plane; 0: none", .allowed = "physical units, 0 or more"});
+    const About about{.meaning = "off-axis shift of the picture's centre to the right of the line from eye to target",
+                      .unit = "heights of the view",
+                      .standard = "0"};
     std::optional<double> shift = camera.shift_right == 0.0 ? std::nullopt : std::optional(camera.shift_right);
     f.number("shift_right", shift, {-1e3, 1e3}, about);
     camera.shift_right = shift.value_or(0.0);
@@ -99,7 +99,7 @@ void camera_fields(Fields& f, Session& session)
         return is_camera_object(name) ? name : nlohmann::json(name).dump();
     };
     f.other("camera", read, written,
-            {.meaning = "the camera to use: the name of one of `cameras`, a side, or a camera object",
+            {.meaning = "camera in use: the name of one of `cameras`, a side, or a camera object",
              .allowed = "name or object",
              .standard = "`\"front\"`, or for a stack of few slices `\"top\"` or `\"right\"`"});
 
@@ -111,7 +111,7 @@ void camera_fields(Fields& f, Session& session)
         fields(entry, session.cameras[name]);
     };
     f.entries("cameras", names, "NAME", visit,
-              {.meaning = "a camera, in one of the three forms below; a side's name may be given a meaning of its own",
+              {.meaning = "named camera in one of the three forms below; the name of a side redefines that side",
                .allowed = "object",
                .standard = "none"});
 

@@ -17,7 +17,7 @@ void fields(Fields& f, ControlPoint& point)
 {
     constexpr double LARGEST = std::numeric_limits<float>::max();
     f.number("intensity", point.intensity, {-LARGEST, LARGEST},
-             {.meaning = "where the point lies", .allowed = INTENSITIES, .is_required = true});
+             {.meaning = "intensity of the control point", .allowed = INTENSITIES, .is_required = true});
     f.color("color", point.color, {"colour"});
     f.number("opacity", point.opacity, SHARE,
              {.meaning = "opacity", .unit = "per reference length", .is_required = true});
@@ -25,25 +25,25 @@ void fields(Fields& f, ControlPoint& point)
 
 void fields(Fields& f, OcclusionPoint& point)
 {
-    f.number("arrives", point.arrives, SHARE, {.meaning = "share of the light that arrives", .is_required = true});
-    f.number("seen", point.seen, SHARE, {.meaning = "share that is seen of it", .is_required = true});
+    f.number("arrives", point.arrives, SHARE, {.meaning = "share of ambient light that arrives", .is_required = true});
+    f.number("seen", point.seen, SHARE, {.meaning = "share shown instead of it", .is_required = true});
 }
 
 void fields(Fields& f, OcclusionSettings& occlusion)
 {
     f.number("strength", occlusion.strength, SHARE,
-             {"local ambient occlusion: how far the ambient light goes where less of it arrives; 0: off"});
+             {"strength of local ambient occlusion, the factor of the darkening of ambient light; 0: off"});
     f.number("radius", occlusion.radius, above_zero(1e-3, MAX_OCCLUSION_RADIUS),
-             {"how far away things keep ambient light off", "reference lengths"});
-    f.whole("rays", occlusion.rays, 1, 1024, {"directions that light is looked for in, for each voxel"});
+             {"maximum distance at which voxels block ambient light", "reference lengths"});
+    f.whole("rays", occlusion.rays, 1, 1024, {"number of directions sampled per voxel"});
     f.flag("full_sphere", occlusion.full_sphere,
-           {"look behind surfaces, too; otherwise only before them, where there is one"});
+           {"true: samples directions behind a surface, too; false: only in front of it, where there is one"});
     f.number("curve", occlusion.curve, above_zero(0.1, 10.0),
-             {"the share of light that arrives is raised to this power: above 1 darker"});
+             {"exponent applied to the share of light that arrives; above 1 darkens"});
     static_assert(MAX_OCCLUSION_POINTS == 16);
     const About mapping{.meaning =
-                            "instead of `curve`: points of the light that is seen over the light that arrives, by "
-                            "the latter; linear in between, level before the first and after the last",
+                            "instead of `curve`: control points that map the light that arrives to the light shown, "
+                            "sorted by the former; linear between them, constant outside",
                         .allowed = "array of at most 16",
                         .standard = "none"};
     if (f.has("mapping", !occlusion.mapping.empty())) {
@@ -53,40 +53,43 @@ void fields(Fields& f, OcclusionSettings& occlusion)
     } else {
         f.mention("mapping", mapping);
     }
-    f.flag("automatic", occlusion.automatic, {"the window renews it at once; false: when it is asked to (F8)"});
+    f.flag("automatic", occlusion.automatic, {"true: the window updates occlusion at once; false: on request (F8)"});
 }
 
 void fields(Fields& f, Light& light)
 {
-    f.flag("shaded", light.shaded,
-           {"false: the volume's colours as they are, no gradient is taken; surfaces and probe are always shaded"});
-    f.number("ambient", light.ambient, {0.0, 10.0}, {"share of the colour that is always seen"});
-    f.number("diffuse", light.diffuse, {0.0, 10.0}, {"share that depends on the surface's direction"});
+    f.flag(
+        "shaded", light.shaded,
+        {"false: draws the volume in its plain colours, without gradients; surfaces and the probe are always shaded"});
+    f.number("ambient", light.ambient, {0.0, 10.0}, {"ambient share of the colour"});
+    f.number("diffuse", light.diffuse, {0.0, 10.0},
+             {"diffuse share of the colour, which depends on the surface's orientation"});
     f.number("specular", light.specular, {0.0, 10.0}, {"strength of the highlight"});
     f.number("shininess", light.shininess, {0.0, 1000.0}, {"exponent of the highlight"});
-    f.vector("direction", light.direction, {-1e6, 1e6},
-             {.meaning = "towards the light, along the camera's right, up and back; 0, 0, 0 means 0.3, 0.5, 1",
-              .allowed = "any length from 1e-6"});
+    f.vector(
+        "direction", light.direction, {-1e6, 1e6},
+        {.meaning = "direction towards the light, along the camera's right, up and back; 0, 0, 0 means 0.3, 0.5, 1",
+         .allowed = "any length from 1e-6"});
     f.check("direction", light.direction == glm::dvec3(0.0) || glm::length(light.direction) >= 1e-6,
             "a direction of length 1e-06 or more, or 0, 0, 0 for the default");
     f.number("gradient_fade", light.gradient_fade, SHARE,
-             {"gradients well below this are no surface", "share of the intensity range per voxel"});
+             {"gradient magnitude well below which shading fades out", "share of the intensity range per voxel"});
     f.section("occlusion", light.occlusion);
 }
 
 void fields(Fields& f, DistanceBlend& blend)
 {
     f.number("size", blend.size, {0.0, 1000.0},
-             {"distance blending: how much of another colour there is at the far end of what is drawn; 0: none"});
-    f.number("rate", blend.rate, {0.0, 1000.0}, {"how it gets there: depth^rate; 0: the same everywhere"});
-    f.color("color", blend.color, {.meaning = "that colour", .standard = "the background's"});
+             {"share of the colour of distance blending at the far end of the scene; 0: off"});
+    f.number("rate", blend.rate, {0.0, 1000.0},
+             {"exponent of depth in distance blending; 0: the same share everywhere"});
+    f.color("color", blend.color, {.meaning = "colour of distance blending", .standard = "the background's"});
 }
 
 void fields(Fields& f, Unpainted& unpainted)
 {
-    f.flag("visible", unpainted.visible, {"false: voxels that no group holds are not drawn"});
-    f.number("opacity", unpainted.opacity, SHARE,
-             {"of voxels that no group holds: the transfer function's opacities are multiplied by it"});
+    f.flag("visible", unpainted.visible, {"false: unpainted voxels are not drawn"});
+    f.number("opacity", unpainted.opacity, SHARE, {"factor of the transfer function's opacity in unpainted voxels"});
 }
 
 namespace {
@@ -95,8 +98,8 @@ namespace {
 void quality_fields(Fields& f, RenderSettings& render)
 {
     const About about{.meaning =
-                          "sets `step_voxels`, `opacity_limit`, `sampling`, `detail`, `skip_empty_space`, "
-                          "`preintegration` and `adaptive_tolerance` at once, where they are not given (quality.h)",
+                          "preset of `step_voxels`, `opacity_limit`, `sampling`, `detail`, `skip_empty_space`, "
+                          "`preintegration` and `adaptive_tolerance`, for those not given (quality.h)",
                       .allowed = "`\"draft\"`, `\"interactive\"`, `\"good\"`, `\"reference\"`",
                       .standard = "none"};
     if (!f.has("quality", false)) return f.mention("quality", about);
@@ -118,35 +121,31 @@ void sample_fields(Fields& f, RenderSettings& render)
     quality_fields(f, render);
     f.number("step_voxels", render.step_voxels, above_zero(1e-4, 1024.0),
              {"distance between samples", "reference lengths"});
-    f.number("opacity_limit", render.opacity_limit, above_zero(1e-6, 1.0),
-             {"a ray stops once its opacity reaches this"});
+    f.number("opacity_limit", render.opacity_limit, above_zero(1e-6, 1.0), {"opacity at which a ray ends"});
 }
 
 void way_fields(Fields& f, RenderSettings& render)
 {
     f.choice("sampling", render.sampling,
-             {"how voxels are interpolated: in the kernel (exact), by the texture unit (hardware), or whichever the "
-              "device does well"});
+             {"interpolation of voxels: in the kernel (exact), by the texture unit (hardware), or the better one on "
+              "this device (automatic)"});
     f.choice("paging", render.paging,
-             {"whether bricks are paged on the device; never: a volume that does not fit is refused; automatic: where "
-              "the file has levels or does not fit"});
+             {"whether bricks are paged on the device; never: a volume that does not fit is refused; automatic: if the "
+              "file has levels or does not fit"});
     f.number("detail", render.detail, {0.0, 16.0},
-             {"how fine paged bricks of several levels are; 0: all voxels, as a resident volume always shows. "
-              "Pictures of different levels differ, and each is complete",
+             {"resolution of paged volumes with several levels; 0: all voxels, as resident volumes always show. Each "
+              "resolution gives a complete picture of its own",
               "voxels per pixel at least"});
     f.flag("skip_empty_space", render.skip_empty_space,
-           {"leap over bricks and cells in which nothing is visible; the picture is the same"});
-    f.flag(
-        "preintegration", render.preintegration,
-        {"look at both ends of a step and at all densities between them, for transfer functions with narrow peaks or "
-         "steep edges; steps of at most 1"});
-    f.number(
-        "adaptive_tolerance", render.adaptive_tolerance, SHARE,
-        {"above 0: rays go through every second pixel of every second row, and through all pixels only where colours "
-         "around differ by more; pixels in between are interpolated, and what is thinner than two pixels may be "
-         "missed. "
-         "Not in slices, and not where bricks have to take turns on the device",
-         "square roots of linear light"});
+           {"true: skips bricks and cells in which nothing is visible; the picture is the same"});
+    f.flag("preintegration", render.preintegration,
+           {"true: integrates the transfer function over all densities between the ends of a step, for narrow peaks "
+            "and steep edges; needs steps of at most 1"});
+    f.number("adaptive_tolerance", render.adaptive_tolerance, SHARE,
+             {"colour difference up to which pixels are interpolated: rays go through every second pixel of every "
+              "second row, and through all pixels where colours differ by more. Structures thinner than two pixels may "
+              "be missed; 0: off. Not applied in slices, nor if bricks must alternate in device memory",
+              "square roots of linear light"});
     f.check("preintegration", !render.preintegration || render.step_voxels <= 1.0,
             sentence("false, because render.step_voxels is ", render.step_voxels, ", above 1"));
 }
@@ -160,15 +159,12 @@ void background_field(Fields& f, RenderSettings& render)
 
 void border_and_color_fields(Fields& f, RenderSettings& render)
 {
-    f.flag(
-        "smooth_borders", render.smooth_borders,
-        {"painted groups end between voxels, where their labels, interpolated, weigh less than their neighbours'; at "
-         "the middle of a voxel its own label holds, and no third one appears between two. Slices show voxels. "
-         "A picture takes about half as long again where much is painted"});
-    f.number(
-        "saturation", render.saturation, SHARE,
-        {"of the picture's colours, background included; 0: greys of the same luminance, for print, or for anaglyphs "
-         "of things that one eye alone would see; lines over the picture keep theirs"});
+    f.flag("smooth_borders", render.smooth_borders,
+           {"true: draws smooth borders of painted groups by interpolated labels, which keep each voxel's label at its "
+            "centre. Slices show voxels. Pictures with much paint take about 50 % longer"});
+    f.number("saturation", render.saturation, SHARE,
+             {"saturation of the picture, background included; 0: greys of the same luminance, for print or anaglyphs. "
+              "Lines over the picture keep their colours"});
 }
 
 }  // namespace
@@ -195,22 +191,22 @@ void fields(Fields& f, RenderSettings& render)
 
 void fields(Fields& f, StereoSettings& stereo)
 {
-    f.choice("output", stereo.output, {"where the eyes' pictures go; an anaglyph is for red and cyan glasses"});
-    f.number("eye_distance", stereo.eye_distance, SHARE,
-             {"between the eyes; both see the same at the target's distance", "distances from eye to target"});
+    f.choice("output", stereo.output, {"layout of the two eyes' pictures; an anaglyph is for red and cyan glasses"});
+    f.number(
+        "eye_distance", stereo.eye_distance, SHARE,
+        {"distance between the eyes, whose views coincide at the target's distance", "distances from eye to target"});
     f.flag("toe_in", stereo.toe_in,
-           {"the eyes turn towards the target, which leaves points higher for one eye than for the other; false: "
-            "off-axis"});
+           {"true: turns the eyes towards the target, which causes vertical parallax; false: off-axis"});
 }
 
 void fields(Fields& f, SliceSettings& slices)
 {
-    f.number("paint_share", slices.paint_share, SHARE, {"how much of a painted voxel's colour is its group's"});
-    f.number("zoom", slices.zoom, above_zero(1e-3, 1e3), {"of the slices; 1: the whole volume fits"});
+    f.number("paint_share", slices.paint_share, SHARE, {"share of the group's colour in a painted voxel"});
+    f.number("zoom", slices.zoom, above_zero(1e-3, 1e3), {"zoom of the slices; 1: the whole volume fits"});
     f.vector("center", slices.center, {-double(MAX_SIDE), 2.0 * double(MAX_SIDE)},
-             {.meaning = "what the slices have in their middle",
+             {.meaning = "point at the centre of the slices",
               .unit = "voxels",
-              .standard = "the volume's, or of slices that are enlarged the probe"});
+              .standard = "the volume's centre; for enlarged slices the probe"});
     const char* const standard = "the end of the volume's range";
     f.number(
         "black", slices.black, INTENSITY,
@@ -228,44 +224,44 @@ void fields(Fields& f, ViewSettings& view)
               "(overview), or the camera and the planes through the probe across z, y and x (slices)"});
     f.section("stereo", view.stereo);
     f.section("slices", view.slices);
-    f.number("overview_zoom", view.overview_zoom, above_zero(1e-3, 1e3), {"of the three maps"});
-    f.flag("volume", view.volume, {"false: no voxels are drawn, except in slices"});
-    f.flag("meshes", view.meshes, {"false: no nodes, internodes and surfaces are drawn, and no ball of the probe"});
-    f.flag("cut_box", view.cut_box, {"lines along the edges of the box that the cutting planes leave"});
+    f.number("overview_zoom", view.overview_zoom, above_zero(1e-3, 1e3), {"zoom of the three maps"});
+    f.flag("volume", view.volume, {"false: draws no voxels, except in slices"});
+    f.flag("meshes", view.meshes, {"false: draws no nodes, internodes or surfaces, and no ball of the probe"});
+    f.flag("cut_box", view.cut_box, {"true: draws the edges of the box that the cutting planes leave"});
     std::optional<int64_t> solo = view.solo;
-    f.any_whole("solo", solo, 0, 255,
-                {.meaning = "the one group that is drawn, with those below it; 0: only what no group holds",
-                 .standard = "none: all that are visible"});
+    f.any_whole(
+        "solo", solo, 0, 255,
+        {.meaning = "number of the only group that is drawn, with the groups below it; 0: unpainted voxels only",
+         .standard = "none: all that are visible"});
     view.solo = solo ? std::optional(uint8_t(*solo)) : std::nullopt;
 }
 
 void fields(Fields& f, InteractionSettings& interaction)
 {
     f.number("resolution", interaction.resolution, {0.1, 1.0},
-             {"while something moves the window draws at most so many pixels for one of the screen, along each axis, "
-              "and fewer where that takes too long"});
-    f.number("frames_per_second", interaction.frames_per_second, {1.0, 1000.0}, {"at most"});
+             {"maximum resolution while something moves, as pixels drawn per pixel of the screen along each axis; "
+              "lowered further if drawing takes too long"});
+    f.number("frames_per_second", interaction.frames_per_second, {1.0, 1000.0}, {"maximum frame rate of the window"});
     f.whole("screenshot_scale", interaction.screenshot_scale, 1, 32,
-            {"of large screenshots: pixels for one of the window, along each axis"});
+            {"scale of large screenshots: pixels per pixel of the window, along each axis"});
     f.flag("screenshot_marks", interaction.screenshot_marks,
-           {"the window's screenshots have the scale bar, axes, names of groups and distances that the window draws"});
-    f.choice("pivot", interaction.pivot, {"what turning the view goes about"});
-    f.flag("scale_bar", interaction.scale_bar, {"the window draws a length over each pane"});
-    f.flag("axes", interaction.axes, {"the window draws the directions of x, y and z over each pane"});
+           {"true: screenshots include the scale bar, axes, names of groups and distances drawn by the window"});
+    f.choice("pivot", interaction.pivot, {"pivot of turning the view"});
+    f.flag("scale_bar", interaction.scale_bar, {"true: draws a scale bar over each pane"});
+    f.flag("axes", interaction.axes, {"true: draws the directions of x, y and z over each pane"});
     f.flag("probe_label", interaction.probe_label,
-           {"the window writes beside the probe how deep it is, and how much of it is at or above the threshold"});
-    f.flag(
-        "group_legend", interaction.group_legend,
-        {"the window writes names and colours of the groups that are painted or traced, and drawn, over the picture"});
+           {"true: shows next to the probe its depth and the share of it at or above the threshold"});
+    f.flag("group_legend", interaction.group_legend,
+           {"true: lists names and colours of all visible groups with paint or nodes over the picture"});
     f.number("workspace_scale", interaction.workspace_scale, above_zero(MIN_WORKSPACE_SCALE, MAX_WORKSPACE_SCALE),
-             {"how far the probe goes for a move of a haptic device; 1: its whole reach is the height of the view"});
+             {"scale of a haptic device's motion; 1: its whole reach is the height of the view"});
 }
 
 void fields(Fields& f, CutBox& cut)
 {
     const NumberRange voxel{0.0, double(MAX_SIDE)};
     f.vector("lower", cut.lower, voxel, {"lower corner of the part of the volume that is drawn", "voxels"});
-    f.vector("upper", cut.upper, voxel, {"its upper corner", "voxels"});
+    f.vector("upper", cut.upper, voxel, {"upper corner of the part of the volume that is drawn", "voxels"});
     f.check("", !glm::any(glm::greaterThan(cut.lower, cut.upper)), "a lower corner that is not above the upper one");
 }
 
