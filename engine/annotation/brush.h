@@ -86,22 +86,22 @@ struct PaintOp {
     double radius_voxels = 6.0;    ///< along x
     int connectivity = 6;          ///< 6 or 26
     std::vector<glm::dvec3> path;  ///< voxel coordinates
-    /// Offsets for the selected voxels; group 0 removes theirs.
+    /// Offsets to give the selected voxels; group 0 removes their offsets.
     std::optional<DensityBrush> density{};
     bool paints_group = true;     ///< false: offsets only
     bool only_unpainted = false;  ///< as in BrushSettings
-    GroupSet locked{};            ///< these groups lose and gain no voxel; [0] is not set. Neither restriction applies
-                                  ///< to offsets
+    GroupSet locked{};            ///< locked groups, which neither lose nor gain voxels; [0] is not set. Neither
+                                  ///< restriction applies to offsets
     bool operator==(const PaintOp&) const = default;
 
-    /// Removes voxels from their group; also their offsets, if it paints offsets.
+    /// Whether the stroke removes voxels from their group, and their offsets if it paints offsets.
     bool erases() const { return paints_group && group == 0; }
 };
 
-/// `threshold` is the default if the settings have none.
+/// Uses `threshold` if the settings state none.
 inline PaintOp stroke_of(const BrushSettings& settings, double threshold, std::vector<glm::dvec3> path = {})
 {
-    // Structured binding: a new member does not compile until it is handled here.
+    // Uses a structured binding, so that a new member fails to compile until it is handled here.
     const auto& [brush, region, group, own_threshold, radius_voxels, connectivity, density, paints_group,
                  only_unpainted] = settings;
     return {brush,         region,        group,           own_threshold.value_or(threshold),

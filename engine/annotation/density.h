@@ -33,11 +33,11 @@ public:
     /// Number of voxels that have an offset.
     int64_t voxels() const { return voxels_; }
 
-    /// Why a record cannot be applied; empty if it fits. Offsets must be finite and within the limit (offset_limit).
+    /// Reason why a record cannot be applied; empty if it can. Offsets must be finite and within offset_limit.
     std::string why_it_does_not_fit(const DensityBrickChange& change, Direction direction) const;
     /// Applies a record that fits (SHVR_CHECK).
     void apply(const DensityBrickChange& change, Direction direction);
-    /// Sets the offsets of a brick that has none (SHVR_CHECK); drops those beyond the volume's border. For files.
+    /// Sets the offsets of a brick that has none (SHVR_CHECK); drops those outside the volume. For reading files.
     void put(int64_t index, const OffsetBrick& offsets) { voxels_ += SparseBricks::put(index, offsets); }
 
 private:

@@ -43,7 +43,7 @@ class DensityStroke {
 public:
     /// Fails if the offset is not a finite number. Offsets beyond `offset_limit` are clamped to it.
     DensityStroke(Size3 size, const glm::dvec3& spacing, VoxelType type, double offset, Falloff falloff);
-    /// Adds the voxels of `region`, which surrounds `centre_voxel`, whose bit is set (VoxelSelection::add).
+    /// Adds the voxels of `region` whose bit is set (VoxelSelection::add); the region surrounds `centre_voxel`.
     void add(const BrushRegion& region, std::span<const uint32_t> words, const glm::dvec3& centre_voxel,
              double radius_voxels);
     /// The records that paint everything added so far, without voxels that keep their offset.
@@ -57,7 +57,7 @@ private:
     double offset_;
     Falloff falloff_;
     VoxelSelection selection_;
-    std::map<int64_t, std::unique_ptr<OffsetBrick>> strongest_;  ///< p of selected voxels, the strongest over all
+    std::map<int64_t, std::unique_ptr<OffsetBrick>> strongest_;  ///< p of each selected voxel: the strongest over all
                                                                  ///< positions
 };
 

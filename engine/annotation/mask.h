@@ -19,7 +19,7 @@ public:
     /// Voxels by group; [0] counts the unpainted ones.
     const std::array<int64_t, 256>& voxels_by_group() const { return voxels_by_group_; }
 
-    /// Why a record cannot be applied; empty if it fits.
+    /// Reason why a record cannot be applied; empty if it can.
     std::string why_it_does_not_fit(const MaskBrickChange& change, Direction direction) const;
     /// Applies a record that fits (SHVR_CHECK).
     void apply(const MaskBrickChange& change, Direction direction);

@@ -18,8 +18,8 @@ struct Range {
     int64_t begin, end;
 };
 
-/// The voxels of `within` from the first to the last for which `holds`. The test decides; the estimate, `reach` on both
-/// sides of `centre`, only gives the starting point.
+/// The voxels of `within` from the first to the last that satisfies `holds`. The estimate, `reach` voxels on both sides
+/// of `centre`, only gives the start of the search; the test decides.
 template <class Test>
 Range range_where(double centre, double reach, const Range& within, const Test& holds)
 {
@@ -74,7 +74,7 @@ bool BrushRegion::contains(const Size3& voxel) const
 
 void check_radius(double radius_voxels, const glm::dvec3& spacing, const Size3& volume_size)
 {
-    // Centred on a voxel or between two: the number of voxels along each axis is odd or even.
+    // A region is centred on a voxel or between two, so its number of voxels along an axis is odd or even.
     const glm::dvec3 reach = glm::min(radius_voxels * spacing.x / spacing, glm::dvec3(volume_size));
     const Size3 widest = glm::max(2l * Size3(glm::floor(reach)) + 1l, 2l * Size3(glm::floor(reach + 0.5)));
     refuse_size(radius_voxels, glm::min(widest, volume_size));
@@ -166,7 +166,7 @@ void VoxelSelection::add(const BrushRegion& region, std::span<const uint32_t> wo
             if (y == region.box.lower.y || y % BRICK_SIDE == 0)
                 std::fill(row_of_bricks.begin(), row_of_bricks.end(), nullptr);
             for (int64_t w = 0; w < per_row; ++w) {
-                // Kernels should respect the spans; whatever they return, nothing outside is selected.
+                // Kernels should respect the spans; if one does not, nothing outside of them is selected all the same.
                 const uint32_t word = words[row * size_t(per_row) + size_t(w)] & span_bits(region.rows[row], w);
                 merge(w, y, z, word << shift);
                 if (shift > 0) merge(w + 1, y, z, word >> (BRICK_SIDE - shift));

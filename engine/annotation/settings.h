@@ -28,8 +28,8 @@ public:
     explicit Settings(SettingValues values) : values_(std::move(values)) {}
     const SettingValues& values() const { return values_; }
 
-    /// Empty if the change can be applied. The new value of a section does not depend on the old one, which another
-    /// version of the program may have spelled differently.
+    /// Reason why the change cannot be applied; empty if it can. Old values are not compared, since another version of
+    /// the program may have spelled them differently.
     std::string why_it_does_not_fit(const SettingChange& change, Direction direction) const;
     void apply(const SettingChange& change, Direction direction);
 

@@ -103,9 +103,9 @@ protected:
     /// The value of a voxel of the volume (SHVR_CHECK).
     Value value_at(const Size3& voxel) const;
 
-    /// Name of a value in error messages: "group 3".
+    /// Function that names a value in error messages: "group 3".
     using Named = std::function<std::string(Value)>;
-    /// Whether voxels may be set to a value; empty: any.
+    /// Function that returns why voxels may not be set to a value; empty: they may.
     using Allowed = std::function<bool(Value)>;
     /// Why a change cannot be applied: its runs must ascend inside the volume, and their voxels must have the record's
     /// values before the change. Empty if it fits.

@@ -70,7 +70,7 @@ std::string listed(const StrokeResult::ByGroup& voxels, const GroupNames& name_o
     return listed(items);
 }
 
-/// Previous groups of the painted voxels, following "Painted N voxels in group G".
+/// Lists the previous groups of the painted voxels; follows "Painted N voxels in group G".
 std::string taken_in_words(const StrokeResult& result, const GroupNames& name_of)
 {
     const int64_t taken = sum_of(result.taken_from);
@@ -107,7 +107,7 @@ std::string raised_in_words(const StrokeResult& result, bool is_first)
     return (is_first ? "Changed" : "changed") + sentence(voxels, " (", offset > 0.0 ? "+" : "", offset, ")");
 }
 
-/// The selected voxels that did not change, and why; empty if there are none.
+/// Describes the selected voxels that did not change, and why; empty if there are none.
 std::string kept_in_words(const StrokeResult& result, const GroupNames& name_of)
 {
     std::string words;
@@ -164,7 +164,7 @@ void StrokeTally::add(const Mask& before, const VoxelSelection& selection, std::
             result_.regrouped += voxels;
             if (run.before != 0) result_.taken_from[run.before] += voxels;
         }
-    // A later answer may raise a voxel further.
+    // A later answer of the device may raise the same voxel further.
     for (const DensityBrickChange& change : offsets)
         for (const DensityRun& run : change.runs)
             result_.raised += set_bits(raised_[change.brick], run.first, run.last);

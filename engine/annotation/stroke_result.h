@@ -14,15 +14,15 @@ struct StrokeResult {
     PaintOp stroke;                              ///< without its path
     int64_t regrouped = 0;                       ///< voxels that changed their group
     int64_t raised = 0;                          ///< voxels that changed their offset
-    using ByGroup = std::map<uint8_t, int64_t>;  ///< voxels by group from 1 on, none of them 0
-    ByGroup taken_from{};                        ///< those of `regrouped` that came from another group
+    using ByGroup = std::map<uint8_t, int64_t>;  ///< number of voxels per group, without groups that have none
+    ByGroup taken_from{};                        ///< part of `regrouped` that came from another group
     ByGroup kept_locked{};                       ///< selected, but in a locked group
     int64_t kept_locked_out = 0;                 ///< selected, but the painted group is locked
     int64_t kept_painted = 0;  ///< selected but already painted, and the brush is limited to unpainted voxels
 
     /// Voxels that changed their group plus those that changed their offset.
     int64_t voxels() const { return regrouped + raised; }
-    /// Number of voxels that locks kept from changing.
+    /// Number of voxels that are unchanged because of locks.
     int64_t kept_by_locks() const;
     bool operator==(const StrokeResult&) const = default;
 };

@@ -31,7 +31,7 @@ std::optional<mode_t> permissions_of_old_file(const fs::path& path)
     return status.st_mode & 07777;
 }
 
-/// Names of temporary files; a writer that finds no free slot is not listed.
+/// Names of temporary files, for signal handlers. A writer that finds all slots taken is not listed.
 std::array<std::atomic<const char*>, 64> temporary_names{};
 static_assert(std::atomic<const char*>::is_always_lock_free);
 

@@ -98,7 +98,7 @@ Plane blurred_as_seen(const Plane& plane, const Sensitivity& sensitivity, double
     if (sensitivity.a2 == 0.0) return result;
     const auto weights2 = gaussian_weights(sigma_of(sensitivity.b2), radius);
     const Plane second = filtered(plane, weights2, weights2, progress);
-    // The middle weight of a kernel that sums to 1 is 1 over the sum of the unscaled kernel.
+    // In a kernel that sums to 1, the middle weight is the reciprocal of the sum of the unscaled kernel.
     const auto volume_of = [&](double a, double b, const std::vector<double>& weights) {
         const double middle = weights[size_t(radius)];
         return a * std::sqrt(std::numbers::pi / b) / (middle * middle);
@@ -200,7 +200,7 @@ std::vector<double> flip_map(const Image8& a, const Image8& b, double pixels_per
     SHVR_CHECK(pixels_per_degree > 0.0, pixels_per_degree);
     constexpr size_t PIXELS_TOLD = 1 << 16;
     const Planes ycxcz_a = ycxcz_planes(a), ycxcz_b = ycxcz_planes(b);
-    // Eight filters per picture; the rest takes about as long as these.
+    // Progress: eight filters per picture, and the rest takes about as long as these.
     FilterProgress filters(part_of(progress, 0.0, 0.5), 16.0);
     const Planes seen_a = seen(ycxcz_a, pixels_per_degree, filters), seen_b = seen(ycxcz_b, pixels_per_degree, filters);
     const Features features_a = features_of(ycxcz_a[0], pixels_per_degree, filters);

@@ -23,7 +23,7 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
-// The largest pictures hold 1 GiB of pixels, which do not compress if they are noise.
+// Maximum file size: the largest pictures have 1 GiB of pixels, which do not compress if they are noise.
 constexpr int64_t MAX_PNG_BYTES = int64_t{2} << 30;
 
 // The maximum expansion of a deflate stream.
@@ -321,7 +321,7 @@ public:
         png_set_read_fn(handles_.read, this, hand_out);
         png_set_user_limits(handles_.read, png_uint_32(MAX_IMAGE_SIDE), png_uint_32(MAX_IMAGE_SIDE));
         png_set_chunk_malloc_max(handles_.read, MAX_PICTURE_TEXT + 4096);
-        // A damaged text is an error rather than a text that is skipped.
+        // Damaged text is reported as an error instead of being skipped.
         png_set_benign_errors(handles_.read, 0);
         png_set_crc_action(handles_.read, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
         if (!succeeds(handles_.read, [&] { png_read_info(handles_.read, handles_.info); })) refuse();

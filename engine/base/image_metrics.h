@@ -43,7 +43,7 @@ struct Tolerance {
     double max_mean_error = 0.0;       ///< as PixelDifference::mean_error
 };
 inline constexpr Tolerance EXACT_TOLERANCE{};
-/// For the same arithmetic on another driver or processor. The mean catches a tiny bias that affects all pixels.
+/// Limits for the same arithmetic on another driver or processor. The mean detects a tiny bias that affects all pixels.
 inline constexpr Tolerance TIGHT_TOLERANCE{.max_abs = 2.0, .max_fraction_over_1 = 0.0005, .max_mean_error = 1e-4};
 
 /// Every limit that is exceeded, with the value found; null if none is.

@@ -40,8 +40,8 @@ NumberRange above_zero(double lower, double upper);
 /// Limits on a text, checked before its values are read.
 struct JsonLimits {
     int depth = 16;                      ///< levels of nesting; reading and printing values uses stack space for each
-    const char* expected = "an object";  ///< for the message if the text is not JSON or nests deeper
-    bool may_repeat_keys = false;        ///< the last one counts: for metadata written by other programs
+    const char* expected = "an object";  ///< added to the message if the text is not JSON or nests too deeply
+    bool may_repeat_keys = false;        ///< of repeated keys the last counts: for metadata written by other programs
 };
 
 class JsonDocument;
@@ -139,8 +139,8 @@ private:
 
     const JsonDocument* document_;
     const nlohmann::json* value_;
-    // For a missing value: the innermost object that exists, and the rest of the key. The key of an existing value is
-    // found by searching the document, which happens only on refusal.
+    // The place of a missing value: the innermost object that exists, and the rest of the key. The key of an existing
+    // value is found by searching the document, which happens only on refusal.
     const nlohmann::json* parent_ = nullptr;
     std::string missing_;
 };

@@ -38,7 +38,7 @@ public:
 
 private:
     static constexpr uint32_t SLOT = 3;   ///< bits of a slot's index
-    static constexpr uint32_t FRESH = 4;  ///< the reader has not taken the shared slot yet
+    static constexpr uint32_t FRESH = 4;  ///< set while the reader has not taken the shared slot
     static_assert(std::atomic<uint32_t>::is_always_lock_free);
 
     std::array<T, 3> slots_{};

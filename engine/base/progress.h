@@ -39,8 +39,8 @@ class ProgressLine {
 public:
     struct Place {
         bool is_terminal = false;
-        std::function<void(const std::string& text)> write;  ///< prints text as it is, with its control characters and
-                                                             ///< line ends
+        std::function<void(const std::string& text)> write;  ///< prints text unchanged, including control characters
+                                                             ///< and line ends
         std::function<double()> seconds;                     ///< time since any fixed moment
     };
     explicit ProgressLine(Place place);
@@ -59,7 +59,7 @@ private:
     Place place_;
     std::string what_;
     double started_, begun_ = 0.0, told_ = 0.0;
-    double first_fraction_ = -1.0;  ///< work done before `begin`, as in a resumed import; below 0: none yet
+    double first_fraction_ = -1.0;  ///< fraction done before `begin`, as in a resumed import; negative: not set
     bool has_told_ = false, is_shown_ = false;
 };
 

@@ -20,9 +20,9 @@ constexpr int64_t TEXELS = gpu::BRICK_TEXELS;
 constexpr size_t CELLS = gpu::BRICK_CELLS;
 constexpr size_t CELL_STEP = gpu::CELL_SIZE;
 constexpr size_t CELL_REACH = gpu::CELL_SIZE + 2;  ///< texels along one side that a sample in a cell can touch
-/// Bricks along x that one worker builds at a time: 5 MiB of texels.
+/// Number of bricks along x that a worker builds in one task: 5 MiB of texels.
 constexpr int64_t ROW_BRICKS = 64;
-/// Slices of the source that one worker reads at a time.
+/// Number of slices that a worker reads in one task.
 constexpr int64_t READ_SLICES = 4;
 
 // ---- Cell ranges ----------------------------------------------------------------------------------------------------
@@ -68,7 +68,7 @@ void find_ranges(BrickTexels& brick)
         const uint16_t* const first = brick.codes.data() + z * CELL_STEP * SLICE;
         constexpr size_t EVEN = SLICE / LANES * LANES;
         reduce_rows(first, first, SLICE, EVEN, minimum_z[z], maximum_z[z]);
-        // The last lanes again, ending with the slice.
+        // Processes the last lanes of the slice; they overlap those before.
         const size_t last = SLICE - LANES;
         reduce_rows(first + last, first + last, SLICE, LANES, minimum_z[z] + last, maximum_z[z] + last);
         std::fill(minimum_z[z] + SLICE, minimum_z[z] + SLICE_PITCH + LANES, uint16_t{0});
@@ -305,12 +305,12 @@ private:
 
     std::mutex mutex_;
     std::condition_variable changed_;
-    int64_t layer_ = 0;  ///< next task: a read of this layer, or a row
+    int64_t layer_ = 0;  ///< next task to hand out: a read of this layer, or a row
     int64_t task_ = 0;
     int64_t rows_taken_ = 0;
     std::vector<int64_t> reads_done_, rows_done_;  ///< by layer
     std::vector<bool> row_is_built_;               ///< by place
-    std::vector<BrickRow> rows_;                   ///< row i is at index i modulo their number
+    std::vector<BrickRow> rows_;                   ///< ring buffer: row i is at index i modulo its size
     bool is_stopped_ = false;
     std::exception_ptr failure_;
 };

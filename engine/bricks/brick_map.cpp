@@ -13,7 +13,7 @@ std::optional<uint32_t> BrickMap::find(const BrickKey& key) const
     return entry.key == NONE ? std::nullopt : std::optional(entry.number);
 }
 
-/// The index at which the brick is, or would be inserted.
+/// Index where the brick is or, if missing, would be inserted.
 size_t BrickMap::place_of(const BrickKey& key) const
 {
     const uint64_t word = word_of(key);

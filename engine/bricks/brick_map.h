@@ -28,7 +28,7 @@ private:
         uint64_t key = NONE;  ///< result of `word_of`
         uint32_t number = 0;
     };
-    /// Never NONE: bricks are at most 2^15 along an axis.
+    /// Never equal to NONE, since brick coordinates are at most 2^15.
     static uint64_t word_of(const BrickKey& key)
     {
         return uint64_t(key.brick.x) | uint64_t(key.brick.y) << 16 | uint64_t(key.brick.z) << 32 |

@@ -31,7 +31,7 @@ BrickStore::BrickStore(const VolumeSource& source, const IntensityWindow& window
     : source_(source), window_(window), own_maker_(source, window)
 {
     const int loaders = std::max(1, threads);
-    // One brick in progress per loader, and one that waits to be taken.
+    // Memory for one brick in progress per loader, and for one that waits to be taken.
     max_bricks_ = std::max<uint64_t>(budget_bytes / BRICK_BYTES, 2 * uint64_t(loaders));
     for (int i = 0; i < loaders; ++i) {
         loaders_.emplace_back([this](std::stop_token stop) {

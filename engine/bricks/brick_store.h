@@ -85,14 +85,14 @@ private:
     std::unordered_map<BrickKey, Kept, BrickKeyHash> kept_;
     std::list<BrickKey> by_age_;  ///< keys of `kept_`, least recently used first
     std::unordered_set<BrickKey, BrickKeyHash> loading_;
-    std::unordered_set<BrickKey, BrickKeyHash> outdated_;  ///< keys of `loading_` that must be read again
+    std::unordered_set<BrickKey, BrickKeyHash> outdated_;  ///< keys in `loading_` whose bricks must be read again
     std::unordered_map<BrickKey, std::string, BrickKeyHash> failed_;
-    std::atomic<bool> has_failures_ = false;  ///< avoids locking the mutex for each brick of a picture
+    std::atomic<bool> has_failures_ = false;  ///< copy that avoids locking the mutex for each brick of a picture
     std::unordered_set<std::string> known_messages_;
     std::vector<std::string> messages_;
     Counts counts_;
     uint64_t peak_bricks_ = 0;
-    std::vector<std::jthread> loaders_;  ///< last, so that they stop before what they use is destroyed
+    std::vector<std::jthread> loaders_;  ///< declared last: loaders stop before the members they use are destroyed
 };
 
 }  // namespace shvr

@@ -27,8 +27,8 @@ void for_each_block(std::span<const std::byte> voxels, std::span<uint16_t> codes
     }
 }
 
-/// Exact: voxels are clamped to those in the window with codes of their own, whose differences from its lower end fit
-/// in 32 unsigned bits.
+/// Exact: voxels are clamped to the window, and within it their differences from its
+/// lower end fit in 32 unsigned bits.
 template <class T>
 void convert_whole(std::span<const std::byte> voxels, std::span<uint16_t> codes, const IntensityWindow& window)
 {

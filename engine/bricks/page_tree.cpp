@@ -222,7 +222,7 @@ PageTree make_page_tree(const VolumeInfo& volume, int levels, const PageView& vi
     tree.finest_level = levels - 1;
     for (const PageTree::Leaf& leaf : tree.leaves) tree.finest_level = std::min(tree.finest_level, leaf.key.level);
 
-    // No finer than the finest leaf, and small enough to rebuild quickly.
+    // The grid's cells are no smaller than the finest leaf, and few enough to be rebuilt quickly.
     tree.cell_shift = tree.finest_level + 5;
     const int64_t longest = std::max({volume.size.x, volume.size.y, volume.size.z});
     while ((longest - 1) >> tree.cell_shift >= int64_t{gpu::PAGE_GRID}) ++tree.cell_shift;

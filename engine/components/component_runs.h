@@ -21,7 +21,7 @@ struct LabelledRun {
 struct SliceRuns {
     struct Row {
         uint32_t y = 0;
-        uint32_t end = 0;  ///< end of its runs, which begin at the end of the previous row's
+        uint32_t end = 0;  ///< end of its runs; they begin where those of the previous row end
     };
     std::vector<Row> rows{};  ///< ascending
     std::vector<LabelledRun> runs{};

@@ -20,7 +20,7 @@ namespace shvr {
 namespace {
 
 constexpr uint32_t NO_LABEL = std::numeric_limits<uint32_t>::max();
-/// Ranges of slices per thread, since some hold more runs than others; and the minimum thickness of a range.
+/// Number of ranges per thread, since some ranges hold more runs than others; and the minimum thickness of a range.
 constexpr int64_t RANGES_PER_THREAD = 4, THINNEST_RANGE = 16;
 /// Limit of the bits of a slice: 2^33 voxels.
 constexpr int64_t MAX_SLICE_BYTES = int64_t{1} << 30;
@@ -46,8 +46,8 @@ private:
     std::atomic<int64_t> now_ = 0, peak_ = 0;
 };
 
-/// Joins the runs of two neighbouring rows that touch; `reach` 1: also over an edge or a corner. Runs of `row` that
-/// have no label yet take that of their neighbour.
+/// Joins touching runs of two neighbouring rows; with `reach` 1, contact over an edge or a corner counts, too. Runs of
+/// `row` without a label take that of their neighbour.
 void join_rows(std::span<LabelledRun> row, std::span<const LabelledRun> before, uint32_t reach, LabelForest& forest)
 {
     auto first = before.begin();
@@ -82,7 +82,7 @@ public:
     void label(BitSlab& slab, Connectivity connectivity, RunFile* file, HeldBytes& held,
                std::atomic<int64_t>& words_done, const std::atomic<bool>& is_stopped)
     {
-        int64_t done = lower_;  // slices; those that were skipped have no runs
+        int64_t done = lower_;  // slices done so far; skipped ones have no runs
         for (int64_t slab_bytes = slab.bytes(); !is_stopped && slab.read(done, upper_); slab_bytes = slab.bytes()) {
             held.change(slab.bytes() - slab_bytes);
             for (int64_t z = slab.lower(); z < slab.upper(); ++z) {
@@ -152,7 +152,7 @@ private:
 
 /// The data that the volume of labels needs.
 struct LabelTable {
-    LabelForest forest;                    ///< the parent of a provisional label is its final one
+    LabelForest forest;                    ///< maps provisional labels to final ones, as their parents
     std::vector<int64_t> lower;            ///< first slice of each range
     std::vector<uint32_t> bases;           ///< offset of each range's labels
     std::optional<RunFile> runs{};         ///< with labels of their ranges
@@ -328,7 +328,7 @@ private:
         }
     }
 
-    /// Orders components by size; of two equal ones the first one comes first.
+    /// Orders components by size, and equal ones by their first voxel.
     struct Larger {
         bool operator()(const Component& a, const Component& b) const
         {

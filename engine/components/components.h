@@ -25,7 +25,7 @@ struct ComponentOptions {
     int64_t fewest_voxels = 1;   ///< smaller components are dropped
     int64_t max_components = 0;  ///< keeps only the largest N, the first of equal ones; 0: all
     int threads = 0;             ///< 0: one per core
-    /// Folder of the temporary file; if unset, no labels are kept and `labels` may not be called.
+    /// Folder of the temporary file; if unset, no labels are kept, and `labels` must not be called.
     std::optional<std::filesystem::path> run_folder{};
     Progress progress{};  ///< called a few times per second
 };
@@ -41,7 +41,7 @@ public:
         int64_t foreground_voxels = 0;  ///< total of all components
         int64_t kept_voxels = 0;
         int64_t largest_voxels = 0;      ///< 0 if there is none
-        std::vector<Component> largest;  ///< the largest kept ones, sorted by size, then by order; at most
+        std::vector<Component> largest;  ///< the largest of the kept components, sorted by size, then by order; at most
                                          ///< MAX_LARGEST_LISTED
         int64_t provisional = 0;         ///< number of provisional labels
         int64_t peak_bytes = 0;          ///< peak memory while labelling

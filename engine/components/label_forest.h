@@ -28,7 +28,7 @@ public:
         parent(label) = label;
         return label;
     }
-    /// Number of labels so far, including those skipped by `append`, whose voxel count is 0.
+    /// Number of labels so far. Includes labels skipped by `append`, which have 0 voxels.
     uint64_t size() const { return next_; }
 
     uint32_t root_of(uint32_t label)
@@ -47,13 +47,13 @@ public:
         return a;
     }
 
-    /// While labelling: the parent of a label. Afterwards: free for the caller's use.
+    /// While labelling: the parent of a label. Afterwards: for any use by the caller.
     uint32_t& parent(uint32_t label) { return blocks_[label / BLOCK]->parents[label % BLOCK]; }
     uint32_t parent(uint32_t label) const { return blocks_[label / BLOCK]->parents[label % BLOCK]; }
     /// The number of voxels in the label's own runs.
     int64_t& voxels(uint32_t label) { return counts_[label / BLOCK]->at(label % BLOCK); }
 
-    /// Appends another forest, whose labels are shifted by the result.
+    /// Appends another forest. Its labels are shifted by the returned number.
     uint64_t append(LabelForest&& other)
     {
         const uint64_t base = blocks_.size() * uint64_t{BLOCK};

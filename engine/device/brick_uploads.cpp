@@ -41,7 +41,7 @@ void write_codes(const BrickTexels& texels, const glm::ivec3& begin, const glm::
 
 void BrickUploads::stage(const Target& target, const BrickTexels& texels)
 {
-    if (targets_.size() == batch_) flush();  // this failed when the last brick was staged
+    if (targets_.size() == batch_) flush();  // only if this failed after the last brick was staged
     Staging& staging = staging_[filling_];
     if (staging.copy) static_cast<void>(staging.copy.finish());
     std::byte* bytes = staging.bytes.mapped().data();

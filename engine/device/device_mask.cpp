@@ -20,7 +20,7 @@ constexpr uint64_t MASK_BRICK_BYTES = uint64_t{gpu::BRICK_SIZE} * gpu::BRICK_SIZ
 
 uint64_t DeviceMask::bytes_for(uint64_t painted_bricks)
 {
-    // The unused slot, partly filled rows of the atlas, and a table with three numbers per entry.
+    // Includes the unused slot, partly filled rows of the atlas, and a table with three numbers per entry.
     constexpr uint64_t ROW = 16;
     const uint64_t bricks = painted_bricks + painted_bricks / MASK_SPARE_SHARE + MASK_FEWEST_BRICKS + ROW;
     return bricks * MASK_BRICK_BYTES + 4 * std::bit_ceil(2 * painted_bricks + 16) * gpu::MASK_ENTRY;
@@ -55,7 +55,7 @@ void DeviceMask::grow(uint64_t bricks)
     atlas_ = memory_.create("mask", *desc, gpu::Placement::device, "what is painted");
     free_slots_.clear();
     slots_.clear();
-    // The first corner is NO_SLOT. Slots are taken from the end of the list.
+    // The first corner is NO_SLOT and stays unused. Slots are taken from the end of the list.
     for (uint32_t z = slots.z; z-- > 0;)
         for (uint32_t y = slots.y; y-- > 0;)
             for (uint32_t x = slots.x; x-- > 0;)

@@ -53,7 +53,7 @@ private:
     gpu::Storage atlas_, table_;
     std::vector<gpu::Submission> in_flight_;
     bool is_stale_ = false;       ///< an update failed
-    bool is_table_stale_ = true;  ///< slots were assigned or released since it was uploaded
+    bool is_table_stale_ = true;  ///< slots were assigned or released since the table was uploaded
 };
 
 }  // namespace shvr

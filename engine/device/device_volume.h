@@ -23,7 +23,7 @@ namespace shvr {
 /// How many bricks an atlas holds along each axis, at least `slots` in all. Slots fill a row of bricks first; narrow
 /// rows keep a brick's texels close in memory on devices with linear images.
 glm::uvec3 atlas_layout(uint64_t slots, uint32_t brick_texels, uint32_t max_side, bool narrow);
-/// The largest number of slots that atlas_layout() supports.
+/// Maximum number of slots for atlas_layout().
 uint64_t max_atlas_slots(uint32_t brick_texels, uint32_t max_side);
 
 /// An atlas of paged bricks: images of the same size, stacked along z (shaders/library/atlas.glsl).
@@ -86,7 +86,7 @@ public:
     /// A graph with one short step of prepare()'s work that can be done in advance; null when none is left. The graph
     /// must be submitted before the next call.
     virtual std::optional<FrameGraph> next_preparation(const Visibility& visibility, const DeviceMask& mask) = 0;
-    /// Likewise, one step of work that makes later pictures faster without changing them.
+    /// Likewise, for one step of work that makes later pictures faster without changing them.
     virtual std::optional<FrameGraph> next_refinement(const Visibility& visibility, const DeviceMask& mask) = 0;
     virtual bool refinement_is_due() const = 0;
     /// Adds the passes that update what rays read, and returns the handles to draw with. `painted`: the mask's handles
@@ -135,7 +135,7 @@ public:
     virtual std::vector<std::string> take_messages() = 0;
     enum class Presence : uint8_t {
         there,
-        missing,  ///< not on the device; may still be loaded
+        missing,  ///< not on the device, but may still be loaded
         empty,    ///< known to show nothing; not loaded
         failed,   ///< it cannot be read
     };

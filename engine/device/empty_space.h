@@ -27,11 +27,11 @@ public:
 private:
     void forget_unless_submitted(FrameGraph& graph);
 
-    std::optional<LeapGridInput> look_;  ///< what the grid is built from, except paint
+    std::optional<LeapGridInput> look_;  ///< look from which the grid is built, except paint
     bool holds_ = false;                 ///< pictures are correct, except for the patch
     CellBox patch_;                      ///< changed cells that the grid does not reflect yet
     uint32_t stage_ = 0;                 ///< the next of LEAP_STAGES
-    CellBox changed_;                    ///< the cells that the stages in progress cover
+    CellBox changed_;                    ///< cells covered by the stages in progress
     glm::uvec3 cell_counts_{0};          ///< the size of the whole grid
 };
 

@@ -109,7 +109,7 @@ void append_opaque(std::vector<glm::vec4>& texels, const std::vector<OpaqueInter
     for (const OpaqueInterval& interval : intervals)
         codes.push_back({window.code_of(interval.lower), window.code_of(interval.upper)});
     codes.push_back({gpu::OUT_OF_REACH, gpu::OUT_OF_REACH});
-    // A margin of half a texel on both sides: the texel of a density is determined in float.
+    // Adds a margin of half a texel on both sides, since kernels compute the texel of a density in float.
     const double width = (range.upper - range.lower) / (gpu::OPAQUE_ENTRIES - 1);
     size_t first = 0, last = 0;
     for (uint32_t k = 0; k < gpu::OPAQUE_ENTRIES; ++k) {
@@ -143,7 +143,7 @@ TableRange table_range(const TransferFunction& function, const IntensityWindow& 
     const double first = window.code_of(function.lower()), last = window.code_of(function.upper());
     TableRange range{
         .lower = std::clamp(first, 0.0, LAST_CODE), .upper = std::clamp(last, 0.0, LAST_CODE), .samples = {}};
-    // If nothing is cut off, use the function's own numbers: codes are rounded.
+    // If nothing is cut off, keep the function's own numbers, since codes are rounded.
     range.samples.lower = range.lower == first ? function.lower() : window.intensity_of(range.lower);
     range.samples.upper = range.upper == last ? function.upper() : window.intensity_of(range.upper);
     const auto codes = std::max(uint32_t(std::ceil(range.upper - range.lower)), 1u);

@@ -87,7 +87,7 @@ public:
 
     /// The table for steps of that many reference lengths.
     const LookTable& table_of(const Look& look, const IntensityWindow& window, double step_voxels);
-    /// What is visible, from whichever table is cached: the step length does not matter. Excludes the guard (leap.h).
+    /// Visible densities, from whichever table is cached: the step length does not matter. Excludes the guard (leap.h).
     Visibility visibility_of(const Look& look, const IntensityWindow& window);
     Resource upload_function(FrameGraph& graph, const Look& look, const IntensityWindow& window, double step_voxels);
     Resource upload_groups(FrameGraph& graph, const Look& look, double step_voxels);

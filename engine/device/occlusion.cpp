@@ -14,7 +14,7 @@ static_assert(MAX_OCCLUSION_RADIUS == OCCLUSION_MAX_RADIUS);
 
 namespace {
 
-/// In addition to the radius: the lift of rays off surfaces, half the largest cell, and the voxel itself.
+/// Distance in addition to the radius: the lift of rays off surfaces, half the largest cell, and the voxel itself.
 constexpr double MARGIN_VOXELS = 8.0;
 
 /// For paged bricks, which take more.
@@ -278,7 +278,7 @@ bool Occlusion::has_all_around(const BrickKey& key) const
     return !is_missing;
 }
 
-/// Called for every brick after a change: the cheapest checks come first.
+/// Called for every brick after a change, so the cheapest checks come first.
 bool Occlusion::is_candidate(const BrickKey& key, Entry& entry)
 {
     ++counts_.walks;
@@ -306,7 +306,7 @@ bool Occlusion::is_seen(const BrickKey& key, Entry& entry)
     return *entry.is_seen;
 }
 
-/// A brick with nothing visible may still contain voxels next to painted ones, or next to the visible ends of a step.
+/// An empty brick may still contain voxels next to painted ones, or next to the visible ends of a step.
 bool Occlusion::look_whether_seen(const BrickKey& key, const Entry& entry) const
 {
     if (look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 1)) return true;
@@ -329,10 +329,10 @@ bool Occlusion::is_due()
     return false;
 }
 
-/// Queues bricks of one level: that of the nearest.
+/// Queues bricks of a single level: that of the nearest brick.
 void Occlusion::fill_queue(const glm::dvec3& eye)
 {
-    /// Enough for the next slices, which then need no pass over all bricks.
+    /// Enough bricks for the next slices, which then need no pass over all bricks.
     constexpr size_t MOST = size_t{4} * gpu::OCCLUSION_SLICE;
     queued_ = cause();
     queued_eye_ = eye;
@@ -362,7 +362,7 @@ void Occlusion::fill_queue(const glm::dvec3& eye)
     queue_.assign(candidates.rbegin(), candidates.rend());
 }
 
-/// They stay in the queue until they are no longer due.
+/// Bricks stay in the queue until they are no longer due.
 std::vector<BrickKey> Occlusion::nearest(const glm::dvec3& eye, size_t most)
 {
     const auto is_done = [&](const Candidate& candidate) {

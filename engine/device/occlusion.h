@@ -39,7 +39,7 @@ public:
         uint32_t rays = 32;
         bool full_sphere = false;
         double gradient_fade = 0.0;  ///< codes per voxel
-        bool preintegrated = false;  ///< a step may show the opacity of its ends, half a step from where it is lit
+        bool preintegrated = false;  ///< a step may show the opacity of its ends, half a step from the lit position
     };
 
     /// Frees all memory.
@@ -77,7 +77,7 @@ public:
     struct Counts {
         uint64_t cells = 0;   ///< bricks whose cells have been computed
         uint64_t values = 0;  ///< bricks whose values have been computed
-        uint64_t looks = 0;   ///< checks of a brick's paint and neighbours for whether it is visible
+        uint64_t looks = 0;   ///< number of checks whether a brick is visible, by its paint and neighbours
         uint64_t walks = 0;   ///< bricks checked for being due
     };
     const Counts& counts() const { return counts_; }
@@ -88,8 +88,8 @@ private:
         BrickTexels::Range range;
         bool needs_cells = true, needs_values = true;
         bool is_new = true;             ///< its values have never been computed
-        bool is_exact = false;          ///< every brick that its values needed was on the device
-        std::optional<bool> is_seen{};  ///< unknown since its range, look, paint or neighbours changed
+        bool is_exact = false;          ///< whether every brick that its values needed was on the device
+        std::optional<bool> is_seen{};  ///< unknown since a change of the brick's range, look, paint or neighbours
     };
     using Entries = std::unordered_map<BrickKey, Entry, BrickKeyHash>;
 
@@ -130,7 +130,7 @@ private:
     uint64_t revision_ = 0;  ///< places_revision() of the volume
     Counts counts_;
 
-    /// Inputs of the due set, apart from completed work.
+    /// Inputs that determine the due bricks, apart from completed work.
     struct Cause {
         uint64_t visits = 0;   ///< DeviceVolume::visits_revision
         uint64_t changes = 0;  ///< changes_
@@ -142,9 +142,9 @@ private:
         BrickKey key;
     };
     uint64_t changes_ = 1;            ///< incremented when entries may become due
-    Cause nothing_due_{}, queued_{};  ///< at which nothing was due; for which the queue was filled
+    Cause nothing_due_{}, queued_{};  ///< inputs for which nothing was due; inputs for which the queue was filled
     glm::dvec3 queued_eye_{0.0};
-    std::vector<Candidate> queue_;  ///< the nearest that are due, of one level, nearest last
+    std::vector<Candidate> queue_;  ///< nearest due bricks, all of one level; the nearest is last
 };
 
 }  // namespace shvr

@@ -40,7 +40,7 @@ bool KnownBricks::is_painted(const PageSight& sight, const BrickKey& key) const
     return is;
 }
 
-/// Whether it is shown even if the transfer function hides it.
+/// Whether the brick is shown even if the transfer function hides it.
 bool KnownBricks::is_always_shown(const PageView& view, const BrickKey& key) const
 {
     if (view.shows_all || !view.shown) return view.shows_all;
@@ -94,7 +94,7 @@ std::shared_ptr<PageList> list_of(const KnownBricks& known, PageSight sight, uin
     list->leaves.clear(tree->leaves.size());
     list->entries.reserve(std::bit_ceil(tree->entries.size()));
     list->entries = tree->entries;
-    // Powers of two: views differ, and a frame's buffers are reused if their sizes match.
+    // Sizes are powers of two: views differ, and a frame's buffers are reused if their sizes match.
     list->entries.resize(std::bit_ceil(tree->entries.size()));
     for (uint32_t leaf = 0; leaf < tree->leaves.size(); ++leaf) {
         const BrickKey& key = tree->leaves[leaf].key;

@@ -31,12 +31,12 @@ struct PageSight {
 
 struct BrickEvent {
     enum class Kind : uint8_t {
-        placed,   ///< was put on the device; `number`: its packed slot
+        placed,   ///< the brick was uploaded; `number`: its packed slot
         gone,     ///< is no longer on the device
-        read,     ///< was read; `number`: its range, as KnownBricks keeps it
-        unread,   ///< its voxels have changed, so its range is unknown
-        painted,  ///< `number`: count of painted level 0 bricks in it
-        other,    ///< another change of this brick alone, whose details are kept elsewhere
+        read,     ///< the brick was read; `number`: its range, as stored by KnownBricks
+        unread,   ///< the brick's voxels have changed, so its range is unknown
+        painted,  ///< painted bricks changed; `number`: count of painted level 0 bricks in this brick
+        other,    ///< another change of this brick alone, with details kept elsewhere
     };
     BrickKey key;
     Kind kind = Kind::other;
@@ -66,12 +66,12 @@ public:
         return {key, BrickEvent::Kind::read, range.minimum | uint32_t{range.maximum} << 16};
     }
     std::optional<BrickTexels::Range> range_of(const BrickKey& key) const;
-    /// Number of painted level 0 bricks in it.
+    /// Number of painted level 0 bricks in a brick.
     uint32_t painted_in(const BrickKey& key) const { return painted_.find(key).value_or(0); }
 
-    /// Whether paint may show in it, including paint of neighbouring bricks.
+    /// Whether paint may be visible in a brick, including paint of neighbouring bricks.
     bool is_painted(const PageSight& sight, const BrickKey& key) const;
-    /// Whether anything in it, or in the finer bricks below it, may be visible according to the file.
+    /// Whether anything in a brick, or in the finer bricks below it, may be visible according to the file.
     bool may_show(const PageSight& sight, const BrickKey& key) const;
     /// Whether it was read and shows nothing.
     bool is_empty(const PageSight& sight, const BrickKey& key) const;
@@ -93,7 +93,7 @@ private:
 struct PageList {
     PageSight sight;
     std::shared_ptr<const PageTree> tree;
-    BrickMap leaves;                ///< the number of each leaf of the tree
+    BrickMap leaves;                ///< index of each leaf of the tree, by its key
     std::vector<uint32_t> entries;  ///< the directory of shaders/pages.h
     uint64_t changes = 0;           ///< it reflects the first `changes` changes
     bool has_entries = true;        ///< false: its entries must still be made
@@ -101,13 +101,13 @@ struct PageList {
 
 class PageLister {
 public:
-    /// `known`: still without any brick. Its source must be readable by any thread.
+    /// `known`: initial state, without any brick. Its source must be readable by any thread.
     explicit PageLister(KnownBricks known);
     ~PageLister();
     PageLister(const PageLister&) = delete;
 
     void note(const BrickEvent& change);
-    /// Count of changes noted so far, and the changes after number `changes`; null if those are no longer in the log.
+    /// Number of changes noted so far; changes after number `changes`, null if those are no longer in the log.
     uint64_t changes() const { return first_ + log_.size(); }
     std::optional<std::span<const BrickEvent>> changes_since(uint64_t changes) const;
 
@@ -157,7 +157,7 @@ private:
     std::optional<Asked> asked_;
     std::optional<Made> made_;
     std::condition_variable_any work_, finished_;
-    std::jthread thread_;  ///< last, so that it stops before what it uses is destroyed
+    std::jthread thread_;  ///< declared last: the thread stops before the members it uses are destroyed
 };
 
 }  // namespace shvr

@@ -20,7 +20,7 @@ int64_t brick_total(const Size3& size, int level)
     return counts.x * counts.y * counts.z;
 }
 
-/// Slots for all bricks of all levels, plus the empty one.
+/// Number of slots for all bricks of all levels, plus the empty one.
 uint64_t useful_slots(const VolumeInfo& info, int levels)
 {
     uint64_t useful = 1;
@@ -35,7 +35,7 @@ StackedLayout layout_for(const gpu::DeviceTraits& traits, const VolumeInfo& info
 {
     const uint64_t useful = useful_slots(info, levels), most = bytes / BrickAtlas::slot_bytes(codes);
     const uint64_t least = std::min(useful, PagedVolume::MIN_SLOTS);
-    // Layouts round up. A layout for fewer slots may have more of them, or exist where one for more does not.
+    // Layouts round up: one for fewer slots may have more of them, or may exist where one for more slots does not.
     for (uint64_t slots = std::min(useful, most); slots >= least; --slots)
         if (const std::optional<StackedLayout> layout = stacked_layout(slots, codes, traits))
             if (layout->count() <= most) return *layout;
@@ -89,7 +89,7 @@ PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shar
     pin_coarse_levels();
 }
 
-/// Loads the coarsest level now, or starts to, so that a first picture can be shown soon, and requests the next ones.
+/// Loads the coarsest level, or starts to, so that a first picture can be shown soon; requests the next levels.
 void PagedVolume::pin_coarse_levels()
 {
     check_coarsest(info(), levels_, options_.codes, slots_.count());

@@ -57,7 +57,7 @@ public:
     void look_by(const Visibility& visibility) override;
     bool has_view() const override { return list_ != nullptr; }
     int finest_level() const override { return list_ ? list_->tree->finest_level : 0; }
-    /// Preparation depends on the view, so all of it is left to prepare().
+    /// All preparation depends on the view, so it is left to prepare().
     std::optional<FrameGraph> next_preparation(const Visibility&, const DeviceMask&) override { return std::nullopt; }
     std::optional<FrameGraph> next_refinement(const Visibility&, const DeviceMask&) override { return std::nullopt; }
     bool refinement_is_due() const override { return false; }
@@ -146,19 +146,19 @@ private:
     gpu::Storage cell_leap_, directory_;
 
     BrickSlots slots_;
-    KnownBricks known_;  ///< the same slots, what was read, and what is painted
+    KnownBricks known_;  ///< knowledge of the bricks: their slots, ranges that were read, and paint
     PageLister lister_;
     const PageSight no_sight_{};
     std::shared_ptr<PageList> list_;  ///< the current view's list
-    bool list_is_outdated_ = false;   ///< paint makes the view need other bricks, which are being listed
+    bool list_is_outdated_ = false;   ///< paint made other bricks necessary for the view, and they are being listed
 
     // By leaf.
-    std::vector<bool> is_reached_;  ///< visited by rays since the view last changed
-    /// Visited earlier. Counts as reached until there is no room for both; otherwise a turning camera would end up with
-    /// bricks that are no longer visible.
+    std::vector<bool> is_reached_;  ///< leaves visited by rays since the view last changed
+    /// Leaves visited earlier. They count as visited until there is no room for both; otherwise, turning the camera
+    /// would keep bricks that are no longer visible.
     std::vector<bool> was_reached_;
     std::vector<uint32_t> visited_;  ///< leaves in either set
-    std::set<uint32_t> awaited_;     ///< a superset of the missing ones among them; nearest first
+    std::set<uint32_t> awaited_;     ///< superset of the missing bricks among them; nearest first
     bool rays_wait_ = false;
     std::function<bool(const BrickKey&)> is_ready_;
     /// Bricks that cannot be read and that rays have waited for: coarser ones are drawn from then on.
@@ -168,21 +168,21 @@ private:
     std::vector<uint32_t> changed_entries_;
     bool all_entries_changed_ = true;
     bool all_leaves_are_stale_ = true;
-    bool directory_is_stale_ = true;  ///< changes may have been noted since it was uploaded
+    bool directory_is_stale_ = true;  ///< changes may have been noted since the directory was uploaded
     uint64_t leaves_looked_up_ = 0, directory_bytes_ = 0;
     bool wants_are_stale_ = true;
     bool is_limited_ = false;
-    size_t pending_ = 0;                                 ///< visited leaves that are requested and can still arrive
+    size_t pending_ = 0;                                 ///< visited leaves whose bricks are requested and may arrive
     std::unordered_set<BrickKey, BrickKeyHash> region_;  ///< bricks of the last region
     std::unordered_set<BrickKey, BrickKeyHash> around_;  ///< bricks requested by want_around()
     std::vector<int> around_reach_;
-    uint64_t around_revision_ = 0;  ///< the value of reached_revision_ that around_ was made for
+    uint64_t around_revision_ = 0;  ///< value of reached_revision_ for which around_ was made
     uint64_t places_revision_ = 1, reached_revision_ = 1;
     std::vector<BrickKey> coarse_;             ///< bricks that are always on the device
-    size_t coarsest_ = 0, coarsest_left_ = 0;  ///< bricks that `load_on` takes, and those still to come
+    size_t coarsest_ = 0, coarsest_left_ = 0;  ///< number of bricks that `load_on` takes, and of those still to come
     std::vector<BrickKey> leap_jobs_;
 
-    BrickStore store_;  ///< last, so that its loaders stop before what they read is destroyed
+    BrickStore store_;  ///< declared last: loaders stop before the members they read are destroyed
 };
 
 }  // namespace shvr

@@ -10,7 +10,7 @@ namespace shvr {
 
 namespace {
 
-/// Maximum number of bricks that are re-read after a change of voxels while the caller waits.
+/// Maximum number of bricks re-read after a change of voxels while the caller waits.
 constexpr size_t MAX_RENEWED_NOW = 256;
 
 }  // namespace
@@ -200,7 +200,7 @@ void PagedVolume::rebuild_tree()
 /// Adds the bricks that the picture lacks, nearest first. False if there are not enough slots for all.
 bool PagedVolume::list_wants(std::vector<BrickKey>& keys)
 {
-    // Bricks that are on the device, or will be. If there are free slots for all, their number does not matter.
+    // Counts bricks that are on the device or will be. If there are slots for all, their number does not matter.
     const bool is_roomy = keys.size() + awaited_.size() + around_.size() <= slots_.free_count();
     size_t room = is_roomy ? slots_.free_count() : slots_.room();
     room -= std::min(room, keys.size());
@@ -369,7 +369,7 @@ bool PagedVolume::note_painted_in(const BrickKey& key, bool is, bool asks)
         needs_others = needs_others || (asks && known_.may_show(sight(), reached[i]) != were_shown[i]);
         if (i > 0) note_changed(reached[i]);
         const std::optional<uint32_t> leaf = leaf_of(reached[i]);
-        if (leaf && is_visited(*leaf)) awaited_.insert(*leaf);  // an empty brick may now be a missing one
+        if (leaf && is_visited(*leaf)) awaited_.insert(*leaf);  // a brick that was empty may now be a missing one
     }
     return needs_others;
 }
@@ -397,8 +397,8 @@ void PagedVolume::note_painted(const Mask& mask, std::span<const int64_t> bricks
     ++reached_revision_;
     needs_changed();
     if (!needs_others || !list_) return;
-    // Painted voxels are shown, whatever the file states about their densities. The present list is drawn until the new
-    // one is ready, so that a stroke does not wait for a list in each brick that it enters.
+    // Paint is visible whatever the file states about densities. The present list is drawn until the new one is ready,
+    // so that a stroke does not wait for a list in each brick it enters.
     list_is_outdated_ = true;
     static_cast<void>(lister_.get_ready(sight().view, sight().visibility));
 }

@@ -8,7 +8,7 @@
 
 namespace shvr {
 
-/// The directory's entry for a leaf; if rays wait, possibly the instruction to wait.
+/// The directory's entry for a leaf; where rays wait, it may be the instruction to wait.
 uint32_t PagedVolume::entry_of(const BrickKey& leaf) const
 {
     if (rays_wait_) {
@@ -105,7 +105,7 @@ Resource PagedVolume::upload_directory(FrameGraph& graph)
 std::vector<BufferRegion> PagedVolume::changed_regions(std::vector<uint32_t> entries,
                                                        std::vector<uint32_t>& values) const
 {
-    constexpr uint32_t GAP = 16;  // entries: a few extra bytes cost less than an extra region
+    constexpr uint32_t GAP = 16;  // distance in entries: copying a few extra bytes costs less than an extra region
     std::ranges::sort(entries);
     std::vector<BufferRegion> regions;
     for (size_t first = 0, end = 0; first < entries.size(); first = end) {

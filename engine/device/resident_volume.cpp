@@ -86,7 +86,7 @@ private:
     std::deque<Batch> ready_;
     std::exception_ptr failure_;
     bool is_stopped_ = false;
-    std::jthread thread_;  ///< last: it ends before the members it uses
+    std::jthread thread_;  ///< declared last: it ends before the members it uses are destroyed
 };
 
 ResidentVolume::ResidentVolume(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
@@ -323,7 +323,7 @@ void ResidentVolume::note_painted(const Mask& mask, std::span<const int64_t> bri
 {
     for (const int64_t brick : bricks) {
         const glm::uvec3 first = gpu::BRICK_CELLS * glm::uvec3(position_of(brick, mask.brick_counts()));
-        const glm::uvec3 reach(visibility_.params.paint_reach);  // at most a voxel, so at most a cell
+        const glm::uvec3 reach(visibility_.params.paint_reach);  // at most a voxel away, and so at most a cell
         empty_space_.changed(
             {first - glm::min(first, reach), glm::min(first + gpu::BRICK_CELLS + reach, cell_counts_)});
     }

@@ -26,7 +26,7 @@ public:
 
     /// Device memory of such a volume, including cells and leap grid.
     static uint64_t bytes_for(const VolumeInfo& info, AtlasCodes codes);
-    /// Whether the device supports such large images and buffers, however much memory is free.
+    /// Whether the device supports images and buffers of that size, however much memory is free.
     static bool is_possible(const gpu::Memory& memory, const VolumeInfo& info, AtlasCodes codes);
 
     uint64_t brick_count() const;
@@ -61,7 +61,7 @@ public:
     void want_around(const std::vector<int>&) override {}
     void prefer(const VoxelBox&) override {}
 
-    /// Waits for reads, and for the device where many bricks changed.
+    /// Waits for reads, and for the device if many bricks changed.
     void renew(std::span<const VoxelBox> changed) override;
     void note_painted(const Mask& mask, std::span<const int64_t> bricks) override;
 
@@ -99,7 +99,7 @@ private:
     Visibility visibility_;
     EmptySpace empty_space_;
     std::optional<BrickUploads> uploads_;  ///< while bricks are being uploaded
-    std::vector<uint32_t> slots_;          ///< slots of the loaded bricks, until all are loaded
+    std::vector<uint32_t> slots_;          ///< slots of the bricks loaded so far
     std::unique_ptr<Builder> builder_;     ///< while the volume is loaded in slices
 };
 

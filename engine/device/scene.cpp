@@ -17,24 +17,24 @@ namespace {
 // Shares of the device memory that is free when a volume is loaded.
 /// A resident volume may take all of it except what pictures drawn in parts and tables need.
 constexpr uint64_t PICTURE_SIXTEENTHS = 1;
-/// The minimum reserved for these: tables of one or two
-/// megabytes, the directory of bricks, parts of 64 pixels a side.
+/// Minimum reserved for pictures and tables: tables of one or two megabytes, the directory of bricks, parts of 64
+/// pixels a side.
 constexpr uint64_t MIN_PICTURE_BYTES = uint64_t{4} << 20;
-/// Paged bricks may take three fifths: the rest is for pictures, mask and surfaces, which may grow.
+/// Share for paged bricks, three fifths: the rest is for pictures, mask and surfaces, which may grow.
 constexpr uint64_t PAGED_FIFTHS = 3;
-/// The same with ambient occlusion, which then takes half as much as the bricks.
+/// Share for paged bricks with ambient occlusion, which then takes half as much as the bricks.
 constexpr uint64_t PAGED_FIFTHS_WITH_OCCLUSION = 2;
 /// Limit on a CPU, whose memory is shared with files and programs: 27 000 bricks, more than a view on a common screen
 /// needs.
 constexpr uint64_t MAX_ATLAS_BYTES_OF_CPU = uint64_t{2} << 30;
-/// Of the host's budget, a quarter is for paged bricks; half is for mapped memory, a quarter for coarser levels.
+/// Share of the host's budget for paged bricks, a quarter; half is for mapped memory, a quarter for coarser levels.
 constexpr uint64_t HOST_SHARES = 4;
-/// As many bricks as a view may have leaves (page_tree.h).
+/// Maximum number of bricks: as many as a view may have leaves (page_tree.h).
 constexpr int64_t MAX_FINEST_BRICKS = int64_t{1} << 17;
 
 /// How far, in voxels, an offset affects the picture through interpolation and gradients.
 constexpr int64_t RAISED_REACH = 2;
-/// Beyond this many boxes, they are merged into one per cause, in case nothing collects them.
+/// With more boxes than that, they are merged into one per cause, in case nothing collects them.
 constexpr size_t MAX_CHANGED = 4096;
 
 bool filters(const gpu::DeviceTraits& traits, Sampling sampling)
@@ -148,7 +148,7 @@ Scene::Scene(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const
       tables_(memory)
 {
     load(options_.reserved_bytes);
-    options_.in_slices = false;  // if it is loaded again, for lack of memory, that is done at once
+    options_.in_slices = false;  // reloading for lack of memory is done at once
 }
 
 /// `reserved_bytes`: device memory for what is shown in addition to the volume.
@@ -173,7 +173,7 @@ void Scene::load(uint64_t reserved_bytes)
             volume_ = std::make_unique<PagedVolume>(executor_, memory_, offsets_, window, paged);
         } catch (const gpu::BudgetError&) {
             throw;
-        } catch (const gpu::MemoryError&) {  // the driver has less than it reports, or less in one piece
+        } catch (const gpu::MemoryError&) {  // the driver has less memory than it reports, or not in one piece
             constexpr uint64_t LEAST = uint64_t{16} << 20;
             if (paged.device_bytes / 2 < LEAST) throw;
             paged.device_bytes /= 2;
@@ -182,7 +182,7 @@ void Scene::load(uint64_t reserved_bytes)
     }
 }
 
-/// False: the driver has less memory than it reports, or other programs use it, and bricks can be paged instead.
+/// False if the driver has less memory than it reports, or other programs use it, and bricks can be paged instead.
 bool Scene::load_resident(const IntensityWindow& window)
 {
     const AtlasCodes codes = codes_of(memory_, *source_, options_);
@@ -239,7 +239,7 @@ uint64_t Scene::resident_bytes(const VolumeInfo& info, AtlasCodes codes, bool wi
 AtlasCodes Scene::codes_for(const gpu::DeviceTraits& traits, VoxelType type, Sampling sampling)
 {
     if (filters(traits, sampling)) return AtlasCodes::filtered;
-    // Their window is that of the type, whatever their values (window_for).
+    // The window of these types covers the whole type, whatever the values (window_for).
     return type == VoxelType::uint8 || type == VoxelType::int8 ? AtlasCodes::exact8 : AtlasCodes::exact16;
 }
 

@@ -33,10 +33,10 @@ public:
         bool with_occlusion = false;
         int threads = 1;  ///< workers that build bricks
         uint64_t host_bytes =
-            0;                   ///< a quarter is for paged bricks, a quarter for coarser levels of sources without any
-        Progress progress{};     ///< for loading, now and when show() loads again
-        bool in_slices = false;  ///< the constructor only starts loading: nothing but load_on() may be called until it
-                                 ///< is done
+            0;                   ///< a quarter is for paged bricks, a quarter for coarser levels if the source has none
+        Progress progress{};     ///< progress of loading, now and when show() loads the volume again
+        bool in_slices = false;  ///< the constructor only starts loading; until it is done, only load_on() may be
+                                 ///< called
         uint64_t reserved_bytes = 0;  ///< device memory kept free for what is shown in addition to the volume
                                       ///< (bytes_to_show)
     };
@@ -63,15 +63,15 @@ public:
     /// Whether such a scene would be resident and fits in addition to everything on the device now. Fails if the device
     /// does not support `options`.
     static bool fits_now(gpu::Memory& memory, const VolumeSource& source, const Options& options);
-    /// Fails if the sizes alone rule out such a scene; reads no voxels.
+    /// Fails if the sizes alone imply that such a scene is impossible; reads no voxels.
     static void check_sizes(gpu::Memory& memory, const VolumeSource& source, const Options& options);
 
     const VolumeInfo& info() const { return volume_->info(); }
     const VolumeStatistics& statistics() const { return statistics_; }
     const gpu::DeviceTraits& traits() const { return memory_.device().traits(); }
     DeviceVolume& volume() { return *volume_; }
-    /// Whether pictures draw the finest level everywhere: the volume has no other, so it would be resident under a
-    /// larger budget, and budgets must not change pictures. Live views draw it as coarsely as the screen allows.
+    /// Whether pictures draw the finest level everywhere, because there is no other: the volume would be resident under
+    /// a larger budget, and budgets must not change pictures. Live views draw it as coarsely as the screen allows.
     bool draws_finest() const { return draws_finest_; }
     const DeviceMask& mask() const { return *mask_; }
     Occlusion& occlusion() { return occlusion_; }
@@ -139,8 +139,8 @@ public:
     /// until it is switched off.
     bool has_occlusion(const Look& look);
     bool occlusion_has_no_room() const { return occlusion_has_no_room_; }
-    /// Frees memory that pictures can do without, and adds a message that states `why`; false: there was none to free.
-    /// No graph that uses the scene may be under construction.
+    /// Frees memory that pictures can do without, and adds a message with the reason `why`. Returns false if there was
+    /// none to free. No graph that uses the scene may be under construction.
     bool give_way(const std::string& why);
     /// Requests the bricks that the look's ambient occlusion needs.
     void want_occlusion(const Look& look);

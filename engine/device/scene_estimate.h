@@ -12,12 +12,12 @@
 namespace shvr {
 
 struct SceneEstimate {
-    uint64_t device_bytes = 0;  ///< the volume's: all bricks, or the atlas of paged ones
+    uint64_t device_bytes = 0;  ///< memory of the volume itself: all bricks, or the atlas of paged ones
     uint64_t device_budget = 0;
-    uint64_t host_bytes = 0;  ///< bricks kept, and coarser levels where the file has none
+    uint64_t host_bytes = 0;  ///< bricks kept on the host, and coarser levels that the file lacks
     uint64_t host_budget = 0;
     bool is_paged = false;      ///< bricks are loaded on demand
-    bool makes_levels = false;  ///< reads all voxels once more to make coarser levels
+    bool makes_levels = false;  ///< all voxels are read once more to make coarser levels
     std::string refusal{};      ///< why it cannot be loaded; empty: it can
 };
 

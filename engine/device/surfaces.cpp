@@ -12,7 +12,7 @@ namespace {
 constexpr double ROUNDING = 0x1p-20;
 /// Replaces infinity, since zero times infinity is NaN.
 constexpr double FAR = 1e20;
-/// Up to this many unchanged values are sent again rather than split off.
+/// Maximum number of unchanged values that are sent again rather than splitting a copy.
 constexpr uint32_t SHORT_GAP = 16;
 
 template <class Value>
@@ -29,7 +29,7 @@ ResourceDesc desc_of(uint64_t values)
                         {TEXELS<Value> * uint32_t(std::min<uint64_t>(values, gpu::SURFACES_IN_ROW)), uint32_t(rows)});
 }
 
-/// Adds the positions of values begin ... end, contiguous in a buffer from `offset` on: whole rows at once.
+/// Adds the positions of values begin ... end, which are contiguous in a buffer from `offset` on: whole rows at once.
 template <class Value>
 void add_regions(uint32_t begin, uint32_t end, uint64_t offset, std::vector<ImageRegion>& regions)
 {

@@ -115,7 +115,7 @@ public:
         lower_ = glm::min(lower_, position - radius);
         upper_ = glm::max(upper_, position + radius);
     }
-    /// One voxel larger on each side, for nodes without a radius.
+    /// The box is one voxel larger on each side, for nodes without a radius.
     VoxelBox box(const glm::dvec3& spacing) const
     {
         if (lower_.x > upper_.x) return {};

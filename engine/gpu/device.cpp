@@ -146,7 +146,7 @@ void Device::check(VkResult result, const char* call) const
     gpu::check(result, call);
 }
 
-/// Empty if the driver reports nothing. Of many addresses and codes only the first ones.
+/// Empty if the driver reports nothing. If there are many addresses and codes, only the first ones are listed.
 std::string Device::fault_in_words() const
 {
     constexpr uint32_t MOST = 4;
@@ -228,7 +228,7 @@ void Device::create_instance(const DeviceOptions& options)
         .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
         .messageSeverity =
             VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
-        // Without performance advice: it objects to the single layout (GENERAL) that avoids all transitions.
+        // Performance advice is off: it objects to the single layout (GENERAL) that avoids all transitions.
         .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
         .pfnUserCallback = on_message,
         .pUserData = this};

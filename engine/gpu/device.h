@@ -100,8 +100,8 @@ public:
     const DeviceTraits& traits() const { return traits_; }
     bool looks_ahead() const { return looks_ahead_; }
     const VkPhysicalDeviceMemoryProperties& memory_properties() const { return memory_properties_; }
-    /// Bytes of the heap counted in `device_bytes` that the driver still grants to this program, given all other
-    /// programs' use; null if it does not report that.
+    /// Free bytes of the heap counted in `device_bytes`, as granted by the driver to this program given all other
+    /// programs' use; null if it reports none.
     std::optional<uint64_t> heap_bytes_left() const;
 
     /// Names an object for validation messages, captures and traces.

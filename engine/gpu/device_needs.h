@@ -33,7 +33,7 @@ struct DeviceRow {
     VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
     bool has_1_3 = true;
     bool computes = true;
-    bool presents = true;  ///< can present to the window, if there is one
+    bool presents = true;  ///< whether it can present to the window, if there is one
 };
 /// Returns the index of the device to use: among those that meet all requirements, hardware before software, discrete
 /// before integrated. `wanted`: part of a name, or an index; empty: any. On failure, lists the devices found.

@@ -47,8 +47,8 @@ Storage& Executor::take_transient(const std::string& name, const ResourceDesc& w
 {
     ResourceDesc desc = wanted;
     if (placement != Placement::device) desc.bytes = rounded(desc.bytes);
-    // Among equal ones, takes the least recently used: buffers that only peaks need then alternate with the others, and
-    // are not freed and created again.
+    // Of several suitable buffers, takes the least recently used: buffers that only peaks need then alternate with the
+    // others, and are not freed and created again.
     Transient* found = nullptr;
     for (const auto& transient : transients_) {
         if (transient->taken || transient->placement != placement || !(transient->desc == desc)) continue;
@@ -71,7 +71,7 @@ void Executor::trim(uint64_t runs)
 {
     std::erase_if(transients_, [&](const auto& t) {
         if (t->taken || t->last_run + runs > runs_) return false;
-        t->storage.reset_idle();  // the frame that last used it is done
+        t->storage.reset_idle();  // no longer in use: the frame that last used it is done
         return true;
     });
 }

@@ -31,19 +31,19 @@ inline constexpr size_t COUNTER_ROWS = 64;
 struct PassReport {
     std::string name;
     std::string kernel;     ///< empty for copies and fills
-    double start_ms = 0.0;  ///< since the first pass of the frame began
+    double start_ms = 0.0;  ///< time since the first pass of the frame began
     double gpu_ms = 0.0;    ///< 0 where the device has no timestamps, see `timed`
     bool timed = false;
     std::chrono::steady_clock::time_point recorded{};  ///< when the host began to record it
     double record_ms = 0.0;                            ///< host time to bind and record it
     uint32_t dispatches = 0;
-    uint32_t tiles = 0;              ///< dispatches that its declaration asks for; on a slow device it is split into
+    uint32_t tiles = 0;              ///< number of dispatches that its declaration asks for; slow devices split it into
                                      ///< more
     uint32_t submissions = 0;        ///< submissions that hold parts of it
     uint64_t bytes = 0;              ///< total size of the resources it binds: an upper bound of what it accesses
     std::string barrier;             ///< "compute -> transfer", empty if none
     std::vector<uint64_t> counters;  ///< empty where the kernel has none
-    uint32_t counted_rows = 0;       ///< rows of counters in which anything was counted
+    uint32_t counted_rows = 0;       ///< number of rows of counters in which anything was counted
     /// Threads that ran, as counted by the device; null: not requested, not supported, or the pass spans too many
     /// submissions.
     std::optional<uint64_t> invocations;
@@ -67,7 +67,7 @@ public:
     Submission& operator=(Submission&&) noexcept;
 
     explicit operator bool() const { return frame_ != nullptr; }
-    /// Whether the device has finished it; never waits.
+    /// Returns whether the device has finished the frame; never waits.
     bool done() const;
     void wait() const;
     /// Waits if necessary. Afterwards this object is empty.
@@ -106,7 +106,7 @@ public:
     /// Number of kernels expected by graphs (FrameGraph::expect) that are still to be compiled.
     size_t expected_kernels() const { return kernels_.expected(); }
 
-    /// Frees the memory of transient resources that the last `runs` runs did not use.
+    /// Frees transient resources that the last `runs` frames did not use.
     void trim(uint64_t runs = 0);
 
 private:

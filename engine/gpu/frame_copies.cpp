@@ -9,7 +9,7 @@ namespace shvr::gpu {
 
 namespace {
 
-/// Estimated time as a share of the maximum part.
+/// Estimated time of a part: the maximum for a part, scaled by its share of the limits.
 double copy_ms(const std::vector<BufferRegion>& part)
 {
     uint64_t bytes = 0;

@@ -43,8 +43,8 @@ struct Submission::Frame {
     std::vector<Storage*> read_backs;
     Storage* blocks = nullptr;
     Storage* counters = nullptr;
-    Storage* work_counters = nullptr;  // counters in device memory, where kernels count much: copied to `counters` at
-                                       // the end
+    Storage* work_counters = nullptr;  // counters in device memory, for kernels that count much; copied to `counters`
+                                       // at the end
     uint64_t counter_bytes = 0;        // bytes per pass
     std::unique_ptr<FrameObjects> objects;
     bool is_timed = false;

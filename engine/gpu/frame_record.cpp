@@ -214,8 +214,8 @@ void Submission::Frame::record_dispatches(const PassData& data, Prepared& state)
     const glm::uvec3 tile =
         tiled ? glm::max(groups_for(data.tile, local), glm::uvec3(1)) : slab_of(groups, cost_ms(groups));
     const auto& limit = executor.device_.traits().limits.maxComputeWorkGroupCount;
-    const glm::uvec3 counted = data.is_counted ? tile : groups;  // for a counted dispatch, the device determines the
-                                                                 // count
+    const glm::uvec3 counted = data.is_counted ? tile : groups;  // for a counted dispatch, the count is known only to
+                                                                 // the device
     if (glm::any(glm::greaterThan(counted, glm::uvec3(limit[0], limit[1], limit[2]))))
         fail("pass '", data.name, "' dispatches ", counted.x, " x ", counted.y, " x ", counted.z,
              " groups; the device allows ", limit[0], " x ", limit[1], " x ", limit[2]);

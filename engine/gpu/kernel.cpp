@@ -180,7 +180,7 @@ void Kernel::create_pipeline(PipelineCache& cache, std::span<const uint32_t> spi
 
 Kernels::Kernels(Device& device) : device_(device), cache_(device)
 {
-    // On a CPU device the cores are needed for drawing, and its driver compiles when a kernel first runs.
+    // Only on GPUs: on a CPU device the cores are needed for drawing, and its driver compiles when a kernel first runs.
     if (device.traits().is_cpu || (cache_.likely().empty() && !device.looks_ahead())) return;
     expected_.assign(cache_.likely().begin(), cache_.likely().end());
     worker_ = std::thread([this] { work(); });
@@ -200,7 +200,7 @@ Kernels::~Kernels()
     cache_.save(used);
 }
 
-/// A failure here is repeated, with a message, when the kernel is requested.
+/// The failure is reported when the kernel is requested, by compiling it again.
 void Kernels::work() noexcept
 {
     for (;;) {

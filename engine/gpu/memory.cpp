@@ -304,7 +304,7 @@ void Memory::allocate(Object& object, const VkMemoryRequirements& needs, const c
     if (!on_device) object.mapped = map(object.memory);
 }
 
-/// On an integrated device all heaps are the same memory, so another type will do.
+/// On an integrated device all heaps are the same memory, so another type serves as well.
 VkResult Memory::allocate_from_driver(uint64_t bytes, uint32_t allowed, const Object& object, VkDeviceMemory* memory,
                                       uint32_t* type)
 {
@@ -334,7 +334,7 @@ VkResult Memory::allocate_from_driver(uint64_t bytes, uint32_t allowed, const Ob
     return result;
 }
 
-/// For small objects only. False: it needs its own allocation.
+/// For small objects only. Returns false if the object needs its own allocation.
 bool Memory::allocate_in_block(Object& object, const VkMemoryRequirements& needs)
 {
     if (needs.size > MemoryBlock::MAX_SHARE) return false;
@@ -391,7 +391,7 @@ void Memory::destroy(Object& object) noexcept
     if (!object.block) return free_to_driver(object.memory);
     object.block->give_back(object.offset);
     if (!object.block->is_empty()) return;
-    // One empty block of each kind is kept: the next small object would re-create it.
+    // Keeps one empty block of each kind, which the next small object would re-create.
     const auto is_spare = [&](const auto& other) {
         return other.get() != object.block && other->is_empty() && other->placement == object.block->placement &&
                other->holds_images == object.block->holds_images;

@@ -51,7 +51,7 @@ std::string mebibytes(uint64_t bytes);
 
 class Memory;
 
-/// A buffer or an image with its own memory. Move-only. It may be destroyed while the device uses it; the destructor
+/// A buffer or an image that owns its memory. Move-only. It may be destroyed while the device uses it; the destructor
 /// never waits.
 class Storage {
 public:
@@ -88,8 +88,8 @@ public:
     std::optional<std::string> why_not(const std::string& name, const ResourceDesc& desc,
                                        Placement placement = Placement::device) const;
     bool can_create(const ResourceDesc& desc) const { return !why_not("", desc); }
-    /// Throws BudgetError if the budget cannot hold it, MemoryError if the driver cannot, and Error where the device
-    /// never could (`why_not`). `purpose`: what it is for, in the user's words.
+    /// Throws BudgetError if the budget cannot hold it, MemoryError if the driver cannot, and Error if the device never
+    /// can (`why_not`). `purpose`: what it is for, in the user's words.
     Storage create(const std::string& name, const ResourceDesc& desc, Placement placement = Placement::device,
                    const char* purpose = "a step of the work");
     /// Sets a function that frees allocated but idle memory; it is called before an allocation is refused.
@@ -110,7 +110,7 @@ public:
         uint64_t bytes = 0;            ///< as counted against the budget
         std::byte* mapped = nullptr;
         bool in_general_layout = false;
-        ResourceState state;  ///< what the last submitted frame left in flight
+        ResourceState state;  ///< accesses that the last submitted frame left in flight
     };
     Object& object(uint32_t id);
 
@@ -126,7 +126,7 @@ public:
     uint64_t device_bytes_left() const { return budget_.device_bytes - device_bytes(); }
     uint64_t host_bytes_left() const { return budget_.host_bytes - host_bytes(); }
     std::map<std::string, uint64_t> bytes_by_name() const;
-    /// Driver allocations that exist, and the total made so far.
+    /// Number of driver allocations that exist, and of all made so far.
     uint64_t allocations() const { return allocations_; }
     uint64_t allocations_made() const { return allocations_made_; }
     Device& device() { return device_; }

@@ -12,10 +12,10 @@
 namespace shvr::gpu {
 
 enum class Placement {
-    device,    ///< where the device is fastest; counts against the device budget
+    device,    ///< memory where the device is fastest; counts against the device budget
     upload,    ///< mapped, written by the host; host budget
-    download,  ///< mapped and cached, read by the host; host budget
-    values,    ///< as upload, but in device memory if the host can write there: for data that kernels read often
+    download,  ///< memory that is mapped and cached, for the host to read; counts against the host budget
+    values,    ///< like upload, but in device memory if the host can write there: for data that kernels read often
 };
 
 class MemoryBlock {
@@ -34,7 +34,7 @@ public:
 
     const VkDeviceMemory memory;
     const Placement placement;
-    const bool holds_images;  ///< and no buffers: next to those, images would need a device-specific distance
+    const bool holds_images;  ///< images only: next to buffers they would need a device-specific distance
                               ///< (bufferImageGranularity)
     const uint32_t type;
     std::byte* const mapped;  ///< null: not mapped

@@ -162,7 +162,7 @@ PipelineCache::~PipelineCache()
     vkDestroyPipelineCache(device_.handle(), handle_, nullptr);
 }
 
-/// Empty if there is nothing after the header, as with drivers that store nothing.
+/// Empty if there is nothing after the header, as from drivers that store nothing.
 std::vector<std::byte> PipelineCache::data_of_driver() const
 {
     size_t size = 0;
@@ -185,7 +185,7 @@ void PipelineCache::save(const std::set<KernelVariant>& used) noexcept
         kept.likely.resize(std::min(kept.likely.size(), MAX_LIKELY));
         std::filesystem::create_directories(file_.parent_path());
         write_file_atomically(file_, encode(kept, driver_));
-    } catch (const std::exception&) {  // a full disk or unwritable folder: kernels are compiled again next time
+    } catch (const std::exception&) {  // disk full or folder not writable: kernels are compiled again next time
     }
 }
 

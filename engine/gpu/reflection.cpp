@@ -56,7 +56,7 @@ struct Reflector {
         return members;
     }
 
-    /// The members of a block; or of its struct, if the block holds one struct or one array of structs.
+    /// The members of a block. If the block holds one struct or one array of structs, the members of that struct.
     std::vector<KernelInterface::Member> block_members(spvc_type_id id) const
     {
         spvc_type block = spvc_compiler_get_type_handle(compiler, id);

@@ -301,7 +301,7 @@ std::vector<bool> living_passes(const FrameGraph& graph)
     return alive;
 }
 
-/// The barrier that `pass` needs, given what is in flight.
+/// Returns the barrier that `pass` needs, given the accesses in flight.
 std::optional<Barrier> barrier_before(const PassData& pass, const std::vector<ResourceState>& states)
 {
     Barrier barrier;
@@ -347,7 +347,7 @@ void record_use(const PassData& pass, std::vector<ResourceState>& states)
     }
 }
 
-/// Memory of resources that no later pass needs, for reuse by equal resources first used after that.
+/// Memory of resources that no later pass needs; equal resources that are first used later can take it over.
 class FreeMemory {
 public:
     FreeMemory(const FrameGraph& graph, const std::vector<bool>& alive)
@@ -409,7 +409,7 @@ CompiledGraph FrameGraph::compile() const
         const std::optional<uint32_t> before = free_memory.take(resource);
         if (!before) return;
         compiled.memory_of[resource] = compiled.memory_of[*before];
-        states[resource] = states[*before];  // its first use, a write, waits for the last uses of the other
+        states[resource] = states[*before];  // its first use, a write, waits for the last uses of the other resource
     };
 
     for (uint32_t i = 0; i < passes_.size(); ++i) {

@@ -72,7 +72,7 @@ struct ResourceState {
     Stages after_reads = 0;  ///< stages ordered after all those reads
     bool operator==(const ResourceState&) const = default;
 };
-/// Earlier use is unknown; the first use waits for everything.
+/// State of an object whose earlier use is unknown: the first use waits for everything.
 inline constexpr ResourceState UNKNOWN_STATE{STAGE_COMPUTE | STAGE_TRANSFER, 0, STAGE_COMPUTE | STAGE_TRANSFER, 0};
 
 /// An object that outlives the frame; `id` is the executor's name for it.
@@ -178,8 +178,8 @@ struct Step {
 struct CompiledGraph {
     std::vector<Step> steps;
     std::vector<ResourceState> final_states;  ///< per resource
-    std::vector<bool> used;                   ///< per resource: does a pass that is kept use it?
-    /// Per resource: the resource whose memory it uses. Either itself, or an equal resource of this frame that no later
+    std::vector<bool> used;                   ///< for each resource, whether a kept pass uses it
+    /// For each resource, the one whose memory it uses. Either itself, or an equal resource of this frame that no later
     /// step needs (of a chain of such resources, the first).
     std::vector<uint32_t> memory_of;
 };
@@ -203,7 +203,7 @@ public:
 
     /// A compute pass named after its kernel, or after `name` where one kernel runs more than once.
     Pass compute(const std::string& kernel, const std::string& name = {}, Location at = Location::current());
-    /// The same for a kernel with variants (kernel_variants.h): `choices` gives a value for each macro in its line "//
+    /// Likewise for a kernel with variants (kernel_variants.h): `choices` gives a value for each macro in its line "//
     /// variants: ...", in any order. Fails if one is unknown, missing or named twice.
     Pass compute(const std::string& kernel, std::initializer_list<VariantChoice> choices, const std::string& name = {},
                  Location at = Location::current());
@@ -237,7 +237,7 @@ public:
         ResourceDesc desc;
         bool imported = false;
         uint32_t import_id = 0;
-        ResourceState state;  ///< before the frame; for resources of this frame alone, nothing is in flight
+        ResourceState state;  ///< accesses in flight before the frame; none for resources of this frame alone
         uint32_t version = 0;
         std::vector<uint32_t> writers;    ///< pass that made version i + 1
         std::vector<std::byte> contents;  ///< the bytes of an upload

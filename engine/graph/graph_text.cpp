@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Steps by index of their pass, and for each resource the steps that use it.
+/// The step of each pass by its index, and for each resource the steps that use it.
 struct Schedule {
     struct Lifetime {
         size_t first_step = 0, last_step = 0;
@@ -196,7 +196,7 @@ std::string to_graphviz(const FrameGraph& graph, const CompiledGraph& compiled)
         for (const Binding& binding : pass.bindings) {
             const std::string label = " [label=" + quoted({binding.name}) + look;
             if (binding.reads) text += sentence("    resource", binding.resource, " -> pass", i, label, "];\n");
-            // The edge of a later write points back up, and must not turn the drawing upside down.
+            // The edge back from a later write points up, and must not turn the drawing upside down.
             const char* const ending = binding.reads || is_placed[binding.resource] ? ", constraint=false];\n" : "];\n";
             if (binding.writes) text += sentence("    pass", i, " -> resource", binding.resource, label, ending);
             is_placed[binding.resource] = true;

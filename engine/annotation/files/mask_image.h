@@ -22,7 +22,7 @@ std::filesystem::path mask_image_path(const std::filesystem::path& mask);
 using MaskJournal = LabelImage::Journal;
 
 /// Writes MASK.json atomically. An empty hash (the image was never hashed) keeps the old one. Does nothing for folders,
-/// which state the same in their attributes (LabelImage).
+/// whose attributes hold the hash (LabelImage).
 void save_mask_image(const std::filesystem::path& mask, const std::string& content_hash,
                      const std::optional<MaskJournal>& journal = {});
 /// The journal named by MASK.json or the label image; null if none is named, or the file is missing or malformed.

@@ -37,7 +37,7 @@ void for_each_strip(const Size3& size, const Visit& visit)
         for (int64_t brick_y = 0; brick_y * gpu::BRICK_SIZE < size.y; ++brick_y) visit(VoxelStrip{size, z, brick_y});
 }
 
-/// The strip's rows within one brick: first voxel in the strip, first voxel in the brick, length.
+/// The part of the strip within one brick, row by row: first voxel in the strip, first voxel in the brick, length.
 template <class Visit>
 void for_each_row(const VoxelStrip& strip, int64_t brick_x, const Visit& visit)
 {

@@ -16,8 +16,8 @@
 namespace shvr {
 
 struct SegmentMeasures {
-    uint32_t internode = 0;  ///< its name: the smallest number among its internodes
-    uint8_t group = 0;       ///< the group of most of its length; the smallest in case of a tie
+    uint32_t internode = 0;  ///< name of the segment: the smallest number among its internodes
+    uint8_t group = 0;       ///< group with the largest share of its length; the smallest number in case of a tie
     uint32_t from = 0, to = 0;
     size_t internodes = 0;
     double length = 0.0;

@@ -21,7 +21,7 @@ struct Follower {
     size_t segment;  ///< index in the trace
     bool is_partner;
     std::vector<glm::dvec2> runs;  ///< from ... to along the truth's segment, ascending and disjoint
-    double tolerance;              ///< length that two of them may share at their ends
+    double tolerance;              ///< length that two segments may share where they meet
 };
 
 double length_of(const std::vector<glm::dvec2>& runs)
@@ -109,7 +109,7 @@ private:
         return followed;
     }
 
-    /// Whether `b` is the same segment as `a`, or meets it in a node near the sample.
+    /// Returns whether `b` is the same segment as `a`, or meets it in a node near the sample.
     bool goes_over(size_t a, size_t b, const TraceSample& sample) const
     {
         if (a == b) return true;
@@ -162,8 +162,8 @@ private:
         result.doubled = int64_t(doubled.size());
     }
 
-    /// Marks segments of the trace that follow the same part as an earlier one. The one that stands for the segment of
-    /// the truth comes first, and is never marked.
+    /// Marks segments of the trace that follow a part which an earlier segment follows, too. The segment matched to the
+    /// one of the truth comes first and is never marked.
     void note_doubled(std::vector<Follower>& followers, std::set<size_t>& doubled) const
     {
         std::ranges::sort(followers, [](const Follower& a, const Follower& b) {
@@ -177,8 +177,8 @@ private:
         }
     }
 
-    /// Whether two segments share more than the surroundings of their ends or, if they join the same two nodes, half of
-    /// what the shorter one follows.
+    /// Returns whether two segments overlap: they share more than the surroundings of their ends or, if they join the
+    /// same two nodes, at least half of what the shorter one follows.
     bool doubles(const Follower& a, const Follower& b) const
     {
         const double shared = shared_length(a.runs, b.runs);

@@ -22,7 +22,7 @@ struct Part {
 };
 
 /// An upper bound of the distance of any position of the part from the truth. The distance to one piece of the truth is
-/// convex along a line, so it is greatest at an end; and no distance changes faster than the position does.
+/// convex along a line, so it is greatest at an end; and moving by d changes a distance by at most d.
 double upper_bound(const Part& part, const TraceCourse& truth)
 {
     const double at_a = part.a.nearest.distance, at_b = part.b.nearest.distance;

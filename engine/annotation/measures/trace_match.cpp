@@ -15,7 +15,7 @@ size_t degree(const TraceGraph& trace, uint32_t node)
     return trace.internodes_of(node).size();
 }
 
-/// The kind of a node: branches pair with branches first, ends with ends.
+/// Kind of a node, for matching: branches pair with branches first, ends with ends.
 int kind_of(const TraceGraph& trace, uint32_t node)
 {
     return int(std::min<size_t>(degree(trace, node), 3));
@@ -132,7 +132,7 @@ std::vector<TraceSample> TraceMatch::samples_along(const TraceSegment& segment) 
     return samples;
 }
 
-/// The sum of the mean squared distances from each of the two to the other; null if one leaves the other.
+/// Sum of the mean squared distances in both directions; null if either segment leaves the other.
 std::optional<double> TraceMatch::distance_between(const TraceSegment& segment, size_t truth_segment) const
 {
     std::optional<double> distance = covers(truth_segment, segment.internodes);

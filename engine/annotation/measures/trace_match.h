@@ -17,7 +17,7 @@ public:
     /// Keeps references to all three; `course` is the truth's.
     TraceMatch(const TraceGraph& trace, const TraceGraph& truth, const TraceCourse& course, double slack);
 
-    /// For each branch or end of the truth, the node of the trace that stands for it; one to one.
+    /// For each branch or end of the truth, the node of the trace that is matched to it; one to one.
     const std::map<uint32_t, uint32_t>& paired() const { return paired_; }
     /// Those nodes of the trace.
     const std::set<uint32_t>& stops() const { return stops_; }

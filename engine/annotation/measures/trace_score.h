@@ -60,10 +60,10 @@ struct TraceComparison {
     /// Segments that stand for none of the truth and follow a part of it that another one follows, too: for longer than
     /// the surroundings of their ends or, if both join the same two nodes, for half of what one of them follows.
     int64_t doubled = 0;
-    /// Ends of the trace near a traced branch of the truth that are not joined to it.
+    /// Ends of the trace that lie near a traced branch of the truth and are not joined to it.
     int64_t gaps = 0;
     int64_t topological_errors() const { return wrong + doubled + gaps; }
-    /// Along the trace, the distance to the nearest position of the truth; null if either has no internodes.
+    /// Distance from positions along the trace to the nearest position of the truth; null if either has no internodes.
     std::optional<double> centreline_rms, centreline_most;
 };
 TraceComparison compare(const TraceGraph& trace, const TraceGraph& truth, double slack);

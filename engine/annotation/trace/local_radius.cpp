@@ -10,7 +10,7 @@ namespace shvr {
 namespace {
 
 constexpr size_t DIRECTIONS = 200;  ///< about 9 degrees apart
-/// An increase of less than a thousandth is directional noise, not a larger ball.
+/// A smaller increase, below a thousandth, is noise of the finite set of directions, not a larger ball.
 constexpr double NOTICEABLE = 1.001;
 
 /// Evenly spread over the sphere: a Fibonacci lattice.
@@ -134,8 +134,8 @@ std::optional<LocalBall> ball_behind(const DensityAt& density_at, double thresho
     const auto is_near_sight = [&](const glm::dvec3& point) {
         return glm::length(point - from - glm::dot(point - from, direction) * direction) <= aside;
     };
-    // The visible point is the steepest place of a wall, whose middle may be a voxel in front of it. A grain of noise
-    // thinner than a voxel does not count as entered.
+    // The point seen is the steepest one on a wall, whose middle may be one voxel nearer to the eye. Entered grains of
+    // noise thinner than a voxel are ignored.
     double begin = -2.0 * structure.finest();
     while (begin <= most) {
         while (begin <= most && !structure.contains(from + begin * direction)) begin += structure.step();

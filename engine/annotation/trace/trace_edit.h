@@ -14,8 +14,8 @@ namespace shvr {
 
 /// Joins the new node to the selected one, if any, by an internode of the new node's group.
 std::vector<TraceChange> add_node(const TraceGraph& trace, const TraceNode& node);
-/// Replaces an internode by two of its group that meet in the new node, and joins that to the selected node, if any and
-/// if it is not an end of the internode, by an internode of the selected node's group.
+/// Splits an internode of one group into two that meet in the new node. Also joins the new node to the selected one, if
+/// any and if it is not an end of the internode, by an internode of the selected node's group.
 std::vector<TraceChange> divide_internode(const TraceGraph& trace, uint32_t internode, const TraceNode& node);
 /// Joins the selected node to another by an internode of the selected node's group. The node stays selected.
 std::vector<TraceChange> link_selected(const TraceGraph& trace, uint32_t to);

@@ -76,7 +76,7 @@ private:
 void read_trace_text(TraceReader& reader, std::string_view text);
 void read_trace_swc(TraceReader& reader, std::string_view text);
 void read_trace_graphml(TraceReader& reader, std::string_view text);
-/// `volume`: lengths are converted to its unit, if both are units of length.
+/// Converts lengths to the unit of `volume`, if both units are units of length.
 void read_trace_rsml(TraceReader& reader, std::string_view text, const std::optional<TraceSpace>& volume);
 
 /// A trace as trees: every node once, parents before children.

@@ -202,7 +202,7 @@ void add_keys(pugi::xml_node& root)
     }
 }
 
-/// Adds what is true of the whole graph.
+/// Adds the data that belong to the graph as a whole.
 void add_statements(pugi::xml_node& graph, const TraceWriting& writing)
 {
     const TraceGraph& trace = writing.trace;
@@ -230,7 +230,7 @@ void add_nodes(pugi::xml_node& graph, const TraceWriting& writing)
         add_data(element, "z", digits_of(node.position.z));
         add_data(element, "radius", digits_of(node.radius));
         add_data(element, "group", std::to_string(node.group));
-        // Positions that a reader computes from the above lack the last bits.
+        // Positions computed from the values above would lack the last bits.
         if (!writing.exact) continue;
         const glm::dvec3& exact = writing.exact->node(number).position;
         if (position_of(writing.space, node.position) != exact) add_data(element, "volume_position", digits_of(exact));

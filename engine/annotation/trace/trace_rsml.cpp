@@ -14,7 +14,7 @@ namespace {
 
 struct Branch {
     uint32_t node;
-    double reach;  ///< length of the longest path onwards, including the internode to here
+    double reach;  ///< length of the longest path from here to a leaf, including the internode that leads here
 };
 
 /// The children of each node, sorted by the longest path onwards.

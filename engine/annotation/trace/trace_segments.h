@@ -33,8 +33,8 @@ struct PlaceOnTrace {
     glm::dvec3 position{0.0};  ///< volume space
 };
 /// The position nearest to a point, within `reach`, on any internode except those of the node `except_of`; the smallest
-/// number in case of a tie. Only checks internodes of nodes within `reach` plus half the longest internode, since no
-/// other can be near.
+/// number in case of a tie. Only checks internodes of nodes within `reach` plus half the longest internode: no others
+/// can be within reach.
 std::optional<PlaceOnTrace> nearest_place(const TraceGraph& trace, const glm::dvec3& position, double reach,
                                           std::optional<uint32_t> except_of = {});
 

@@ -32,7 +32,7 @@ glm::dvec3 physical_of(const TraceSpace& space, const glm::dvec3& position);
 /// The inverse of `physical_of`, except for the rounding of both.
 glm::dvec3 position_of(const TraceSpace& space, const glm::dvec3& physical);
 
-/// "origin 1 2 3, axes ..., of LPS; expected origin ...": empty if both have the same place up to a twentieth of a
+/// "origin 1 2 3, axes ..., of LPS; expected origin ..."; empty if both have the same place up to a twentieth of a
 /// voxel, or if one of them does not state any.
 std::string why_elsewhere(const TraceSpace& found, const TraceSpace& expected);
 

@@ -56,7 +56,7 @@ struct TraceNodeChange {
     std::optional<TraceNode> before, after;
     bool operator==(const TraceNodeChange&) const = default;
 };
-/// The same for an internode; one that is only changed keeps its nodes.
+/// Likewise for an internode; a record that only changes one keeps its two nodes.
 struct TraceInternodeChange {
     uint32_t internode = 0;
     std::optional<TraceInternode> before, after;

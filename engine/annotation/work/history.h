@@ -31,7 +31,7 @@ public:
     const Command* undo(Document& document);
     const Command* redo(Document& document);
 
-    /// Replay these four operations for a document whose final state is known, without document and changes.
+    /// Replay these four operations for a document in its final state, so that no changes are needed.
     void note(std::string label, RecordNumber record);
     void note_extension(RecordNumber record);
     void note_undo();

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t MAX_LOCK_BYTES = 4096;
-/// Limit of one part, since messages quote it.
+/// Maximum length of one part, since messages quote it.
 constexpr size_t MAX_PART_BYTES = 120;
 
 struct flock whole_file(short type)
@@ -114,7 +114,7 @@ Holder described(const FileDescriptor& file)
     return parse_holder(text);
 }
 
-/// Whether the file's content is from a dead process of this host: the present holder has not written its own yet.
+/// Returns whether a dead process of this host left the file's content: the present holder has yet to write its own.
 bool is_dated(const Holder& holder)
 {
     const std::optional<int64_t> process = whole_of(holder.process);
@@ -186,7 +186,7 @@ std::shared_ptr<Hold> Hold::take(const fs::path& journal, std::string_view progr
 {
     if (journal.empty()) return nullptr;
     const fs::path path = lock_path(journal);
-    constexpr int TRIES = 100;  // each retry because another process released the lock, or took it, in between
+    constexpr int TRIES = 100;  // number of retries after another process released or took the lock between two calls
     for (int i = 0; i < TRIES; ++i) {
         FileDescriptor file = opened(path, O_RDWR | O_CREAT);
         if (!file) {

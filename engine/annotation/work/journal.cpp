@@ -54,7 +54,7 @@ FileDescriptor opened(const fs::path& path)
     return file;
 }
 
-/// The first of .rest1, .rest2, ... that does not exist.
+/// Path of the first of .rest1, .rest2, ... that does not exist.
 fs::path free_rest(const fs::path& path)
 {
     for (int number = 1;; ++number) {
@@ -163,7 +163,7 @@ void Journal::flush()
     std::unique_lock lock(mutex_);
     const RecordNumber target = last_;
     if (records_.size() >= target) return;
-    // An attempt in progress may have begun before the last record was appended.
+    // A write that is under way may have begun before the last record was appended.
     const uint64_t enough = tries_ + 2;
     ++flushing_;
     appended_.notify_all();
@@ -285,7 +285,7 @@ void Journal::write()
             }
         }
         if (!failure.empty()) {
-            // Readers would stop at half a record, and unsynced data may be missing.
+            // After half a record, readers would stop; unsynced data may be missing altogether.
             static_cast<void>(::ftruncate(file_.number(), off_t(begin)) == 0);
             written = 0;
             written_bytes = 0;

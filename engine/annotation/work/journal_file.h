@@ -29,7 +29,7 @@ enum class RecordKind : uint32_t {
     extension,    ///< changes that continue the preceding command
     undo,
     redo,
-    saving,  ///< from here on each saved file may be the old or the new one
+    saving,  ///< start of a save: from here on each saved file may be the old or the new one
     /// SavedFiles. `about`: the `kept` record up to which the session's file held the kept settings; 0: not known.
     saved,
     /// JournalSpace: from here on positions are in another spacing; earlier ones are converted when they are read.

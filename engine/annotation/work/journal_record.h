@@ -27,14 +27,14 @@ struct JournalSubject {
     bool operator==(const JournalSubject&) const = default;
 };
 
-/// The label of the first `saved` record of work that was started empty next to the files of earlier work, so that
-/// those do not count as saves of it.
+/// Label of the first `saved` record of work that started empty next to files of earlier work. Those files do not count
+/// as saves of this work.
 inline constexpr char AFRESH[] = "afresh";
 
-/// The files that hold the annotation between sessions, as last seen by the journal; null: no file.
+/// The files that hold the annotation between sessions, in the state last recorded in the journal; null: no file.
 struct SavedFiles {
     std::optional<uint64_t> mask, trace, density;  ///< file_digest
-    std::optional<SettingValues> settings{};       ///< as written to the session's file; unknown in old journals
+    std::optional<SettingValues> settings{};       ///< contents written to the session's file; unknown in old journals
     bool operator==(const SavedFiles&) const = default;
 };
 
@@ -46,7 +46,7 @@ std::vector<std::byte> bytes_of(std::span<const Change> changes);
 /// The whole document, as the changes that create it from an empty one, and the trace's next numbers.
 std::vector<std::byte> bytes_of(const Document& document);
 
-/// These fail with the reason, without the file's name.
+/// These fail with the reason alone; callers add the file's name.
 JournalSubject subject_of(std::span<const std::byte> bytes);
 JournalSpace space_of(std::span<const std::byte> bytes);
 SavedFiles saved_files_of(std::span<const std::byte> bytes);

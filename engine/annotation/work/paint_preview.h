@@ -16,7 +16,7 @@ struct PaintPreview {
         words;           ///< rows of words_per_row(), then y, z slowest; bit b of word w is x = lower.x + 32 w + b
     int64_t voxels = 0;  ///< number of voxels; at most 256^3, as in a brush's region
     enum class Kind { group, density, erase };
-    Kind kind = Kind::group;  ///< erase: voxels lose their group, or their offset
+    Kind kind = Kind::group;  ///< true: the voxels lose their group, or their offset
 
     bool contains(const Size3& voxel) const;
     int64_t words_per_row() const { return (box.size().x + 31) / 32; }

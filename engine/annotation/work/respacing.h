@@ -20,9 +20,9 @@ struct JournalSpace {
 /// "0.5 0.5 2 um"
 std::string in_words(const JournalSpace& space);
 
-/// Whether they are equal up to rounding and the precision of nine-digit text.
+/// Whether two spacings are equal up to rounding and the precision of nine-digit text.
 bool is_same_spacing(const glm::dvec3& one, const glm::dvec3& other);
-/// Position / from * to, and radius / from.x * to.x; changes of other kinds are not affected.
+/// Converts a position to position / from * to, and a radius to radius / from.x * to.x; other changes stay.
 void respace(Change& change, const glm::dvec3& from, const glm::dvec3& to);
 
 }  // namespace shvr

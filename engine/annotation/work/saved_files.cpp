@@ -60,8 +60,8 @@ std::vector<Change> traces_between(const TraceGraph& from, const TraceGraph& to)
     differences(from.nodes(), to.nodes(), lost_nodes, nodes);
     differences(from.internodes(), to.internodes(), lost_links, links);
     differences(from.internode_radii(), to.internode_radii(), lost_sizes, sizes);
-    // An internode that now joins other nodes is removed first, and all of these before any is added: two nodes are
-    // joined at most once.
+    // An internode whose nodes change is removed first, and all removals precede additions: two nodes can be joined
+    // only once.
     std::vector<TraceInternodeChange> joins;
     for (TraceInternodeChange& link : links) {
         if (link.before && (link.before->a != link.after->a || link.before->b != link.after->b)) {
@@ -81,7 +81,7 @@ std::vector<Change> traces_between(const TraceGraph& from, const TraceGraph& to)
     add(lost_sizes);
     add(sizes);
     if (changes.empty()) return changes;
-    // In both directions the selection never refers to missing objects.
+    // Deselects first, so that the selection never refers to missing objects, in either direction.
     changes.insert(changes.begin(), TraceChange(TraceSelectionChange{from.selection(), {}}));
     return changes;
 }
@@ -129,7 +129,7 @@ void load(Part part, const WorkFiles& files, Document& into)
     const TraceSpace space = space_of(files.volume);
     switch (part) {
         case Part::mask: {
-            // A mask of another size is also of another image, and the size makes the better message.
+            // Reported first: a mask of another size is also of another image, but the size makes the better message.
             const std::vector<MaskBrickChange> changes = import_mask(files.mask, space);
             check_mask_image(files.mask, files.volume_hash);
             for (const MaskBrickChange& change : changes) into.mask.apply(change, Direction::forwards);

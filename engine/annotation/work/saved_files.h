@@ -42,7 +42,7 @@ inline const std::optional<uint64_t>& digest_of(const SavedFiles& digests, Part 
     return digest_of(const_cast<SavedFiles&>(digests), part);
 }
 
-/// Whether a part has anything to be saved.
+/// Whether a part of the document has any content to save.
 bool holds_any(const Document& document, Part part);
 
 bool is_there(const std::filesystem::path& path);

@@ -102,7 +102,7 @@ void Work::begin_records()
     record_files(RecordKind::saved, is_fresh_ ? AFRESH : "");
 }
 
-/// Writes the findings of opening before any other record.
+/// Writes records about the files found at opening, before any other record.
 void Work::continue_records()
 {
     if (space_to_note_) {

@@ -27,7 +27,7 @@ namespace shvr {
 /// A message for the user.
 struct Notice {
     std::string text;
-    bool is_loss = false;  ///< something has been lost, so it is shown even to callers that suppress messages
+    bool is_loss = false;  ///< something was lost: to be shown even by callers that suppress messages
 };
 
 /// Which version counts if another program has changed a saved file.
@@ -42,7 +42,7 @@ struct Dispute {
     Part part = Part::mask;
     std::filesystem::path file;
     std::string text;                 ///< file, what was found, what was expected
-    std::vector<Change> differences;  ///< from the journal's content to the file's content
+    std::vector<Change> differences;  ///< changes that lead from the journal's content to the file's
 };
 
 /// Saved files were changed by other programs, and the user has not decided yet which version counts.
@@ -66,9 +66,9 @@ public:
         Start start = Start::as_left;
         Belief belief = Belief::ask;
         bool only_look = false;        ///< read-only: takes no hold, and accepts no command
-        std::shared_ptr<Hold> hold{};  ///< a hold of this journal; null: it is taken now
-        std::string program = "shvr";  ///< as in Holder, if the hold is taken now
-        Progress progress{};           ///< of replaying the journal; an exception from it cancels the opening
+        std::shared_ptr<Hold> hold{};  ///< existing hold of this journal; null: the hold is taken during opening
+        std::string program = "shvr";  ///< description as in Holder, for a hold that is taken during opening
+        Progress progress{};           ///< progress of replaying the journal; an exception from it cancels the opening
     };
     /// To be called on a Work without commands. Returns messages: unsaved work, files that are missing or unreadable, a
     /// journal that is missing or damaged. Fails, loading nothing, if a file is of another volume or malformed and no
@@ -138,7 +138,7 @@ public:
     /// Copies the state to be written, at the cost of a copy of the document; fails as `save` does before it writes.
     /// One at a time; `end_save` must follow.
     std::unique_ptr<Saving> begin_save(std::vector<LabelImage::Color> looks);
-    /// To be called whether or not it was written.
+    /// To be called after begin_save in any case, whether or not the files were written.
     Saved end_save(Saving& saving);
     bool is_saving() const { return is_saving_; }
 
@@ -171,7 +171,7 @@ public:
     void settle();
     /// Waits until the journal is on disk, on another thread; empty if there is none. It may outlive the work.
     std::function<void()> flusher() const;
-    /// Whether no command since the last save has changed the trace.
+    /// Returns whether the trace is unchanged since the last save.
     bool trace_is_saved() const { return !touched_[size_t(Part::trace)]; }
     /// Waits until the journal is on disk; fails with the reason if that is not possible.
     void flush();
@@ -202,7 +202,7 @@ private:
     void open_fresh();
     std::vector<Notice> open_from_files(const std::string& damage);
     void check_subject() const;
-    /// Returns why it stopped early, and then drops the remaining records from the scan; empty if it replayed all.
+    /// Returns the reason if it stopped early, and then drops the remaining records from the scan; otherwise empty.
     std::string replay();
     struct Replayed {
         Document document;
@@ -265,7 +265,7 @@ private:
     WorkFiles files_;
     Document document_;
     History history_;
-    JournalScan scan_;                       ///< as read from the file; the journal continues from it
+    JournalScan scan_;                       ///< journal as read from the file; new records continue it
     std::optional<FileDescriptor> scanned_;  ///< its file
     bool is_to_set_aside_ = false;           ///< the journal that was read does not belong to this work
     bool only_looks_ = false;
@@ -273,14 +273,14 @@ private:
     std::string program_;    ///< as in Holder
     std::shared_ptr<Hold> hold_;
     std::vector<Dispute> disputes_;
-    std::vector<Change> settings_from_outside_;  ///< differences in the session's file, to be recorded
+    std::vector<Change> settings_from_outside_;  ///< difference between settings and the session's file, to be recorded
     SettingValues kept_;                         ///< the present values
     SettingValues journaled_kept_;               ///< the values in the journal
     RecordNumber last_kept_ = 0;                 ///< the journal's last record of them
     RecordNumber known_kept_ = 0;                ///< the record up to which the session's file holds them; 0: not known
-    size_t kept_since_whole_ = 0;                ///< records since the last one with all sections
+    size_t kept_since_whole_ = 0;                ///< number of records since the last one with all sections
     bool keeps_settings_ = false;                ///< the caller keeps some settings
-    bool kept_from_outside_ = false;             ///< the session's file is to be recorded as the known state
+    bool kept_from_outside_ = false;             ///< whether the state of the session's file is yet to be recorded
     bool cannot_keep_ = false;                   ///< the journal could not be opened; the first command reports why
     /// From record `since` on positions are in this space; those before the first are, too.
     struct SpaceSince {
@@ -288,8 +288,8 @@ private:
         JournalSpace space;
     };
     std::vector<SpaceSince> spaces_;           ///< up to the volume's own space
-    std::optional<RecordKind> space_to_note_;  ///< the kind of record that will add the volume's own
-    SavedFiles known_;                         ///< the files as the journal last knew them
+    std::optional<RecordKind> space_to_note_;  ///< kind of the record that will state the volume's own spacing
+    SavedFiles known_;                         ///< state of the files as last recorded in the journal
     /// The state of a file as this process last saw it.
     struct Seen {
         std::optional<uint64_t> digest{};
@@ -301,7 +301,7 @@ private:
     std::array<Seen, 3> seen_;
     std::shared_ptr<Journal> journal_;  ///< shared with a save in progress
     size_t unsaved_ = 0;
-    bool misses_files_ = false;      ///< missing files that the journal holds and the next save writes
+    bool misses_files_ = false;      ///< the journal holds files that are missing; the next save writes them
     std::array<bool, 3> touched_{};  ///< since the last save
     bool is_saving_ = false;
     bool is_saving_as_ = false;  ///< then both are true
@@ -310,7 +310,7 @@ private:
     Progress opening_progress_;  ///< null except while opening
     uint64_t since_state_bytes_ = 0, state_bytes_ = 0;
     size_t since_state_steps_ = 0;
-    std::future<std::vector<std::byte>> state_;  ///< being encoded from a copy of the document
+    std::future<std::vector<std::byte>> state_;  ///< state that is encoded from a copy of the document
     RecordNumber state_about_ = 0;
     Limits limits_;
 };
@@ -370,7 +370,7 @@ private:
     bool has_session_ = false, is_written_ = false;
 };
 
-/// A notice that the journal is missing although the mask was saved with it; null if that is not so, or not known.
+/// Notice that the journal is missing although the mask names it; null if it is present, or none is named.
 std::optional<Notice> note_missing_journal(const WorkFiles& files);
 
 }  // namespace shvr

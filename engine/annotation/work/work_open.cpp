@@ -94,7 +94,7 @@ std::vector<Notice> Work::open(const WorkFiles& files, const Opening& opening)
         return {};
     }
     std::vector<Notice> notices = open_once();
-    // Another process may be in the middle of a save.
+    // Changes seen now may be those of a save that another process is making.
     for (int i = 0; i < TRIES && only_looks_ && !disputes_.empty() && holder_of(files.journal); ++i) {
         std::this_thread::sleep_for(TURN);
         notices = open_once();
@@ -126,7 +126,7 @@ std::vector<Notice> Work::open_once()
     std::vector<Notice> notices;
     const std::string name = files_.journal.string();
     if (!damage.empty()) notices.push_back({sentence(name, ": ", damage, "; what comes before is used"), true});
-    // Data that another process is just writing is not damage.
+    // Data at the end that another process is just writing is not damage.
     if (scan_.end < scan_.file_bytes && !(only_looks_ && holder_of(files_.journal)))
         notices.push_back({sentence(name, ": its last ", scan_.file_bytes - scan_.end,
                                     " bytes are an incomplete or damaged record; expected complete ones; the ",
@@ -153,7 +153,7 @@ void Work::read_journal()
     if (!*scanned_) fail(files_.journal.string(), ": cannot be opened: ", reason_of(errno));
 }
 
-/// Existing files belong to earlier work, and are kept if that work's journal does not hold them.
+/// Existing files belong to earlier work. They are renamed and kept if that work's journal does not hold them.
 void Work::open_fresh()
 {
     read_journal();
@@ -282,7 +282,7 @@ Work::Replayed Work::replayed(const JournalScan& scan, RecordNumber last, Record
                 else if (!work.history.redo(work.document))
                     fail("more commands are redone than were undone");
                 break;
-            default: break;  // states, saves, and kinds unknown to this version
+            default: break;  // records of states, of saves, and of kinds unknown to this version
         }
     };
     RecordNumber known = 0;
@@ -310,7 +310,7 @@ void Work::look_at_files(std::vector<Notice>& notices)
             try {
                 known_kept_ = scan_.records[number - 1].about;
                 known_ = saved_files_of(content_of(number));
-            } catch (const Error&) {  // then every file is compared with the work itself
+            } catch (const Error&) {  // in this case every file is compared with the work itself
             }
             break;
         }
@@ -380,7 +380,7 @@ RecordNumber Work::begin_of_save(const JournalScan& scan, RecordNumber saved)
         if (kind == RecordKind::saving) return number;
         if (kind == RecordKind::saved) break;
     }
-    return saved;  // the first record, which was found rather than saved
+    return saved;  // the first record, which lists files that were found, not saved
 }
 
 /// The states that a save may have written: the last completed one, and all that were begun since.

@@ -6,7 +6,7 @@
 
 namespace shvr {
 
-/// If a part was taken from a file changed by others, its last save is that moment.
+/// A part taken from a file that others changed counts as saved at that moment.
 Work::LastSave Work::last_save(const JournalScan& scan) const
 {
     LastSave last;

@@ -23,7 +23,7 @@ void expect_free(const WorkFiles& files, const fs::path& session)
     }
 }
 
-/// New files, in places that were free; removed again unless they are to stay.
+/// Owns new files, created where none existed, and removes them unless they are to stay.
 class Made {
 public:
     Made() = default;

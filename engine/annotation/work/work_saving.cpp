@@ -89,7 +89,7 @@ std::unique_ptr<Work::Saving> Work::begin_save(std::vector<LabelImage::Color> lo
     refuse_if_only_looking();
     expect_choice();
     expect_names(files_);
-    // Also if another process has begun a journal since this one checked: then this one is refused.
+    // Called also if another process has begun a journal since this one checked; begin_journal then refuses.
     if (scan_.inode != 0 || is_there(files_.journal) || history_.undoable() + history_.redoable() > 0) begin_journal();
     if (journal_) journal_->append(RecordKind::saving, {}, {});
     is_saving_ = true;
@@ -109,8 +109,8 @@ std::unique_ptr<Work::Saving> Work::begin_save(std::vector<LabelImage::Color> lo
     return saving;
 }
 
-/// The mask always; another part that has become empty is written as empty, but if it never had any content, no file
-/// is.
+/// The mask is always written. Another part is written even when it has become empty, but not if it never had
+/// content.
 bool Work::Saving::is_to_write(Part part) const
 {
     const fs::path& file = file_of(files_, part);

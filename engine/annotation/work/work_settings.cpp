@@ -58,7 +58,7 @@ void Work::record_settings_from_outside()
     const RecordNumber number = record(RecordKind::command, command.label, bytes_of(command.changes));
     history_.perform(document_, std::move(command), number);
     note_unsaved(1);
-    // Otherwise it would be taken for another change after the next one.
+    // Without this, the change would be detected again after the next change.
     if (!known_.settings) known_.settings.emplace();
     for (const auto& [name, value] : files_.settings) (*known_.settings)[name] = value;
     record_files(RecordKind::known);
@@ -91,7 +91,7 @@ SettingValues normalized_by(const std::function<SettingValues(const SettingValue
 
 }  // namespace
 
-/// The kept settings as of a `kept` record: each names the previous one, down to one that holds all sections.
+/// Kept settings as of a `kept` record. Each record names the previous one, back to one that holds all sections.
 SettingValues Work::kept_at(RecordNumber number) const
 {
     SettingValues values;

@@ -1,4 +1,4 @@
-// The spacing of the positions in a journal: nodes stay at their voxels if another one is given.
+// Spacing of the positions in a journal. If the volume gets another spacing, nodes stay at their voxels.
 
 #include "engine/annotation/work/work.h"
 
@@ -35,7 +35,7 @@ void Work::read_spaces(RecordNumber& at)
     spaces_.push_back({scan_.records.size() + 1, std::move(own)});
 }
 
-/// Reports that the journal has another spacing or unit for the same voxels, and marks files that state theirs for
+/// Reports that the journal has another spacing or unit for the same voxels, and marks files that state a spacing for
 /// rewriting.
 void Work::tell_spacing(std::vector<Notice>& notices)
 {
