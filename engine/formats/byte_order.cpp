@@ -89,7 +89,7 @@ void swap_bytes(std::span<std::byte> voxels, size_t voxel_bytes)
 
 std::string byte_order_warning(const VolumeInfo& info, const VoxelBytes* bytes)
 {
-    constexpr int64_t ROWS = 64;  // from the middle: the first slices may be air
+    constexpr int64_t ROWS = 64;  // starts in the middle, since the first slices may be air
     constexpr int64_t MAX_VOXELS = 4096;
     Votes votes;
     const auto voxel_bytes = int64_t(bytes_of(info.type));

@@ -13,8 +13,8 @@ namespace shvr {
 void swap_bytes(std::span<std::byte> voxels, size_t voxel_bytes);
 
 /// The warning for files that do not state their byte order and are read as little-endian. `bytes` (null: do not
-/// inspect) holds the voxels of `info`, x fastest; if neighbours are much more often closer to each other in the other
-/// order, the warning says so, as a guess.
+/// inspect) holds the voxels of `info`, x fastest; if neighbouring voxels are much more similar when read as
+/// big-endian, the warning suggests that as a guess.
 std::string byte_order_warning(const VolumeInfo& info, const VoxelBytes* bytes);
 
 }  // namespace shvr

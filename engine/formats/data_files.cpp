@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Each name takes a hundred bytes of memory and a lookup of its file.
+/// Limits memory and time: each name takes a hundred bytes and a lookup of its file.
 constexpr int64_t MAX_FILES = 65536;
 
 /// The one conversion of a pattern: %d, %3d or %03d, as printf writes it. The pattern is untrusted, so it is never

@@ -12,8 +12,8 @@
 
 namespace shvr {
 
-/// Recognise values of a data file field: "LIST" or "LIST 2"; and the pattern "name%03d.raw 1 93 1", which may have one
-/// more number at its end.
+/// Whether the value of a data file field is a list ("LIST" or "LIST 2"), and whether it is a pattern ("name%03d.raw 1
+/// 93 1", which may have one more number at its end).
 bool is_list(std::string_view data_file);
 bool is_pattern(std::string_view data_file);
 
@@ -23,13 +23,13 @@ bool is_pattern(std::string_view data_file);
 std::vector<std::filesystem::path> data_files(const HeaderFields& fields, const char* field, std::string_view rest,
                                               const Size3& size);
 
-/// The channel or time point, from 0, that the options choose in `file`, which holds `count` of them; `names` are
-/// the names of channels, if any. Fails, listing the choices, if there are several and none is chosen.
+/// Index from 0 of the channel or time point in `file` chosen by the options; the file holds `count` of them, and
+/// `names` are the names of channels, if any. Fails, listing the choices, if there are several and none is chosen.
 int64_t chosen_channel(const std::string& file, const OpenOptions& options, int64_t count,
                        std::span<const char* const> names = {});
 int64_t chosen_frame(const std::string& file, const OpenOptions& options, int64_t count);
 
-/// The usual names of colour channels, in order: for 3 and 4 channels; empty for other counts.
+/// The usual names of colour channels, in order, if `count` is 3 or 4; otherwise empty.
 std::span<const char* const> color_names(int64_t count);
 
 }  // namespace shvr

@@ -50,8 +50,8 @@ private:
     std::map<std::string, std::string> values_;
 };
 
-/// Puts spacing and unit into `info`, with a warning for each that is not stated. A spacing without a unit is taken as
-/// `usual_unit`, unless it is 1 1 1, which means voxels.
+/// Puts spacing and unit into `info`, with a warning for each that the file does not state. A spacing without a unit is
+/// taken as in `usual_unit`, unless it is 1 1 1, which means voxels.
 void apply_spacing(VolumeInfo& info, const std::optional<glm::dvec3>& spacing, const std::optional<std::string>& unit,
                    const char* usual_unit);
 

@@ -45,7 +45,7 @@ public:
 
     int64_t output_at() const { return output_at_; }
 
-    /// Decodes the next bytes; fewer at the end of the stream.
+    /// Decodes the next bytes; returns fewer at the end of the stream.
     size_t decode(std::span<std::byte> bytes)
     {
         size_t done = 0;
@@ -57,7 +57,7 @@ public:
         return done;
     }
 
-    /// Verifies the checksum, if only that is left.
+    /// Verifies the checksum if nothing but that is left.
     void finish()
     {
         std::byte left_over{};
@@ -168,7 +168,7 @@ private:
             while (chunk_of(decoder_->output_at()) < number) decode_next();
             return decode_next();
         } catch (...) {
-            decoder_.reset();  // it stopped in the middle of a chunk
+            decoder_.reset();  // the decoder stopped in the middle of a chunk
             throw;
         }
     }
@@ -212,7 +212,7 @@ private:
     size_t max_kept_;
 
     mutable std::mutex mutex_;
-    mutable std::unique_ptr<Decoder> decoder_;  ///< at the beginning of a chunk; null: not positioned
+    mutable std::unique_ptr<Decoder> decoder_;  ///< decoder at the beginning of a chunk; null: not positioned
     mutable std::vector<std::unique_ptr<const Decoder>> states_;
     mutable std::vector<Chunk> kept_;
 };

@@ -8,7 +8,7 @@
 
 namespace shvr {
 
-/// How to read a file of raw voxels that has no side-car: "256x256x108:int16[:big|little][:OFFSET]".
+/// Layout of a file of raw voxels that has no side-car: "256x256x108:int16[:big|little][:OFFSET]".
 struct RawLayout {
     Size3 size{0};
     VoxelType type = VoxelType::uint8;

@@ -12,7 +12,7 @@ namespace shvr {
 struct Rescale {
     double slope = 1.0;
     double intercept = 0.0;
-    std::optional<ValueRange> stored{};  ///< the possible stored values, if their type could hold more
+    std::optional<ValueRange> stored{};  ///< range of the stored values, if their type could hold more
 
     bool changes_nothing() const { return slope == 1.0 && intercept == 0.0; }
 };

@@ -55,7 +55,7 @@ private:
         std::shared_ptr<const VoxelBytes> bytes{};
     };
 
-    /// Enough for threads that read different parts, without keeping a thousand files open for a thousand slices.
+    /// Number of files kept open: enough for threads that read different parts, and far below a thousand slices.
     static constexpr size_t MAX_OPEN_FILES = 16;
 
     std::shared_ptr<const VoxelBytes> part(size_t number) const

@@ -38,7 +38,7 @@ std::string failure_in_words()
 
 }  // namespace
 
-/// Function, number and name are set before the worker sees the job; the rest is under the lock while it runs.
+/// Function, number and name are set before the worker sees the job; the lock guards the rest while it runs.
 struct Jobs::Job {
     Number number = 0;
     std::string what;
@@ -158,7 +158,7 @@ void Jobs::work()
         if (is_closing_) return;
         running_ = std::move(waiting_.front());
         waiting_.pop_front();
-        Job& job = *running_;  // only this thread moves or destroys it while it runs
+        Job& job = *running_;  // safe without the lock: only this thread moves or destroys the job while it runs
         job.begun = job.stretch_begun = seconds_();
         Reporter reporter(*this, job);
         lock.unlock();

@@ -16,8 +16,8 @@ namespace {
 /// Bytes that one worker reads at a time from a source without a preferred block size.
 constexpr int64_t TASK_BYTES = int64_t{1} << 20;
 
-/// The smallest and the largest finite value of level 0, exactly: neither a sample nor coarser levels suffice, since a
-/// reversed value beyond them could leave its type. 0 and 0 if no voxel is finite.
+/// The smallest and the largest finite value of level 0, exactly: a sample or coarser levels could miss an extreme,
+/// whose reversed value would then exceed its type. 0 and 0 if no voxel is finite.
 ValueRange ends_of(const VolumeSource& source, const Progress& progress)
 {
     const VolumeInfo& info = source.info();

@@ -35,7 +35,7 @@ private:
     double ends_ = 0.0;  ///< smallest plus largest value of the source, for reversing
 };
 
-/// As in import_prepare.h; `progress` reports the pass that finds the range for reversing.
+/// Reads as declared in import_prepare.h; `progress` reports the pass that finds the range for reversing.
 std::unique_ptr<Preparation> make_preparation(const VolumeSource& source, const PreparationOptions& options,
                                               const Progress& progress);
 

@@ -33,7 +33,7 @@ public:
     int levels() const { return int(levels_.size()); }
     Size3 counts(int level) const { return of(level).volume.counts(); }
     const ZarrMetadata& metadata(int level) const { return of(level).volume.metadata(); }
-    /// Indexed by ZarrVolume::index_of; 0 if there is no file.
+    /// Checksums, indexed by ZarrVolume::index_of; 0 if there is no file.
     const std::vector<uint64_t>& checksums(int level) const { return of(level).checksums; }
 
     int64_t all() const;                      ///< chunks
@@ -46,8 +46,8 @@ public:
 
 private:
     struct Level {
-        ZarrVolume volume;  ///< for names and places; nothing is read through it
-        ZarrVolume loose;   ///< the same without shards: where `write` puts chunks
+        ZarrVolume volume;  ///< used for names and places; nothing is read through it
+        ZarrVolume loose;   ///< the same array without shards, into which `write` puts chunks
         std::vector<uint64_t> checksums;
     };
     std::filesystem::path loose_folder() const { return project_ / "shvr" / "chunks"; }

@@ -25,7 +25,7 @@ struct ImportCube {
 
     int64_t side;
     Size3 extent{0};
-    bool has_ranges = false;  ///< if false, each voxel is its own range
+    bool has_ranges = false;  ///< if false, the range of a voxel is its own value
     std::vector<T> values, lower, upper;
 };
 

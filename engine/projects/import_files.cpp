@@ -145,7 +145,7 @@ std::vector<std::pair<std::string, std::string>> group_files(OmeZarrVersion vers
 std::string import_attributes(OmeZarrVersion version, const std::string& name, const VolumeInfo& info, int levels,
                               Halving how, const LabelImage* labels)
 {
-    const bool has_own_versions = version == OmeZarrVersion::v0_4;  // since 0.5 there is one version for all
+    const bool has_own_versions = version == OmeZarrVersion::v0_4;  // OME-Zarr 0.5 and later state one version for all
     Json datasets = Json::array();
     for (int level = 0; level < levels; ++level) {
         const double factor = double(int64_t{1} << level);

@@ -77,7 +77,7 @@ bool all_finite(std::span<const T> voxels)
 template <class T>
 struct Plane {
     std::vector<Number<T>> values;
-    // If a voxel is not finite: the blurred fraction of finite voxels, which divides the values, and the original
+    // Only if a voxel is not finite: the blurred fraction of finite voxels, which divides the values, and the original
     // slice.
     std::vector<Number<T>> shares;
     std::vector<T> original;
@@ -132,7 +132,7 @@ private:
 
     // ---- Along x and y, slice by slice ----
 
-    /// Makes planes `lower` to `upper`, keeping those that exist already.
+    /// Makes the planes from `lower` to `upper`, except those that exist already.
     void make_planes(int64_t lower, int64_t upper, WorkPool& pool)
     {
         const int64_t end = first_plane_ + int64_t(planes_.size());
@@ -332,7 +332,7 @@ private:
     std::array<std::vector<Number<T>>, 3> weights_;
     std::vector<Number<T>> ones_;
 
-    int64_t lower_row_ = 0, upper_row_ = 0;  ///< rows of the box that the planes hold
+    int64_t lower_row_ = 0, upper_row_ = 0;  ///< rows of the box that are held in the planes
     int64_t first_plane_ = 0;
     std::deque<Plane<T>> planes_;
     std::vector<Plane<T>> spare_;

@@ -25,7 +25,7 @@ namespace shvr {
 struct PreparationOptions {
     std::optional<VoxelBox> crop{};
     bool reverse = false;
-    glm::dvec3 blur_sigma_voxels{0.0};  ///< along x, y and z; 0: not along this axis
+    glm::dvec3 blur_sigma_voxels{0.0};  ///< sigma along x, y and z; 0: no blur along this axis
     int downscale = 1;
     bool operator==(const PreparationOptions&) const = default;
 };

@@ -36,7 +36,7 @@ struct Window {
 
     Size3 size;
     bool is_whole;
-    bool keeps_ranges;  ///< the six levels above are made from it
+    bool keeps_ranges;  ///< whether the six levels above are made from it
     int64_t slices;
     std::vector<T> values, lower, upper;
 };

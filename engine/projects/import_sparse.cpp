@@ -14,7 +14,7 @@
 namespace shvr {
 namespace {
 
-/// A dense import, with all threads, takes no longer than this class needs for an eighth of the chunks.
+/// With more than an eighth of all chunks stored, a dense import with all threads takes no longer than a sparse one.
 constexpr int64_t MIN_GAIN = 8;
 
 Size3 chunk_counts(const Size3& size)
@@ -134,7 +134,7 @@ private:
     const VolumeInfo& info_;
     const ZarrCompressor& compressor_;
     const Progress& progress_;
-    std::vector<ZarrVolume> volumes_;  ///< for names and places; nothing is read through them
+    std::vector<ZarrVolume> volumes_;  ///< used for names and places; nothing is read through them
     std::vector<ImportCube<T>> cubes_;
     ImportCube<T> half_;
     std::vector<T> voxels_;

@@ -71,7 +71,7 @@ std::optional<VolumeStatistics> ImportTally::statistics() const
     if (counts.empty()) return std::nullopt;
     const bool is_signed = type_ == VoxelType::int8 || type_ == VoxelType::int16;
     if (!is_signed) return statistics_of(counts, 0);
-    // Ordered by their bits, negative values follow the others.
+    // In the order of their bits, negative values come after the others.
     const auto half = std::ptrdiff_t(counts.size() / 2);
     std::vector<int64_t> ascending(counts.begin() + half, counts.end());
     ascending.insert(ascending.end(), counts.begin(), counts.begin() + half);

@@ -39,9 +39,9 @@ private:
 
     VoxelType type_;
     std::vector<SliceHash> hashes_;     ///< by slice
-    std::vector<SliceHasher> hashers_;  ///< of unfinished slices, by slice number modulo the number of hashers
+    std::vector<SliceHasher> hashers_;  ///< hashers of unfinished slices, by slice number modulo their number
     std::vector<std::vector<int64_t>>
-        counts_;  ///< by worker, then by the value's bits; empty if the type has too many values
+        counts_;  ///< counts by worker, then by the value's bits; empty if the type has too many values
 };
 
 }  // namespace shvr

@@ -66,7 +66,7 @@ public:
     /// Refuses sizes that would be too large; reads nothing.
     static void check_size(const VolumeSource& source, const fs::path& project, PreparationOptions preparation)
     {
-        preparation.reverse = false;  // it would require a pass over all voxels
+        preparation.reverse = false;  // not measured here, since that would require a pass over all voxels
         static_cast<void>(checked(make_preparation(source, preparation)->info(), project));
     }
 
@@ -147,7 +147,7 @@ private:
         preparation_->read(slab, buffers_[place], pool_);
     }
 
-    /// Starts writing its chunks and levels, and hashing and counting its slices.
+    /// Starts writing chunks and levels, and hashing and counting slices.
     std::shared_ptr<WorkPool::Batch> start(const Preparation::Slab& slab, size_t place)
     {
         const std::byte* const voxels = buffers_[place].data();
@@ -218,7 +218,7 @@ private:
         slabs_done_ = 0;
     }
 
-    /// Everything that it refers to is already on disk.
+    /// Written last: everything that it refers to is already on disk.
     void write_state()
     {
         StateWriter state;
@@ -377,7 +377,7 @@ private:
     std::unique_ptr<Preparation> preparation_;
     VolumeInfo info_;
     std::string identity_;
-    PartFolder folder_;  ///< created last: if any member above fails, no folder is made
+    PartFolder folder_;  ///< declared last: if any member above fails to be created, no folder is made
     int threads_;
     ImportReport report_;
 
@@ -423,7 +423,7 @@ ImportReport import_sparse(const VolumeSource& labels, const fs::path& target, c
     const OmeZarrVersion version = options.version.value_or(OmeZarrVersion::v0_4);
     PartFolder folder(target, true);
     folder.clear();
-    StateWriter().write(folder.state());  // identifies the remains of a killed process as ours
+    StateWriter().write(folder.state());  // marks remains of a killed process as left by this program
     const auto progress = [&](double fraction) {
         if (options.cancel != nullptr && *options.cancel)
             throw ImportStopped(target.string() + ": stopped; no file is left half written");

@@ -30,8 +30,8 @@ public:
 };
 
 struct ImportProgress {
-    double fraction = 0.0;           ///< fraction of the voxels, including those of earlier runs
-    double voxels_per_second = 0.0;  ///< of this run, of level 0; 0 before anything is written
+    double fraction = 0.0;           ///< completed fraction of the voxels, including those of earlier runs
+    double voxels_per_second = 0.0;  ///< voxels of level 0 per second in this run; 0 before anything is written
     double seconds_left = 0.0;
 };
 
@@ -53,7 +53,7 @@ struct LabelImage {
         std::string name;
         uint64_t record = 0, checksum = 0;
         bool operator==(const Journal&) const = default;
-        /// 16 hexadecimal digits, for JSON, as some readers do not support 64-bit integers.
+        /// As 16 hexadecimal digits in JSON, since some readers do not support 64-bit integers.
         std::string checksum_digits() const;
     };
     std::optional<Journal> journal{};  ///< stated if `painted_on` is
@@ -69,8 +69,8 @@ struct ImportOptions {
     ZarrCompressor compressor{.kind = ZarrCompressor::Kind::blosc};
     /// Null: 0.4; for label images, the version of their image, or else of the label image they replace.
     std::optional<OmeZarrVersion> version{};
-    bool has_shards = false;  ///< OME-Zarr 0.5 only: up to 512 chunks in a file (import_files.h)
-    std::function<void(const ImportProgress&)> progress{};  ///< about every 100 ms, on the calling thread
+    bool has_shards = false;  ///< OME-Zarr 0.5 only: stores up to 512 chunks in a file (import_files.h)
+    std::function<void(const ImportProgress&)> progress{};  ///< called about every 100 ms, on the calling thread
     const std::atomic<bool>* cancel = nullptr;              ///< checked before every task; tasks take milliseconds
 };
 

@@ -22,7 +22,7 @@ using gdcm::DataSet;
 using gdcm::Tag;
 
 constexpr int64_t MAX_FRAMES = 65536;
-/// A larger decoded slice must have a minimum of bytes in its file; no codec compresses real slices better.
+/// Bounds the size of a decoded slice by that of its file; no codec compresses real slices better.
 constexpr int64_t LARGE_SLICE = int64_t{64} << 20;
 constexpr int64_t MAX_EXPANSION = 1000;
 
@@ -33,7 +33,7 @@ class Values {
 public:
     explicit Values(std::vector<const DataSet*> sets) : sets_(std::move(sets)) {}
 
-    /// The text up to a NUL, without padding.
+    /// The text up to a NUL, without padding spaces.
     std::string text(const Tag& tag) const
     {
         const gdcm::ByteValue* value = find(tag);
@@ -92,8 +92,8 @@ Sequence sequence_of(const DataSet& set, const Tag& tag)
     return set.FindDataElement(tag) ? set.GetDataElement(tag).GetValueAsSQ() : Sequence();
 }
 
-/// The places where values of one frame may be: in the file, or in functional groups (PS3.3, C.7.6.16) of the frame or
-/// of all frames.
+/// The places where values of one frame may be: in the file itself, or in the functional groups (PS3.3, C.7.6.16) of
+/// the frame or of all frames.
 class FrameValues {
 public:
     explicit FrameValues(const DataSet& file)
@@ -190,7 +190,7 @@ DicomFrame read_frame(const Values& values, DicomFile& file, const ValueRange& s
         spacing = values.decimals(Tag(0x0018, 0x1164));
         file.spacing_is_at_detector = spacing.size() == 2;
     }
-    // The first number is the distance from row to row.
+    // The first number is the distance from row to row, along y.
     if (spacing.size() == 2 && spacing[0] > 0.0 && spacing[1] > 0.0) frame.spacing = glm::dvec2(spacing[1], spacing[0]);
     frame.rescale = read_rescale(file, values, stored);
     return frame;

@@ -25,7 +25,7 @@ struct DicomFrame {
 /// How its pixels are stored.
 struct DicomStored {
     DicomLayout layout{};
-    int bits = 0;      ///< per pixel, at most those of its type
+    int bits = 0;      ///< bits per pixel, at most those of its type
     int high_bit = 0;  ///< index of the highest bit
     bool is_signed = false;
 };
@@ -43,7 +43,7 @@ struct DicomFile {
     int64_t rows = 0;
     VoxelType type = VoxelType::uint16;
     bool is_inverted = false;             ///< MONOCHROME1: low values are bright
-    bool spacing_is_at_detector = false;  ///< not corrected for the distance to the source
+    bool spacing_is_at_detector = false;  ///< the spacing is not corrected for the distance to the source
     std::optional<double> distance{};     ///< mm between slices, as stated; slice thickness if nothing else is
     double tilt_degrees = 0.0;            ///< tilt of the gantry
     std::vector<DicomFrame> frames{};

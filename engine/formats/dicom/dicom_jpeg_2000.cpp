@@ -12,7 +12,7 @@
 namespace shvr {
 namespace {
 
-/// The memory that OpenJPEG reads instead of a file.
+/// Memory from which OpenJPEG reads, instead of a file.
 struct Input {
     std::span<const std::byte> bytes;
     size_t at = 0;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int64_t PREAMBLE = 132;
 constexpr uint32_t UNDEFINED = 0xffffffff;
-constexpr int DEEPEST = 16;  ///< nested sequences; real files have about 5 levels
+constexpr int DEEPEST = 16;  ///< maximum depth of nested sequences; real files have about 5 levels
 
 constexpr uint32_t TRANSFER_SYNTAX = 0x00020010;
 constexpr uint32_t PIXEL_DATA = 0x7fe00010;
@@ -49,7 +49,7 @@ public:
     {
         constexpr Encoding META{true, false};
         int64_t at = PREAMBLE;
-        // The first element after them may use any encoding.
+        // Walks the file meta group; the first element after it may use another encoding.
         while (group_at(at) == 2) {
             const Element element = read_element(at, file_.bytes, META);
             if (element.length == UNDEFINED) refuse(element, "a length");
@@ -159,8 +159,8 @@ private:
     /// Walks elements up to `end`, or to the end of their item. Returns where the next one begins.
     int64_t walk_elements(int64_t at, int64_t end, const Encoding& encoding, int depth, bool ends_by_delimiter)
     {
-        constexpr int64_t A_TAG = 4;  // GDCM takes anything that begins with a tag for an element, and asserts the rest
-                                      // of it
+        constexpr int64_t A_TAG = 4;  // GDCM takes anything that begins with a tag for an element, and then asserts
+                                      // that the rest is valid
         while (at < end) {
             if (depth == 0 && end - at < A_TAG) return end;  // padding
             const Element element = read_element(at, end, encoding);

@@ -22,7 +22,7 @@ struct DicomLayout {
     struct Fragment {
         int64_t at = 0, bytes = 0;
     };
-    std::vector<Fragment> fragments;  ///< of encapsulated Pixel Data, without the offset table before them
+    std::vector<Fragment> fragments;  ///< fragments of encapsulated Pixel Data, without the offset table
 };
 
 /// Null if `file` is not a DICOM file. Fails if lengths contradict each other or the size of the file.

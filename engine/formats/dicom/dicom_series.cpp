@@ -35,7 +35,7 @@ std::string with_digits(double number)
     return sentence(std::setprecision(6), number);
 }
 
-/// Slices that can be stacked: of one size, type and direction.
+/// Size, type and direction of a slice: slices with equal ones can be stacked.
 using Kind = std::tuple<int64_t, int64_t, int, std::array<int64_t, 6>>;
 
 Kind kind_of(const DicomFile& file, const DicomFrame& frame)

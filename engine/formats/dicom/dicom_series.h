@@ -14,7 +14,7 @@ struct DicomSlice {
     size_t frame = 0;
 };
 
-/// Slices of one size and direction, from first to last, with the volume's description except its type and name.
+/// Slices of one size and direction, from first to last; and the volume's description, except its type and name.
 struct DicomVolume {
     VolumeInfo info{};
     std::vector<DicomSlice> slices{};
@@ -24,7 +24,7 @@ struct DicomVolume {
 std::vector<DicomFile> choose_series(const std::string& where, std::vector<DicomFile> files,
                                      const OpenOptions& options);
 
-/// `files` are of one series; at least one.
+/// Makes a volume of `files`, which must all be of one series; at least one.
 DicomVolume arrange_slices(const std::string& where, const std::vector<DicomFile>& files, const OpenOptions& options);
 
 /// For messages: "1 slice", "2 slices".

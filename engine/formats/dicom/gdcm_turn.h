@@ -9,9 +9,9 @@
 
 namespace shvr {
 
-/// Held while GDCM runs, and silences it: GDCM would write to standard error, and its decoders to C's `stderr`, which
-/// is therefore redirected to /dev/null meanwhile (the GNU C library allows assigning it; file descriptor 2, which
-/// sanitizers and C++ use, is left alone).
+/// To be held while GDCM runs. Also silences GDCM, which would write to standard error, and its decoders to C's
+/// `stderr`, which is therefore redirected to /dev/null meanwhile (the GNU C library allows assigning it; file
+/// descriptor 2, which sanitizers and C++ use, is left alone).
 class GdcmTurn {
 public:
     GdcmTurn() : lock_(mutex())

@@ -143,7 +143,7 @@ void export_tiff(const std::filesystem::path& path, const VolumeSource& source)
     const Size3& size = info.size;
     const auto voxel_bytes = int64_t(bytes_of(info.type));
     AtomicWriter file(path);
-    // Whether 32-bit offsets suffice must be known before anything is compressed.
+    // Decides first whether 32-bit offsets suffice, since nothing may be compressed before that is known.
     TiffWriter writer(path, file, size.x * size.y * voxel_bytes > (int64_t{1} << 31) / size.z);
     const int64_t step = export_rows(info);
     const std::string description = description_of(info);

@@ -25,7 +25,7 @@ std::string in_brackets(const glm::dvec3& vector)
     return sentence("(", digits_of(vector.x), ",", digits_of(vector.y), ",", digits_of(vector.z), ")");
 }
 
-/// Sizes and orientation of the axes, in the order that the format requires: the space before fields that refer to it.
+/// Sizes and orientation of the axes. The format requires the space before the fields that refer to it.
 std::string nrrd_axes(const VolumeInfo& info)
 {
     // Quotes would end the unit's name.

@@ -123,7 +123,7 @@ std::optional<NiftiAxes> qform_axes(const NiftiHeader& header)
     const double c = header.quaternion.y;
     const double d = header.quaternion.z;
     const double rest = 1.0 - (b * b + c * c + d * d);
-    // The numbers are rounded: a half turn may come out slightly too long.
+    // The stored numbers are rounded, so the quaternion of a half turn may come out slightly too long.
     if (!(rest > -1e-3)) return {};
     const double a = std::sqrt(std::max(0.0, rest));
     const double scale = 1.0 / std::sqrt(a * a + b * b + c * c + d * d);

@@ -43,7 +43,7 @@ MhdHeader read_mhd_header(const std::filesystem::path& path, const std::string& 
     return header;
 }
 
-/// The first of these names that the header has, or the first of all if it has none.
+/// The first of these names that the header contains; if it contains none, the first of all.
 const char* first_of(const HeaderFields& fields, std::initializer_list<const char*> names)
 {
     for (const char* name : names) {
@@ -59,9 +59,9 @@ void refuse_what_is_not_supported(const HeaderFields& fields)
     if (!fields.flag("BinaryData", true)) fields.refuse("BinaryData", "True: voxels as text are not supported");
 }
 
-/// Columns are the directions of x, y and z. MetaImage names no frame; if it states the anatomical orientation of the
-/// axes, the frame is that of ITK, which writes most of these files: LPS. The orientation letters themselves are
-/// ignored: programs disagree on whether they denote where axes come from or where they lead.
+/// MetaImage names no frame. If the file states the anatomical orientation of the axes, the frame is that of ITK, which
+/// writes most of these files: LPS. The orientation letters are ignored, since programs disagree on whether they denote
+/// where axes come from or where they lead. The columns are the directions of x, y and z.
 void read_orientation(const HeaderFields& fields, VolumeInfo& info)
 {
     const char* const matrix = first_of(fields, {"TransformMatrix", "Rotation", "Orientation"});

@@ -142,7 +142,7 @@ std::optional<std::string> unit_of(const NiftiHeader& header)
     }
 }
 
-/// Used if there are no axes: |pixdim|, with 1 in place of invalid values.
+/// Used if there are no valid axes: the absolute values of pixdim, with 1 in place of invalid ones.
 std::optional<glm::dvec3> spacing_of_pixdim(const NiftiHeader& header, VolumeInfo& info)
 {
     glm::dvec3 spacing(1.0);

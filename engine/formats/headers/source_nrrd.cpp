@@ -18,7 +18,7 @@ constexpr int64_t LINE_SKIP_BYTES = int64_t{16} << 20;
 struct NrrdHeader {
     HeaderFields fields;
     bool is_attached = false;
-    int64_t voxels_at = 0;         ///< where the header's own file continues after the empty line
+    int64_t voxels_at = 0;         ///< offset of the first byte after the empty line that ends the header
     std::string_view file_list{};  ///< the lines after "data file: LIST"
 };
 

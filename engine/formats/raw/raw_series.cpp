@@ -40,7 +40,7 @@ bool comes_before(const std::string& a, const std::string& b)
     return a.size() - i != b.size() - j ? a.size() - i < b.size() - j : a < b;
 }
 
-/// The bytes of one slice after `layout.offset_bytes`; nothing if that exceeds 63 bits.
+/// Bytes of one slice after `layout.offset_bytes`; null if the sum exceeds 63 bits.
 std::optional<int64_t> slice_file_bytes(const RawLayout& layout)
 {
     int64_t bytes = 0;
@@ -79,8 +79,8 @@ std::vector<fs::path> slices_in(const fs::path& folder, const RawLayout& layout,
     return slices;
 }
 
-/// One file per slice, counting on from the last number in the name of the first file, which holds `bytes`; none if
-/// that name contains no digits.
+/// One file per slice: counts on from the last number in the name of the first file, which holds `bytes`. Empty if that
+/// name contains no digits.
 std::vector<fs::path> slices_from(const fs::path& first, int64_t count, int64_t bytes)
 {
     const std::string name = first.filename().string();

@@ -34,7 +34,7 @@ std::optional<std::string> attribute(std::string_view xml, const std::string& ta
     return {};
 }
 
-/// "x y z" of <Tag X="x" Y="y" Z="z">; nothing if the tag has none of them.
+/// "x y z" of <Tag X="x" Y="y" Z="z">; null if the tag has none of them.
 std::optional<std::string> attributes(std::string_view xml, const std::string& tag,
                                       std::initializer_list<const char*> names)
 {

@@ -16,14 +16,14 @@ struct RawVoxels {
 
     std::filesystem::path file{};
     int64_t offset_bytes = 0;  ///< AT_END: the voxels are the last bytes of the file
-    /// Null: not stated. Little-endian is assumed, with a warning, which says so if neighbours are more similar in the
-    /// other order.
+    /// Null: the file does not state it. Little-endian is assumed, with a warning, which suggests the other order if
+    /// neighbours are more similar in it.
     std::optional<bool> big_endian = false;
-    bool is_deflated = false;   ///< gzip or zlib, from `offset_bytes` of the file on
+    bool is_deflated = false;   ///< compressed with gzip or zlib, from `offset_bytes` of the file on
     int64_t skip_bytes = 0;     ///< if deflated: decoded bytes before the voxels
     int64_t bytes_after = 0;    ///< bytes that the header describes after the voxels: other time points
-    std::vector<Part> parts{};  ///< replaces `file`: equal shares of the voxels, in this order
-    int64_t channels = 1;       ///< values of each voxel, one after the other
+    std::vector<Part> parts{};  ///< used instead of `file`: each holds an equal share of the voxels, in this order
+    int64_t channels = 1;       ///< number of values of each voxel, stored one after the other
     int64_t channel = 0;        ///< the one to read
 };
 

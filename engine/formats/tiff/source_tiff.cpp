@@ -153,7 +153,7 @@ private:
         std::swap(description_.channels, description_.slices);
     }
 
-    /// Checks pages of different kinds, which may still have equal pictures, stored in different ways.
+    /// Checks pages of different kinds. Their pictures may be equal all the same, but stored in different ways.
     void check_kinds()
     {
         std::vector<int64_t> pages(directories_.kinds.size());
@@ -253,7 +253,7 @@ private:
             if (extent.offset == first.offset + block * layout.block_height * layout.block_row_bytes()) continue;
             refuse("whose strips have gaps; expected strips that follow each other, or a page for each image");
         }
-        // `planes` is at most 2^20 and a page has at most 2^40 pixels, whose samples the file holds.
+        // No overflow: `planes` is at most 2^20, and a page has at most 2^40 pixels, whose samples the file holds.
         int64_t needed = 0;
         if (__builtin_mul_overflow(planes, layout.page_bytes(), &needed) ||
             !file_->holds(uint64_t(first.offset), uint64_t(needed))) {

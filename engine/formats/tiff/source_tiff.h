@@ -16,7 +16,7 @@ struct TiffVolume {
     std::vector<TiffSlice> slices{};  ///< one for each z
 };
 
-/// Opens files as they are read; `file`, if given, is the only one and open already.
+/// Opens the stack's files when they are read; `file`, if given, is the only one and already open.
 std::unique_ptr<VolumeSource> make_tiff_source(TiffVolume volume, std::unique_ptr<const TiffFile> file);
 
 /// Sets `info.type` and `recipe` for the chosen channel of each pixel; warns about any change of values. `description`

@@ -139,7 +139,7 @@ size_t check_one_series(const fs::path& folder, const std::vector<SliceName>& na
          "; expected one: put each into a folder of its own");
 }
 
-/// Warns about gaps in the numbering: slices are drawn evenly spaced nevertheless.
+/// Warns about gaps in the numbering, since slices are drawn evenly spaced.
 void warn_of_gaps(const std::vector<SliceName>& names, size_t number, std::vector<std::string>& warnings)
 {
     std::optional<int64_t> step;
@@ -206,7 +206,7 @@ private:
         }
         const TiffDirectory& directory = directories.pages[shown.front()];
         const size_t number = shown.front() + 1;
-        // Directories in thousands of files are mostly alike: libtiff reads one of each kind.
+        // Directories in thousands of files are mostly alike, so libtiff reads only one of each kind.
         const auto known = layouts_.find(directories.kinds[directory.kind].fields);
         if (known != layouts_.end()) {
             check_amount(file, known->second, 1);

@@ -10,12 +10,12 @@
 
 namespace shvr {
 
-/// Where a slice of a volume comes from.
+/// Place of a slice of a volume in its file.
 struct TiffSlice {
     uint32_t file = 0;       ///< index into the volume's files
     uint32_t page = 1;       ///< in that file, for messages
     uint64_t directory = 0;  ///< in that file
-    /// ImageJ's long stacks have one directory; the voxels of later slices lie this far after those that it names.
+    /// ImageJ's long stacks have one directory; the voxels of later slices follow those that it names at this distance.
     int64_t shift_bytes = 0;
 };
 

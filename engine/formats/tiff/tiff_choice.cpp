@@ -29,7 +29,7 @@ std::string numbers_to(int64_t count)
     return text;
 }
 
-/// How to request each channel: by name if that is a word, otherwise by number.
+/// The words to request each channel with: its name if that is a word, otherwise its number.
 std::string channel_choices(const std::vector<std::string>& names)
 {
     constexpr size_t MOST = 8;
@@ -84,7 +84,7 @@ bool is_grey_ramp(const std::vector<uint16_t>& palette)
     const auto last = double(palette.size() - 1);
     for (size_t i = 0; i < palette.size(); ++i) {
         const double expected = double(i) / last;
-        // Stored as 8 bits in the higher byte, or as 16 bits.
+        // The value was stored as 8 bits in the higher byte, or as 16 bits.
         if (std::abs(palette[i] / 65535.0 - expected) > 1.0 / 250.0) return false;
     }
     return true;

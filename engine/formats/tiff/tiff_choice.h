@@ -7,7 +7,7 @@
 
 namespace shvr {
 
-/// A volume that a pixel holds: one of its samples, or one colour of its palette.
+/// A volume that pixels can hold: one of their samples, or one colour of the palette.
 struct TiffPixelChannel {
     std::string name{};  ///< "" if it has only a number
     int sample = 0;
@@ -19,7 +19,7 @@ struct TiffPixelChannel {
 std::vector<TiffPixelChannel> channels_of_pixel(const TiffPage& page, const TiffLayout& layout,
                                                 const TiffDescription& description, std::vector<std::string>& warnings);
 
-/// `options`, or, if they choose no channel and one of `channels` is usual, with that one chosen and a warning.
+/// Returns `options`. If they choose no channel and one of `channels` is usual, that one is chosen, with a warning.
 OpenOptions with_usual_channel(const OpenOptions& options, const std::vector<TiffPixelChannel>& channels,
                                std::vector<std::string>& warnings);
 

@@ -57,7 +57,7 @@ Resolution resolution_of(const TiffFile& file, uint64_t directory, const TiffPag
     const uint16_t unit = page.number16(TIFFTAG_RESOLUTIONUNIT, RESUNIT_INCH);
     if (unit == RESUNIT_INCH) resolution.um_per_unit = UM_PER_INCH;
     if (unit == RESUNIT_CENTIMETER) resolution.um_per_unit = UM_PER_CM;
-    // Values written by programs that only consider screens and printers. 1 stands for "unknown".
+    // Values written by programs for screens and printers, which mean nothing here. 1 stands for "unknown".
     const double dots_per_inch = *resolution.x * (resolution.um_per_unit == UM_PER_CM ? 2.54 : 1.0);
     for (const double usual : {72.0, 75.0, 90.0, 96.0, 100.0, 120.0, 144.0, 150.0, 200.0, 300.0, 600.0, 1200.0}) {
         if (std::abs(dots_per_inch - usual) < 0.02 * 2.54) resolution.is_for_printing = true;

@@ -16,10 +16,10 @@ struct TiffDescription {
     enum class Writer { unknown, imagej, ome };
     Writer writer = Writer::unknown;
 
-    /// 1 each if nothing is stated. A channel here is a page of its own; colours of a pixel are not counted.
+    /// Each is 1 if nothing is stated. A channel here is a page of its own; colours of a pixel are not counted.
     int64_t slices = 1, channels = 1, frames = 1;
-    /// The page (from 0) of slice z, channel c, frame t at z + slices * (c + channels * t). Empty: as ImageJ orders
-    /// them, channels fastest, then slices, then frames.
+    /// The page (from 0) of slice z, channel c, frame t, at index z + slices * (c + channels * t). Empty: pages are in
+    /// ImageJ's order, channels fastest, then slices, then frames.
     static constexpr uint32_t NO_PAGE = UINT32_MAX;
     std::vector<uint32_t> pages{};
     std::vector<std::string> channel_names{};  ///< may be fewer than channels; names may be ""
@@ -39,10 +39,10 @@ struct TiffDescription {
     std::vector<std::string> warnings{};
 };
 
-/// Whether the file is read as one of several: if so, an OME-TIFF may refer to the others.
+/// Whether the file is the whole volume or one of several files; an OME-TIFF may refer to the others.
 enum class TiffRole { whole, slice };
 
-/// `samples` of each pixel belong to as many channels of an OME-TIFF. Fails if the description is of a known kind but
+/// `samples`: number of channels of an OME-TIFF that each pixel holds. Fails if the description is of a known kind but
 /// broken, or, in the role `whole`, describes more than this file.
 TiffDescription read_description(const TiffFile& file, std::string_view text, int samples, TiffRole role);
 

@@ -13,7 +13,7 @@
 namespace shvr {
 namespace {
 
-/// As in libtiff: a larger count is taken for a wrong offset.
+/// Limit of the count as in libtiff: a larger one is taken for a wrong offset.
 constexpr uint64_t MAX_FIELDS = 4096;
 
 enum Tag : uint16_t {
@@ -166,7 +166,7 @@ const char* name_of_tag(uint16_t tag)
     return tag == TILE_OFFSETS ? "TileOffsets" : "TileByteCounts";
 }
 
-/// What one directory states about its strips or tiles, as far as it can be checked without further reads.
+/// The strips or tiles that a directory states, as far as they can be checked without further reads.
 class StripCheck {
 public:
     explicit StripCheck(const TiffFile& file) : file_(file) {}

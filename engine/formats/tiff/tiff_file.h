@@ -56,14 +56,14 @@ struct TiffDirectory {
 /// Pages with equal fields for size, layout and meaning, as far as the fields are stored in the directory itself.
 struct TiffKind {
     size_t first_page = 0;
-    bool is_reduced = false;  ///< marked as a smaller copy of another page, or as a mask
+    bool is_reduced = false;  ///< whether it is marked as a smaller copy of another page, or as a mask
     std::string fields{};     ///< pages of two files are equivalent if this is equal
 };
 
 struct TiffDirectories {
     std::vector<TiffDirectory> pages;
     std::vector<TiffKind> kinds;
-    std::vector<std::string> warnings{};  ///< about errors that do not affect the pixels
+    std::vector<std::string> warnings{};  ///< messages about errors that do not affect the pixels
 };
 
 /// Fails, naming page and field, if the chain leaves the file, contains a cycle or is longer than `MAX_TIFF_PAGES`, or

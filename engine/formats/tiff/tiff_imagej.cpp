@@ -111,7 +111,7 @@ void read_calibration(const Lines& lines, TiffDescription& description)
         return;
     }
     if (*function == 0.0 && offset == 0.0 && slope == 1.0) return;
-    // 20 and 21 mean no calibration; for the latter, the picture is an uncalibrated optical density.
+    // Function codes 20 and 21 mean no calibration; 21 is an uncalibrated optical density.
     if (*function == 20.0 || *function == 21.0) return;
     description.warnings.push_back(
         *function == 0.0 ? sentence("intensities are calibrated as ", offset, " + ", slope,
@@ -129,7 +129,7 @@ TiffDescription read_imagej_description(const std::string& subject, std::string_
     description.channels = std::max<int64_t>(1, lines.count("channels"));
     description.frames = std::max<int64_t>(1, lines.count("frames"));
     description.slices = lines.count("slices");
-    // Files that state no slices have as many as there are images per channel and frame.
+    // A file that states no number of slices has as many as there are images per channel and frame.
     if (description.slices == 0) {
         description.slices = std::max<int64_t>(1, images / (description.channels * description.frames));
     }

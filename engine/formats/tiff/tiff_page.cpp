@@ -14,7 +14,7 @@ namespace shvr {
 
 struct TiffPage::Access {
     const TiffFile& file;
-    std::array<std::byte, 16> header{};  ///< as in the file, except for the offset of the first directory
+    std::array<std::byte, 16> header{};  ///< header as in the file, except for the offset of the first directory
     size_t header_bytes = 0;
     int64_t position = 0;
     std::string complaint{};

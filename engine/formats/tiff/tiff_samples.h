@@ -7,11 +7,11 @@
 
 namespace shvr {
 
-/// Which part of the pages a volume uses, and how it is converted.
+/// Selects the part of the pages that a volume uses, and its conversion.
 struct TiffRecipe {
     VoxelType type = VoxelType::uint8;
     int sample = 0;          ///< index within the pixel
-    int palette_color = -1;  ///< 0 to 2: red, green or blue of the palette, -1: the samples themselves
+    int palette_color = -1;  ///< 0 to 2: colour of the palette (red, green, blue); -1: the samples themselves
     bool palette_has_8_bits = false;
     uint64_t exchanged_bits = 0;  ///< XORed into each voxel; inverts white and black, and subtracts ImageJ's 32768
     bool mirrors_x = false;       ///< the page's first column is the right side of the picture

@@ -15,7 +15,7 @@ namespace {
 
 using Path = std::filesystem::path;
 
-/// Units as we write them, as the specification names them, and in metres.
+/// Units: as we write them, as the specification names them, and their length in metres.
 struct Unit {
     const char* plain;
     const char* name;

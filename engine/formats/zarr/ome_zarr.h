@@ -33,12 +33,12 @@ struct OmeImage {
     };
     size_t axes = 0;                    ///< the number of axes that every array must have
     std::vector<std::string> names{};   ///< names of the axes
-    std::array<size_t, 3> xyz{};        ///< the array's axis along x, y and z
+    std::array<size_t, 3> xyz{};        ///< index of the array's axis along x, y and z
     std::optional<size_t> channel{};    ///< the array's axis of channels
     std::optional<size_t> time{};       ///< the array's axis of time points
     std::optional<std::string> unit{};  ///< unit of x, y and z
     std::vector<Level> levels{};
-    std::vector<std::string> channels{};  ///< channel names, as far as there are any
+    std::vector<std::string> channels{};  ///< names of the channels, if the file states any
     std::vector<std::string> warnings{};
 };
 

@@ -19,7 +19,7 @@ struct LabelLook {
 };
 struct LabelLooks {
     std::vector<LabelLook> looks{};       ///< ascending; if a label occurs twice, its first entry
-    std::vector<std::string> warnings{};  ///< at most one per list, about its first invalid entry
+    std::vector<std::string> warnings{};  ///< warnings: at most one per list, about its first invalid entry
 };
 
 /// Empty if the folder (or the path into an archive) is not a label image. Fails if its attributes are not JSON.

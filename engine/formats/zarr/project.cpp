@@ -95,7 +95,7 @@ std::vector<std::byte> header_of(const ProjectTable& table, uint64_t frame_bytes
 
 uint64_t checksum_of(std::span<const std::byte> header, std::span<const std::byte> elements)
 {
-    // The header's hash seeds that of the elements.
+    // The hash of the header is the seed of the hash of the elements.
     return XXH3_64bits_withSeed(elements.data(), elements.size(), XXH3_64bits(header.data(), header.size()));
 }
 

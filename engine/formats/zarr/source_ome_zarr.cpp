@@ -114,7 +114,7 @@ private:
         });
     }
 
-    /// Fills in the last voxel, which a level whose size was rounded down lacks, by repeating the one before it.
+    /// Fills in the last voxel by repeating the one before it. A level whose size was rounded down lacks it.
     void read_beyond(int level, const VoxelBox& box, std::span<std::byte> voxels) const
     {
         const Size3 size = volumes_[size_t(level)].size();

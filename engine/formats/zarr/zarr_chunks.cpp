@@ -12,7 +12,7 @@ namespace shvr {
 namespace {
 
 constexpr int64_t KEPT_INDEX_BYTES = int64_t{16} << 20;
-/// Number of names checked for one that is not a chunk's.
+/// Maximum number of names searched for one that resembles a chunk's but is none.
 constexpr int64_t MAX_NAMES_LOOKED_AT = 1024;
 
 /// Numbers between separators of any kind, with or without a leading "c", as in "0.1.2" or "c/0/1/2".
@@ -138,7 +138,7 @@ std::vector<int64_t> ZarrChunks::numbers_of(std::string_view key) const
         numbers.push_back(*number);
         rest.remove_prefix(std::min(rest.size(), end + 1));
     }
-    // Other spellings of the same numbers, as in "00", are other keys.
+    // A key with another spelling of the same numbers, as in "00", is a different key.
     return metadata_.key_of(numbers) == key ? numbers : std::vector<int64_t>();
 }
 
@@ -238,7 +238,7 @@ ZarrChunks::Part ZarrChunks::part_of(std::span<const int64_t> chunk, const std::
     return part;
 }
 
-/// The places of a shard's chunks, one for each; empty if there is no such shard.
+/// The places of a shard's chunks, one per chunk; empty if the shard does not exist.
 Block ZarrChunks::index_of(const std::string& shard) const
 {
     const ZarrSharding& sharding = *metadata_.sharding;

@@ -32,7 +32,7 @@ public:
     /// The bytes as stored; null if the chunk is missing. Fails if they cannot be read, or are more than a chunk can
     /// need.
     std::optional<std::vector<std::byte>> read(std::span<const int64_t> chunk) const;
-    /// True if the chunk is not stored. False if that cannot be determined.
+    /// True if the chunk is certainly not stored; false if that cannot be determined.
     bool is_missing(std::span<const int64_t> chunk) const;
     /// Calls `take` with the indices of every stored chunk that matches `at` (null: any), in no particular order. Stops
     /// and returns false as soon as there are more than `most`, or enough other names that listing would take much
@@ -56,7 +56,7 @@ private:
         uint64_t offset, bytes;
     };
     static constexpr uint64_t ABSENT = ~uint64_t{0};
-    static constexpr uint64_t SHARED = ABSENT - 1;  ///< with 0 bytes: the chunk shares bytes with another
+    static constexpr uint64_t SHARED = ABSENT - 1;  ///< with 0 bytes: marks a chunk that shares bytes with another
 
     std::string key_of(std::span<const int64_t> chunk) const;
     std::vector<int64_t> numbers_of(std::string_view key) const;

@@ -102,7 +102,7 @@ void check_compressed_size(ZarrCompressor::Kind kind, size_t stored_bytes, size_
         if (stored_bytes != chunk_bytes) refuse_size(name, "holds", stored_bytes, chunk_bytes);
         return;
     }
-    // Deflate: 258 bytes from two bits. Zstd, also within blosc: 128 KiB from a block of four bytes.
+    // Maximum expansion. Deflate: 258 bytes from two bits. Zstd, also within blosc: 128 KiB from a block of four bytes.
     const bool is_deflate = kind == ZarrCompressor::Kind::zlib || kind == ZarrCompressor::Kind::gzip;
     const size_t most_out_of_a_byte = is_deflate ? 1032 : 32768;
     if (chunk_bytes / most_out_of_a_byte > stored_bytes) {

@@ -67,9 +67,9 @@ bool any_in(Codes codes, const Size3& corner, int bits, const VoxelBox& box)
 struct ZarrGaps::Level {
     std::mutex mutex{};
     std::optional<std::vector<uint64_t>> codes{};     ///< codes of all stored chunks, ascending
-    int64_t more_than = 0;                            ///< a lower bound of the stored chunks, if there were too many to
-                                                      ///< list
-    bool is_unlistable = false;                       ///< a name or the index of a shard cannot be read
+    int64_t more_than = 0;                            ///< lower bound of the number of stored chunks, if there were too
+                                                      ///< many to list
+    bool is_unlistable = false;                       ///< a name or the index of a shard could not be read
     std::unordered_map<uint64_t, bool> is_missing{};  ///< results of probes
 
     void list(const ZarrVolume& volume, int64_t most)

@@ -20,7 +20,7 @@ namespace shvr {
 /// Selects the three axes of an array that form a volume, and its index along the others.
 struct ZarrView {
     std::array<size_t, 3> xyz{2, 1, 0};  ///< the array's axis along x, y and z
-    std::vector<int64_t> at{};           ///< an index for every axis of the array; ignored for x, y and z
+    std::vector<int64_t> at{};           ///< index along every axis of the array; ignored for x, y and z
 };
 
 /// The checksum of a chunk's stored bytes, which finds damage even if they still decode. 0: no chunk is stored.

@@ -10,7 +10,7 @@ namespace shvr {
 namespace {
 
 constexpr uint64_t END_BYTES = 22;      ///< size of the end record, without its comment
-constexpr uint64_t LOCATOR_BYTES = 20;  ///< of zip64's locator, right before the end record
+constexpr uint64_t LOCATOR_BYTES = 20;  ///< size of zip64's locator, right before the end record
 constexpr uint64_t END64_BYTES = 56;    ///< of zip64's end record, without extensions
 constexpr uint64_t ENTRY_BYTES = 46;    ///< without name, extra fields and comment
 constexpr uint64_t MAX_COMMENT = 65535;
@@ -103,7 +103,7 @@ void take_zip64_sizes(const std::string& path, std::string_view extra, ZipEntry&
         }
         return;
     }
-    // Without such a field the size is taken literally: 2^32 - 1.
+    // If there is no such field, the size is taken literally: 2^32 - 1.
 }
 
 std::vector<ZipEntry> entries_of(const std::string& path, const std::vector<char>& bytes, uint64_t count)

@@ -16,7 +16,7 @@ namespace shvr {
 
 /// An entry as the directory describes it; only the directory's own structure is checked.
 struct ZipEntry {
-    std::string_view name{};  ///< as stored: with slashes, without a leading one
+    std::string_view name{};  ///< name as stored: with slashes, without a leading one
     uint64_t header = 0;      ///< offset of its local header in the archive
     uint64_t stored_bytes = 0;
     uint64_t bytes = 0;  ///< decoded
@@ -30,7 +30,7 @@ inline constexpr uint16_t ZIP_ENCRYPTED = 1;  ///< a flag
 struct ZipDirectory {
     uint64_t offset = 0;              ///< offset of the directory in the archive; entries lie before it
     std::vector<char> bytes{};        ///< the directory; names refer to it
-    std::vector<ZipEntry> entries{};  ///< sorted by name, each once: if a name occurs twice, the later entry counts
+    std::vector<ZipEntry> entries{};  ///< sorted by name. If a name occurs twice, only the later entry is listed
 };
 
 /// Reads `bytes` at `offset` of the archive; fails if that is not possible.

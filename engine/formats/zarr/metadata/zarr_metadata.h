@@ -20,7 +20,7 @@ inline constexpr int64_t MAX_CHUNK_BYTES = int64_t{256} << 20;
 struct ZarrCompressor {
     enum class Kind { none, blosc, zstd, zlib, gzip, crc32c };
     Kind kind = Kind::none;
-    // For writing; stored chunks state themselves how to decode them.
+    // Compressor settings for writing; stored chunks state themselves how to decode them.
     std::string codec = "zstd";  ///< blosc's
     int level = 1;
     int shuffle = 1;  ///< blosc's: 0 none, 1 bytes, 2 bits
@@ -30,8 +30,8 @@ struct ZarrCompressor {
 /// (https://zarr-specs.readthedocs.io/en/latest/v3/codecs/sharding-indexed/).
 struct ZarrSharding {
     std::vector<int64_t> shape{};  ///< voxels of a shard along each axis, a multiple of those of a chunk
-    std::vector<size_t> order{};   ///< the axes of the index, the slowest first
-    bool is_index_first = false;   ///< at the start of a shard, not at its end
+    std::vector<size_t> order{};   ///< order of the axes of the index, the slowest first
+    bool is_index_first = false;   ///< whether the index is at the start of a shard, not at its end
     bool is_big_endian = false;    ///< the index
     int checksums = 0;             ///< number of CRC-32C that follow the index, each over everything before it
 
@@ -53,7 +53,7 @@ struct ZarrMetadata {
     /// In encoding order: at most one compressor, and checksums before and after it.
     std::vector<ZarrCompressor> codecs{};
     std::optional<ZarrSharding> sharding{};
-    std::vector<std::string> axes{};  ///< names of the axes, as far as there are any
+    std::vector<std::string> axes{};  ///< names of the axes, if the file states any
 
     size_t chunk_bytes() const;
     /// Bytes from one voxel of a chunk to the next along each axis.

@@ -22,7 +22,7 @@ constexpr size_t MAX_CODECS = 16;
 /// Limit of a shard's index, which is read as a whole: four million chunks.
 constexpr int64_t MAX_INDEX_BYTES = int64_t{64} << 20;
 
-/// numcodecs' names are those of zarr-python's numcodecs.zarr3, whose bytes are the same.
+/// The names of numcodecs are those in zarr-python's numcodecs.zarr3, which stores the same bytes.
 constexpr Spelling<Kind> CODECS[] = {{Kind::blosc, "blosc"},         {Kind::zstd, "zstd"},
                                      {Kind::gzip, "gzip"},           {Kind::crc32c, "crc32c"},
                                      {Kind::zlib, "zlib"},           {Kind::blosc, "numcodecs.blosc"},
@@ -128,7 +128,7 @@ Chain read_chain(const JsonNode& node, const std::vector<size_t>& axes)
     return chain;
 }
 
-/// The axes' order, or nothing if it is the array's own.
+/// The order of the axes; empty if it is the array's own.
 std::vector<size_t> unless_plain(std::vector<size_t> order)
 {
     return std::ranges::is_sorted(order) ? std::vector<size_t>() : order;
@@ -149,7 +149,7 @@ void read_index(const JsonNode& configuration, ZarrSharding& sharding)
     sharding.is_index_first = place.exists() && place.choice(places) == 0;
 }
 
-/// Chunks are then those inside a shard, the unit of reads.
+/// With shards, `chunks` are those inside a shard, the unit of reads.
 void read_sharding(const Chain& outer, ZarrMetadata& metadata)
 {
     const JsonNode configuration = (*outer.bytes)["configuration"];

@@ -12,7 +12,7 @@ namespace shvr {
 struct ZarrNode {
     int version = 2;        ///< version of Zarr
     bool is_array = false;  ///< otherwise a group
-    /// .zattrs or zarr.json; an empty object for arrays of version 2, and for groups without attributes.
+    /// Content of .zattrs or zarr.json; an empty object for arrays of version 2, and for groups without attributes.
     JsonDocument document;
 
     JsonNode attributes() const;
@@ -22,7 +22,7 @@ struct ZarrNode {
 
 /// Null if the place is neither group nor array. Fails if its metadata are damaged, or of an unknown version.
 std::optional<ZarrNode> read_zarr_node(const ZarrPlace& place);
-/// The same for the place that a path names (zarr_place).
+/// Likewise for the place that a path names (zarr_place).
 std::optional<ZarrNode> read_zarr_node(const std::filesystem::path& path);
 
 /// Version 3: checks the common keys of the metadata of groups and arrays. Fails if there are others than `known`,

@@ -89,8 +89,8 @@ private:
     fs::path folder_;
 };
 
-/// Deflated entries that are read in parts (shards, if the archive's writer compressed them again) are decoded as a
-/// whole; the most recent ones are kept.
+/// Caches deflated entries that are read in parts, such as shards that the archive's writer compressed again: they are
+/// decoded as a whole, and the most recent ones are kept.
 constexpr int64_t KEPT_ENTRY_BYTES = int64_t{64} << 20;
 constexpr int64_t MAX_DEFLATED_SHARD_BYTES = int64_t{256} << 20;
 
