@@ -41,7 +41,7 @@ void Workbench::perform(const Action& action)
     for (const std::string& line : desk_.logged_instead) desk_.log(line);
 }
 
-/// By the service that the action's row names.
+/// Calls the service that the action's row names.
 void Workbench::carry_out(const Action& action)
 {
     std::visit(

@@ -62,7 +62,7 @@ public:
 
     /// Sets the size of the picture; 0, 0: none is drawn.
     void set_pixels(const glm::uvec2& pixels);
-    /// Sets the position of the mouse, where values are then read; null: not over the picture.
+    /// Sets the position of the mouse, where values are read from then on; null: not over the picture.
     void set_pointer(const std::optional<Pointer>& pointer) { services_.viewer.set_pointer(pointer); }
     /// Returns text to copy since the last call; empty: none.
     std::string take_clipboard() { return services_.reader.take_clipboard(); }

@@ -33,8 +33,8 @@ struct ActionRow {
     Needs needs = Needs::document;
 };
 
-/// `fields(Fields&, Kind&)` visits the arguments; `why_not(const Model&, const Kind&)` returns why it would do nothing,
-/// empty where nothing speaks against it; Service has `void act(const Kind&)`.
+/// `fields(Fields&, Kind&)` visits the arguments; `why_not(const Model&, const Kind&)` returns the reason why the
+/// action would do nothing, empty if it is available; Service has `void act(const Kind&)`.
 template <class KindOfRow, class ServiceOfRow, class VisitFields, class WhyNot>
 struct FullRow : ActionRow {
     using Kind = KindOfRow;
@@ -44,7 +44,7 @@ struct FullRow : ActionRow {
 };
 
 inline constexpr auto NO_FIELDS = [](auto&, auto&) {};
-/// The fields of a task, which engine/tasks states.
+/// The fields of a task, as defined in engine/tasks.
 inline constexpr auto TASK_FIELDS = [](auto& f, auto& task) { fields(f, task); };
 inline constexpr auto NO_CONDITION = [](const auto&, const auto&) { return std::string(); };
 

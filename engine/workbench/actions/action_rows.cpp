@@ -32,7 +32,7 @@ constexpr const auto& full_row()
 template <class Kind>
 constexpr bool IS_SCRIPT_OP = std::is_constructible_v<ScriptOp, Kind>;
 
-/// The alternative of Action with that index, as it is made.
+/// A default-constructed action: the alternative with that index.
 template <size_t INDEX = 0>
 Action default_action(size_t index)
 {
@@ -50,7 +50,7 @@ Fields::Visit with_op(std::string& op, const Fields::Visit& arguments)
     };
 }
 
-/// ids of the registry and names of operations of scripts, each once.
+/// Ids of the registry and names of scripts' operations, each once.
 std::vector<std::string_view> known_ids()
 {
     std::vector<std::string_view> ids;

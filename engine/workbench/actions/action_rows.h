@@ -21,7 +21,7 @@ const ActionRow& row_of(const Action& action);
 
 /// Returns a line of JSON that `read_action` parses as the same action.
 std::string line_of(const Action& action);
-/// Fails at unknown ids, keys and values, naming what was expected.
+/// Fails for unknown ids, keys and values; the message names what was expected.
 Action read_action(const JsonNode& line);
 /// `origin` names the text in messages.
 Action read_action(std::string_view line, const std::string& origin);

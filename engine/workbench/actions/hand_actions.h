@@ -7,7 +7,7 @@ namespace shvr::ui {
 
 class Hand;
 
-struct LetGo {  ///< no force from the next tick on, until switched off again
+struct LetGo {  ///< switches forces off from the next tick on, until switched on again
     bool on = true;
 };
 
@@ -21,7 +21,7 @@ struct UseDevice {
 
 struct FindDevices {};  ///< searches for connected devices again
 
-struct CalibrateDevice {};  ///< opens the device again, so that its rest position becomes its origin
+struct CalibrateDevice {};  ///< reopens the device, so that its rest position becomes the origin
 
 /// Records the stylus's motion and forces, tick by tick, into a file (haptics/replay/README.md).
 struct RecordStylus {

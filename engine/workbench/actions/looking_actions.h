@@ -15,7 +15,7 @@ struct Roll {
     double degrees = 0.0;
 };
 
-/// Along the camera's right, up and forward; 1 is the height of the view at the target's depth.
+/// Distances along the camera's right, up and forward; 1 is the height of the view at the target's depth.
 struct Move {
     glm::dvec3 heights{0.0};
 };
@@ -82,16 +82,16 @@ struct ResetCuts {};
 
 /// Fits the volume, or its part within the cutting planes, into the view, from the current direction.
 struct FitView {
-    size_t pane = 0;  ///< if it shows a slice, all slices are fitted and the camera stays
+    size_t pane = 0;  ///< pane; if it shows a slice, all slices are fitted and the camera stays
 };
 
 /// Returns to the camera that the session opens with.
 struct ResetView {};
 
-/// Looks at the selection, at the current distance.
+/// Looks at the selection, from the current distance.
 struct LookAtSelection {};
 
-struct UpdateOcclusion {};  ///< computes it again if it does not update by itself
+struct UpdateOcclusion {};  ///< computes occlusion again if it is not updated automatically
 
 inline constexpr const char* LOOKING_GROUP = "Looking";
 

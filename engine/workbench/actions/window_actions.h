@@ -24,7 +24,7 @@ struct BindKeys {
     std::string shortcut, keys;
 };
 
-/// Sets the size of the picture, which pixels of panes refer to.
+/// Sets the size of the picture, to which pixels of panes refer.
 struct Resize {
     glm::uvec2 pixels{0};
 };
@@ -83,7 +83,7 @@ struct ShowFullScreen {
 };
 
 struct Quit {
-    bool saves = true;  ///< false: the work returns to the last save, as a step that can be undone
+    bool saves = true;  ///< false: discards changes: the work returns to the last save, as a step that can be undone
 };
 
 inline constexpr const char* WINDOW_GROUP = "Window";

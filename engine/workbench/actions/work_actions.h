@@ -40,7 +40,7 @@ struct Screenshot {
 /// Runs in the background: the open document stays until the next one is loaded.
 struct Open {
     std::filesystem::path path;
-    std::string settings{};  ///< for this opening, as --set takes them: "volume.channel=red", one per line
+    std::string settings{};  ///< settings for this opening, as --set takes them: "volume.channel=red", one per line
 };
 
 /// Inspects a file without its voxels, for the open dialog: Model::candidate.
@@ -57,7 +57,7 @@ struct TakeFile {
     std::string beside{};  ///< paths of files dropped with it, one per line
 };
 
-/// Corrects the volume's spacing: saves the work, and opens it with this one. Positions stay at their voxels.
+/// Corrects the volume's spacing: saves the work, and reopens it with the new spacing. Positions stay at their voxels.
 struct CorrectSpacing {
     glm::dvec3 spacing{1.0};
     std::string unit;

@@ -8,7 +8,7 @@ namespace shvr::ui {
 
 namespace {
 
-// The curve and the groups come first: both are in sight at 1280 x 800 without scrolling.
+// The curve and the groups come first, so that both are visible at 1280 x 800 without scrolling.
 constexpr PanelRow PANELS[] = {
     {.id = "transfer_function", .title = "Transfer function", .hint = "Colour and opacity of intensities."},
     {.id = "groups", .title = "Colour groups", .hint = "What paint and traces belong to."},

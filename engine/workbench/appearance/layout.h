@@ -67,10 +67,10 @@ struct WindowLayout {
     bool operator==(const WindowLayout&) const = default;
 };
 
-/// Units of the window's width that the panels at the right take: as wide as wanted, but at most half of it.
+/// Width of the panels at the right, in units of the window: as wide as wanted, but at most half of the window.
 double side_units(const WindowLayout& layout, double window_units, double font_units);
 
-/// A floating panel's corner, so that its title can be reached: within the window, whose size it is given.
+/// Corner of a floating panel, moved into a window of the given size so that its title can be reached.
 glm::dvec2 within_reach(const glm::dvec2& at, const glm::dvec2& size, const glm::dvec2& window);
 
 }  // namespace shvr::ui

@@ -1,7 +1,7 @@
 #pragma once
-// The colours of the interface by what they are for, in two themes. Every text can be read on every surface: the
-// contrast by WCAG 2.1 is at least MIN_TEXT_CONTRAST, also where a widget is greyed (tests/unit/ui/theme_test.cpp).
-// Pure; any thread.
+// The colours of the interface by purpose, in two themes. Every text can be read on every surface: the contrast by
+// WCAG 2.1 is at least MIN_TEXT_CONTRAST, also where a widget is greyed (tests/unit/ui/theme_test.cpp). Pure; any
+// thread.
 
 #include <array>
 #include <span>
@@ -24,7 +24,7 @@ enum class ColorRole {
     // Texts
     text,
     faint_text,  ///< hints, keys, disabled items
-    warning,     ///< stands next to the word or sign that names it
+    warning,     ///< colour of a mark next to the word or sign that names it
     error,
     accent_text,  ///< headings
     // Surfaces that texts stand on

@@ -11,7 +11,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Keys with names of several letters, and these in words.
+/// Keys whose names have several letters, and their display names.
 constexpr std::pair<const char*, const char*> NAMED_KEYS[] = {
     {"Space", "Space"}, {"Delete", "Delete"},       {"Insert", "Insert"},      {"Home", "Home"},
     {"End", "End"},     {"PageUp", "Page Up"},      {"PageDown", "Page Down"}, {"Up", "Up"},
@@ -111,7 +111,7 @@ std::vector<const Shortcut*> Keymap::shortcuts_for(const Chord& chord) const
     for (const Shortcut& shortcut : shortcuts())
         if (std::ranges::any_of(chords_of(shortcut), [&](const Chord& bound) { return means(shortcut, bound, chord); }))
             found.push_back(&shortcut);
-    // A shortcut that wants Shift comes before one that Shift only slows.
+    // A shortcut bound with Shift precedes one that Shift only slows.
     const auto is_exact = [&](const Shortcut* shortcut) {
         return std::ranges::find(chords_of(*shortcut), chord) != chords_of(*shortcut).end();
     };

@@ -20,7 +20,7 @@ bool is_action_id(std::string_view word)
     return std::ranges::any_of(action_rows(), [&](const ActionRow& row) { return row.id == word; });
 }
 
-/// The table is made once: it does not change.
+/// The table is made once, since it does not change.
 const std::vector<SessionKey>& keys_of_settings()
 {
     static const std::vector<SessionKey> KEYS = keys_of([](Fields& f) {
@@ -30,7 +30,7 @@ const std::vector<SessionKey>& keys_of_settings()
     return KEYS;
 }
 
-/// An action as typed; where it is none, or cannot be done, with the reason.
+/// An entry for a typed action; if it is none, or unavailable, with the reason.
 template <class Make>
 PaletteEntry typed(const Model& model, std::string_view text, const char* group, const Make& make)
 {

@@ -122,7 +122,7 @@ Preferences patched(const Preferences& preferences, std::string_view patch)
     return read;
 }
 
-/// States only changes: members missing from a patch stay.
+/// Writes changes only, since members missing from a patch stay.
 std::string patch_of_panel(const std::string& id, const PanelLayout& change)
 {
     std::string parts;

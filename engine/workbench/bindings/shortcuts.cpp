@@ -39,7 +39,7 @@ Action choose(const Model& model, double)
     return edited(model.session, [](Session& s) { s.probe.brush.group = GROUP; });
 }
 
-/// Actions without a position take the pointer's; without a pointer, the middle of the first pane.
+/// Actions without a position take that of the pointer or, without a pointer, the middle of the first pane.
 template <class Kind>
 Action at_pointer(const Model& model, double)
 {
@@ -53,7 +53,7 @@ Action at_pointer(const Model& model, double)
     return action;
 }
 
-/// In the pane under the pointer, or the first.
+/// The pane under the pointer, or the first one.
 template <class Kind>
 Action at_pane(const Model& model, double)
 {
@@ -62,7 +62,7 @@ Action at_pane(const Model& model, double)
     return action;
 }
 
-/// By a voxel, as seen in the pane under the pointer.
+/// Moves the probe by a voxel, as seen in the pane under the pointer.
 template <int AWAY, int RIGHT, int UP>
 Action step_probe(const Model& model, double amount)
 {
@@ -237,7 +237,7 @@ Action move_clip(const Model&, double amount)
     return MoveClip{FAR, CLIP_SHARE * DIRECTION * amount};
 }
 
-/// Values near 0 become 0, which costs nothing to render.
+/// Values near 0 become exactly 0, which costs nothing to render.
 template <double DistanceBlend::*VALUE, int DIRECTION>
 Action blend(const Model& model, double amount)
 {
@@ -281,7 +281,7 @@ Action neighbour_group(const Model& model, double)
     return edited(model.session, [&](Session& s) { s.probe.brush.group = next_group(model, DIRECTION); });
 }
 
-/// Closes what is in front; where nothing is, the mouse turns again.
+/// Closes the frontmost dialog; if there is none, the mouse returns to the turn tool.
 Action step_back(const Model& model, double amount)
 {
     if (model.shows_palette) return ShowPalette{false};

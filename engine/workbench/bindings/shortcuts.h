@@ -16,8 +16,8 @@ namespace shvr::ui {
 struct Shortcut {
     enum class Mode {
         tap,        ///< once per press
-        repeated,   ///< once per press, and again with the keyboard's auto-repeat
-        step,       ///< once per press; a fifth of the amount with Shift
+        repeated,   ///< acts once per press, and again with the keyboard's auto-repeat
+        step,       ///< acts once per press; by a fifth of the amount with Shift
         hold,       ///< continuous while held; slower with Shift
         while_held  ///< starts when pressed and ends when released
     };
@@ -30,7 +30,7 @@ struct Shortcut {
     Action (*action)(const Model& model, double amount) = nullptr;
     /// Chords by KeySet, separated by spaces: "Ctrl+Y Ctrl+Shift+Z" (keymap.h).
     std::array<const char*, 2> keys{"", ""};
-    bool is_by_position = false;  ///< its letter means the key at that place of an American keyboard
+    bool is_by_position = false;  ///< the letter means the key at that place of an American keyboard
 
     bool is_slowed() const { return mode == Mode::step || mode == Mode::hold; }
 };

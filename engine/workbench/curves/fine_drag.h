@@ -11,7 +11,7 @@ public:
     static constexpr float SHARE = 0.1f;
 
     FineDrag() = default;
-    /// `mouse`: where the drag begins; `held`: the position of the dragged item, which may differ.
+    /// `mouse`: position where the drag begins; `held`: position of the dragged item, which may differ.
     FineDrag(const glm::vec2& mouse, const glm::vec2& held) : mouse_(mouse), held_(held) {}
     /// Returns the position of the item once the mouse is at `mouse`.
     glm::vec2 follow(const glm::vec2& mouse, bool is_fine)

@@ -25,7 +25,7 @@ struct Lattice {
     double upper(int64_t k) const { return std::ceil(double(k) * double(span) / double(intervals)); }
 };
 
-/// Counts the values that fall into each bin; if they may be rounded, those that may fall into it.
+/// Counts the values that fall into each bin; rounded values count in every bin into which they may fall.
 std::vector<int64_t> values_in_bins(const Lattice& lattice, size_t bins)
 {
     std::vector<int64_t> values(bins, 0);
@@ -69,7 +69,7 @@ Lattice lattice_of(int64_t span, const std::vector<int64_t>& counts)
         const bool is_apart = span % intervals == 0 || lattice.step() >= std::max(4.0 * bin_width, 3.0);
         if (is_apart && !is_refuted(values_in_bins(lattice, counts.size()), counts)) return lattice;
     }
-    // Narrower: bins hold one more or one fewer, which shows as a comb that the right step makes smooth.
+    // For narrower steps: bins hold one value more or less, which shows as a comb that the right step makes smooth.
     constexpr double CLEARLY = 0.6;
     Lattice best{span, span};
     double least = CLEARLY * roughness(values_in_bins(best, counts.size()), counts);
@@ -99,7 +99,7 @@ void add_values(const Lattice& lattice, double lowest, const std::vector<int64_t
 void join_small_gaps(std::vector<HistogramBar>& bars)
 {
     constexpr size_t MAX_GAP = 2;    // consecutive empty bars
-    constexpr size_t MIN_SHARE = 4;  // bars are joined if at least one is empty per this many filled ones
+    constexpr size_t MIN_SHARE = 4;  // bars are joined if for this many filled bars at least one is empty
     std::vector<size_t> filled;
     for (size_t i = 0; i < bars.size(); ++i)
         if (bars[i].voxels > 0.0) filled.push_back(i);

@@ -22,17 +22,17 @@ std::string short_name(const std::filesystem::path& path);
 struct WorkbenchOptions {
     View::Options view{};
     bool has_servo = true;  ///< guidance and haptic devices run; false: guidance has no effect
-    /// For scripts, which do what they state and nothing else: no setting becomes a step or is kept, saves write
-    /// annotation alone, to the files that the session names, and what is selected stays so.
+    /// For scripts, which do exactly what they state: no setting becomes a step or is kept, saves write annotation
+    /// alone, to the files that the session names, and what is selected stays so.
     bool is_script = false;
     bool allow_force = false;             ///< lets a haptic device with a verified profile push the hand
     std::filesystem::path preferences{};  ///< the file (preferences_file.h); empty: none are read or kept
     std::function<double()> now_s{};      ///< seconds of any clock; null: the system's
     std::string version{};                ///< the program's, for reports; empty: unknown
-    DeviceSource devices{};               ///< where haptic devices come from; without functions: this machine
+    DeviceSource devices{};               ///< source of haptic devices; without functions: this machine
     /// Slices follow a probe that leaves their plane, and the move is logged; false: the log's own actions move them.
     bool slices_follow = true;
-    TextDrawer draw_texts{};  ///< for picture files; null: they have no labels
+    TextDrawer draw_texts{};  ///< draws labels into picture files; null: they have none
 };
 
 struct Desk {
@@ -41,8 +41,8 @@ struct Desk {
 
     Renderer& renderer;
     WorkbenchOptions options;
-    /// Null: nothing is open. Opening replaces it, so services keep a reference to this pointer and never to what it
-    /// target.
+    /// Null: nothing is open. Opening replaces the document, so services keep a reference to this pointer and never to
+    /// the document.
     std::unique_ptr<Document> document;
     uint64_t openings = 0;  ///< how often a document was opened
     double opened_s = 0.0;  ///< when this one was
@@ -61,7 +61,7 @@ struct Desk {
     /// that time; its position does not.
     void log_instead(const Actions& actions);
     DocumentModel document_model() const;
-    /// Targets of a model's references while no document is open.
+    /// Objects that a model's references refer to while no document is open.
     struct Nothing {
         Session session;
         VolumeInfo volume;

@@ -26,7 +26,7 @@ void PreferenceKeeper::act(const BindKeys& action)
     std::vector<std::string>& keys_of_it = preferences.keys[action.shortcut];
     keys_of_it.clear();
     for (const std::string_view chord : words_of(action.keys)) keys_of_it.emplace_back(chord);
-    // A default is no change, so that it follows another choice of the set.
+    // A binding equal to the default is not stored, so that it follows a later choice of the set.
     if (Keymap(preferences.key_set, preferences.keys).chords_of(*shortcut) ==
         Keymap(preferences.key_set).chords_of(*shortcut))
         preferences.keys.erase(action.shortcut);
@@ -56,7 +56,7 @@ void PreferenceKeeper::act(const ForgetRecent& action)
     prefer(std::move(preferences));
 }
 
-/// A file that cannot be read stays as it is, and nothing is kept until it can.
+/// A file that cannot be read stays as it is, and nothing is saved until it can be read.
 void PreferenceKeeper::load()
 {
     if (options_.preferences.empty()) return;
@@ -70,7 +70,7 @@ void PreferenceKeeper::load()
     for (const std::string& conflict : keymap_.conflicts()) say(conflict, Weight::warning);
 }
 
-/// A failure to save is reported, and changes nothing else.
+/// A failed save is reported, and changes nothing else.
 void PreferenceKeeper::prefer(Preferences preferences)
 {
     if (preferences == preferences_) return;

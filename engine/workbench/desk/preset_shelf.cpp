@@ -36,7 +36,7 @@ const TransferPreset& PresetShelf::own(const std::string& name) const
     return *found;
 }
 
-/// The file of a name that ships is never made: two would look the same in the list.
+/// The file of a preset that ships is never created: two presets would look the same in the list.
 std::filesystem::path PresetShelf::free_file(const std::string& name) const
 {
     const std::filesystem::path file = preset_file(folder(), name);

@@ -118,7 +118,7 @@ void Document::take_kept_settings()
     if (probe.voxel) touch.place(*probe.voxel * volume().spacing);
 }
 
-/// Chooses settings that neither the file nor the journal states. Later than both, so it is no change of either.
+/// Chooses settings that neither the file nor the journal states. Called after both are read, so it changes neither.
 void Document::choose_for_volume(Session& of) const
 {
     if (!of.probe.node_radius_voxels) of.probe.node_radius_voxels = automatic_node_radius(volume());
@@ -299,7 +299,7 @@ std::optional<LocalBall> Document::ball_at(const glm::dvec3& voxel, const std::o
     const double finest = std::min({info.spacing.x, info.spacing.y, info.spacing.z});
     const glm::dvec3 size(info.size), ahead = way ? glm::normalize(*way) : glm::dvec3(0.0);
     if (glm::any(glm::lessThan(voxel, glm::dvec3(0.0))) || glm::any(glm::greaterThan(voxel, size))) return {};
-    // Most structures are thin, and few voxels have to be read for them.
+    // Most structures are thin, so few voxels have to be read for them.
     for (const double most_voxels : {6.0, 12.0, 24.0}) {  // along the finest axis
         const double most = most_voxels * finest;
         // A middle is at most `most` from the voxel, or from one at most that far behind it, and looks that far.

@@ -17,7 +17,7 @@ std::filesystem::path beside(const std::filesystem::path& session_file, const ch
     return std::filesystem::path(session_file).replace_extension(extension);
 }
 
-/// The session under another name, with files of that name.
+/// The session under another name, with files named after it.
 Session renamed(Session session, const std::filesystem::path& path)
 {
     session.mask_path = beside(path, ".mask");
@@ -27,7 +27,7 @@ Session renamed(Session session, const std::filesystem::path& path)
     return session;
 }
 
-/// Fails where it is no name of a session, or taken.
+/// Fails if the path is not a name for a session, or exists.
 std::filesystem::path new_session_path(const std::filesystem::path& path)
 {
     if (path.extension() != ".json") fail(path.string(), ": is no name for a session; expected one that ends in .json");
@@ -76,7 +76,7 @@ std::shared_ptr<Document::Saving> Document::begin_save(Parts parts)
     return saving;
 }
 
-/// Keeps contents that another program wrote there since; the notice names their place.
+/// Keeps contents that another program has written there since; the notice names the new place.
 void Document::Saving::write_session()
 {
     if (const std::optional<std::string> there = text_of_session(session_path_); there && there != text_there_) {
@@ -112,7 +112,7 @@ Work::Saved Document::end_save(Saving& saving)
     if (saving.as_ && saving.is_written_) {
         session = renamed(std::move(session), saving.session_path_);
         session_path = saving.session_path_;
-        overridden_.clear();  // what was set for this time only is in the new file
+        overridden_.clear();  // settings made for this run only are in the new file, too
     }
     if (saving.notice_) saved.notices.push_back(*saving.notice_);
     if (saving.has_session_) session_text_ = saving.text_;

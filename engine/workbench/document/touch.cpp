@@ -11,7 +11,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// One voxel under the hand: the scale at which the force law's stiffness was chosen (micro-CT of vascular bundles).
+/// Size of a voxel under the hand for which the force law's stiffness was chosen (micro-CT of vascular bundles).
 constexpr double VOXEL_M = 0.00025;
 
 uint64_t now_ns()
@@ -95,7 +95,7 @@ Workspace Touch::workspace(const TouchSettings& settings) const
     return {.to_volume = glm::dmat3(finest / VOXEL_M), .origin = 0.5 * glm::dvec3(info.size) * info.spacing};
 }
 
-/// A plane lies where the probe is put.
+/// A plane goes through the position where the probe is put.
 void Touch::place(const glm::dvec3& point)
 {
     if (plane_ != TouchPlane::none) on_plane_ = point;
@@ -141,7 +141,7 @@ void Touch::hold_to_plane(const TouchSettings& settings)
     ++planes_;
 }
 
-/// Those that the servo has already are not sent again, so that a recording holds changes alone.
+/// Settings that the servo already has are not sent again, so that a recording holds only changes.
 void Touch::send_settings(const TouchSettings& settings)
 {
     const GuideSettings& guide = settings.guide;
@@ -210,7 +210,7 @@ void Touch::ask()
         relevance_.ask(wanted->place.box, wanted->threshold, now_ns());
     } catch (const DeviceLost&) {
         throw;
-    } catch (const Error&) {  // no room on the device for such a cube
+    } catch (const Error&) {  // the device has no room for such a cube
         mirror_->decline(*wanted);
     }
 }

@@ -10,10 +10,10 @@ namespace shvr::ui {
 
 /// Returns a new node at the probe, with the probe's group and the default radius, linked to the selected node.
 NodeOp node_at_probe(const Model& model);
-/// Returns the same; if tools act at an existing node, a link of the selected node with it or, if they are linked, its
-/// selection; on a centre line, a node that divides it.
+/// Returns the same node. If tools act at an existing node, returns instead a link of the selected node with it or, if
+/// they are linked, its selection; on a centre line, a node that divides it.
 Action node_or_link_at_probe(const Model& model);
-/// Returns what a new node becomes if part of the trace attracts the tools; null if none does.
+/// Returns the operation in place of a new node if part of the trace attracts the tools; null if none does.
 std::optional<Action> trace_op_at(const ToolPlace& place, const TraceGraph& trace, const glm::dvec3& spacing);
 /// Selects the nearest node or, if it is selected already, the nearest of its internodes.
 SelectOp nearest_selection(const Model& model);

@@ -11,7 +11,7 @@ public:
     explicit Places(const VolumeInfo& volume) : volume_(volume) {}
 
     void add(const TraceNode& node) { add(node.position / volume_.spacing, node.position / volume_.spacing); }
-    /// Runs are long in x only, so their ends and the sides of a brick's rows are what counts.
+    /// Runs are long in x only, so their bounds follow from their ends and the sides of a brick's rows.
     template <class Value>
     void add(const BrickChange<Value>& change)
     {

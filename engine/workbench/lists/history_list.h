@@ -12,8 +12,8 @@ namespace shvr::ui {
 /// Row N is the state after N steps: row 0 is the start, row `rows - 1` the newest.
 struct HistoryList {
     const History* history = nullptr;
-    size_t done = 0;        ///< the present row, unless a setting is not a step yet
-    bool is_ahead = false;  ///< a changed setting is not a step yet: it is the last row, and the present one
+    size_t done = 0;        ///< index of the present row, unless a setting is not a step yet
+    bool is_ahead = false;  ///< a changed setting is not a step yet: it is shown as the last and present row
 
     size_t rows() const;
     size_t present() const { return done + is_ahead; }

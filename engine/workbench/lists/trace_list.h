@@ -33,7 +33,7 @@ public:
     /// Rebuilds the rows unless trace and order are those of the last call. Returns whether the rows were rebuilt.
     bool update(const TraceGraph& trace, TraceOrder order, bool is_descending);
     const std::vector<SegmentRow>& segments() const { return segments_; }
-    /// Nodes by number; the order applies to segments alone.
+    /// Nodes in the order of their numbers; `order` applies to segments only.
     const std::vector<NodeRow>& nodes() const { return nodes_; }
 
 private:

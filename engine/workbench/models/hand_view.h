@@ -21,12 +21,12 @@ struct HandView {
     std::string name = "mouse", serial, connection;
     std::string trouble;       ///< trouble of the open device, or why the last one could not be opened
     bool is_puck = false;      ///< the device reports speeds
-    bool moves_probe = false;  ///< a device, and not the mouse, moves the probe
+    bool moves_probe = false;  ///< true: a device moves the probe; false: the mouse
     bool is_realtime = false;  ///< whether the running servo has realtime priority
     bool is_let_go = false, is_grabbing = false;
     TapState tap;
     std::optional<double> recorded_s;  ///< duration of the recording under way
-    std::filesystem::path recording;   ///< file of that recording, or of the last one; empty: none
+    std::filesystem::path recording;   ///< file of the recording under way, or of the last one; empty: none
 };
 
 /// Returns "Touch (serial 1234)".

@@ -19,7 +19,7 @@ inline std::string told_of(const std::exception& error)
 
 enum class Weight {
     done,     ///< the result of an action
-    warning,  ///< something is not as expected, and work goes on
+    warning,  ///< something is not as expected, but work goes on
     error     ///< something was not done
 };
 

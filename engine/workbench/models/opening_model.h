@@ -19,10 +19,10 @@ struct Candidate {
     std::string settings;  ///< settings used to inspect it
     bool is_being_read = true;
     std::string failure;            ///< why it cannot be opened with them; empty: it can, as far as known
-    std::vector<Choice> choices{};  ///< alternatives, if the reason is that one must be chosen
+    std::vector<Choice> choices{};  ///< alternatives, if it cannot be opened because one must be chosen
     std::string kind;               ///< "Volume", "Session", "Project", "Picture of a session"
     bool is_project = false;        ///< the file needs no import
-    VolumeInfo volume{};            ///< this and the members below are known only without a failure
+    VolumeInfo volume{};            ///< valid, like the members below, only if `failure` is empty
     int levels = 1;
     std::string memory{};  ///< required host and device memory
     std::vector<std::string> warnings{};

@@ -17,7 +17,7 @@ struct Pointer {
 /// Values of the volume and the annotation at a point.
 struct Reading {
     glm::dvec3 voxel{0.0};            ///< position of the probe; over a slice, of the pointer
-    bool is_inside = false;           ///< within the volume; otherwise the next three are unknown
+    bool is_inside = false;           ///< inside the volume; if false, the next three are unknown
     std::optional<double> intensity;  ///< in the file's units; null: it cannot be read, or is not read yet
     double offset = 0.0;              ///< density offset added by painting
     uint8_t group = 0;

@@ -23,7 +23,7 @@ struct TraceModel {
     const TraceGraph& trace;
     std::optional<uint32_t> nearby_node;  ///< near the probe, and not selected
     bool drags_node = false;
-    bool is_cut = false;  ///< the last deletion cut the trace in two, and the cut is not mended
+    bool is_cut = false;  ///< the last deletion cut the trace in two, and the cut has not been mended
 };
 
 /// Made by the settings' editor.

@@ -53,7 +53,7 @@ void FileTaker::act(const Open& action)
     opener_.begin_open(action.path, lines_of(action.settings));
 }
 
-/// The one that ships stays as it is: the folder may be read only, and others open it, too.
+/// Opens a copy: the shipped example must stay as it is, since its folder may be read-only and others open it, too.
 void FileTaker::act(const OpenExample&)
 {
     if (options_.preferences.empty())
@@ -127,7 +127,7 @@ void FileTaker::act(const TakeFile& action)
     });
 }
 
-/// Annotation that comes with a scan must not go into the one that is still open.
+/// Finds out first what can be opened: annotation dropped with a scan must not go into the document that is still open.
 void FileTaker::take_together(std::vector<std::filesystem::path> paths)
 {
     jobs_.start(sentence("looking at ", paths.size(), " files"), [this, paths](ProgressReporter&) {
@@ -171,7 +171,7 @@ void FileTaker::take_transfer_function(const std::filesystem::path& path, const 
     say("The transfer function of " + path.string() + " is taken; undo takes it back");
 }
 
-/// Reads it on the worker; it becomes one step of the history.
+/// Reads the file on the worker; its content becomes one step of the history.
 void FileTaker::take_annotation(Part part, const std::filesystem::path& path)
 {
     const VolumeInfo volume = document_->volume();

@@ -11,9 +11,9 @@ namespace shvr::ui {
 
 namespace {
 
-constexpr double MAX_PUCK_STEP_S = 0.1;    ///< a hung frame must not throw the view far away
-constexpr double TAPS_PER_SECOND = 5.0;    ///< while a button is held, as for keys
-constexpr double MAX_BUTTON_STEP_S = 0.5;  ///< a hung frame must not throw the view far away
+constexpr double MAX_PUCK_STEP_S = 0.1;    ///< limits motion in one step: a hung frame must not throw the view far away
+constexpr double TAPS_PER_SECOND = 5.0;    ///< rate of repetition while a button is held, as for keys
+constexpr double MAX_BUTTON_STEP_S = 0.5;  ///< limits motion in one step: a hung frame must not throw the view far away
 
 std::filesystem::path free_trace_path(const std::filesystem::path& stem)
 {
@@ -57,7 +57,7 @@ TouchSettings Hand::touch_settings() const
         .camera = document.camera,
         .view_height = pixel_size(document.camera, {1, 1}, glm::distance(document.camera.eye, document.camera.target)),
         .scale = document.session.interaction.workspace_scale,
-        // While the volume moves with the stylus, what is felt would lag behind it.
+        // While the volume moves with the stylus, the felt voxels would lag behind it.
         .lets_go = hand_.is_let_go || grab_.has_value(),
         .source = document.source,
         .offsets = &document.annotator.document().density,
@@ -119,7 +119,7 @@ void Hand::follow_grab()
     viewer_.look_from(camera_of_grab(*grab_, device.position_m, device.rotation, units_per_m));
 }
 
-/// Its silence is rest: the back end gives no speed then.
+/// No report means rest: the back end then gives no speed.
 void Hand::follow_puck()
 {
     const double now = options_.now_s();

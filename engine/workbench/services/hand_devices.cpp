@@ -85,7 +85,7 @@ void Hand::choose_device()
     watch_->open(wanted->id);
 }
 
-/// Finds devices that are plugged in while the program runs, and leaves those that are unplugged.
+/// Opens devices that are plugged in while the program runs, and leaves those that are unplugged.
 void Hand::follow_devices()
 {
     if (!options_.has_servo || options_.is_script) return;
@@ -150,7 +150,7 @@ void Hand::act(const FindDevices&)
     say("Looking for haptic devices");
 }
 
-/// Back ends calibrate when they open; those that need a hand for it say what to do.
+/// Back ends calibrate when they open. If that needs the user's hand, a message says what to do.
 void Hand::act(const CalibrateDevice&)
 {
     if (!device_) fail("no haptic device is in use; expected one to calibrate");

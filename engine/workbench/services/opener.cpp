@@ -99,7 +99,7 @@ void Opener::open(const std::filesystem::path& path, const std::vector<std::stri
     if (*failure) std::rethrow_exception(*failure);
 }
 
-/// Starts reading on the worker; again if the open document has changed the journal since.
+/// Starts reading on the worker. Called again if the open document has changed the journal since.
 void Opener::read_next()
 {
     Opening& opening = *opening_;
@@ -233,7 +233,7 @@ void Opener::finish()
     for (const std::filesystem::path& taken : opening->taken_into_it) taker_.act(TakeFile{.path = taken});
 }
 
-/// Shows the document again that was put away.
+/// Shows again the document that was put away.
 void Opener::show_again()
 {
     try {
@@ -248,7 +248,7 @@ void Opener::show_again()
     say(document_->session_path.string() + " is open again");
 }
 
-/// Services forget what was of the document before.
+/// Resets the services' state of the previous document.
 void Opener::begin_document(const Opening& opening)
 {
     desk_.opened_s = opening.begun_s;
@@ -268,7 +268,7 @@ void Opener::take(Document::Read read)
     ++desk_.openings;
 }
 
-/// Says what was opened, and what is not as it was left: that stays to be seen until it is dismissed.
+/// Reports the opening, and differences from the last save; the latter are shown until dismissed.
 void Opener::welcome(const std::filesystem::path& path, const std::vector<std::string>& losses)
 {
     recovered_ = losses;
@@ -285,7 +285,7 @@ void Opener::welcome(const std::filesystem::path& path, const std::vector<std::s
     say(status, is_as_left ? Weight::done : Weight::warning);
 }
 
-/// The look and the view of a picture, as settings that undo takes back.
+/// Applies the look and the view of a picture as settings, which undo takes back.
 void Opener::show_picture(const Session& pictured)
 {
     Session wanted = pictured;

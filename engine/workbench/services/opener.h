@@ -53,7 +53,7 @@ public:
     void cancel();
     /// Handles the end of the reading job; `failure` describes its error.
     void end_reading(const std::string& failure);
-    /// Adds states of the opening: while it loads or is restored, and if `states` lacks its job, which has ended.
+    /// Adds states of the opening: while it loads or is restored, and while its ended job is missing from `states`.
     void add_loading(std::vector<Jobs::State>& states) const;
     void add_read(std::vector<Jobs::State>& states) const;
     /// Puts the document away while the device has room for one only.

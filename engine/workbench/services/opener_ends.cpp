@@ -25,7 +25,7 @@ void Opener::add_loading(std::vector<Jobs::State>& states) const
 
 void Opener::add_read(std::vector<Jobs::State>& states) const
 {
-    // The job has ended, and its result has not been taken yet.
+    // The job has ended, but its result has not been taken yet.
     if (opening_ && std::ranges::find(states, opening_->number, &Jobs::State::number) == states.end())
         states.push_back(state_of(*opening_));
 }
@@ -101,10 +101,10 @@ void Opener::end(std::exception_ptr failure)
 void Opener::put_away()
 {
     away_ = std::move(document_);
-    away_->touch.use(nullptr);  // one servo at a time on a device
+    away_->touch.use(nullptr);  // a device can have one servo only
 }
 
-/// Loads the document again that was put away.
+/// Loads the document that was put away onto the device again.
 void Opener::bring_back()
 {
     opening_ = std::make_shared<Opening>(Opening{.path = away_->session_path,
@@ -138,7 +138,7 @@ void Opener::restart_device(const std::function<void()>& make_anew)
         document_->screen.drop();
     }
     if (opening_) opening_->scene.reset();  // it is loaded again from its beginning
-    if (document_) reloader_.forget();      // the document is loaded as its settings now say
+    if (document_) reloader_.forget();      // the document is loaded with its present settings
     make_anew();
     viewer_.look_again();
     if (document_) load_again();
@@ -149,7 +149,7 @@ void Opener::restart_device(const std::function<void()>& make_anew)
         Weight::warning);
 }
 
-/// Puts the document away, to be brought back, where the new device cannot hold it.
+/// Puts the document away, to be restored later, if the new device cannot hold it.
 void Opener::load_again()
 {
     try {

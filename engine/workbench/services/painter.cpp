@@ -110,8 +110,8 @@ void Painter::advance_stroke()
     if (has_painted || before != stroke_uploads_) stroke_progress_s_ = options_.now_s();
 }
 
-/// Changes of annotation wait for strokes that have ended. These take milliseconds unless bricks come from a slow disk;
-/// an action that still cannot be done fails with its reason.
+/// Changes of annotation wait for strokes that have ended. That takes milliseconds unless bricks come from a slow disk;
+/// an action that is impossible even then fails with its reason.
 void Painter::await_strokes()
 {
     constexpr double MAX_WAIT_S = 2.0;
@@ -145,7 +145,7 @@ std::string Painter::finish_stroke()
     return unpainted;
 }
 
-/// False where memory is too short just now. What cannot be painted at all leaves the reason.
+/// Returns false while memory is too short. Other failures leave their reason in `unpainted`.
 bool Painter::tries_stroke(std::string& unpainted)
 {
     try {
@@ -199,7 +199,7 @@ void Painter::follow_preview()
         const bool is_of_budget = dynamic_cast<const gpu::BudgetError*>(&error) != nullptr;
         if (dynamic_cast<const gpu::DeviceLost*>(&error) != nullptr) throw;
         if (dynamic_cast<const gpu::MemoryError*>(&error) != nullptr && !is_of_budget) throw;  // there may be some soon
-        // Else it is a brush that is too large, a file that cannot be read.
+        // Other errors: the brush is too large, or a file cannot be read.
         document.session.probe.preview = false;
         settings_.note_edit();
         document.previewer.want(std::nullopt);

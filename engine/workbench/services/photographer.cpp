@@ -34,7 +34,7 @@ void Photographer::follow_screenshots()
 std::filesystem::path Photographer::stem() const
 {
     const std::filesystem::path stem = std::filesystem::path(document_->session_path).replace_extension();
-    // The example lies in the hidden folder of the settings, which is no place for pictures.
+    // The example's session is in a hidden folder, which is no place for pictures.
     const bool is_example = stem.parent_path() == options_.preferences.parent_path() / "example";
     const char* const home = std::getenv("HOME");
     return is_example && home && *home ? std::filesystem::path(home) / stem.filename() : stem;
@@ -50,7 +50,7 @@ Jobs::State Photographer::state_of_large() const
 void Photographer::act(const Screenshot& action)
 {
     if (!action.is_large) {
-        document_->painted_at.reset();  // a picture is drawn again from its session, which knows no smaller ball
+        document_->painted_at.reset();  // pictures are redrawn from their session, which cannot state a smaller ball
         screenshots_.take();
         return say("The screenshot will be taken when the picture is sharp");
     }
@@ -75,7 +75,7 @@ Figure Photographer::figure_of_picture(uint32_t scale) const
     return figure_of(model(), panes, units_ * scale, options_.draw_texts);
 }
 
-/// The session in a picture is of that size; a picture larger than the window shows no probe.
+/// The session in a picture states the picture's size; a picture larger than the window shows no probe.
 Screenshots::Texts Photographer::texts_of_picture(const glm::uvec2& pixels, bool shows_probe) const
 {
     return [this, pixels, shows_probe](const std::filesystem::path& picture) {

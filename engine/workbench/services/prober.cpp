@@ -15,7 +15,7 @@ double depth_of(const Camera& camera, const glm::dvec3& point)
     return glm::dot(point - camera.eye, axes_of(camera).forward);
 }
 
-/// At the depth of the probe, or just before the eye.
+/// A point at the depth of the probe, or just before the eye.
 glm::dvec3 in_plane_of(const glm::dvec3& probe, const Pane& seen, const glm::dvec2& pixel)
 {
     const Camera& camera = seen.shot.camera;
@@ -28,7 +28,7 @@ glm::dvec3 in_plane_of(const glm::dvec3& probe, const Pane& seen, const glm::dve
 Prober::Prober(Services& all) : Service(all.desk), viewer_(all.viewer), painter_(all.painter), settings_(all.settings)
 {}
 
-/// A stroke that is open paints nothing on the way to where the hand is next.
+/// Interrupts an open stroke: it paints nothing on the way to the hand's next position.
 void Prober::lift()
 {
     if (document_->annotator.stroke_is_open()) document_->annotator.lift_stroke();
@@ -49,7 +49,7 @@ void Prober::act(const ProbeOnto& action)
     move_probe(*point, true);
     const Document& document = *document_;
     if (document.annotator.stroke_is_running() && !document.touch.servo())
-        log_instead({PlaceProbe{document.probe_voxel()}});  // what is seen may still be painted over
+        log_instead({PlaceProbe{document.probe_voxel()}});  // paint may still change the visible surface
     std::string said = "Probe at " + place_in_words(document.probe_voxel(), document.volume());
     if (!seen.shot.is_slice)
         said += sentence(", ",
@@ -91,7 +91,7 @@ void Prober::act(const PlaceProbe& action)
     move_probe(action.voxel * document_->volume().spacing, true);
 }
 
-/// A stroke that is open goes there with it.
+/// An open stroke is extended to the new position.
 void Prober::move_probe(const glm::dvec3& point, bool jumps)
 {
     if (jumps)

@@ -16,7 +16,7 @@ void Reader::advance()
     for (const std::string& message : renderer_.scene().take_messages()) say(message, Weight::warning);
 }
 
-/// The probe's place; over a slice the pointer's.
+/// The position of the probe; over a slice that of the pointer.
 glm::dvec3 Reader::voxel_to_read() const
 {
     const Document& document = *document_;
@@ -31,8 +31,8 @@ glm::dvec3 Reader::voxel_to_read() const
            document.volume().spacing;
 }
 
-/// Reads the voxel that is new, and asks how full the probe is. Where a file takes long to read, it is read less often:
-/// not more than a tenth of the time goes into it.
+/// Reads the voxel if it is a new one, and requests the relevant share of the probe's ball. If a file takes long to
+/// read, it is read less often, so that at most a tenth of the time goes into it.
 void Reader::follow_reading()
 {
     Document& document = *document_;
@@ -59,7 +59,7 @@ void Reader::follow_reading()
     reading_.relevant_share = document.meter.share();
 }
 
-/// Not while the device paints, and not for probes that are larger than a brush may be.
+/// False while the device paints, and for probes that are larger than a brush may be.
 bool Reader::probe_is_measured() const
 {
     const Document& document = *document_;
@@ -90,7 +90,7 @@ void Reader::read_at(const glm::dvec3& voxel)
         reading_.intensity =
             densities_in(*document.source, work.density, {at, at + int64_t{1}}).values[0] - reading_.offset;
     } catch (const Error&) {
-        // A voxel that cannot be read has no value here; drawing it says why.
+        // A voxel that cannot be read has no value here; the error is reported when it is drawn.
     }
 }
 

@@ -5,7 +5,7 @@
 namespace shvr::ui {
 
 struct Reloader::Reload {
-    RenderSettings before;           ///< as the scene that is shown was loaded
+    RenderSettings before;           ///< settings with which the displayed scene was loaded
     std::unique_ptr<Scene> scene{};  ///< null: it has not begun
 };
 

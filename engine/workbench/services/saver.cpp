@@ -41,7 +41,7 @@ void Saver::act(const SaveAs& action)
     save_to(action.path);
 }
 
-/// All that a stroke under way covers belongs to it, so it may begin a little later.
+/// The save includes the whole stroke under way, so it may begin a little later.
 void Saver::save_to(const std::filesystem::path& path)
 {
     Annotator& annotator = document_->annotator;
@@ -107,7 +107,7 @@ void Saver::act(const WorkOnCopy&)
     start_copy({}, true);
 }
 
-/// Copies the present state, whatever is done meanwhile.
+/// Copies the present state, whatever is done while it is written.
 void Saver::start_copy(const std::filesystem::path& path, bool opens_it)
 {
     if (!document_->only_looks()) settings_.record_settings();
@@ -223,7 +223,7 @@ void Saver::act(const Quit& action)
 
 // ---- The spacing ----------------------------------------------------------------------------------------------------
 
-/// The session states it from now on; opening it converts what the journal holds.
+/// The session states the new spacing; reopening it converts the positions in the journal.
 void Saver::act(const CorrectSpacing& action)
 {
     if (is_saving()) fail("the work is being saved; expected that to have ended");

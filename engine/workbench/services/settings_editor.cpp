@@ -13,10 +13,10 @@ namespace shvr::ui {
 
 namespace {
 
-/// Returns whether pictures of the volume are the same: the other settings are drawn over them, or not at all.
+/// Returns whether pictures of the volume stay the same: all other settings are drawn over them, or not at all.
 bool look_the_same(Session before, const Session& after)
 {
-    before.probe = after.probe;  // which is drawn by itself, as distances are
+    before.probe = after.probe;  // drawn separately, over the picture, as distances are
     before.measurements = after.measurements;
     if (!shows_occlusion(before.light) && !shows_occlusion(after.light)) before.light.occlusion = after.light.occlusion;
     return before == after;
@@ -166,7 +166,7 @@ void SettingsEditor::note_edit()
     settings_to_record_ = was_set_in_this_turn_ = true;
 }
 
-/// Makes a step of the history of what was set, once the hand has let go: one drag is one step.
+/// Makes a history step of the changed settings once the hand has let go: one drag is one step.
 void SettingsEditor::follow_settings()
 {
     const bool is_being_set = std::exchange(was_set_in_this_turn_, false) || is_hand_down_;
@@ -202,8 +202,8 @@ void SettingsEditor::step(int count, const char* done, const char* nothing, Way 
     say(steps == 1 ? sentence(done, ": ", last) : sentence(done, ": ", steps, " steps, the last: ", last));
 }
 
-/// Returns whether undo would revert an earlier step than the user's last: a stroke that changed nothing is no step.
-/// Asked once after such a stroke. Scripts count steps.
+/// Returns whether undo would revert a step before the user's last stroke, which changed nothing and so is no step.
+/// True once after such a stroke; never in scripts, which count steps.
 bool SettingsEditor::follows_empty_stroke()
 {
     record_settings();
@@ -256,7 +256,7 @@ void SettingsEditor::act(const ChooseBelief& action)
     say(said);
 }
 
-/// Files stay as they are. The journal keeps what was done since: undo brings it back next time.
+/// Files stay as they are. The journal keeps the later changes: undo restores them next time.
 void SettingsEditor::discard()
 {
     if (!document_ || document_->only_looks() || !document_->annotator.work().disputes().empty()) return;

@@ -63,7 +63,7 @@ private:
     Reloader& reloader_;
     bool is_hand_down_ = false;
     bool settings_to_record_ = false, was_set_in_this_turn_ = false;
-    std::optional<double> to_keep_since_s_;       ///< time since which the journal lacks the current view
+    std::optional<double> to_keep_since_s_;       ///< time since when the journal lacks the current view
     double last_change_s_ = 0.0;                  ///< time of the last change to keep
     std::optional<Session> session_before_hand_;  ///< session before the hand began to change settings
     /// Number of undoable steps when the work was discarded: while it is unchanged, nothing is saved.

@@ -112,7 +112,7 @@ void TaskRunner::act(const ExportTask& task)
                                 }));
 }
 
-/// The project is opened when it is there.
+/// The project is opened once it exists.
 void TaskRunner::act(const ImportTask& task)
 {
     const auto import = [this, task](ProgressReporter& reporter) -> Jobs::Completion {

@@ -11,7 +11,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// The neighbours of the selected node, if it has two that are not linked: then deleting it cuts the trace.
+/// The neighbours of the selected node, if there are two and no link between them: deleting the node cuts the trace.
 std::optional<std::pair<uint32_t, uint32_t>> ends_of_cut(const TraceGraph& trace)
 {
     const std::optional<uint32_t> node = trace.selection().node();
@@ -43,7 +43,7 @@ Tracer::Tracer(Services& all)
     : Service(all.desk), viewer_(all.viewer), prober_(all.prober), settings_(all.settings), keeper_(all.keeper)
 {}
 
-/// New nodes are as wide as what they lie in, if that is wanted and can be told.
+/// Gives new nodes the radius of the structure around them, if requested and measurable.
 TraceOp Tracer::with_radius(TraceOp op) const
 {
     NodeOp* const node = std::get_if<NodeOp>(&op);
@@ -85,7 +85,7 @@ void Tracer::trace(const TraceOp& asked)
     say(said);
 }
 
-/// Stores the ends of a cut, and selects one to continue tracing from.
+/// Stores the ends of a cut, and selects one of them to continue tracing there.
 void Tracer::note_cut(std::optional<std::pair<uint32_t, uint32_t>> ends)
 {
     document_->cut_ends = ends;
@@ -110,7 +110,7 @@ void Tracer::act(const MendCut&)
     document_->cut_ends.reset();
 }
 
-/// The nearest node, if it is nearer than half a voxel's diagonal.
+/// The nearest node, if it is within half a voxel's diagonal.
 std::optional<uint32_t> Tracer::node_in_voxel(const glm::dvec3& voxel) const
 {
     const glm::dvec3& spacing = document_->volume().spacing;
@@ -121,7 +121,7 @@ std::optional<uint32_t> Tracer::node_in_voxel(const glm::dvec3& voxel) const
     return is_there ? nearest : std::nullopt;
 }
 
-/// On the centre line that is drawn at a pixel, if lines are to draw tools; of the selected node's, too.
+/// The place on the centre line that is drawn at a pixel, if lines attract tools; also on those of the selected node.
 std::optional<ToolPlace> Tracer::line_at(const Pane& seen, const glm::dvec2& pixel) const
 {
     if (!document_->session.probe.touch.to_lines) return std::nullopt;
@@ -132,7 +132,7 @@ std::optional<ToolPlace> Tracer::line_at(const Pane& seen, const glm::dvec2& pix
     const glm::dvec3 there = unproject(seen.shot.camera, seen.pixels(), pixel, hit.depth);
     const glm::dvec3 way = glm::normalize(sight_through(seen.shot.camera, there));
     const glm::dvec3 a = trace.node(internode.a).position, b = trace.node(internode.b).position;
-    // The point of the line that is nearest to the line of sight.
+    // The point of the line nearest to the line of sight.
     const auto across = [&](const glm::dvec3& v) { return v - way * glm::dot(v, way); };
     const glm::dvec3 begin = across(a - there), along = across(b - a);
     const double square = glm::dot(along, along);
@@ -140,7 +140,7 @@ std::optional<ToolPlace> Tracer::line_at(const Pane& seen, const glm::dvec2& pix
     return ToolPlace{glm::mix(a, b, share), {}, hit.internode};
 }
 
-/// Returns whether something of the trace has drawn it there.
+/// Returns whether part of the trace has attracted the tool to this place.
 bool Tracer::add_drawn_node(const ToolPlace& place)
 {
     const glm::dvec3& spacing = document_->volume().spacing;
@@ -216,7 +216,7 @@ void Tracer::act(const SelectAt& action)
     settings_.act(edited(document.session, [&](Session& s) { s.probe.brush.group = group; }));
 }
 
-/// A node where segments meet, or that has none, stays selected alone.
+/// A node where segments meet, or that belongs to none, stays selected alone.
 void Tracer::select_segment()
 {
     try {
@@ -226,7 +226,7 @@ void Tracer::select_segment()
     }
 }
 
-/// By what is drawn of the volume before it: rods of the trace itself hide nothing.
+/// Hidden by the volume drawn in front of it; rods of the trace itself hide nothing.
 bool Tracer::is_hidden(const Pane& seen, const glm::dvec2& pixel, const TraceHit& hit) const
 {
     constexpr double OPAQUE_ENOUGH = 0.9, APART_VOXELS = 2.0;
@@ -283,7 +283,7 @@ void Tracer::act(const DragNode& action)
     if (document_->drags_node) this->trace(MoveOp{document_->tool_voxel()});
 }
 
-/// A node that draws the tool is linked and selected in place of a new one.
+/// If a node attracts the tool, it is linked and selected instead of adding a new one.
 void Tracer::add_node_here()
 {
     add_node_at(node_or_link_at_probe(desk_.model()));

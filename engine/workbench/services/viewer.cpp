@@ -13,7 +13,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// The first of "view 1", "view 2", ... that is free.
+/// The first unused name of "view 1", "view 2", ...
 std::string free_camera_name(const Session& session)
 {
     for (int number = 1;; ++number)
@@ -87,7 +87,7 @@ void Viewer::act(const Zoom& action)
                               document_->probe_voxel()));
 }
 
-/// Shows the slices; their position is kept like the camera, and is no change of the work.
+/// Shows the slices. Their position is kept like the camera, and is no change of the work.
 void Viewer::show_slices(SliceSettings slices)
 {
     document_->session.view.slices = slices;
@@ -95,10 +95,10 @@ void Viewer::show_slices(SliceSettings slices)
     settings_.note_to_keep();
 }
 
-/// Moves the slices with a probe that left their plane, whatever moved it.
+/// Moves the slices along with a probe that has left their plane, whatever moved it.
 void Viewer::follow_slices()
 {
-    constexpr double STIR_VOXELS = 0.05;  // a stylus is never quite at rest, and slices may be moved away from it
+    constexpr double STIR_VOXELS = 0.05;  // a stylus is never quite at rest, and the user may have moved the slices
     if (!options_.slices_follow) return;
     Document& document = *document_;
     const glm::dvec3 voxel = document.probe_voxel();
@@ -111,7 +111,7 @@ void Viewer::follow_slices()
     if (next == document.session.view.slices) return;
     const Set following = edited(document.session, [&](Session& s) { s.view.slices = next; });
     show_slices(next);
-    if (log_) log_(line_of(following));  // what pixels of slices mean from now on
+    if (log_) log_(line_of(following));  // from now on, pixels of slices refer to the new position
 }
 
 void Viewer::follow_look()
@@ -125,7 +125,7 @@ void Viewer::follow_look()
             document.screen.look_from(document.camera, document.probe_voxel());
         look_is_stale_ = camera_moved_ = false;
     }
-    // A running stroke, or touch, requests its own bricks.
+    // Not during a stroke or touch, which request their own bricks.
     if (!document.touch.servo() && !document.annotator.stroke_is_running())
         renderer_.volume().prefer(document.voxels_around_probe());
     document.screen.show_probe(document.probe_look());
@@ -312,7 +312,7 @@ void Viewer::act(const FitView& action)
 void Viewer::act(const ResetView&)
 {
     const Session& session = document_->session;
-    // A session that was left open names the camera it was left with; then the side that shows most is meant.
+    // A session that was open before may name its last camera; then the side that shows most is meant.
     const std::string name = session.camera_name == "window" ? std::string() : session.camera_name;
     look_from(camera_named(session, name, document_->volume()));
     say("The view is reset");

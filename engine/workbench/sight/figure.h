@@ -22,7 +22,7 @@ using TextDrawer = std::function<std::vector<TextImage>(std::span<const std::str
 
 struct Figure {
     struct Part {
-        PixelBox box;  ///< box of the pane, in the whole picture
+        PixelBox box;  ///< box of the pane within the whole picture
         std::vector<Stroke> strokes;
         std::vector<Stamp> stamps;
     };

@@ -19,8 +19,8 @@ bool is_jump(const glm::dvec2& way_pixels, const glm::uvec2& pane_pixels);
 /// `range`: the volume's; a thousandth of it is the minimum distance.
 ValueRange dragged_contrast(const ValueRange& contrast, const ValueRange& range, const glm::dvec2& heights);
 
-/// Returns the paint threshold for a picked value: half-way to the lowest drawn value, where the wall between them
-/// lies; for a value that is not drawn, the value itself.
+/// Returns the paint threshold for a picked value: half-way to the lowest visible value, since the wall lies between
+/// them; for a value that is not visible, the value itself.
 double threshold_at(double value, double least_drawn);
 
 }  // namespace shvr::ui

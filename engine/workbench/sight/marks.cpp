@@ -107,7 +107,7 @@ private:
         marks_.labels.push_back({at, anchor, std::move(text), color});
     }
 
-    /// The cross-section of what the brush reaches with this plane.
+    /// The cross-section of the brush's reach with this plane.
     void brush_ring()
     {
         const BrushSettings& brush = model_.brush();
@@ -173,7 +173,7 @@ private:
         ring(*at, 5.0 * units_, LINK, 2.0);
     }
 
-    /// The link that a node added now would get, with its length.
+    /// The link that a node added now would get, labelled with its length.
     void link()
     {
         const std::optional<uint32_t> selected = model_.trace.selection().node();
@@ -201,7 +201,7 @@ private:
         label(0.5 * (*from + *to), {0.5, 1.2},
               length_in_words(length_of(ends, model_.volume.spacing), model_.volume.unit), MEASURED);
     }
-    /// It passes through the plane of the slice, or within a voxel of it.
+    /// The measured line crosses the plane of the slice, or lies within a voxel of it.
     bool is_near_plane(const glm::dvec3& a, const glm::dvec3& b) const
     {
         const double from = behind_plane(pane_.shot.camera, a), to = behind_plane(pane_.shot.camera, b);
@@ -227,7 +227,7 @@ private:
         line(*at - glm::dvec2(0.0, reach), *at + glm::dvec2(0.0, reach), LIGHT);
     }
 
-    /// In the lower left corner; an axis that points towards the viewer is short.
+    /// Drawn in the lower left corner; an axis that points towards the viewer is short.
     void axes()
     {
         if (pane_.kind == Pane::Kind::map || pane_.shot.right_eye) return;
@@ -244,7 +244,7 @@ private:
         }
     }
 
-    /// In the lower right corner. In perspective lengths differ with depth, so it says which depth it is for.
+    /// Drawn in the lower right corner. In perspective, lengths differ with depth, so the label states the depth.
     void scale()
     {
         if (pane_.kind == Pane::Kind::map || pane_.shot.right_eye) return;
@@ -262,8 +262,8 @@ private:
         label(end - 1.5 * tick, {1.0, 1.0}, bar.text + (is_perspective ? " at the middle of the view" : ""));
     }
 
-    /// Names and colours of what is painted or traced, in the upper right corner of the first pane: the colour stands
-    /// right of its name, so that no name need be measured.
+    /// Lists names and colours of painted or traced groups in the upper right corner of the first pane. The colour
+    /// stands right of its name, so that names need not be measured.
     void groups()
     {
         if (index_ != 0 || pane_.kind == Pane::Kind::map || pane_.shot.right_eye) return;
@@ -312,14 +312,14 @@ private:
             text = std::to_string(std::lround(100.0 * *model_.reading.relevant_share)) + " % full, " + text;
             meter(at->pixel, reach + 4.0 * units_, *model_.reading.relevant_share);
         }
-        // Without room at the right the text lies at the left; a character is at most this wide.
+        // If there is no room at the right, the text goes to the left; a character is at most this wide.
         constexpr double CHARACTER = 8.0;
         const double beside = 0.75 * reach + 6.0 * units_;
         const bool has_room =
             at->pixel.x + beside + CHARACTER * units_ * double(text.size()) < double(pixels_.x) || at->pixel.x < beside;
         label(at->pixel + glm::dvec2(has_room ? beside : -beside, beside), {has_room ? 0.0 : 1.0, 0.0}, text);
     }
-    /// An arc about the probe, from the top clockwise: the share of its ball that is relevant.
+    /// An arc around the probe, clockwise from the top: the relevant share of its ball.
     void meter(const glm::dvec2& middle, double radius, double share)
     {
         constexpr int WHOLE = 60;

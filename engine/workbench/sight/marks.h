@@ -1,7 +1,7 @@
 #pragma once
 // Lines and labels that the window draws over a pane: the brush's ring and the trace in slices, the link that a new
-// node would get, distances, a scale bar, directions of the axes, the groups, and the pane's title. Picture files
-// contain those that are no mere help for the hand, if requested (figure.h). Pure; the main thread, while the model
+// node would get, distances, a scale bar, directions of the axes, the groups, and the pane's title. If requested,
+// picture files contain them, except those that only help the hand (figure.h). Pure; the main thread, while the model
 // lives.
 
 #include <string>

@@ -28,10 +28,10 @@ std::string three(const glm::dvec3& values)
     return digits(values.x) + ", " + digits(values.y) + ", " + digits(values.z);
 }
 
-/// Units that are a thousand of the one before.
+/// Units, each a thousand times the previous one.
 constexpr const char* THOUSANDS[] = {"nm", "um", "mm", "m"};
 
-/// In the unit that needs the fewest zeros.
+/// Uses the unit with the fewest zeros.
 std::string readable(double length, std::string unit)
 {
     auto at = std::ranges::find(THOUSANDS, unit);
@@ -79,7 +79,7 @@ std::string in_words(const Reading& reading, const VolumeInfo& volume, const std
 {
     std::string text = place_in_words(reading.voxel, volume) + ": " + value_in_words(reading);
     if (!reading.is_inside || reading.group == 0) return text;
-    const std::string group = sentence("group ", int(reading.group));  // which is also what it is called unnamed
+    const std::string group = sentence("group ", int(reading.group));  // the name of an unnamed group, too
     return text + ", " + (group_name == group ? group : group + " " + group_name);
 }
 

@@ -30,7 +30,7 @@ void TapLink::begin_tick() noexcept
     Latest<ForceSettings>* const settings = settings_.load(std::memory_order_acquire);
     if (!settings || !orders_.take()) return;
     const TapOrder& order = orders_.value();
-    settings->publish(order.settings.force);  // the servo takes it next, in this thread
+    settings->publish(order.settings.force);  // the servo takes it next, on this thread
     has_new_settings_ = true;
     if (order.recording != recording_) {
         recording_ = order.recording;
@@ -38,7 +38,7 @@ void TapLink::begin_tick() noexcept
     }
 }
 
-/// The tick's own time is the first that is asked for.
+/// The time of a tick is the first one that is requested in it.
 void TapLink::note_now(uint64_t now_ns) noexcept
 {
     if (!std::exchange(is_new_tick_, false)) return;
@@ -51,7 +51,7 @@ void TapLink::note_read(ReadResult result, const DeviceState& state) noexcept
     now_.tick.read = !was_written_ && result != ReadResult::fresh ? ReadResult::lost : result;
     now_.tick.state = state;
     if (const Latest<RelevancePatch>* const relevance = relevance_.load(std::memory_order_acquire)) {
-        now_.relevance = relevance->value().sequence;  // the servo has taken it in this tick, in this thread
+        now_.relevance = relevance->value().sequence;  // the servo has taken it in this tick, on this thread
         now_.tick.relevance_time_ns = now_.relevance > 0 ? relevance->value().time_ns : 0;
     }
     if (result != ReadResult::fresh) return;

@@ -24,7 +24,7 @@ namespace shvr::ui {
 struct PlaneHold {
     bool is_on = false;
     glm::dvec3 normal{0.0, 0.0, 1.0}, point_m{0.0};
-    uint32_t count = 0;  ///< number of planes so far: a change moves the probe, and is no glitch
+    uint32_t count = 0;  ///< number of planes so far: after a change, a jump of the probe is no glitch
     bool operator==(const PlaneHold&) const = default;
 };
 
@@ -156,7 +156,7 @@ private:
 struct TappedServo {
     explicit TappedServo(std::shared_ptr<HapticDevice> with, std::unique_ptr<Pacing> pacing = real_pacing(),
                          uint32_t recording = 0);
-    /// The relevance for the servo: fill the first, then publish it. One thread, which need not be the main one.
+    /// The relevance for the servo: fill `writing`, then publish it. One thread, which need not be the main one.
     RelevancePatch& relevance() { return servo.relevance().writing(); }
     void publish_relevance();
     std::shared_ptr<HapticDevice> device;

@@ -13,7 +13,7 @@ namespace shvr::ui {
 
 class RelevanceLog {
 public:
-    /// Limit of entries that are not yet taken, later ones are dropped: eight seconds of new bits per mirror iteration.
+    /// Maximum number of entries not yet taken; later ones are dropped. Eight seconds of new bits per mirror iteration.
     static constexpr size_t MAX_ENTRIES = 1024;
 
     /// Main thread, before and after a recording

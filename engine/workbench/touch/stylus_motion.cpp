@@ -27,7 +27,7 @@ Workspace workspace_in_view(const Camera& camera, double view_height, double sca
 
 Camera camera_of_grab(const Grab& grab, const glm::dvec3& position_m, const glm::dquat& rotation, double units_per_m)
 {
-    // A point that was at v in the view is now at turn * (v - before) + after.
+    // The motion: a point at v in the view moves to turn * (v - before) + after.
     const glm::dmat3 turn = glm::mat3_cast(glm::normalize(rotation) * glm::inverse(glm::normalize(grab.rotation)));
     const glm::dvec3 before = units_per_m * grab.position_m, after = units_per_m * position_m;
     const glm::dmat3 was = frame_of(grab.camera), is = was * glm::transpose(turn);

@@ -37,7 +37,7 @@ std::vector<StylusPoint> play_stylus(const Trace& trace, const GuideSettings& gu
         force.strength = guide.feel.strength;
         force.let_go = false;
     }
-    constexpr uint32_t RELEVANCE_EVERY = 16;  // ticks, as often as a window mirrors it
+    constexpr uint32_t RELEVANCE_EVERY = 16;  // ticks between updates of relevance, as in a window
     ReplayOptions how;
     how.relevance_anew = true;  // of the present threshold, groups and voxels
     how.relevance_every = RELEVANCE_EVERY;

@@ -9,7 +9,7 @@ StylusRecorder::StylusRecorder(std::filesystem::path path, std::string unit, uin
 {
     trace_.unit = std::move(unit);
     trace_.holds_relevance = true;
-    trace_.settings.emplace_back();  // as a servo has them until it is told others
+    trace_.settings.emplace_back();  // settings of a servo that has not received any
 }
 
 void StylusRecorder::advance(TapLink& link)
@@ -38,11 +38,11 @@ void StylusRecorder::swap_device()
     if (trace_.ticks.empty()) return;
     const size_t tick = trace_.ticks.size();
     if (trace_.swaps.empty() || trace_.swaps.back() != tick) trace_.swaps.push_back(tick);
-    trace_.settings.emplace_back().from_tick = tick;  // as a servo has them until it is told others
+    trace_.settings.emplace_back().from_tick = tick;  // settings of a servo that has not received any
     relevance_ = 0;
 }
 
-/// Those that the servo skipped are kept, as those after them are told by them.
+/// Entries that the servo skipped are kept, too, since later ones refer to them.
 void StylusRecorder::add_relevance(RelevanceLog& log)
 {
     if (tick_.relevance == relevance_) return;

@@ -95,7 +95,7 @@ std::string sentence_about(ProxyLaw guidance)
     return {};
 }
 
-/// Empty if only numbers changed, which need no sentence.
+/// Empty if only numbers changed, which need no sentence of their own.
 std::string sentence_about(const FeelSettings& was, const FeelSettings& is)
 {
     if (was.mode != is.mode) {
