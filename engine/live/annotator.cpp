@@ -308,7 +308,7 @@ void Annotator::show(const Touched& touched, const std::optional<VoxelBox>& with
     try_to_show([&] { renderer_.scene().show(document(), touched, within); });
 }
 
-/// The change itself is done, whether or not it can be shown.
+/// At this point the change has been made, whether or not it can be shown.
 template <class Update>
 void Annotator::try_to_show(const Update& update)
 {

@@ -28,7 +28,7 @@ PaintOp in_session(PaintOp op, const Session& session);
 
 /// The files in which a session stores its work.
 WorkFiles work_files(const Session& session, const VolumeInfo& volume);
-/// The same with the lasting settings of an `OpenedSession`, except those set for this run only by the "key=value"
+/// Likewise with the lasting settings of an `OpenedSession`, except those set for this run only by the "key=value"
 /// settings in `overridden`.
 WorkFiles work_files(const Session& session, const VolumeInfo& volume, const std::vector<std::string>& overridden);
 /// Adds the kept settings, for callers that apply Work::kept_settings() and report changes to Work::keep_settings.
@@ -36,7 +36,7 @@ WorkFiles with_kept_settings(WorkFiles files, const Session& session, const std:
 
 class Annotator {
 public:
-    /// Number of attempts after running out of memory: with the pauses of a user's window, for 5 s.
+    /// Number of attempts after running out of memory: about 5 s, given the pauses of a user's window.
     static constexpr int MAX_TRIES = 20;
 
     /// The volume must be loaded; the mask starts unpainted.
@@ -44,8 +44,8 @@ public:
     /// Continues work that is already open, perhaps on another thread until now. The caller makes the scene show it.
     Annotator(Renderer& renderer, std::unique_ptr<Work> work);
 
-    /// For saving, file names and the trace's selection. Use the functions below to change annotations, so that the
-    /// device shows the change. If it cannot, for lack of memory, they do not fail: see `is_behind`.
+    /// For saving, file names and the trace's selection. To change annotations, use the functions below, which show the
+    /// change on the device. If that is impossible for lack of memory, they do not fail: see `is_behind`.
     Work& work() { return *work_; }
     const Work& work() const { return *work_; }
     /// Releases the work for another annotator; this one must not be used any more.
@@ -65,7 +65,7 @@ public:
     /// The exact preview: the voxels that paint(op) would change now. Paints nothing, but waits; Previewer
     /// (engine/live/previewer.h) does not.
     PaintPreview preview(const PaintOp& op);
-    /// The same, from the device's answers for all regions of `op`.
+    /// Likewise, from the device's answers for all regions of `op`.
     PaintPreview preview(const PaintOp& op, std::span<const RegionAnswer> answers) const;
     /// Paints, as one command. Returns how many voxels changed their group plus how many changed their offset;
     /// `last_stroke` has details. All regions of a stroke see the volume as it was before it.
@@ -76,7 +76,7 @@ public:
     /// ended and are not painted yet are painted first, in order: the user need not wait for the device.
     void begin_stroke(const PaintOp& brush);
     void extend_stroke(const glm::dvec3& voxel);
-    /// Separates the next position from the last one: nothing is painted in between.
+    /// Interrupts the stroke: nothing is painted between the last position and the next one.
     void lift_stroke()
     {
         if (stroke_is_open()) strokes_.back().last.reset();
@@ -84,7 +84,7 @@ public:
     void end_stroke();
     /// Whether a stroke is open, or part of one has not been painted yet.
     bool stroke_is_running() const { return !strokes_.empty(); }
-    /// Whether the last stroke has begun and not ended.
+    /// Whether the last stroke has begun and has not ended.
     bool stroke_is_open() const { return !strokes_.empty() && !strokes_.back().has_ended; }
     /// Ends all strokes at once: painted parts stay, the rest is dropped.
     void drop_strokes();
@@ -161,7 +161,7 @@ private:
     void try_to_show(const Update& update);
 
     Renderer& renderer_;
-    std::deque<Stroke> strokes_;  ///< the first is being painted; only the last may be open
+    std::deque<Stroke> strokes_;  ///< strokes in order: the first is being painted; only the last may be open
     uint64_t strokes_done_ = 0;
     StrokeResult last_stroke_;
     uint64_t revision_ = 0;

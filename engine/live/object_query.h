@@ -18,7 +18,7 @@ public:
     /// Boxes are in voxels of one level.
     struct Growth {
         const RelevanceBits& mask;
-        const RelevanceBits& seeds;  ///< may have another box; seeds outside the mask's box are ignored
+        const RelevanceBits& seeds;  ///< may have another box than the mask; seeds outside the mask's box are ignored
     };
     explicit ObjectQuery(Renderer& renderer) : renderer_(renderer) {}
     /// Submits at least one growth. Drops an earlier query. Fails if seeds and mask are of different levels.

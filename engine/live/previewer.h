@@ -11,10 +11,10 @@
 namespace shvr {
 
 /// The brush of a session's probe, for one dab at the probe's position. Unset settings get defaults for the volume,
-/// except an automatic offset, which `in_session` resolves together with the locks.
+/// except an automatic offset, which `in_session` resolves as it applies the locks.
 PaintOp dab_of(const Session& session, const VolumeInfo& volume, const VolumeStatistics& statistics);
-/// Chooses default thresholds of the probe for the volume if they are unset. Saved sessions always contain them,
-/// whichever code saves.
+/// Chooses default thresholds of the probe for the volume if they are unset. Saved sessions always contain them, so
+/// every function that saves calls this.
 void choose_thresholds(Session& session, const VolumeInfo& volume, const VolumeStatistics& statistics);
 /// How pictures of a session show its probe, including its brush's preview. Waits for the device.
 std::optional<ProbeLook> shown_probe(const Session& session, Renderer& renderer, Annotator& annotator);

@@ -13,7 +13,7 @@ namespace {
 /// Limits of one frame: total size of its regions' labels, and number of regions, since each has its own buffers.
 constexpr uint64_t LABEL_BYTES = uint64_t(32) << 20;
 constexpr size_t MAX_REGIONS = 64;
-/// Total bricks of a frame's regions, unless a single region needs more.
+/// Maximum total of bricks of a frame's regions, unless a single region needs more.
 constexpr uint32_t MAX_BRICKS = 48;
 
 gpu::RegionParams region_params(const RegionAt& asked, const PaintOp& op, uint32_t threshold_code)

@@ -22,8 +22,8 @@ struct RegionAt {
 
 /// The regions that fit in one frame, in order.
 struct FrameOfRegions {
-    std::vector<RegionAt> regions;  ///< those that contain a voxel of the volume
-    size_t end = 0;                 ///< index of the first position without a region yet
+    std::vector<RegionAt> regions;  ///< regions that contain a voxel of the volume
+    size_t end = 0;                 ///< index of the first position without a region
 };
 /// The regions of `op` around `positions`, from index `first` on.
 FrameOfRegions frame_of_regions(const PaintOp& op, std::span<const glm::dvec3> positions, size_t first,

@@ -15,14 +15,14 @@ namespace shvr {
 struct RelevanceBits {
     VoxelBox box;
     int64_t words_per_row = 0;
-    std::vector<uint32_t> words;  ///< word + words_per_row * (y + size.y * z)
+    std::vector<uint32_t> words;  ///< index of a word: word + words_per_row * (y + size.y * z)
     uint64_t asked_ns = 0;        ///< the time passed to `ask`; the data is at least that recent
     double gpu_ms = 0.0;          ///< 0 where the device has no timestamps
     int level = 0;                ///< level of the voxels
 };
 
-/// A cube of voxels of a level that suits a ball: 64 a side, 128 for balls of more than 24 voxels, coarser levels for
-/// more than 48; so the hand has some room to move in it.
+/// A cube of voxels at a level suited to a ball: 64 voxels a side, or 128 if the ball's radius exceeds 24 voxels; radii
+/// above 48 voxels use coarser levels. The hand can move some distance within it.
 struct RelevancePlace {
     int level = 0;
     Size3 level_size{0};      ///< voxels of the level
@@ -42,7 +42,7 @@ public:
     /// Queries the cube around a point (voxels), clipped to the volume. Drops an answer not yet taken. Submits nothing
     /// while bricks of the cube are being loaded. Fails if the point is not finite.
     void ask(const glm::dvec3& voxel, double threshold, uint64_t now_ns);
-    /// The same for a box of level 0. Fails if the device has no room for its bricks.
+    /// Likewise for a box of level 0. Fails if the device has no room for its bricks.
     void ask(const VoxelBox& box, double threshold, uint64_t now_ns);
     bool is_asking() const { return query_.is_asking(); }
     void drop() { query_.drop(); }

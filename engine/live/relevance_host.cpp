@@ -23,7 +23,7 @@ bool RelevancePlace::covers(const glm::dvec3& centre, double radius) const
     const glm::dvec3 lower = (centre - radius) / spacing, upper = (centre + radius) / spacing;
     for (int axis = 0; axis < 3; ++axis) {
         if (!std::isfinite(lower[axis]) || !std::isfinite(upper[axis])) return false;
-        // A ball outside the volume along any axis contains no voxels, so nothing is unknown.
+        // A ball outside the volume along any axis contains no voxels, so its relevance is known.
         if (upper[axis] <= 0.0 || lower[axis] >= double(level_size[axis])) return true;
     }
     const glm::dvec3 least = glm::max(lower, glm::dvec3(0.0)), most = glm::min(upper, glm::dvec3(level_size));
@@ -48,8 +48,8 @@ RelevancePlace relevance_place(const VolumeSource& source, const glm::dvec3& poi
 
 namespace {
 
-/// Whether at least half of the painted voxels in a box can be felt, and at least one; unpainted ones count only if
-/// felt.
+/// Returns whether at least half of the painted voxels in a box, and at least one, can be felt. Unpainted voxels count
+/// only if they are felt.
 bool is_mostly_felt(const Mask& mask, const std::bitset<256>& groups, const VoxelBox& box)
 {
     int64_t felt = 0, others = 0;

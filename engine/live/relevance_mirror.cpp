@@ -125,7 +125,7 @@ void RelevanceMirror::take_offer()
         const std::scoped_lock lock(mutex_);
         offered.swap(offered_);
     }
-    // Only the awaited answer: the host may have answered meanwhile, or the user changed the choice.
+    // Accepts only the awaited answer: the host may have answered meanwhile, or the user may have changed the choice.
     if (!offered || waiting_for_ != offered->wanted || offered->bits.box != offered->wanted.place.box) return;
     if (offered->wanted.settings == now_->settings && offered->wanted.voxels == now_->voxels) {
         hold(offered->wanted, std::move(offered->bits), false);
@@ -147,7 +147,7 @@ void RelevanceMirror::turn(uint64_t now_ns)
     const double radius = now_->radius;
     const Wanted best{relevance_place(*now_->source, *probe, radius), now_->threshold, now_->settings, now_->voxels};
 
-    // A new cube is due before the ball reaches the border: at half of the margin that the cube leaves it.
+    // A new cube is due before the ball reaches the border: once half of the margin in the cube is used up.
     const double finest = std::min({best.place.spacing.x, best.place.spacing.y, best.place.spacing.z});
     const double slack = 0.5 * double(best.place.box.size().x) * finest - radius;
     const bool is_current = is_of({held_.place, best.threshold, best.settings, best.voxels});
@@ -175,7 +175,7 @@ void RelevanceMirror::turn(uint64_t now_ns)
             return declined_ == waiting_for_;
         }();
         const bool may_try = failed_ns_ == 0 || now_ns - failed_ns_ >= TROUBLE_NS;
-        // While the held bits leave the hand enough margin, the device may take its time.
+        // While the held bits leave the hand enough margin, the device gets more time.
         const bool is_urgent = !is_current || !held_.place.covers(*probe, radius + std::max(0.25 * slack, 0.0));
         const uint64_t patience_ns = is_urgent ? DEVICE_NS : 4 * DEVICE_NS;
         if (may_try && (!asks_device || is_declined || now_ns - waiting_since_ns_ >= patience_ns))
@@ -196,7 +196,7 @@ void RelevanceMirror::make_on_host(const Wanted& wanted, uint64_t now_ns)
         waiting_for_.reset();
         failed_ns_ = 0;
     } catch (const std::exception& failure) {
-        trouble = failure.what();  // the force fades out, as with a device that does not answer
+        trouble = failure.what();  // the force fades out, as it does when a device does not answer
         failed_ns_ = now_ns;
     }
     const std::scoped_lock lock(mutex_);

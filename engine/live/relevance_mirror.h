@@ -44,7 +44,7 @@ struct RelevanceChoice {
 struct MirroredRelevance {
     RelevancePlace place;
     RelevanceBits bits;
-    uint64_t sequence = 0;  ///< number of these bits, from 1 on; unchanged if only `true_at_ns` is new
+    uint64_t sequence = 0;  ///< number of the published bits, from 1 on; unchanged if only `true_at_ns` is new
     uint64_t true_at_ns = 0;
     uint32_t settings = 0;
     uint64_t voxels = 0;
@@ -66,7 +66,7 @@ public:
         std::function<void(uint64_t until_ns)> wait{};  ///< for tests; may return early
     };
     explicit RelevanceMirror(Ends ends);
-    /// Stops the thread, after the voxels it may be reading.
+    /// Stops the thread, once it has read the voxels that it may be reading.
     ~RelevanceMirror();
     RelevanceMirror(const RelevanceMirror&) = delete;
     RelevanceMirror& operator=(const RelevanceMirror&) = delete;

@@ -78,7 +78,7 @@ void Screen::show_probe(const ProbeLook& probe)
                                                                                     : std::optional(probe));
 }
 
-/// Arriving bricks are those that one pane needs; the other panes are drawn with them when their turn comes.
+/// Arriving bricks are those requested by one pane; the other panes are drawn with them in their turn.
 void Screen::take_changed()
 {
     renderer_.scene().advance();

@@ -29,7 +29,7 @@ public:
     /// Submits that much more of the due work: the thread is about to wait that long for something else, and the device
     /// should not be idle meanwhile.
     void submit_ahead(double ahead_ms);
-    /// While another picture waits for bricks that it requested, panes that are up to date are not made sharper, which
+    /// While another picture waits for bricks that it requested, up-to-date panes are not made sharper, since that
     /// would request their bricks instead. Ends when a pane has to follow the user.
     void hold(bool is_held) { is_held_ = is_held; }
     bool is_held() const { return is_held_; }

@@ -25,7 +25,7 @@ glm::uvec2 divided(const glm::uvec2& pixels, uint32_t scale)
     return (pixels + scale - 1u) / scale;
 }
 
-/// Rounds sides up to powers of two, so that images are seldom re-created while they grow.
+/// Rounds sides up to powers of two, so that growing images are seldom re-created.
 glm::uvec2 roomy(const glm::uvec2& pixels)
 {
     return {std::bit_ceil(pixels.x), std::bit_ceil(pixels.y)};
@@ -188,7 +188,7 @@ bool View::is_listed(const Sight& sight)
                      {.pixels = sight.pixels, .always_shown = voxels_of_shell(probe_, scene().info())});
 }
 
-/// The requested sight, or a recently requested one, once its bricks are listed; null: not yet.
+/// Returns the requested sight, or a recently requested one, as soon as its bricks are listed; null: not yet.
 View::SightRef View::listed_sight()
 {
     if (!coming_sight_) coming_sight_ = sight_;
@@ -210,7 +210,7 @@ bool View::submit_next(bool sketches_alone)
 {
     if (!sight_) return false;
     if (is_drawing_finer_sketch() && (sight_ != shown_sight_ || patch_is_due())) {
-        if (base_.running > 0) return false;  // temporarily: its image is needed for something else
+        if (base_.running > 0) return false;  // temporarily, since its image is needed for something else
         drop_finer_sketch();
     }
     if (submit_sketch(base_, Purpose::base) || submit_sketch(patch_, Purpose::patch)) return true;
@@ -269,7 +269,7 @@ Resource View::draw(FrameGraph& graph, const PicturePart& part, Import light, Ru
 {
     const Sight& sight = *running.sight;
     PicturePart shown = part;
-    shown.always_shown = voxels_of_shell(probe_, scene().info());  // for all parts, even those without the probe
+    shown.always_shown = voxels_of_shell(probe_, scene().info());  // for all parts of it, even those without the probe
     Drawn drawn = shvr::draw(graph, scene(), sight.look, sight.shot, shown, graph.import("light", light));
     running.pace = &rays_;
     running.units = double(running.pixels);
@@ -301,7 +301,7 @@ bool View::submit_occlusion()
     const Sight& sight = *shown_sight_;
     if (sight.shot.is_slice) return false;
     if (!sight.look.light.occlusion.automatic && !occlusion_is_asked_for_) return false;
-    constexpr double CELL_BRICKS = 8.0;  // cost about as much as the values of one brick
+    constexpr double CELL_BRICKS = 8.0;  // the cells of this many bricks cost about as much as the values of one
     const Occlusion::Counts before = scene().occlusion().counts();
     std::optional<FrameGraph> slice = next_occlusion(scene(), sight.look, sight.shot.camera,
                                                      {.bricks = bricks, .cell_bricks = size_t(CELL_BRICKS) * bricks});
@@ -357,7 +357,7 @@ bool View::may_draw(const Tile& tile) const
     return !more_comes || now_s() - tile.drawn_s > AGAIN_S;
 }
 
-/// Whether memory suffices for sharp tiles. If not, reports that once per view.
+/// Returns whether memory suffices for sharp tiles. If it does not, reports that once per view.
 bool View::has_room_for_tiles()
 {
     if (unsharp_sight_ == shown_sight_) return false;
@@ -386,7 +386,7 @@ bool View::submit_sketch_instead()
     return submit_sketch(base_, Purpose::base);
 }
 
-/// Around a due tile, as many tiles as fit in one step: neighbours in its row, then adjacent rows.
+/// As many tiles around a due one as fit in one step: first neighbours in its row, then adjacent rows.
 PixelBox View::strip_of_tiles(const glm::uvec2& nearest) const
 {
     constexpr uint32_t MAX_TILES = (1u << 20) / (TILE * TILE);  // 16 MiB of light
@@ -413,7 +413,7 @@ PixelBox View::strip_of_tiles(const glm::uvec2& nearest) const
     return strip;
 }
 
-/// The image for the light of the next sharp tiles.
+/// Image for the light of the sharp tiles drawn next.
 Import View::strip_light(const glm::uvec2& pixels)
 {
     if (!has_no_strips_) try {

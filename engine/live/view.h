@@ -126,7 +126,7 @@ private:
         };
         std::array<gpu::Storage, 2> images;
         uint32_t front = 0;
-        Content shown;               ///< in images[front]; sight is null if there is none
+        Content shown;               ///< the picture in images[front]; its sight is null if there is none
         std::optional<Content> job;  ///< drawn into the other image
         uint32_t next_row = 0;       ///< next row of the job to draw
         uint32_t next_encoded = 0;   ///< next row of the target to encode
@@ -138,7 +138,7 @@ private:
     };
     struct Tile {
         bool is_shown = false;
-        bool is_drawn = false;  ///< shown together with the other tiles of its batch
+        bool is_drawn = false;  ///< drawn, and shown together with the other tiles of its batch
         bool is_in_batch = false;
         bool is_due = false;
         bool is_urgent = false;  ///< changed by painting
@@ -201,7 +201,7 @@ private:
     void reserve(gpu::Storage& image, const std::string& name, Format format, const glm::uvec2& pixels);
     bool patch_is_due() const;
     double cost_ms(uint64_t pixels) const { return double(pixels) * rays_.ms(); }
-    /// Timestamps of lavapipe are wrong during a window's render passes, so the host's clock is used there.
+    /// The host's clock is used on lavapipe, whose timestamps are wrong during a window's render passes.
     bool host_tells_time() const
     {
         const gpu::DeviceTraits& traits = renderer_.device().traits();
@@ -222,14 +222,14 @@ private:
     /// Linear light of sharp tiles: for the graphs in flight and the next one, so that none waits for another.
     std::array<gpu::Storage, 3> strips_;
     size_t next_strip_ = 0;
-    bool has_no_strips_ = false;  ///< out of memory: tiles are drawn in `work_`
+    bool has_no_strips_ = false;  ///< set when out of memory: tiles are drawn in `work_`
     gpu::Storage sharp_;          ///< all sharp tiles
     std::vector<Tile> tiles_;
     std::vector<VoxelBox> changed_during_base_;
     SightRef finer_sight_;    ///< the last state for which a finer sketch was begun
     SightRef unsharp_sight_;  ///< the last state whose sharp tiles did not fit in memory
     bool occlusion_is_asked_for_ = false;
-    bool occlusion_was_renewed_ = false;  ///< but the pixels under the probe do not show it yet
+    bool occlusion_was_renewed_ = false;  ///< set while the pixels under the probe do not show it yet
     std::deque<Running> running_;
     double in_flight_ms_ = 0.0;
     // Initial estimates, measured on two cores of a server.

@@ -33,7 +33,7 @@ void View::start(Sketch& sketch, const SightRef& sight, const std::optional<Prob
         if (const auto& eye = sight->shot.right_eye)
             part = united(part, pixels_of_ball(*eye, sight->pixels, probe->center, probe->reach(spacing)));
     }
-    // Without motion it is drawn sharp, whatever it costs.
+    // Without motion the sketch is drawn sharp, whatever it costs.
     const double most = std::isinf(target_ms) ? 1.0 : sight->interaction.resolution;
     const double share = share_for(double(part.area()) * average_ms_per_pixel_, target_ms, most);
     start(sketch, {.sight = sight, .probe = probe, .share = share}, part);
@@ -62,11 +62,11 @@ void View::start(Sketch& sketch, Sketch::Content content, PixelBox part)
     sketch.job = std::move(content);
 }
 
-/// Precedes the sharp tiles, whose edges stand out less next to a finer sketch. Once per sight, and only if it adds
-/// little to the picture's total time.
+/// Draws a finer sketch before the sharp tiles, whose edges stand out less next to it. Once per sight, and only if it
+/// adds little to the picture's total time.
 bool View::submit_finer_sketch()
 {
-    constexpr double SHARE = 0.18;  // of the pixels along each axis: 3 % of all
+    constexpr double SHARE = 0.18;  // share of the pixels along each axis: 3 % of all pixels
     if (finer_sight_ == shown_sight_ || !(base_.shown.share < 0.8 * SHARE)) return false;
     finer_sight_ = shown_sight_;
     start(base_, {.sight = shown_sight_, .probe = {}, .share = SHARE}, {glm::uvec2(0), shown_sight_->pixels});
@@ -158,7 +158,7 @@ void View::flip(Sketch& sketch)
 void View::finish_sketches()
 {
     if (!base_.is_drawn() || !patch_.is_drawn()) return;
-    // A picture and its probe are shown at the same time.
+    // The picture and its probe are shown at the same time.
     if (patch_.job) flip(patch_);
     if (!base_.job) return;
     average_ms_per_pixel_ = sketch_ms_ / double(base_.job->part.area());

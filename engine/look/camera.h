@@ -46,8 +46,8 @@ constexpr std::span<const Spelling<Camera::Projection>> spellings_of(Camera::Pro
 struct SideView {
     std::string side = "front";
     double zoom = 1.0;          ///< the eye's distance is divided by it
-    double turn_degrees = 0.0;  ///< about the view's vertical axis; the eye moves to the viewer's right
-    double tilt_degrees = 0.0;  ///< the eye rises; at 90 it looks straight down
+    double turn_degrees = 0.0;  ///< rotation about the view's vertical axis; the eye moves to the viewer's right
+    double tilt_degrees = 0.0;  ///< elevation of the eye; at 90 it looks straight down
     bool operator==(const SideView&) const = default;
 };
 
@@ -61,10 +61,10 @@ struct RayPlanes {
     glm::dvec3 far_corner, far_dx, far_dy;
     bool empty =
         false;  ///< near plane behind far plane, or volume outside the clip range: nothing of the volume is visible
-    // Positions between the near plane (0) and the far plane (1), which may lie outside the volume.
-    double begin = 0.0;   ///< the start of the camera's clip range; at most 0 unless `empty`
-    double middle = 0.5;  ///< the camera's target, or the closer of the two planes if it lies outside them
-    double end = 1.0;     ///< the end of the clip range; infinite without a far clip plane
+    // Positions relative to the near plane (0) and the far plane (1); they may lie outside the volume.
+    double begin = 0.0;   ///< start of the camera's clip range; at most 0 unless `empty`
+    double middle = 0.5;  ///< the camera's target, or the closer of the two planes if the target lies outside them
+    double end = 1.0;     ///< end of the clip range; infinite without a far clip plane
 };
 
 /// The planes are perpendicular to the view direction and touch the volume's bounding sphere (or lie at the clip
@@ -82,8 +82,8 @@ glm::dvec4 depth_plane(const Camera& camera, const glm::dvec3& lower, const glm:
 void check_camera(const Camera& camera);
 
 /// A camera that sees the whole volume from a direction: "front" (the eye on the -y side), "back" (+y), "left" (-x),
-/// "right" (+x), all with z up; "top" (+z) and "bottom" (-z) with y up. The bounding sphere fits a square picture of
-/// 30 degrees with a margin of 5 %.
+/// "right" (+x), all with z up; "top" (+z) and "bottom" (-z) with y up. The bounding sphere fits a square picture of 30
+/// degrees with 5 % to spare.
 Camera camera_looking(const std::string& side, const VolumeInfo& volume);
 std::vector<std::string> camera_sides();
 /// The default side to look from: "front", unless that shows less than half of the area of another face, as it does for

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double WIDTH = 1.5;        ///< pixels
 constexpr double TRACE_WIDTH = 2.5;  ///< for highlighted parts of the trace
-constexpr double HALO = 2.0;         ///< extra pixels that set a stroke off from its background
+constexpr double HALO = 2.0;         ///< number of extra pixels that set a stroke off from its background
 constexpr double DASH = 5.0, GAP = 4.0;
 constexpr glm::dvec3 DARK(0.02);
 /// Colours of x, y and z, and of the four edges of a frustum that lead away from the eye.
@@ -62,7 +62,7 @@ public:
         for (size_t i = 0; i < points.size(); ++i)
             line(points[i], points[(i + 1) % points.size()], color, false, width);
     }
-    /// Halos first, so that none lies on a neighbour's stroke.
+    /// Draws halos first, so that none covers a neighbour's stroke.
     std::vector<Stroke> taken()
     {
         std::vector<Stroke> all;
@@ -207,7 +207,7 @@ void add_ball(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, cons
 
 void add_trace(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, const OverlayScene& scene)
 {
-    if (pane.kind != Pane::Kind::slice)  // in slices, a line lies off the plane
+    if (pane.kind != Pane::Kind::slice)  // lines do not lie in the plane of a slice
         for (const OverlayScene::Line& line : scene.lines) {
             const auto from = project(pane.shot.camera, pixels, line.from);
             const auto to = project(pane.shot.camera, pixels, line.to);
@@ -232,7 +232,7 @@ void add_box(Strokes& strokes, const Camera& camera, const glm::uvec2& pixels, c
             if (side & 2) from[third] = box.upper[third];
             to = from;
             to[axis] = box.upper[axis];
-            // Of the two faces that meet in the edge, one looks at the viewer.
+            // One of the two faces that meet in the edge looks at the viewer.
             const glm::dvec3 to_viewer = is_perspective ? camera.eye - 0.5 * (from + to) : -axes.forward;
             const auto faces = [&](int normal) { return (from[normal] - middle[normal]) * to_viewer[normal] > 0.0; };
             const bool is_seen = faces(second) || faces(third);
@@ -258,7 +258,7 @@ void for_each_covered(const Stroke& stroke, const glm::uvec2& origin, const Pixe
     const glm::dvec2 upper = glm::min(glm::ceil(glm::max(from, to) + reach), glm::dvec2(pane.end));
     const glm::dvec2 way = to - from;
     const double square = glm::dot(way, way);
-    // A row meets only a short piece of a long stroke: the rest of the row is skipped.
+    // A row meets only a short piece of a long stroke, so the rest of the row is skipped.
     const auto x_at = [&](double y) {
         return way.y == 0.0 ? 0.0 : from.x + std::clamp((y - from.y) / way.y, 0.0, 1.0) * way.x;
     };

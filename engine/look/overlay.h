@@ -28,7 +28,7 @@ struct OverlayScene {
         double radius = 1.0;      ///< physical units
         glm::dvec3 color{1.0};    ///< linear light
         bool is_outlined = true;  ///< draw its silhouette
-        bool has_arrow = true;    ///< draw an arrow if it is out of sight
+        bool has_arrow = true;    ///< draws an arrow if the probe is out of sight
     };
     Probe probe;
     /// Highlights of the trace: nodes as rings, internodes as lines along their axes.
@@ -55,7 +55,7 @@ OverlayScene::Box box_of(const CutBox& cut, const VolumeInfo& volume);
 std::vector<Stroke> strokes_of(const Pane& pane, const OverlayScene& scene, const VolumeInfo& volume);
 
 /// The silhouette of a ball as a closed line: the circle in which lines from the eye touch it. Empty if the eye is
-/// inside it, or if part of it is level with or behind the eye.
+/// inside the ball, or if a part of the ball is level with or behind the eye.
 std::vector<glm::dvec2> silhouette_of(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& center,
                                       double radius);
 

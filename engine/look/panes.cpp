@@ -11,7 +11,7 @@ namespace {
 
 constexpr uint32_t MIN_PANE = 16;      ///< pixels a side
 constexpr double SLICE_MARGIN = 1.05;  ///< around the volume
-constexpr double MAP_MARGIN = 1.5;     ///< also contains the camera that looks at it
+constexpr double MAP_MARGIN = 1.5;     ///< around the volume; a map also contains the camera that looks at it
 
 PixelBox part_of(const glm::uvec2& pixels, const glm::uvec2& counts, const glm::uvec2& at)
 {
@@ -118,7 +118,7 @@ std::pair<Camera, Camera> eyes_of(const Camera& camera, const StereoSettings& se
         const glm::dvec3 way = double(side) * half * axes.right;
         eye.eye += way;
         if (half > 0.0 && (settings.toe_in || !is_perspective)) {
-            eye.up = axes.up;  // the eyes rotate about it, so that neither rolls
+            eye.up = axes.up;  // the eyes rotate about the up vector, so that neither rolls
             continue;
         }
         eye.target += way;
@@ -187,7 +187,7 @@ SliceSettings slices_following(const SliceSettings& slices, const std::vector<Pa
 {
     const glm::dvec3 seen = glm::clamp(probe_voxel, glm::dvec3(0.0), glm::dvec3(volume.size)) * volume.spacing;
     glm::bvec3 follows(false);
-    int held_axis = -1;  // normal axis of the slice under the mouse, along which it does not move
+    int held_axis = -1;  // normal axis of the slice under the mouse; the slices do not move along it
     for (size_t i = 0; i < panes.size(); ++i) {
         const Pane& pane = panes[i];
         if (!pane.shot.is_slice) continue;

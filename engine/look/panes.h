@@ -37,9 +37,9 @@ constexpr std::span<const Spelling<StereoOutput>> spellings_of(StereoOutput)
 
 struct StereoSettings {
     StereoOutput output = StereoOutput::side_by_side;
-    double eye_distance = 1.0 / 30.0;  ///< as a share of the distance to the target, at which both eyes see the same
-                                       ///< point
-    bool toe_in = false;               ///< rotates the eyes towards the target, an older method; otherwise off-axis
+    double eye_distance = 1.0 / 30.0;  ///< distance between the eyes, as a share of that to the target, where both eyes
+                                       ///< see the same point
+    bool toe_in = false;               ///< rotates the eyes towards the target, an older method; false: off-axis
     bool operator==(const StereoSettings&) const = default;
 };
 

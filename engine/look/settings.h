@@ -28,7 +28,7 @@ struct OcclusionSettings {
     double radius = 16.0;                   ///< distance that light comes from, in reference lengths
     uint32_t rays = 32;                     ///< per voxel
     bool full_sphere = false;               ///< also rays from behind surfaces
-    double curve = 1.0;                     ///< exponent of the arriving light; above 1 is darker
+    double curve = 1.0;                     ///< exponent applied to the arriving light; above 1 is darker
     bool automatic = true;                  ///< false: the window renews it on request
     std::vector<OcclusionPoint> mapping{};  ///< replaces `curve`, sorted by `arrives`; empty: none
     bool operator==(const OcclusionSettings&) const = default;
@@ -94,7 +94,7 @@ struct RenderSettings {
     Paging paging = Paging::automatic;
     double detail = 1.0;  ///< minimum voxels per pixel, if the volume has several levels; 0: always the finest
     bool skip_empty_space = true;
-    bool preintegration = false;  ///< classify steps by both of their ends (preintegration.h); for steps of at most 1
+    bool preintegration = false;  ///< classifies steps by both of their ends (preintegration.h); for steps of at most 1
     /// Smooth borders of painted groups: between voxels, the label with the largest weight among the eight around a
     /// sample, instead of the nearest voxel's. Slices and occlusion use the nearest voxel.
     bool smooth_borders = false;

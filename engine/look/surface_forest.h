@@ -45,7 +45,7 @@ public:
     Written take_written() { return std::exchange(written_, {}); }
 
 private:
-    /// Smaller forests are rebuilt as fast as the small hierarchy.
+    /// Whether the forest is large enough to be changed; smaller ones are rebuilt as fast as the small hierarchy.
     bool may_grow() const { return base_list_ > 2 * MAX_SURFACES_ADDED; }
     void remove(uint64_t key);
     void set_added(const SurfaceTree& tree);
@@ -53,8 +53,8 @@ private:
     size_t max_in_leaf_ = gpu::SURFACES_IN_LEAF;
     std::vector<gpu::SurfaceNode> nodes_;
     std::vector<gpu::Surface> list_;
-    size_t base_nodes_ = 0, base_list_ = 0;  ///< sizes of the large hierarchy, which comes first
-    std::vector<uint64_t> keys_;             ///< keys of its surfaces, in the order of `list_`
+    size_t base_nodes_ = 0, base_list_ = 0;  ///< sizes of the large hierarchy, which precedes the small one
+    std::vector<uint64_t> keys_;             ///< keys of the surfaces of the large hierarchy, in the order of `list_`
     std::vector<uint32_t> leaves_;           ///< their leaf nodes
     /// Keys of the large hierarchy, sorted, with their index in `list_`; GONE: removed.
     struct Place {

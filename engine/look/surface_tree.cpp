@@ -15,7 +15,7 @@ namespace shvr {
 namespace {
 
 constexpr double NEAREST = -double(MAX_SIDE), FARTHEST = 2.0 * double(MAX_SIDE), MAX_RADIUS = double(MAX_SIDE);
-/// If a ball contains the other except for this share of their difference, only the larger one is drawn.
+/// If one ball of a rod contains the other up to this share of their difference, only the larger one is drawn.
 constexpr double CONTAINED = 1e-5;
 
 struct Box {

@@ -11,7 +11,7 @@ namespace shvr {
 
 /// Blocks of pixels to which drawing is limited.
 struct ListedBlocks {
-    Resource numbers;  ///< block numbers, in a buffer, gpu::NO_BLOCK beyond the last
+    Resource numbers;  ///< numbers of blocks, in a buffer; gpu::NO_BLOCK after the last one
     Resource counts;   ///< workgroup counts, as Pass::dispatch_counted takes them
     uint32_t most_groups = 0;
     uint32_t groups_in_dispatch = 0;

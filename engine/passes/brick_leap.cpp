@@ -18,7 +18,7 @@ bool Visibility::shows(double lower_code, double upper_code) const
 {
     const double lower = double(params.table_lower), upper = double(params.table_upper);
     if (params.skipping == 0) return true;
-    // One code more on each side than the kernels' guard: nothing visible may be excluded here.
+    // Adds one code on each side to the kernels' guard: nothing visible may be excluded here.
     const double beside = 1.0 + double(params.guard), from = lower_code - beside, to = upper_code + beside;
     if (params.table_entries < 2 || to < lower || from > upper) return false;
     const double last = double(params.table_entries - 1);

@@ -50,8 +50,8 @@ void distance(FrameGraph& graph, const VolumeBinding& volume, uint32_t axis, con
     to = pass.write("leap", to);
 }
 
-/// How far a sample's code may exceed the codes of its voxels (leap.h): its maximum distance from them, along all axes,
-/// times the largest difference of codes.
+/// The maximum by which a sample's code may exceed the codes of its voxels (leap.h): its largest distance from them,
+/// summed over the axes, times the largest difference of codes.
 float guard_of_sample_bits(const glm::uvec3& cell_counts)
 {
     constexpr double CODES = 65535.0, EPSILON = 0x1p-24;
@@ -99,7 +99,7 @@ void leap_grid_stage(FrameGraph& graph, VolumeBinding& volume, const LeapGridInp
 
 void leap_grid_patch(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input)
 {
-    // As in the last stage: the cells whose distance the changed ones may limit.
+    // As in the last stage: the cells whose distance may be limited by the changed ones.
     const CellBox cells = cells_of_stage(input.changed, volume.cell_counts, LEAP_STAGES - 1);
     Pass pass = graph.compute("leap_bound");
     pass.push(gpu::LeapBoundParams{cells.begin, cells.end, input.changed.begin, input.changed.end});

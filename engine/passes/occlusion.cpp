@@ -10,7 +10,7 @@ namespace shvr {
 
 namespace {
 
-/// How far from its voxel a ray may begin.
+/// Maximum distance from its voxel at which a ray may begin.
 constexpr double MAX_OFFSET = double(gpu::OCCLUSION_FURTHEST) + double(gpu::OCCLUSION_LIFT);
 
 /// In voxels of the level, for a radius of 16: taps in voxels, in cells of two voxels and in cells of four; the
@@ -20,8 +20,8 @@ constexpr double NEAR_STRETCHES[] = {NEAR_STRETCH, NEAR_STRETCH, 2.0 * NEAR_STRE
 constexpr double NEAR_TOTAL = 4.0 * NEAR_STRETCH;
 constexpr uint32_t FAR_SIZES[] = {0, 0, 0, 1, 1};
 constexpr double STRETCHES_OF_SIZES[] = {2.077, 2.815};
-constexpr double MAX_STRETCH_2 = 8.6;  ///< beyond this, only those of cells of four grow
-constexpr uint32_t MAX_APRON = 14;     ///< in cells of any size, for the largest radius
+constexpr double MAX_STRETCH_2 = 8.6;  ///< beyond this, only the stretches of cells of four grow
+constexpr uint32_t MAX_APRON = 14;     ///< width in cells of any size, for the largest radius
 constexpr double MAX_STRETCHED = 1.2;  ///< before another tap is added
 static_assert(std::size(FAR_SIZES) == gpu::OCCLUSION_TAPS_2 + gpu::OCCLUSION_TAPS_4);
 static_assert(3.0 * NEAR_STRETCH + MAX_OFFSET + 0.5 < gpu::OCCLUSION_NEAR_APRON + 1);

@@ -30,7 +30,7 @@ ResourceDesc occlusion_around_desc(uint32_t size, uint32_t jobs);
 struct OcclusionTaps {
     double radius = 0.0;
     double first = 0.0;                   ///< initial length that never blocks light
-    std::vector<gpu::OcclusionTap> taps;  ///< nearest first; their stretches and `first` add up to the radius
+    std::vector<gpu::OcclusionTap> taps;  ///< from near to far; their stretches and `first` add up to the radius
     std::array<uint32_t, gpu::OCCLUSION_SIZES + 1> end{};          ///< end of the near taps, then of each cell size's
     double near_stretch = 0.0;                                     ///< ray length covered by the first near tap
     std::array<double, gpu::OCCLUSION_SIZES> stretches{1.0, 1.0};  ///< ray length covered by one tap, per cell size
@@ -60,7 +60,7 @@ void occlusion_cells(FrameGraph& graph, const VolumeBinding& volume, OcclusionBi
                      const OcclusionCellsInput& input, std::span<const gpu::OcclusionCellsJob> jobs);
 
 struct OcclusionInput {
-    gpu::OcclusionBakeParams params;  ///< complete except for what follows from the other inputs
+    gpu::OcclusionBakeParams params;  ///< complete except for data that follow from the other inputs
     OcclusionTaps taps;
     std::vector<uint32_t> visible_intervals;                                      ///< engine/look/transfer_function.h
     std::array<float, gpu::OCCLUSION_SIZES * gpu::OCCLUSION_LEVELS> exponents{};  ///< as in OcclusionGatherParams

@@ -22,7 +22,7 @@ inline void pixel_groups(Pass& pass, const glm::uvec2& pixels, const PixelGroups
 {
     const glm::uvec2 group(groups.width, GROUP_SIDE * GROUP_SIDE / groups.width);
     const glm::uvec2 all = (pixels + group - 1u) / group;
-    uint32_t layers = groups.layers;  // fewer where more than an eighth of their rows would have no pixels
+    uint32_t layers = groups.layers;  // fewer layers if more than an eighth of their rows would have no pixels
     while (layers > 1 && 8 * ((all.y + layers - 1) / layers * layers - all.y) > all.y) layers /= 2;
     const auto threads = [&](const glm::uvec2& count) {
         return glm::uvec3(GROUP_SIDE * count.x, GROUP_SIDE * ((count.y + layers - 1) / layers), layers);

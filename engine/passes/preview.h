@@ -12,9 +12,9 @@
 namespace shvr {
 
 struct PreviewInput {
-    gpu::RaycastParams params;  ///< the same as the ray caster's; pixels, light and distance blending are used
+    gpu::RaycastParams params;  ///< the ray caster's parameters; pixels, light and distance blending are used
     gpu::PreviewParams preview;
-    std::span<const uint32_t> words;   ///< a bit per voxel, in rows of params.words_per_row
+    std::span<const uint32_t> words;   ///< one bit per voxel, in rows of params.words_per_row
     std::optional<Resource> surfaces;  ///< for the same pixels; not in slices
     bool slice = false;
     PixelGroups pixel_groups;

@@ -16,18 +16,18 @@ uint32_t shininess_squarings(float shininess)
 
 namespace {
 
-/// Number of threads that a device which aborts long loops runs in lockstep (MAX_TURNS): each may make all of them take
-/// an iteration. Sixteen also stay below 65535.
+/// Number of threads that run in lockstep on devices that abort long loops (MAX_TURNS): each of these may make all of
+/// them take an iteration. With sixteen, the total stays below 65535.
 constexpr uint64_t LANES = 8;
 constexpr uint64_t MAX_BLOCKS = 4096;
 /// Margin around the pixels of an iso-surface: rays are rounded, and groups of threads are as wide as possible.
 constexpr double SHELL_MARGIN = 1.0, SHELL_ALIGNED = 16.0;  // pixels
 
-/// Steps of a ray that one dispatch may take.
+/// Number of steps of a ray that one dispatch may take.
 uint64_t steps_of_block(const VolumeBinding& volume, const RaycastInput& input, bool is_shelled)
 {
-    // Finding a place is a loop of its own; in paged bricks it takes one iteration per level of the directory. Loops of
-    // fixed length are unrolled (mask.glsl, groups.glsl, search.glsl) and count none.
+    // Maximum iterations to find a place, which is a loop of its own: in paged bricks it takes one per level of the
+    // directory. Loops of fixed length are unrolled (mask.glsl, groups.glsl, search.glsl) and count none.
     const uint64_t levels = volume.pages ? volume.pages->depth : 0;
     const uint64_t to_leap = 1 + levels;
     const uint64_t to_search = to_leap + 1 + gpu::SEARCH_AHEAD * levels;  // each but the last advances by as many steps
@@ -110,7 +110,7 @@ KernelVariant with(KernelVariant kernel, const Constants& constants)
     return kernel;
 }
 
-/// How a step is classified, for rays that march.
+/// The constants that select how a step is classified, for rays that march.
 Constants constants_of_steps(const Choice& choice, const RaycastInput& input)
 {
     Constants constants{{"GROUP_WIDTH", input.pixel_groups.width},
@@ -140,7 +140,7 @@ KernelVariant pick_kernel(const Choice& choice, const RaycastInput& input)
     return with(with(kernel, constants_of_steps(choice, input)), {{"HAS_SURFACES", choice.is_surfaced}});
 }
 
-/// The kernel that draws: colours along rays, one sample of each, or where a person points.
+/// Name of the kernel: colours along rays, one sample of each, or the picked point.
 KernelVariant kernel_of(const Choice& choice, const RaycastInput& input)
 {
     if (input.slice) return slice_kernel(choice, input);
@@ -200,8 +200,8 @@ struct Area {
     bool is_empty() const { return begin.x >= end.x || begin.y >= end.y; }
 };
 
-/// Iso-surfaces would also double the cost of rays that never meet them, so these are drawn without: above, below, and
-/// on both sides of the surface's pixels.
+/// Rays that never meet the iso-surface would cost twice as much with it, so their pixels are drawn without it: above,
+/// below, and on both sides of the surface's pixels.
 std::vector<Area> areas_of(const RaycastInput& input, bool is_shelled)
 {
     const glm::uvec2 size = input.params.pixel_end - input.params.pixel_begin;
@@ -261,7 +261,7 @@ void bind_rays(FrameGraph& graph, Pass& pass, const RaycastInput& input, std::op
         rays = is_first && (!is_begun || !input.waiting) ? pass.write("rays", *rays) : pass.modify("rays", *rays);
 }
 
-/// `is_begun`: other pixels of the target, and of `rays`, have been drawn before.
+/// `is_begun`: whether other pixels of the target, and of `rays`, have been drawn before.
 Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, bool is_shelled,
                        Resource target, std::optional<Resource>& rays, bool is_begun)
 {

@@ -28,7 +28,7 @@ uint32_t shininess_squarings(float shininess);
 /// Rays that stop and wait at bricks missing on the device, and resume in a later graph (shaders/raycast.h, KEPT_ALL).
 struct RaysInWaiting {
     Resource state;           ///< rgba32f picture of the drawn pixels, twice as high; updated by raycast()
-    bool have_begun = false;  ///< `state` holds the result of an earlier graph
+    bool have_begun = false;  ///< `state` contains the result of an earlier graph
 };
 
 struct RaycastInput {
@@ -44,12 +44,12 @@ struct RaycastInput {
     PixelGroups pixel_groups;
     uint32_t shell = gpu::SHELL_NONE;  ///< otherwise params.shell_* are set
     bool preintegrated = false;        ///< `table` is for steps between two densities
-    bool slice = false;                ///< params.slice_* are set: draws the voxels half-way along the rays
+    bool slice = false;                ///< draws a slice: the voxels half-way along the rays, with params.slice_*
     bool smooth_borders = false;       ///< smooth borders of painted groups; with Visibility::params.paint_reach 1
     bool pick = false;                 ///< positions instead of colours, see the kernel
     std::optional<ListedBlocks>
-        blocks;                        ///< limits drawing to these blocks; the target already has the other pixels. Not
-                                       ///< with `waiting`
+        blocks;                        ///< blocks to which drawing is limited; the target already has the other pixels.
+                                       ///< Not with `waiting`
     RaysInWaiting* waiting = nullptr;  ///< paged bricks only; null: rays do not wait
 };
 

@@ -24,7 +24,7 @@ struct SurfaceList {
 inline constexpr uint32_t NODES_IN_DISPATCH = 60'000 / (2 + gpu::SURFACES_IN_LEAF);
 
 struct SurfacesInput {
-    gpu::RaycastParams params;  ///< the same as the ray caster's; pixels, light and distance blending are used
+    gpu::RaycastParams params;  ///< the ray caster's parameters; pixels, light and distance blending are used
     gpu::SurfaceParams scene;
     std::optional<SurfaceList> listed;
     bool probe = false;  ///< scene.probe_* are set

@@ -17,7 +17,7 @@ namespace shvr {
 struct PageBinding {
     Resource directory;
     Resource cell_leap;     ///< r8ui per cell of every slot
-    Resource reached;       ///< bit per entry: where rays mark the bricks that they visit
+    Resource reached;       ///< one bit per entry, set by rays that visit its brick
     bool feedback = false;  ///< whether rays mark them
     glm::uvec3 counts{1};
     uint32_t cell_shift = 0;

@@ -33,7 +33,7 @@ RaycastOcclusion raycast_occlusion(Resource values, const OcclusionSettings& set
     const std::vector<OcclusionPoint>& points = settings.mapping;
     if (points.empty()) return occlusion;
     constexpr double NARROWEST = 1e-6;  // a step
-    // With a single point, a segment without a rise.
+    // With a single point, both ends of the segment are equal.
     for (size_t i = 0; i + 1 < std::max<size_t>(points.size(), 2); ++i) {
         const OcclusionPoint &from = points[i], &to = points[std::min(i + 1, points.size() - 1)];
         occlusion.segments.push_back({float(from.arrives), float(1.0 / std::max(to.arrives - from.arrives, NARROWEST)),
@@ -63,7 +63,7 @@ struct Prepared {
     double adaptive_tolerance = 0.0;  ///< 0: every pixel has a ray
 };
 
-/// The first half of the list at the top of frame.h.
+/// Adds the passes in the first half of the list at the top of frame.h.
 Prepared prepare(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part,
                  bool feedback, bool rays_wait = false)
 {
@@ -107,7 +107,7 @@ std::optional<Resource> draw_surfaces(FrameGraph& graph, Scene& scene, const Pre
     return surfaces(graph, wanted);
 }
 
-/// Whether it also shows what lies behind the probe's ball: two pictures are then mixed.
+/// Whether the objects behind the probe's ball are drawn, too: two pictures are then mixed.
 bool is_translucent(const std::optional<ProbeLook>& probe)
 {
     return probe && probe->ball_share > 0.0 && probe->ball_opacity > 0.0 && probe->ball_opacity < 1.0;
@@ -203,7 +203,7 @@ Resource draw_contents(FrameGraph& graph, Scene& scene, Prepared& prepared, Rayc
                          .share = input.slice ? PREVIEW_SLICE_SHARE : PREVIEW_SHARE});
 }
 
-/// The same through a translucent ball: mixes pictures with an opaque ball and without it.
+/// Likewise through a translucent ball: mixes pictures with an opaque ball and without it.
 Resource draw_through_ball(FrameGraph& graph, Scene& scene, Prepared& prepared, const RaycastInput& input,
                            const Camera& camera, const PicturePart& part, Resource target, const WaitingRays* rays,
                            size_t eye)

@@ -94,9 +94,9 @@ double look_at(Scene& scene, const Look& look, const Shot& shot, const PicturePa
 /// One short graph of work that must precede drawing parts of this look; null when all is ready. Without these calls
 /// the first draw() does it all. The graph must be submitted before the next call.
 std::optional<FrameGraph> next_preparation(Scene& scene, const Look& look);
-/// The same for idle time: work that makes later pictures faster without changing them.
+/// Likewise for idle time: work that makes later pictures faster without changing them.
 std::optional<FrameGraph> next_refinement(Scene& scene, const Look& look);
-/// The same for the next slice of the look's ambient occlusion, nearest to the camera first; null if the look uses none
+/// Likewise for the next slice of the look's ambient occlusion, nearest to the camera first; null if the look uses none
 /// or all is done. Pictures are drawn with the occlusion available so far.
 std::optional<FrameGraph> next_occlusion(Scene& scene, const Look& look, const Camera& camera,
                                          const Occlusion::Most& most);

@@ -26,7 +26,7 @@ void append(std::vector<gpu::PassReport>& sum, std::vector<gpu::PassReport> pass
         known->submissions += pass.submissions;
         known->dispatches += pass.dispatches;
         known->tiles += pass.tiles;
-        // Kernels of one pass may count or not (slice.comp does not).
+        // Within one pass, some kernels count and others do not (slice.comp).
         known->counters.resize(std::max(known->counters.size(), pass.counters.size()));
         for (size_t i = 0; i < pass.counters.size(); ++i) known->counters[i] += pass.counters[i];
         known->invocations = known->invocations && pass.invocations
@@ -37,7 +37,7 @@ void append(std::vector<gpu::PassReport>& sum, std::vector<gpu::PassReport> pass
 
 /// Bytes per pixel of a picture's read-back.
 constexpr uint64_t PIXEL_BYTES = 4 * sizeof(float);
-/// Maximum host memory for the band being drawn; another one may still be being written.
+/// Maximum host memory for the band being drawn, while another one may still be being written.
 constexpr uint64_t MAX_BAND_BYTES = uint64_t{32} << 20;
 /// Device memory in addition to a part's own images: tables and the directory of bricks.
 constexpr uint64_t BESIDE_PARTS = uint64_t{8} << 20;
@@ -141,7 +141,7 @@ void PictureJob::begin_band()
     band_begin_ = band_end_;
     band_end_ = std::min(band_begin_ + band_rows_, size_.y);
     const size_t values = size_t(size_.x) * (band_end_ - band_begin_) * 4;
-    // The receiver of the rows may hold a band while the next one is drawn; a part is copied once more.
+    // The receiver of the rows may hold one band while the next one is drawn, and a part is copied once more.
     constexpr uint64_t BANDS = 2;
     renderer_.note_picture_bytes(BANDS * values * sizeof(float) +
                                  PIXEL_BYTES * options_.part_pixels * std::min(options_.part_pixels, band_rows_));
@@ -205,14 +205,14 @@ void PictureJob::end_band()
     renderer_.note_picture_bytes(0);
 }
 
-/// Takes the requested bricks. False: some are still to come, and it did not wait.
+/// Takes the requested bricks. Returns false if some are still to come and it did not wait.
 bool PictureJob::load(const Progress& progress, bool waits)
 {
     scene().advance(waits, progress);
     return waits || scene().volume().state() != DeviceVolume::State::loading;
 }
 
-/// Loads the bricks that light comes from, as far as there are slots.
+/// Loads the bricks from which light comes, as far as there are slots.
 bool PictureJob::load_around(const Progress& progress, bool waits)
 {
     if (pane().shot.is_slice || !scene().has_occlusion(look_)) return true;
@@ -220,8 +220,8 @@ bool PictureJob::load_around(const Progress& progress, bool waits)
     return load(progress, waits);
 }
 
-/// Completes the ambient occlusion of the look, as far as the loaded bricks allow. False: there is more to do, and it
-/// did not wait.
+/// Completes the ambient occlusion of the look, as far as the loaded bricks allow. Returns false if there is more to do
+/// and it did not wait.
 bool PictureJob::renew_occlusion(const Progress& progress, bool waits)
 {
     constexpr Occlusion::Most MOST{.bricks = gpu::OCCLUSION_SLICE, .cell_bricks = 512};
@@ -255,7 +255,7 @@ void PictureJob::step(bool waits)
     SHVR_CHECK(!is_done());
     const PicturePart part = rounds_ ? rounds_->part : parts_.back();
     if (!rounds_) parts_.pop_back();
-    // A CPU that draws also copies the pixels: drawing ahead would only need more memory.
+    // No drawing ahead on a CPU, which also copies the pixels: it would only need more memory.
     const bool is_paged = scene().volume().counts().has_value(), is_ahead = !is_paged && !scene().traits().is_cpu;
     try {
         if (is_ahead)
@@ -313,7 +313,7 @@ std::vector<gpu::PassReport> PictureJob::take(UnderWay part)
     const size_t row_bytes = size_t(size.x) * 4 * sizeof(float);
     for (uint32_t y = 0; y < size.y; ++y, row += row_bytes)
         std::memcpy(&band_.rgba[4 * (origin.x + size_t(size_.x) * (origin.y - band_begin_ + y))], row, row_bytes);
-    // If two are in flight, the time that both took counts once.
+    // If two parts are in flight, the time that both took counts once.
     const double now_ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
     picture_.wall_ms += std::min(result.wall_ms, now_ms - last_taken_ms_.value_or(-HUGE_VAL));
@@ -350,7 +350,7 @@ void PictureJob::catch_up()
     finish(part, take(std::move(last)));
 }
 
-/// Draws a part with all bricks that its rays visit, or splits it into quarters. False: it continues in the next step.
+/// Draws a part with all bricks that its rays visit, or splits it into quarters. False: the next step continues it.
 bool PictureJob::draw_completely(const PicturePart& part, bool waits)
 {
     DeviceVolume& volume = scene().volume();
@@ -391,7 +391,7 @@ bool PictureJob::draw_rounds(bool waits)
             rounds_->is_drawn = true;
         }
         if (!load(progress, waits)) return false;
-        // Bricks visited again may have been lit while there were no slots for those around them.
+        // Bricks visited again may have been lit while there were no slots for the bricks around them.
         if (!load_around(progress, waits)) return false;
         rounds_->is_drawn = false;
         if (volume.state() == State::limited) return true;

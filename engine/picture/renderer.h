@@ -21,10 +21,10 @@ using gpu::DeviceLost;
 struct RenderOptions {
     std::optional<ProbeLook> probe;
     bool outlines_probe = false;  ///< draws its outline over whatever hides it, or an arrow if it is out of sight
-    bool count_work = false;      ///< keep the exact work counters (a little slower)
+    bool count_work = false;      ///< keeps the exact work counters (a little slower)
     bool serialize = false;       ///< a full barrier between passes
     bool timestamps = true;
-    bool statistics = false;  ///< count kernel invocations, if the device supports it
+    bool statistics = false;  ///< counts kernel invocations, if the device supports it
     /// Maximum side in pixels of the parts that are drawn one at a time: smaller if memory is short.
     uint32_t part_pixels = 1024;
     Progress progress{};
@@ -69,7 +69,7 @@ public:
     /// in memory together; otherwise it was destroyed first, and there is none.
     void load(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
               const RenderSettings& settings = {}, bool with_occlusion = false, const Progress& progress = {});
-    /// The same in time slices, for a loop that keeps running: starts loading a second scene, if fits_beside() holds,
+    /// Likewise in time slices, for a loop that keeps running: starts loading a second scene, if fits_beside() holds,
     /// or the only one after take_scene(); when its load_on() is done, show() it. `document`: what it will show. The
     /// source should already have its levels (with_levels); otherwise they are made here.
     std::unique_ptr<Scene> begin_loading(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,

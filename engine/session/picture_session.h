@@ -20,8 +20,8 @@ namespace shvr {
 /// How the picture shows the probe.
 enum class PictureProbe {
     none,
-    plain,        ///< as the window does: always, without an outline over objects that hide it
-    as_rendered,  ///< as `shvr render` does: if the session shows it, with its outline
+    plain,        ///< shown as in the window: always, without an outline over objects that hide it
+    as_rendered,  ///< shown as by `shvr render`: if the session shows it, with its outline
 };
 /// `picture`: the picture's file. `project`: as above; may be empty.
 PictureTexts texts_of_picture(Session session, const Camera& camera, const std::filesystem::path& picture,

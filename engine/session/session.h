@@ -35,14 +35,14 @@ constexpr std::span<const Spelling<Pivot>> spellings_of(Pivot)
 struct InteractionSettings {
     double resolution = 0.7;          ///< fraction of the screen's along each axis during motion; less if that is slow
     double frames_per_second = 30.0;  ///< upper limit
-    uint32_t screenshot_scale = 4;    ///< pixels of large screenshots per pixel of the window, along each axis
-    double workspace_scale = 1.0;     ///< how far the probe moves for a motion of a haptic device's hand
+    uint32_t screenshot_scale = 4;    ///< scale of large screenshots: pixels per pixel of the window, along each axis
+    double workspace_scale = 1.0;     ///< scale of the probe's motion relative to that of a haptic device's hand
     Pivot pivot = Pivot::target;
     // Lines and text that the window draws over its pictures
     bool scale_bar = true;
     bool axes = true;
-    bool probe_label = true;        ///< the probe's depth, and how much of its ball is relevant
-    bool group_legend = true;       ///< colours and names of the groups that are drawn
+    bool probe_label = true;        ///< shows the probe's depth, and how much of its ball is relevant
+    bool group_legend = true;       ///< lists colours and names of the groups that are drawn
     bool screenshot_marks = false;  ///< screenshots show scale bar, axes, groups and distances like the window
     bool operator==(const InteractionSettings&) const = default;
 };
@@ -70,7 +70,7 @@ constexpr std::span<const Spelling<Tool>> spellings_of(Tool)
     return TOOLS;
 }
 
-/// The plane of voxels to which the probe is confined, named by its normal axis.
+/// Confines the probe to a plane of voxels, named by its normal axis.
 enum class TouchPlane { none, x, y, z };
 inline constexpr Spelling<TouchPlane> TOUCH_PLANES[] = {
     {TouchPlane::none, "none"}, {TouchPlane::x, "x"}, {TouchPlane::y, "y"}, {TouchPlane::z, "z"}};
@@ -83,12 +83,12 @@ constexpr std::span<const Spelling<TouchPlane>> spellings_of(TouchPlane)
 struct FeelSettings {
     TouchMode mode = TouchMode::proximity;
     double strength = 1.0;        ///< factor of the force
-    double surface_share = 0.4;   ///< as a share of the probe's ball: above it a surface holds
+    double surface_share = 0.4;   ///< share of the probe's ball above which a surface holds
     double stiffness = 300.0;     ///< N/m, for a probe of 2.5 mm in the hand's space
     double damping = 1.0;         ///< N s/m
     std::vector<uint8_t> groups;  ///< groups that can be felt, ascending, 0: unpainted voxels; empty: everything
-    bool at_proxy = false;        ///< tools act at the centre of the touched part
-    bool overlap_radius = false;  ///< new nodes get a radius that follows from the filled share of the ball
+    bool at_proxy = false;        ///< tools act at the centre of the touched structure
+    bool overlap_radius = false;  ///< new nodes get a radius derived from the filled share of the ball
     bool to_nodes = false;        ///< tools act at a node that lies in the ball
     bool to_lines = false;        ///< tools act at the nearest point of a centre line that passes through the ball
     bool clicks = false;          ///< a short pulse of the device when contact begins
@@ -115,7 +115,7 @@ struct ProbeSettings {
     std::optional<glm::dvec3> color;           ///< linear light; default: its group's
     double opacity = 1.0;                      ///< opacity of its ball
     bool silhouette = true;                    ///< outlines it over objects that hide it
-    bool arrow = true;                         ///< points to it when it is out of sight
+    bool arrow = true;                         ///< draws an arrow to the probe when it is out of sight
     std::optional<double> node_radius_voxels;  ///< radius of new nodes along x; default: chosen for the volume
     bool measured_radius = false;              ///< new nodes get the radius of the structure around them, if it can be
                                                ///< measured
@@ -146,7 +146,7 @@ struct Session {
     /// and in a session that was only read. Not written.
     std::string volume_hash;
     std::map<std::string, CameraSpec> cameras;  ///< by name; may be empty
-    std::string camera_name;                    ///< the one in use, as accepted by `camera_named`; may be empty
+    std::string camera_name;                    ///< name of the one in use, as accepted by `camera_named`; may be empty
     TransferFunction transfer_function;
     std::string transfer_preset;  ///< `open_session` converts it into a function and clears it
     Groups groups;
@@ -160,7 +160,7 @@ struct Session {
     std::vector<Measurement> measurements;  ///< at most MAX_MEASUREMENTS
     ProbeSettings probe;
     std::vector<SurfaceLook> surfaces;  ///< opaque balls and rods; at most MAX_SESSION_SURFACES in a file
-    std::filesystem::path mask_path;    ///< absolute; empty: none; the file need not exist yet
+    std::filesystem::path mask_path;    ///< path of the mask: absolute; empty: none; the file need not exist yet
     /// Likewise for the trace, in a form that `load_trace` reads; default: next to the mask.
     std::filesystem::path trace_path;
     std::filesystem::path density_path;  ///< likewise, for density offsets
@@ -184,7 +184,7 @@ struct OpenedSession {
     VolumeStatistics statistics;
     std::vector<std::string> warnings;  ///< about the session; those about the volume are in `source->info().warnings`
     std::vector<std::string> losses;    ///< saved data that is missing
-    std::filesystem::path pictured{};   ///< for a picture: the session or project from which it was made; otherwise
+    std::filesystem::path pictured{};   ///< for a picture: the session or project from which it was made; else
                                         ///< empty
 };
 struct OpeningOptions {
@@ -211,7 +211,7 @@ std::filesystem::path session_file_of(const std::filesystem::path& path);
 /// "scan.journal" for "scan.json".
 std::filesystem::path journal_beside(const std::filesystem::path& session_file);
 
-/// The same from text; relative paths are relative to `folder`, `origin` names the text in messages.
+/// Likewise from text; relative paths are relative to `folder`, `origin` names the text in messages.
 Session parse_session(const std::string& text, const std::filesystem::path& folder, const std::string& origin,
                       const std::vector<std::string>& settings = {});
 std::unique_ptr<VolumeSource> open_source(const Session& session);
@@ -238,8 +238,8 @@ double automatic_node_radius(const VolumeInfo& info);
 /// voxels lie between them, to the precision of a histogram bin. The whole range if there is no histogram.
 ValueRange automatic_contrast(const VolumeStatistics& statistics);
 
-/// The camera of that name: a named one of the session, a side of `camera_looking`, or a JSON object. Empty: the
-/// session's camera "front", or else one that looks at the side_of_largest_face.
+/// Returns the camera of that name: a named one of the session, a side of `camera_looking`, or a JSON object. Empty:
+/// the session's camera "front", or else one that looks at the side_of_largest_face.
 Camera camera_named(const Session& session, const std::string& name_or_json, const VolumeInfo& volume);
 
 /// The names that `camera_named` accepts: cameras of the session, then sides.

@@ -9,7 +9,7 @@
 namespace shvr {
 namespace {
 
-/// The ramp is full at this quantile of the voxels it shows.
+/// Quantile of the shown voxels at which the ramp reaches its end.
 constexpr double FULL_QUANTILE = 0.9;
 
 ControlPoint point(double intensity, const char* color, double opacity)

@@ -11,7 +11,7 @@ namespace shvr {
 
 struct TransferPreset {
     std::string name, note;
-    std::vector<ControlPoint> points;  ///< `intensity` is the fraction `at` of the file
+    std::vector<ControlPoint> points;  ///< `intensity` of a point is the fraction `at` of the file
     bool extends = true;               ///< the last point's look extends to the volume's largest intensity
     bool is_own = false;               ///< made by the user, not shipped
 };

@@ -9,7 +9,7 @@ struct DescribeTask {
     static constexpr const char* TITLE = "Describe volume";
 
     std::filesystem::path input;
-    bool exact = false;                     ///< all voxels, even if a sample or a coarser level would suffice
+    bool exact = false;                     ///< measures all voxels, even if a sample or a coarser level would suffice
     bool allows_incomplete = false;         ///< voxels that cannot be read are left out
     std::vector<std::string> settings;      ///< "key=value" settings of a session
     OptionNames names = OptionNames::keys;  ///< in messages; not an option

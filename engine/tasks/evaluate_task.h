@@ -13,7 +13,7 @@ struct EvaluateTask {
     std::filesystem::path truth_mask, mask, truth_trace, trace;
     std::filesystem::path volume;           ///< the volume of all inputs: size, spacing and unit if no file states them
     std::vector<std::string> truth_groups;  ///< "FROM=TO"
-    std::optional<double> slack;            ///< in the unit of the volume; null: the longest side of a voxel
+    std::optional<double> slack;            ///< slack in the unit of the volume; null: the longest side of a voxel
     bool allows_incomplete = false;         ///< voxels of masks that cannot be read count as unpainted
     std::vector<std::string> settings;      ///< "key=value" of a session, for `volume`
     OptionNames names = OptionNames::keys;  ///< in messages; not an option

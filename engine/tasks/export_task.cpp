@@ -26,7 +26,7 @@ std::filesystem::path project_labels(const ExportTask& task, const std::filesyst
     return project / "labels" / "mask";
 }
 
-/// Fails if there is neither a trace nor a file of one.
+/// Fails if there is neither a trace nor a file to read it from.
 void expect_trace(const AnnotationView& annotation)
 {
     const std::filesystem::path& path = annotation.trace_path;

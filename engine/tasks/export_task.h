@@ -48,7 +48,7 @@ struct AnnotationView {
     std::string volume_hash{};            ///< as Session::volume_hash
     std::filesystem::path project{};      ///< as it was opened; for `labels`
     std::filesystem::path volume_path{};  ///< as Session::volume_path, which no output may replace
-    std::filesystem::path trace_path{};   ///< as Session::trace_path; for messages if there is no trace
+    std::filesystem::path trace_path{};   ///< path as in Session::trace_path; for messages if there is no trace
 };
 
 /// An independent copy. Any thread may read it, and destroy it.

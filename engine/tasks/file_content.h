@@ -11,7 +11,7 @@
 namespace shvr {
 
 enum class FileContent {
-    volume,  ///< also a folder of slices or an OME-Zarr image
+    volume,  ///< a volume; also a folder of slices, or an OME-Zarr image
     session,
     project,
     picture,  ///< a picture that contains a session
@@ -22,7 +22,7 @@ enum class FileContent {
 };
 struct WhatItIs {
     std::optional<FileContent> content;
-    std::string why_not{};  ///< if it is none of these: a sentence with the path
+    std::string why_not{};  ///< if the content is none of these: a sentence with the path
 };
 /// `open`: the currently open volume, whose size identifies bare masks and offsets; null: none.
 WhatItIs what_is(const std::filesystem::path& path, const VolumeInfo* open);

@@ -11,7 +11,7 @@ namespace shvr {
 /// missing or not writable. An empty `path` means that nothing is to be written and passes.
 void check_output(const std::string& option, const std::filesystem::path& path,
                   const std::vector<std::string>& extensions);
-/// The same for a file with any extension.
+/// Likewise for a file with any extension.
 void check_output_place(const std::filesystem::path& path);
 /// Fails if writing `output` would replace `input`, which is read: a file, or one in a folder of slices.
 void check_output_is_not(const std::filesystem::path& input, const std::filesystem::path& output);

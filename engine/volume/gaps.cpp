@@ -106,7 +106,7 @@ void GapSource::read(const VoxelBox& box, std::span<std::byte> voxels) const
     const Size3 extent = box.size();
     std::vector<std::byte> pieces;
     bool is_whole = false;
-    // A whole box is already in place, pieces of it are not.
+    // A box read as a whole is already in place; pieces of it are not.
     const auto take = [&](const VoxelBox& part, std::span<const std::byte> read) {
         is_whole = part.lower == box.lower && part.upper == box.upper;
         if (is_whole) return;

@@ -23,7 +23,7 @@ public:
     /// Counts a whole block as missing, even if the error concerned only part of it.
     void add(const VoxelBox& block, const std::string& reason);
     bool empty() const { return voxels() == 0; }
-    /// Whether `expect_none` has thrown an error with the reason and the advice.
+    /// Returns whether `expect_none` has thrown an error with the reason and the advice.
     bool has_refused() const { return has_refused_; }
     int64_t voxels() const;
     /// A message stating how much is missing, and the first reason; empty if nothing is.
@@ -33,7 +33,7 @@ private:
     std::string refused_with_;
     mutable std::atomic<bool> has_refused_ = false;
     mutable std::mutex mutex_;
-    std::unordered_map<int64_t, int64_t> voxels_;  ///< number of voxels per block, by its first voxel
+    std::unordered_map<int64_t, int64_t> voxels_;  ///< number of missing voxels per block, by the block's first voxel
     int64_t sum_ = 0;
     std::string first_reason_;
 };

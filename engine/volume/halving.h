@@ -19,7 +19,7 @@ enum class Halving {
     label,  ///< most frequent label, as labels have no mean
 };
 
-/// Holds the sum of eight voxels without overflow.
+/// Type that holds the sum of eight voxels without overflow.
 template <class T>
 using HalvingSum =
     std::conditional_t<std::is_floating_point_v<T>, double, std::conditional_t<sizeof(T) == 4, int64_t, int32_t>>;

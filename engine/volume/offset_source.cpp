@@ -128,7 +128,7 @@ const OffsetSource::Entry* OffsetSource::find(const Entries& changed, const Bric
     return found == entries_.end() ? nullptr : &found->second;
 }
 
-/// Recomputed from the up to eight bricks below it.
+/// Recomputes the parent's offsets from the up to eight bricks below it.
 OffsetSource::Entry OffsetSource::parent(const Entries& changed, const BrickKey& key) const
 {
     auto offsets = std::make_shared<OffsetBrick>(OffsetBrick{});

@@ -46,7 +46,7 @@ public:
 private:
     struct Entry {
         std::shared_ptr<const OffsetBrick> offsets;  ///< null: all offsets of this level are 0
-        ValueRange range;                            ///< range of 0 and all level 0 offsets below this brick
+        ValueRange range;                            ///< range of 0 and of all level 0 offsets below this brick
     };
     using Entries = std::unordered_map<BrickKey, Entry, BrickKeyHash>;
     const Entry* find(const Entries& changed, const BrickKey& key) const;
@@ -54,7 +54,7 @@ private:
 
     std::shared_ptr<const VolumeSource> base_;
     mutable std::shared_mutex mutex_;
-    Entries entries_;  ///< written under the lock, by the thread that sets offsets
+    Entries entries_;  ///< written by the thread that sets offsets, under the lock
     std::atomic<bool> any_{false};
 };
 

@@ -7,7 +7,7 @@
 namespace shvr {
 namespace {
 
-/// With fewer voxels than these (a cube of three), there is no telling what is usual.
+/// With fewer voxels than that (a cube of three), no values are usual enough to call others outliers.
 constexpr int64_t MIN_VOXELS = 27;
 
 /// Outliers at one end are at most a fraction of all voxels, or at most `few`, and lie beyond a gap of `gap` times the
@@ -25,7 +25,7 @@ struct Rule {
         return std::clamp(int64_t(share * double(voxels)), some, MAX_OUTLIERS);
     }
 };
-/// Fill values and broken voxels: all others would share fewer than 66 of the 65536 codes.
+/// Rule for fill values and broken voxels: with them, all others would share fewer than 66 of the 65536 codes.
 constexpr Rule FAR{1e-4, 8, 1000.0};
 /// Hot pixels.
 constexpr Rule NEAR{1e-5, 1, 4.0};

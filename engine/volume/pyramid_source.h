@@ -9,14 +9,14 @@
 
 namespace shvr {
 
-/// The levels' share of the host budget, as a divisor; the rest is for bricks and transfers.
+/// Share of the host budget for the levels, as a divisor; the rest is for bricks and transfers.
 inline constexpr uint64_t LEVELS_SHARE_OF_HOST = 4;
 
 /// Returns the source itself if it has coarse levels or is no larger than a brick. Reads the volume once. Fails before
 /// reading if the levels, plus two slices while they are made, need more than a quarter of `host_budget_bytes`.
 std::shared_ptr<const VolumeSource> with_levels(std::shared_ptr<const VolumeSource> source, uint64_t host_budget_bytes,
                                                 const Progress& progress = {});
-/// Number of levels that with_levels() would provide. Fails if that would, judging from sizes alone.
+/// Number of levels that with_levels() would provide. Fails if with_levels() would fail, judging from sizes alone.
 int planned_levels(const VolumeSource& source, uint64_t host_budget_bytes);
 
 /// Host memory of the levels that with_levels() would make; 0 if there are none.

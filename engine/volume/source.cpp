@@ -62,7 +62,7 @@ VolumeStatistics measure_integers(const Measured& measured)
 {
     using Unsigned = std::make_unsigned_t<T>;
     constexpr size_t VALUES = size_t{std::numeric_limits<Unsigned>::max()} + 1;
-    // Neighbouring voxels are often equal; counting them in several tables in turn avoids a dependency between
+    // Neighbouring voxels are often equal. Counting them alternately in several tables avoids a dependency between
     // successive additions.
     constexpr size_t TABLES = 4;
     std::vector<int64_t> counts(TABLES * VALUES);
@@ -85,7 +85,7 @@ VolumeStatistics measure_integers(const Measured& measured)
 
 // ---- Types with too many values to count each -----------------------------------------------------------------------
 
-/// Calls `take(double, times)` for every finite voxel; returns how many others there are.
+/// Calls `take(double, times)` for every finite voxel; returns the number of other voxels.
 template <class T, class Take>
 int64_t for_each_finite(const Measured& measured, double lower, double upper, const Take& take)
 {
@@ -108,7 +108,7 @@ int64_t for_each_finite(const Measured& measured, double lower, double upper, co
 template <class T>
 void find_bulk(OutlierFinder& outliers, VolumeStatistics& statistics)
 {
-    // All integers have codes of their own anyway.
+    // Not needed if all integers have codes of their own.
     if (std::is_integral_v<T> && statistics.maximum - statistics.minimum <= 65535.0) return;
     const std::optional<OutlierFinder::Bulk> bulk = outliers.bulk();
     if (!bulk) return;
@@ -212,7 +212,7 @@ double voxels_of_level(const VolumeSource& source, int level)
     return double(size.x) * double(size.y) * double(size.z);
 }
 
-/// The stored blocks of a level of a large volume; null if it is all read anyway, or if they exceed `most_voxels`.
+/// The stored blocks of a level of a large volume; null if all of it is read anyway, or if they exceed `most_voxels`.
 std::optional<StoredBlocks> stored_in(const VolumeSource& source, int level, int64_t most_voxels)
 {
     if (voxels_of_level(source, level) <= double(MAX_VOXELS_MEASURED)) return std::nullopt;

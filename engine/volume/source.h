@@ -92,7 +92,7 @@ struct MeasureOptions {
 VolumeStatistics measure(const VolumeSource& source, const MeasureOptions& options = {});
 inline constexpr int64_t MAX_VOXELS_MEASURED = int64_t{1} << 27;
 inline constexpr int64_t MAX_VOXELS_EXACT = int64_t{1} << 30;
-/// An upper bound of stored blocks in practice: 2^42 voxels in blocks of 64^3, and 192 MiB.
+/// Maximum number of stored blocks in practice: 2^42 voxels in blocks of 64^3, listed in 192 MiB.
 inline constexpr int64_t MAX_STORED_BLOCKS = int64_t{1} << 24;
 
 /// Like an exact `measure`, for one level, always by reading its voxels.

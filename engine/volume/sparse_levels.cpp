@@ -16,7 +16,7 @@ namespace shvr {
 namespace {
 
 constexpr int64_t TILE = 8, TILE_VOXELS = TILE * TILE * TILE;
-/// Bytes per tile in the tables of positions and indices, in addition to its voxels.
+/// Memory per tile for the tables of positions and indices, in addition to its voxels.
 constexpr uint64_t TABLE_BYTES = 80;
 /// If more than this fraction of a volume is stored, dense levels are smaller and faster.
 constexpr double MAX_SHARE = 0.25;
@@ -69,7 +69,7 @@ std::optional<SparseLevels> SparseLevels::plan(const VolumeSource& source, int l
         const Size3 size = size_of_level(planned.size_, level);
         if (double(voxels_stored(*stored, size)) > MAX_SHARE * double(size.x) * double(size.y) * double(size.z))
             return std::nullopt;
-        planned.fill_ = stored->fill;  // that of the coarsest source level, from which the others are made
+        planned.fill_ = stored->fill;  // fill value of the coarsest source level, from which the others are made
         if (std::isfinite(stored->fill))
             planned.fills_ = {std::min(planned.fills_.lower, stored->fill),
                               std::max(planned.fills_.upper, stored->fill)};

@@ -47,7 +47,7 @@ const char* name_of(Provenance provenance);
 
 struct VolumeInfo {
     std::string name;    ///< for display: the file's name
-    std::string format;  ///< the reader's name for it: "raw", "nrrd", "tiff", ...
+    std::string format;  ///< the format's name in its reader: "raw", "nrrd", "tiff", ...
     Size3 size{0};       ///< voxels
     VoxelType type = VoxelType::uint8;
     glm::dvec3 spacing{1.0};     ///< unit per voxel, each > 0
@@ -87,11 +87,11 @@ struct VolumeStatistics {
     double mean = 0.0;
     int64_t not_finite = 0;
     std::vector<int64_t> histogram{};  ///< 256 bins over range(); values outside it count in the first or last bin
-    /// The extremes without a few outliers, if these would leave too few codes for all other voxels. Null if every
+    /// The extremes, except for a few outliers, if these would leave too few codes for the other voxels. Null if every
     /// integer has its own code.
     std::optional<ValueRange> bulk{};
     int64_t beyond_bulk = 0;     ///< number of outliers
-    int measured_level = 0;      ///< the level that was measured; above 0, voxels are means
+    int measured_level = 0;      ///< the level that was measured; above 0, its voxels are means
     int64_t sampled_voxels = 0;  ///< above 0: all members were estimated from this many voxels
 
     /// The range used for pictures, thresholds and the histogram.

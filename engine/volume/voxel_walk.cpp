@@ -9,7 +9,7 @@ namespace {
 
 constexpr int64_t SLAB_BYTES = int64_t{32} << 20;
 constexpr int64_t PIECES = 256, PIECE_VOXELS = int64_t{1} << 18;
-/// Listing more blocks takes longer than a sample should.
+/// Maximum number of blocks to list: listing more takes longer than a sample should.
 constexpr int64_t MAX_BLOCKS_SAMPLED = int64_t{1} << 20;
 
 int64_t count_of(const Size3& extent)
@@ -115,7 +115,7 @@ VoxelWalk VoxelWalk::sample(const VolumeSource& source)
         walk.boxes_->push_back({lower, glm::min(lower + piece, size)});
         walk.voxels_ += count_of(walk.boxes_->back().size());
     }
-    // Sorted forwards through the file, if a slice has several.
+    // Sorted, so that reads go forwards through the file if a slice has several pieces.
     std::ranges::sort(*walk.boxes_, {}, [](const VoxelBox& box) {
         return std::array{box.lower.z, box.lower.y, box.lower.x};
     });

@@ -22,13 +22,13 @@ public:
     int64_t voxels() const { return voxels_; }  ///< total of all boxes
     int64_t boxes() const;
     VoxelBox box(int64_t index) const;
-    /// Number of voxels in no box that count too; they are all `fill`.
+    /// Number of further voxels that count and are in no box; all of them are `fill`.
     int64_t rest() const { return rest_; }
     double fill() const { return fill_; }
 
 private:
     Size3 size_{0};
-    Size3 step_{0};                                 ///< box size when all voxels are read; x is the whole row
+    Size3 step_{0};                                 ///< size of a box when all voxels are read; x is the whole row
     std::optional<std::vector<VoxelBox>> boxes_{};  ///< null if all voxels are read
     int64_t voxels_ = 0, rest_ = 0;
     double fill_ = 0.0;

@@ -10,10 +10,10 @@ namespace {
 /// By group: background, the arms along x, y and z, the ball.
 constexpr double INTENSITIES[] = {20.0, 200.0, 150.0, 100.0, 250.0};
 constexpr uint8_t BALL_GROUP = 4;
-/// As fractions of the volume's size, along each axis.
+/// As fractions of the volume's size along each axis.
 constexpr glm::dvec3 BALL(0.25, 0.3, 0.35);
 constexpr glm::dvec3 ARM_ENDS(0.85, 0.7, 0.6);
-/// As a fraction of its shortest side. The arms meet inside the ball: each is thinner than half of it.
+/// As a fraction of the volume's shortest side. The arms meet inside the ball: each is thinner than half of it.
 constexpr double ARM_RADIUS = 0.05;
 
 class Chirality final : public ProceduralKind {

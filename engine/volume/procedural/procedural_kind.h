@@ -27,8 +27,8 @@ public:
         virtual void evaluate(int64_t y, int64_t z, std::span<double> values) = 0;
     };
     virtual std::unique_ptr<Rows> rows(const VoxelBox& box) const;
-    /// The same for a coarser level whose voxels span `side` voxels of a volume of `size` voxels; box, y and z count
-    /// voxels of that level. Values at their centres, except for features that are thinner than they are
+    /// Likewise for a coarser level, whose voxels span `side` voxels of a volume of `size` voxels; box, y and z count
+    /// voxels of that level. Values are those at voxel centres, except for features thinner than a voxel
     /// (ProceduralSpec).
     virtual std::unique_ptr<Rows> coarse_rows(double side, const Size3& size, const VoxelBox& box) const;
 };

@@ -27,7 +27,7 @@ double noise_of(uint32_t hash)
     return (double(sum) - 510.0) * (NOISE_DEVIATION / DEVIATION);
 }
 
-/// From the distance to the nearest tube's surface (negative inside) to intensity, soft over two voxels.
+/// Converts the distance to the nearest tube's surface (negative inside) to intensity, soft over two voxels.
 double profile(double distance)
 {
     const double t = std::clamp(0.5 * (1.0 - distance), 0.0, 1.0);
@@ -58,7 +58,7 @@ struct Segment {
     {
         return p.x >= lower.x && p.x <= upper.x && p.y >= lower.y && p.y <= upper.y && p.z >= lower.z && p.z <= upper.z;
     }
-    /// The vector from the nearest point of the centre line.
+    /// Returns the vector from the nearest point of the centre line.
     glm::dvec3 offset(const glm::dvec3& p) const
     {
         const glm::dvec3 d = p - begin;
@@ -165,7 +165,7 @@ public:
     };
     std::unique_ptr<Rows> rows(const VoxelBox& box) const override { return std::make_unique<BinnedRows>(*this, box); }
 
-    /// As BinnedRows, with tubes as thick as MIN_THICKNESS voxels of the level.
+    /// Like BinnedRows, but tubes are at least MIN_THICKNESS voxels of the level thick.
     class CoarseRows final : public Rows {
     public:
         CoarseRows(const Tubes& kind, double side, const Size3& size, int64_t first_x)

@@ -93,7 +93,7 @@ public:
 
     int levels() const override { return levels_; }
 
-    /// A huge volume cannot be measured voxel by voxel; a coarse level is used instead.
+    /// A huge volume takes too long to measure voxel by voxel, so a coarse level is measured instead.
     std::optional<VolumeStatistics> statistics() const override
     {
         if (voxel_count(info()) <= int64_t{1} << 33) return std::nullopt;
