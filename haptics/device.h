@@ -22,11 +22,11 @@ inline constexpr double MAX_REACH_M = 10.0;  ///< no device reaches farther from
 struct DeviceState {
     uint64_t time_ns = 0;         ///< time of the position on the device's own steady clock: only differences matter
     uint32_t sequence = 0;        ///< counts states; a gap means lost states
-    uint32_t force_sequence = 0;  ///< number of the force in effect at that time
+    uint32_t force_sequence = 0;  ///< number of the force that was in effect at that time
     glm::dvec3 position_m{0.0};
     glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
     uint32_t buttons = 0;  ///< a set of PAINT_BUTTON and MOVE_BUTTON
-    uint32_t jump = 0;     ///< changes when a simulated device was placed there: not a glitch
+    uint32_t jump = 0;     ///< changes when a simulated device was placed at a new position: the jump is no glitch
     bool calibrated = true;
     /// For devices that report speeds (`DeviceCaps::rate_control`): fractions of full deflection, -1 ... 1, along and
     /// about our axes. They may move the view; position and rotation are their integrals over time.
@@ -43,7 +43,7 @@ struct DeviceCaps {
     bool senses_rotation = false;
     bool outputs_force = false;
     bool tells_force_sequence = false;  ///< its states report which force is in effect; otherwise `latency_s` is used
-    bool rate_control = false;          ///< it reports speeds, not positions; silence means rest
+    bool rate_control = false;          ///< the device reports speeds, not positions; silence means rest
     bool operator==(const DeviceCaps&) const = default;
 };
 
@@ -51,7 +51,7 @@ enum class ReadResult : uint8_t {
     fresh,      ///< a new state
     stale,      ///< nothing new since the last read; the state is unchanged
     lost,       ///< the device is gone
-    malformed,  ///< it sent a report that its profile does not describe; the state is unchanged
+    malformed,  ///< the device sent a report that its profile does not describe; the state is unchanged
 };
 
 class HapticDevice {
@@ -61,7 +61,7 @@ public:
     virtual ReadResult read(DeviceState& state) noexcept = 0;
     /// Sets the force on the hand until the next call. False if the device is gone.
     virtual bool write(const glm::dvec3& force_n, uint32_t sequence) noexcept = 0;
-    /// Why it is lost or gives no force, as a sentence that is never freed; "" if nothing is wrong. Any thread.
+    /// Why the device is lost or gives no force, as a sentence in static storage; "" if nothing is wrong. Any thread.
     virtual const char* trouble() const noexcept { return ""; }
 };
 

@@ -10,9 +10,9 @@ namespace shvr {
 namespace {
 
 constexpr double VELOCITY_CUTOFF_HZ = 100.0;
-/// Fades treat a longer pause of the servo as one of this length.
+/// Longest interval of a fade: a longer pause of the servo counts as one of this length.
 constexpr uint64_t MAX_TICK_NS = 10'000'000;
-/// Interval at which the thesis's damping, which has no interval, equals `damping`.
+/// The thesis's damping has no interval; at this one it equals `damping`.
 constexpr double THESIS_TICK_S = 0.001;
 
 bool is_place(const DeviceState& state)
@@ -50,7 +50,7 @@ void clear_fault(uint32_t reset, ForceMemory& memory)
     memory.reset = reset;
 }
 
-/// No force from this tick on, ignoring the limit on its change.
+/// No force from this tick on; the limit on its change does not apply.
 ForceStep stop(const ForceSettings& settings, uint32_t flags, uint64_t now_ns, ForceMemory& memory)
 {
     memory.flags = (memory.flags & FORCE_FAULT) | flags;
@@ -122,7 +122,7 @@ glm::dvec3 shortened(const glm::dvec3& v, double most)
     return length > most ? v * (most / length) : v;
 }
 
-/// The divisor of eq. 3.7: the probe's size in the hand times the scale of its movements.
+/// The divisor of eq. 3.7: the probe's size in the hand times the user's scale of its motion.
 double scaling(const ForceSettings& settings)
 {
     const double in_hand_m = settings.probe_radius / settings.workspace.scale();
@@ -176,7 +176,7 @@ glm::dvec3 click_of(const ForceSettings& settings, const DeviceCaps& caps, const
     const bool begins = pull.in_contact && click.off_ns >= CLICK_PAUSE_NS && speed >= CLICK_LEAST_SPEED;
     if (pull.in_contact)
         click.off_ns = 0;
-    else if (pull.is_usable)  // an unknown contact does not count as off
+    else if (pull.is_usable)  // only a known lack of contact counts as off the surface
         click.off_ns = std::min(click.off_ns + dt_ns, CLICK_PAUSE_NS);
     if (!settings.clicks || !caps.outputs_force) {
         click.left_ns = 0;
@@ -191,7 +191,7 @@ glm::dvec3 click_of(const ForceSettings& settings, const DeviceCaps& caps, const
     return std::sin(std::numbers::pi * double(CLICK_NS - click.left_ns) / double(CLICK_NS)) * click.peak_n;
 }
 
-/// Spring, click and damping, faded, before the limits.
+/// Spring, click and damping, faded, but not yet limited.
 ForceStep feel(const ForceSettings& settings, const DeviceCaps& caps, const RelevancePatch& patch, const Moment& moment,
                ForceMemory& memory, GrowthMemory& growth)
 {
@@ -233,8 +233,8 @@ ForceStep feel(const ForceSettings& settings, const DeviceCaps& caps, const Rele
             .objects = growth.contacts};
 }
 
-/// Maximum change of the force in a tick. A steep law, where a ball meets a thin sheet (1200 N/m for two voxels), then
-/// causes no jolt if the hand is slow.
+/// Maximum change of the force in a tick. It grows with the hand's speed: so a steep law, where a ball meets a thin
+/// sheet (1200 N/m for two voxels), causes no jolt if the hand is slow.
 double slew_at(const glm::dvec3& velocity)
 {
     return std::clamp(GENTLE_SLEW_N * glm::length(velocity) / GENTLE_SPEED, GENTLE_SLEW_N, SLEW_N);
@@ -269,7 +269,7 @@ ForceStep step(const ForceSettings& settings, const DeviceCaps& stated, ReadResu
                                : std::min(now_ns - memory.last_tick_ns, MAX_TICK_NS);
     const double dt_s = double(dt_ns) * 1e-9;
     memory.last_tick_ns = now_ns;
-    add_heat(memory.force_n, dt_s, memory.heat);  // the force of the last tick, which ends now
+    add_heat(memory.force_n, dt_s, memory.heat);  // the force of the last tick, which was in effect until now
 
     // ---- The hand's position ----
     if (result == ReadResult::lost) return stop(settings, FORCE_NO_DEVICE, now_ns, memory);

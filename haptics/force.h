@@ -31,10 +31,10 @@ enum ForceFlag : uint32_t {
     FORCE_CLAMPED = 8,       ///< at the device's peak
     FORCE_ENGAGING = 16,     ///< fading in
     FORCE_WARM = 32,         ///< limited to the motors' continuous force
-    FORCE_SLOW = 64,         ///< the device's states arrive too rarely: half the stiffness, or none
+    FORCE_SLOW = 64,         ///< states of the device arrive too rarely: half the stiffness, or none
     FORCE_OUTSIDE = 128,     ///< outside the box in which the device's forces are accurate
     FORCE_LET_GO = 256,      ///< on request
-    FORCE_OFF_OBJECT = 512,  ///< object following: the probe is off its object and touches another after a moment
+    FORCE_OFF_OBJECT = 512,  ///< object following: the probe left its object and after a moment touches another
 };
 
 /// A pulse against the hand's motion as it touches something, half a sine wave: a hand perceives the onset of contact
@@ -50,19 +50,19 @@ struct ClickMemory {
 };
 inline constexpr double CLICK_N = 0.25;
 inline constexpr double CLICK_FULL_SPEED = 0.1, CLICK_LEAST_SPEED = 0.01;  ///< m/s
-inline constexpr uint64_t CLICK_NS = 16'000'000;  ///< steepest slope 0.049 N per tick, as gentle as other forces
+inline constexpr uint64_t CLICK_NS = 16'000'000;  ///< slope of at most 0.049 N per tick, as gentle as other forces
 inline constexpr uint64_t CLICK_PAUSE_NS = 100'000'000;
 
 struct ForceMemory {
     bool has_last = false;
     DeviceState last;             ///< the last good state
     DeviceState candidate;        ///< the last rejected state
-    int glitches = 0;             ///< rejected states in a row, all near `candidate`
+    int glitches = 0;             ///< number of rejected states in a row, all near `candidate`
     glm::dvec3 velocity{0.0};     ///< m/s, smoothed
     glm::dvec3 moved_m{0.0};      ///< motion between the last two states: for the thesis's damping
     glm::dvec3 force_n{0.0};      ///< the last force
     bool has_begun = false;       ///< the engagement is rising
-    double engagement = 0.0;      ///< 0 ... 1: fades in after the device appeared or jumped
+    double engagement = 0.0;      ///< 0 ... 1: fades in after the device has appeared or jumped
     double relevance_fade = 0.0;  ///< 0 ... 1: falls while the relevance is unusable
     double contact_fade = 0.0;    ///< 0 ... 1: for the damping
     double strength = 0.0;        ///< follows ForceSettings::strength
@@ -75,7 +75,7 @@ struct ForceMemory {
     TouchMode mode = TouchMode::proximity;
     ProxyLaw law = ProxyLaw::potential;
     uint32_t object = 0;
-    double cross = 1.0;         ///< 0 ... 1: weight of the present pull
+    double cross = 1.0;         ///< 0 ... 1: weight of the present pull; the rest is that of the previous one
     glm::dvec3 spring_n{0.0};   ///< last value
     glm::dvec3 crossed_n{0.0};  ///< the pull that fades out
 
@@ -90,12 +90,12 @@ struct ForceMemory {
 struct ForceStep {
     glm::dvec3 force_n{0.0};  ///< device frame
     glm::dvec3 probe{0.0};    ///< physical
-    glm::dvec3 proxy{0.0};    ///< physical; the probe's position if there is no contact
+    glm::dvec3 proxy{0.0};    ///< physical position; the probe's if there is no contact
     bool in_contact = false;
     double relevant_share = 0.0;
     uint32_t flags = 0;
     uint32_t sequence = 0;   ///< number to write with the force
-    double made_j = 0.0;     ///< generated energy according to the observer, not yet dissipated
+    double made_j = 0.0;     ///< energy generated according to the observer and not yet dissipated
     uint32_t objects = 0;    ///< number touched so far, in object following
     double latency_s = 0.0;  ///< measured; 0 if the device does not report it
 };
@@ -109,12 +109,12 @@ inline constexpr uint64_t ENGAGE_SIMULATED_NS = 100'000'000;  ///< for the mouse
 inline constexpr double ENGAGE_BELOW_N = 0.2;                 ///< as in chai3d: a device never starts with a jerk
 inline constexpr uint64_t SILENCE_NS = 20'000'000;            ///< a device silent for that long counts as absent
 inline constexpr double GLITCH_M = 0.005;                     ///< no hand moves that far in one tick
-inline constexpr int GLITCHES_TO_ACCEPT = 3;                  ///< in a row at the new position: the device really was
-                                                              ///< moved
+inline constexpr int GLITCHES_TO_ACCEPT = 3;                  ///< number of states in a row at a new position after
+                                                              ///< which the device counts as moved
 inline constexpr double MAX_DAMPING = 1.2;                    ///< N s/m; more is unstable with jitter and no friction
 inline constexpr double SLEW_N = 0.1;                         ///< maximum per tick
-inline constexpr double GENTLE_SLEW_N = 0.05;  ///< per tick for a hand of at most GENTLE_SPEED; proportionally more
-                                               ///< above
+inline constexpr double GENTLE_SLEW_N = 0.05;  ///< maximum change per tick for a hand of at most GENTLE_SPEED;
+                                               ///< proportionally more above
 inline constexpr double GENTLE_SPEED = 0.05;   ///< m/s
 
 /// The stiffness at the hand, after scaling and clamping.

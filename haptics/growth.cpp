@@ -8,7 +8,7 @@
 namespace shvr {
 namespace {
 
-/// The runs of `mask` that `seeds` touch, by doubling steps in both directions. `seeds` lie in `mask`.
+/// The runs of `mask` that contain bits of `seeds`, found by doubling steps in both directions. `seeds` lie in `mask`.
 uint32_t fill_runs(uint32_t seeds, uint32_t mask)
 {
     uint32_t up = seeds, down = seeds, up_mask = mask, down_mask = mask;
@@ -21,7 +21,7 @@ uint32_t fill_runs(uint32_t seeds, uint32_t mask)
     return up | down;
 }
 
-/// The bits of word `word` that are voxels.
+/// Mask of those bits of word `word` that are voxels.
 uint32_t valid_bits(const RelevancePatch& patch, int32_t word)
 {
     const int32_t rest = patch.size.x - 32 * word;
@@ -49,7 +49,7 @@ struct Growing {
         list.waits[at / 32] &= ~(1u << (at % 32));
         return at;
     }
-    /// Adds seeds and queues the word; true if a voxel was added. `word` is the index of `at` in its row.
+    /// Adds seeds to a word and queues it; true if a voxel was added. `word` is its index in the row of `at`.
     bool seed(uint32_t at, int32_t word, uint32_t seeds)
     {
         const uint32_t allowed = mask.words[at] & valid_bits(mask, word);
@@ -224,7 +224,7 @@ void forget_object(GrowthMemory& memory) noexcept
 const RelevancePatch& advance_object(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
                                      GrowthMemory& memory) noexcept
 {
-    // A new contact's patch was replaced before anything was grown in it: the next tick touches again.
+    // The patch of a new contact was replaced before growth began: the next tick makes contact again.
     if (memory.is_growing && !memory.has_mask && patch.sequence != memory.seen_sequence)
         memory.is_growing = memory.is_new_contact = false;
     const bool is_new = patch.sequence != 0 && patch.sequence != memory.seen_sequence && patch.is_well_formed();
@@ -233,13 +233,13 @@ const RelevancePatch& advance_object(const RelevancePatch& patch, const glm::dve
         RelevancePatch& next = memory.patches[1 - memory.current];
         memory.is_growing = seed_from_object(memory.object(), patch, centre, radius, next, memory.list) > 0;
         memory.is_new_contact = false;
-        if (!memory.is_growing) {  // no part of it is left, or the hand jumped out of its region
+        if (!memory.is_growing) {  // no part of the object is left, or the hand jumped out of its region
             memory.has_object = false;
             memory.patches[memory.current].sequence = 0;
         }
     }
     RelevancePatch& held = memory.patches[memory.current];
-    // The same bits with a newer time stamp: the growth is valid for as long.
+    // The same bits with a newer time stamp: the growth stays valid for as long.
     if (patch.sequence == held.sequence && patch.settings == held.settings)
         held.time_ns = std::max(held.time_ns, patch.time_ns);
     if (!memory.is_growing) return memory.object();

@@ -43,14 +43,14 @@ inline constexpr uint64_t RECONTACT_NS = 100'000'000;  ///< after that long off 
                                                        ///< new one
 
 struct GrowthMemory {
-    std::array<RelevancePatch, 2> patches;  ///< the object, and the one that is being grown
+    std::array<RelevancePatch, 2> patches;  ///< two patches: the object, and the one that is being grown
     uint32_t current = 0;                   ///< index into `patches`: the object
-    RelevancePatch mask;                    ///< the bits it is grown in, if that takes several ticks
+    RelevancePatch mask;                    ///< copy of the bits in which the object grows, if that takes several ticks
     GrowthList list;
     bool is_growing = false;
-    bool has_mask = false;       ///< `mask` holds the bits to grow in; otherwise the servo's patch of this tick does
-    uint64_t seen_sequence = 0;  ///< sequence of the last patch that was grown in
-    uint64_t off_since_ns = 0;   ///< the ball has not touched the object since then; 0: it does
+    bool has_mask = false;       ///< true: the object grows in `mask`; false: in the servo's patch of this tick
+    uint64_t seen_sequence = 0;  ///< sequence of the last patch in which the object grew
+    uint64_t off_since_ns = 0;   ///< time since when the ball has not touched the object; 0: it touches it
     uint32_t contacts = 0;       ///< objects touched so far
     bool has_object = false;
     bool is_new_contact = false;  ///< another object is being grown
@@ -64,8 +64,8 @@ void forget_object(GrowthMemory& memory) noexcept;
 /// is 0 while there is none.
 const RelevancePatch& advance_object(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
                                      GrowthMemory& memory) noexcept;
-/// To be called once per tick with whether the ball holds some of the object: releases it after a while, and touches
-/// another.
+/// To be called once per tick; `in_contact`: the ball holds part of the object. Releases the object after a while
+/// without contact, and then touches another.
 void keep_contact(const RelevancePatch& patch, const glm::dvec3& centre, double radius, bool in_contact,
                   uint64_t now_ns, GrowthMemory& memory) noexcept;
 

@@ -17,7 +17,7 @@ public:
     ~KeptMemory();
     KeptMemory(const KeptMemory&) = delete;
     KeptMemory& operator=(const KeptMemory&) = delete;
-    /// False: it is loaded now, but the system may evict it (RLIMIT_MEMLOCK, typically 8 MiB).
+    /// False: the memory is loaded, but the system may evict it (RLIMIT_MEMLOCK, typically 8 MiB).
     bool is_kept() const { return is_kept_; }
 
 private:
@@ -26,7 +26,7 @@ private:
     bool is_kept_;
 };
 
-/// The same for the program's own code and that of the C and mathematics libraries, once for the life of the process.
+/// Likewise for the program's own code and that of the C and mathematics libraries, once for the life of the process.
 /// False: see is_kept().
 bool keep_code() noexcept;
 

@@ -8,16 +8,16 @@ namespace shvr {
 
 struct SurfaceMemory {
     bool is_pinned = false;
-    bool is_armed = true;   ///< after a release a surface holds again only once a smaller share of the ball was
+    bool is_armed = true;   ///< a surface can hold: after a release only once a smaller share of the ball was
                             ///< relevant
     glm::dvec3 pin{0.0};    ///< physical
-    double farthest = 0.0;  ///< minimum since the pin was set of the probe's position relative to it along the
-                            ///< direction to the camera; physical units
+    double farthest = 0.0;  ///< smallest value since the pin was set of the probe's offset from it towards the camera;
+                            ///< physical units
 };
 
-/// A surface releases once the probe moves that share of its radius towards the camera: a hand at rest trembles.
+/// Motion towards the camera, as a share of the probe's radius, that releases a surface: a hand at rest trembles.
 inline constexpr double RELEASE_SHARE = 0.05;
-/// It also releases, and is re-armed, below this fraction of `surface_share`.
+/// Fraction of `surface_share` below which a surface also releases, and is re-armed.
 inline constexpr double SURFACE_HYSTERESIS = 0.75;
 
 struct ModePull {
@@ -26,7 +26,7 @@ struct ModePull {
     double relevant_share = 0.0;
     bool is_usable = false;  ///< the relevance covers the ball, is recent enough and has the present settings
     bool has_lost = false;   ///< object following: off the object it followed
-    uint32_t object = 0;     ///< counts touched objects and set pins: a change means another pull
+    uint32_t object = 0;     ///< number of touched objects and set pins: a change means that the pull is another one
 };
 
 ModePull pull_of(const ForceSettings& settings, const RelevancePatch& patch, const glm::dvec3& probe, uint64_t now_ns,

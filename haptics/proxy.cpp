@@ -16,7 +16,7 @@ struct Moments {
 };
 
 struct Chord {
-    double lower = 0.0, upper = 0.0;  ///< voxels from the patch's lower corner, within it
+    double lower = 0.0, upper = 0.0;  ///< chord in voxels from the patch's lower corner, clipped to the patch
 };
 
 /// Runs of set bits are integrated word by word: a run over two words is two touching intervals, whose sum is the
@@ -183,7 +183,7 @@ Proxy find_sampled_proxy(const RelevancePatch& patch, const glm::dvec3& centre, 
 
 namespace {
 
-/// Divides the integral of a - p; only for the laws that integrate.
+/// Divides the integral of a - p. Only for the laws that integrate.
 double denominator_of(ProxyLaw law, const BallIntegrals& ball, double radius, double whole) noexcept
 {
     switch (law) {

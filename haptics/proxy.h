@@ -46,9 +46,9 @@ Proxy find_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double r
 
 /// Random points in a ball of radius 1, uniformly distributed (algorithm 2 of the thesis); the same on every machine.
 std::vector<glm::dvec3> random_points(int count);
-/// The same with low discrepancy: additive recurrence with the plastic number (Roberts 2018) over equal volumes.
+/// Likewise with low discrepancy: additive recurrence with the plastic number (Roberts 2018) over equal volumes.
 std::vector<glm::dvec3> even_points(int count);
-/// The proxy at the mean of the relevant points among these.
+/// Returns the proxy at the mean of the relevant ones among these points.
 Proxy find_sampled_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
                          std::span<const glm::dvec3> points) noexcept;
 

@@ -16,7 +16,7 @@ struct RelevancePatch {
     static constexpr size_t MAX_WORDS = size_t(MAX_VOXELS) * MAX_VOXELS * MAX_VOXELS / 32;
 
     uint64_t sequence = 0;  ///< 0: nothing is known yet
-    uint64_t time_ns = 0;   ///< time of the request, CLOCK_MONOTONIC: later changes are not included
+    uint64_t time_ns = 0;   ///< time of the request, CLOCK_MONOTONIC; the bits do not include later changes
     glm::ivec3 origin{0};   ///< voxel of its lower corner
     glm::ivec3 size{0};  ///< voxels, each at most MAX_VOXELS; clipped to the volume, outside which nothing is relevant
     int32_t words_per_row = 0;  ///< 32-bit words along x: bit b of word w is voxel x = origin.x + 32 w + b
@@ -24,8 +24,8 @@ struct RelevancePatch {
     glm::ivec3 volume_size{0};  ///< voxels of its level
     int32_t level = 0;          ///< level l voxels cover 2^l of the volume's along each axis; coarse levels are for
                                 ///< large probes
-    uint32_t settings = 0;      ///< the ForceSettings::relevance_settings used for it: if they differ it is unusable
-    std::array<uint32_t, MAX_WORDS> words{};  ///< word + words_per_row * (y + size.y * z)
+    uint32_t settings = 0;      ///< the ForceSettings::relevance_settings used; if they differ, the patch is unusable
+    std::array<uint32_t, MAX_WORDS> words{};  ///< index of a word: word + words_per_row * (y + size.y * z)
 
     uint32_t row_word(int32_t word, int32_t y, int32_t z) const
     {

@@ -20,7 +20,7 @@ inline constexpr double HEAT_WINDOW_S = 10.0;
 struct HeatMemory {
     double square = 0.0;  ///< N^2
 };
-/// The largest force now: the peak while cool, then gradually less, and the continuous force when hot.
+/// Maximum force now: the peak while cool, then gradually less, and the continuous force when hot.
 double force_allowed(const DeviceCaps& caps, const HeatMemory& heat);
 void add_heat(const glm::dvec3& force_n, double dt_s, HeatMemory& heat);
 
@@ -64,7 +64,7 @@ double stable_stiffness(const DeviceCaps& caps, const SentForces& sent);
 /// delay, sample-and-hold and limits. It is dissipated by damping, in the direction of motion.
 struct EnergyMemory {
     bool has_last = false;
-    glm::dvec3 position_m{0.0}, field_n{0.0};  ///< at the last state: position, and the undelayed force there
+    glm::dvec3 position_m{0.0}, field_n{0.0};  ///< position and undelayed force at the last state
     double made_j = 0.0;                       ///< not dissipated yet; at least 0
 };
 inline constexpr double MAX_TAKING = 2.0;  ///< N s/m: more damping is itself unstable at two ticks

@@ -71,7 +71,7 @@ double TimeHistogram::quantile_us(double share) const noexcept
     for (size_t bin = 0; bin < BINS; ++bin) {
         sum += counts[bin];
         if (sum == 0 || double(sum) < wanted) continue;
-        // The last bin's upper end is the worst value.
+        // The upper end of the last bin is the worst value.
         return bin + 1 < BINS ? double(uint64_t{1} << bin) : double(worst_ns) * 1e-3;
     }
     return 0.0;
@@ -102,7 +102,7 @@ Servo::~Servo()
 
 void Servo::run() noexcept
 {
-    ::prctl(PR_SET_TIMERSLACK, 1UL);  // up to 50 us less delay than by default; no effect under SCHED_FIFO
+    ::prctl(PR_SET_TIMERSLACK, 1UL);  // wakes up to 50 us earlier than by default; no effect under SCHED_FIFO
     const KeptMemory shared(this, sizeof *this), growth(growth_.get(), sizeof *growth_);
     const KeptMemory stack(static_cast<std::byte*>(__builtin_frame_address(0)) - STACK_BYTES, STACK_BYTES);
     const bool has_code = keep_code();

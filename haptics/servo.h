@@ -77,7 +77,7 @@ public:
     Latest<ForceSettings>& settings() { return settings_; }
     Latest<RelevancePatch>& relevance() { return relevance_; }
     Latest<ServoState>& state() { return state_; }
-    /// For one reading thread, which may differ from that of state().
+    /// For one reading thread, which may be another than that of state().
     Latest<ProbePlace>& place() { return place_; }
     /// Whether the system granted SCHED_FIFO; if not, only the timer slack is reduced.
     bool is_realtime() const { return is_realtime_; }

@@ -34,7 +34,7 @@ struct ForceSettings {
     double movement_scale = 1.0;          ///< user's scale of the hand's motion: divides the force
     double strength = 1.0;                ///< factor of the force, 0 ... 1
     bool clicks = false;                  ///< a short pulse when contact begins; only for devices with motors
-    bool let_go = false;                  ///< no force from the next tick on; afterwards it engages again
+    bool let_go = false;                  ///< no force from the next tick on; when unset, the force fades in again
     uint32_t relevance_settings = 0;      ///< counts changes of threshold and groups: relevance made before fades out
     bool operator==(const ForceSettings&) const = default;
 };

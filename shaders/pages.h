@@ -23,7 +23,7 @@ SHARED_CONST uint PAGE_NODE = 15u;
 SHARED_CONST uint PAGE_PAYLOAD_MASK = 0x00ffffffu;
 SHARED_CONST uint CELL_PAINTED = 1u;
 SHARED_CONST uint CELL_DISTANCE_SHIFT = 1u;
-/// Only while rays wait (RaycastInput::waiting): the brick is not on the device, and no coarser one stands in.
+/// The brick is not on the device, and no coarser one stands in. Only while rays wait (RaycastInput::waiting).
 SHARED_CONST uint PAGE_MISSING = 14u;
 /// Maximum cells of the directory's grid along one axis; it is rebuilt for every new view.
 SHARED_CONST uint PAGE_GRID = 32u;

@@ -7,7 +7,7 @@
 SHARED_BEGIN
 
 struct PreviewParams {
-    vec3 near_corner;  ///< the ray of a pixel joins two points, as in RaycastParams
+    vec3 near_corner;  ///< the ray of a pixel joins two points, as described in RaycastParams
     vec3 near_dx;
     vec3 near_dy;
     vec3 far_corner;
@@ -15,7 +15,7 @@ struct PreviewParams {
     vec3 far_dy;
     ivec3 size;          ///< voxels of the box
     uint words_per_row;  ///< bit b of word w is x = 32 w + b
-    vec3 lower;          ///< the box's first corner in the volume, voxels
+    vec3 lower;          ///< position of the box's first corner in the volume, voxels
     vec3 color;          ///< linear light
     uint is_striped;     ///< for voxels that would be erased: distinct from any colour, even without colour vision
 };

@@ -95,7 +95,7 @@ struct RaycastParams {
     float slice_scale;    ///< 1 / (codes from black to white)
     float slice_paint;    ///< share of a painted voxel's colour that comes from its group
     vec3 shell_center;    ///< voxel space; centre of the region with an iso-surface
-    vec3 shell_reach;     ///< voxels; half of the box, or the ball's radius along each axis
+    vec3 shell_reach;     ///< half the size of the box, or the ball's radius along each axis; voxels
     float shell_code;     ///< threshold of the surface
     vec3 shell_color;     ///< linear light
     float shell_opacity;  ///< of one crossing of the surface

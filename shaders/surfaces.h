@@ -43,7 +43,7 @@ SHARED_CONST uint SURFACE_NODE_TEXELS = 3u;
 /// one of the far plane. Points are relative to the centre of the middle plane, which the user looks at, so that they
 /// stay accurate there even if the volume is large and the eye is far.
 struct SurfaceParams {
-    vec3 origin;  ///< the point that other positions are relative to: origin + origin_rest
+    vec3 origin;  ///< origin of all other positions: origin + origin_rest
     vec3 origin_rest;
     vec3 middle_corner;
     vec3 middle_dx;
@@ -51,22 +51,22 @@ struct SurfaceParams {
     vec3 along_corner;  ///< from the near plane to the far one
     vec3 along_dx;
     vec3 along_dy;
-    float begin;   ///< position between the near plane (0) and the far one (1): start of the clip range
+    float begin;   ///< start of the clip range, between the near plane (0) and the far one (1)
     float middle;  ///< position of the middle plane
     float end;     ///< end of the clip range
     float slack;   ///< margin of boxes on each side, larger than the rounding error
     uint node_count;
-    uint first_node;  ///< the block: range of nodes that this dispatch visits
+    uint first_node;  ///< the block: the range of nodes that this dispatch visits
     uint end_node;
     uint is_last_block;
-    vec3 probe_center;  ///< relative to the origin; the probe is one more ball
+    vec3 probe_center;  ///< position relative to the origin; the probe is one more ball
     float probe_radius;
     vec3 probe_color;  ///< linear light
 };
 
-/// Surfaces are listed per tile of this many pixels a side, from the first pixel of the part on: the number that its
-/// rays may meet, and which, in a texel for each of the tile's pixels: an index, and from bit SURFACE_BLOCK on, a bit
-/// for each of the tile's blocks of 4 x 2 pixels. If there are more, rays search the boxes instead.
+/// Side in pixels of a tile, from the first pixel of the part on. A tile lists the surfaces that its rays may meet,
+/// their number first, in a texel for each of its pixels: an index, and from bit SURFACE_BLOCK on, a bit for each of
+/// the tile's blocks of 4 x 2 pixels. If there are more, rays search the boxes instead.
 SHARED_CONST uint SURFACE_TILE = 8u;
 SHARED_CONST uint SURFACES_IN_TILE = SURFACE_TILE * SURFACE_TILE - 1u;
 SHARED_CONST uint SURFACE_BLOCK = 24u;  // no scene has 2^24 surfaces

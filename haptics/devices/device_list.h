@@ -18,10 +18,10 @@ enum class DeviceKind : uint8_t { hid, inverse3, openhaptics, mouse };
 
 struct DeviceListing {
     DeviceKind kind = DeviceKind::mouse;
-    std::string id;  ///< for `open_device`; stable as long as the device stays plugged in
+    std::string id;  ///< id for `open_device`; stable as long as the device stays plugged in
     std::string name, serial;
     std::string connection;  ///< "/dev/hidraw3", "service on port 10001", "libHD.so"
-    bool has_force = false;  ///< it would give force if that were allowed
+    bool has_force = false;  ///< the device would give force if that were allowed
     std::string why_no_force;
     std::string why_unusable;  ///< empty: it can be opened
 };

@@ -23,15 +23,15 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr int READ_TIMEOUT_MS = 10;  ///< so that shutdown never has to interrupt a read
+constexpr int READ_TIMEOUT_MS = 10;  ///< short, so that shutdown never has to interrupt a read
 constexpr milliseconds REOPEN_EVERY{15};
 constexpr milliseconds LOOK_EVERY{5};         ///< checks whether the link is to end
 constexpr int MAX_REPORTS_A_DRAIN = 256;      ///< a device that floods us must not delay the newest report
-constexpr uint64_t MAX_STEP_NS = 20'000'000;  ///< of rate control: after a pause it does not leap
+constexpr uint64_t MAX_STEP_NS = 20'000'000;  ///< longest step of rate control, so that it does not leap after a pause
 // A hand without motors yields to a force like the mouse's: 75 N/m, settled within some 10 ms.
 constexpr double GIVE_WAY = 75.0;
 constexpr double SETTLE_S = 0.01;
-constexpr int LINK_PRIORITY = 81;  ///< above the servo's: both are short and then wait
+constexpr int LINK_PRIORITY = 81;  ///< higher than the servo's, since both threads run briefly and then wait
 
 /// Passed from the reader to the servo.
 struct Reading {
@@ -128,7 +128,7 @@ public:
     {
         is_running_ = false;
         wake_writer();
-        writer_.join();  // first, since its last report switches the force off and needs the port
+        writer_.join();  // stops the writer first, since its last report switches the force off and needs the port
         reader_.join();
     }
 
@@ -305,7 +305,7 @@ private:
 
     void send(const Command& command, bool enabled)
     {
-        // An unverified device gets no bytes at all: their effect is unknown.
+        // An unverified device gets no bytes at all, since their effect is unknown.
         if (!profile_.verified || !profile_.output || write_failed_) return;
         const std::shared_ptr<HidPort> open = port();
         if (open && !open->write(encode(profile_, command.force_n, command.sequence, enabled).span()))
@@ -317,7 +317,7 @@ private:
     bool may_force_ = false;
     uint64_t (*now_ns_)() = steady_ns;
 
-    std::mutex port_mutex_;  ///< shared by reader and writer; the servo never takes it
+    std::mutex port_mutex_;  ///< guards the port between reader and writer; the servo never takes it
     std::shared_ptr<HidPort> port_;
     std::atomic<uint64_t> connection_;  ///< 0: none
     std::atomic<bool> is_running_{true}, write_failed_{false};
@@ -328,7 +328,7 @@ private:
 
     Latest<Reading> readings_;
     Latest<Command> commands_;
-    mutable Latest<DeviceCaps> caps_;  ///< from the reader to the servo; the constructor writes the first ones
+    mutable Latest<DeviceCaps> caps_;  ///< limits, from the reader to the servo; the constructor writes the first ones
     std::thread reader_, writer_;
 };
 

@@ -5,7 +5,7 @@
 //   port -> reader thread --Latest--> read()      write() --Latest--> writer thread -> port
 //
 // For a device that reports speeds, the link integrates the position: read() advances it, at every call, while the
-// device is present; a force moves its wish as it moves a mouse's. Silence means rest.
+// device is present; a force moves the integrated position as it moves that of a mouse. Silence means rest.
 //
 // The reader drains the queue (kernels keep the OLDEST reports after a stall) and keeps the newest report. When the
 // port is gone, read() returns `lost` and the reader tries to reopen it every 15 ms, and then reads its limits again.

@@ -83,7 +83,7 @@ struct HidMatch {
 
 /// Maps deflection to speed: gain * ((share - dead_zone) / (1 - dead_zone))^gamma, along the deflection.
 struct HidRate {
-    double speed = 0.1;       ///< m/s in the device's workspace at full deflection
+    double speed = 0.1;       ///< speed in m/s in the device's workspace at full deflection
     double turn_speed = 1.5;  ///< rad/s at full deflection
     double gamma = 1.5;       ///< above 1: finer near the centre
     double dead_zone = 0.05;  ///< fraction of the deflection that counts as none
@@ -101,9 +101,9 @@ struct HidProfile {
     const HidField* find_input(HidQuantity quantity) const;
     glm::dmat3 axes{1.0};  ///< from the device's axes to +x right, +y up, +z towards the user; a signed permutation
     DeviceCaps limits;
-    uint32_t watchdog_ms = 0;  ///< the device drops its force after that long without a report; 0: no watchdog
+    uint32_t watchdog_ms = 0;  ///< time without a report after which the device drops its force; 0: it has no watchdog
     std::string provenance;    ///< source of the layout
-    bool verified = false;     ///< tried on the real device; otherwise it gets no force
+    bool verified = false;     ///< tested on the real device; otherwise it gets no force
     std::string note;          ///< for owners of such a device
 };
 

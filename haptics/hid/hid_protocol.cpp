@@ -8,7 +8,7 @@ namespace {
 
 uint32_t raw_of(const HidField& field, std::span<const uint8_t> payload)
 {
-    uint64_t bits = 0;  // a field of 32 bits may touch 5 bytes
+    uint64_t bits = 0;  // 64 bits, since a field of 32 bits may touch 5 bytes
     const size_t first = field.bit / 8, last = (field.bit + field.bits - 1) / 8;
     for (size_t byte = first; byte <= last; ++byte) bits |= uint64_t(payload[byte]) << (8 * (byte - first));
     return uint32_t((bits >> (field.bit % 8)) & ((uint64_t{1} << field.bits) - 1));

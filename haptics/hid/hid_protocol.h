@@ -19,14 +19,14 @@ namespace shvr {
 struct HidInput {
     std::optional<glm::dvec3> position_m;
     std::optional<glm::dquat> rotation;
-    std::optional<glm::dvec3> rate, turn_rate;  ///< shares of the full deflection, not yet shaped
+    std::optional<glm::dvec3> rate, turn_rate;  ///< fractions of the full deflection, not yet shaped
     std::optional<uint32_t> buttons;
     std::optional<bool> calibrated;
     std::optional<uint32_t> sequence, force_sequence, time;
 };
 /// Null if the report is not one of the profile's input reports: its id or length differs.
 std::optional<HidInput> decode(const HidProfile& profile, std::span<const uint8_t> report);
-/// Whether the profile tells us to ignore such a report.
+/// Whether the profile says to ignore such a report.
 bool is_ignored(const HidProfile& profile, std::span<const uint8_t> report);
 /// Converts a deflection to a fraction of full speed; finite, length at most 1.
 glm::dvec3 shaped(const HidRate& rate, const glm::dvec3& deflection);

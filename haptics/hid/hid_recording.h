@@ -33,7 +33,7 @@ struct HidRecording {
 };
 
 inline constexpr size_t MAX_RECORDED_REPORT_BYTES = 1024;
-inline constexpr size_t MAX_RECORDED_REPORTS = 1'000'000;  ///< a quarter of an hour at 1 kHz
+inline constexpr size_t MAX_RECORDED_REPORTS = 1'000'000;  ///< maximum number of reports: a quarter of an hour at 1 kHz
 
 /// Adds reports to `recording` until `most_s` seconds have passed, the device is gone or `goes_on` returns false;
 /// `goes_on` is called every 20 ms, with the number of reports so far. False if the device was removed.

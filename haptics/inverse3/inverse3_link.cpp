@@ -27,9 +27,9 @@ using std::chrono::milliseconds;
 using Event = WebSocketReader::Event;
 
 constexpr milliseconds RETRY_EVERY{20};
-constexpr milliseconds GIVE_UP{1000};  ///< the connection is ended after that long without an answer
-constexpr int LINK_PRIORITY = 81;      ///< above the servo's: it is short and then waits
-constexpr double PEAK_FORCE_N = 3.3;   ///< our limits, not its maker's: untested on the device
+constexpr milliseconds GIVE_UP{1000};  ///< time without an answer after which the connection is ended
+constexpr int LINK_PRIORITY = 81;      ///< higher than the servo's, since the thread runs briefly and then waits
+constexpr double PEAK_FORCE_N = 3.3;   ///< set by this program, not by the maker: untested on the device
 constexpr double CONTINUOUS_FORCE_N = 0.88;
 constexpr double STIFFNESS_LIMIT = 250.0;  ///< N/m: an arm of low friction, two ticks of delay
 
@@ -88,7 +88,7 @@ Channels connect(const Inverse3Options& options)
     return channels;
 }
 
-/// A sentence that is never freed. There are only as many as kinds of failure.
+/// Returns the text as a sentence that is never freed; there is one for each kind of failure.
 const char* kept(const std::string& text)
 {
     static std::mutex mutex;
@@ -142,7 +142,7 @@ public:
     {
         const uint64_t connection = connection_, interruptions = interruptions_;
         if (connection == 0) return ReadResult::lost;
-        // The force went to zero meanwhile: the servo must fade it in again.
+        // After a force of zero, the servo must fade the force in again.
         if (std::exchange(interruptions_seen_, interruptions) != interruptions) return ReadResult::lost;
         if (!readings_.take() || readings_.value().connection != connection) return ReadResult::stale;
         state = readings_.value().state;
@@ -206,14 +206,14 @@ private:
         in_flight_ = 0;
         is_first_ = true;
         is_braked_ = is_unplugged_ = is_telling_ = false;  // a braking device locks itself
-        ++interruptions_;                                  // forces of the last connection are not sent on this one
+        ++interruptions_;                                  // forces of the previous connection are not sent on this one
         last_sent_force_ = glm::dvec3(0.0);
         sent_at_ = write_at_ = SteadyClock::now();
         events_tried_ = SteadyClock::now();
         trouble_ = channels_.events ? "" : NO_EVENTS;
         connection_ = ++connections_;
     }
-    /// States wait meanwhile: no force has deadlines now.
+    /// States wait meanwhile, since no force has a deadline now.
     void find_events()
     {
         std::string ignored;
@@ -342,7 +342,7 @@ private:
                                !is_unwritten && commands_.value().interruptions == interruptions_ &&
                                std::isfinite(glm::length(wanted));
         const bool is_pulling = last_sent_force_ != glm::dvec3(0.0);
-        if (is_pulling && !may_force) {  // at once, even with a message in flight
+        if (is_pulling && !may_force) {  // sent at once, even with a message in flight
             ++interruptions_;
             if (!send({}, commands_.value().sequence)) lose();
             return;
@@ -372,7 +372,7 @@ private:
     bool refuse(const char* wrong)
     {
         trouble_ = kept(sentence("the Inverse3's service sent what it must not: ", wrong));
-        ++refused_;  // last: an observer of the count also sees the reason
+        ++refused_;  // stored last, so that an observer of the count also sees the reason
         next_try_ = SteadyClock::now() + options_.hold;
         return false;
     }
@@ -402,7 +402,7 @@ private:
     // Used by the link's thread only.
     int in_flight_ = 0;
     bool is_first_ = true, has_command_ = false, is_braked_ = false, is_unplugged_ = false;
-    bool is_telling_ = false;  ///< `trouble_` is from an event, and ends with its hold
+    bool is_telling_ = false;  ///< `trouble_` describes an event and is cleared when its hold ends
     glm::dvec3 last_sent_force_{0.0};
     uint32_t last_sent_sequence_ = 0;
     SteadyClock::time_point sent_at_, write_at_, held_until_, next_try_, events_tried_;

@@ -31,8 +31,8 @@ struct Inverse3Options {
     std::chrono::milliseconds write_timeout{12};     ///< together with the remaining delays, zero force within 20 ms
     std::chrono::milliseconds answer_timeout{12};
     std::chrono::milliseconds keep_alive{10};  ///< interval of messages while the servo does not write
-    std::chrono::milliseconds hold{1000};      ///< after a stall, and after a refused message
-    uint64_t (*now_ns)() = nullptr;            ///< time stamps of states; null: the steady clock
+    std::chrono::milliseconds hold{1000};      ///< duration of zero force after a stall or a refused message
+    uint64_t (*now_ns)() = nullptr;            ///< clock for time stamps of states; null: the steady clock
 };
 
 /// Message counts since the link was opened; any thread.

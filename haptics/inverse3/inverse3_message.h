@@ -25,7 +25,7 @@ inline glm::dvec3 to_inverse3(const glm::dvec3& v)
 }
 
 struct Inverse3State {
-    std::string device_id;  ///< letters, digits, - and _; empty: there is no device (with the requested id)
+    std::string device_id;  ///< id: letters, digits, - and _; empty: there is no device (with the requested id)
     bool has_position = false;
     glm::dvec3 position_m{0.0};
     bool has_rotation = false;  ///< rotation of the grip
@@ -41,7 +41,7 @@ enum class Inverse3Event : uint8_t {
     ebrake_on,
     ebrake_off,
     stall,    ///< a motor stalled
-    ceiling,  ///< the stability limit of its controller was reached
+    ceiling,  ///< the controller reached its stability limit
     connected,
     disconnected,
 };

@@ -24,7 +24,7 @@ std::string websocket_request(uint16_t port, std::string_view key);
 struct WebSocketAnswer {
     bool is_complete = false;       ///< the header has ended
     size_t size = 0;                ///< size of the header in bytes; frames follow it
-    const char* trouble = nullptr;  ///< why it is not a WebSocket; null: it is one
+    const char* trouble = nullptr;  ///< reason why it is not a WebSocket; null: it is one
 };
 WebSocketAnswer check_websocket_answer(std::string_view received, std::string_view key);
 
@@ -34,7 +34,7 @@ inline constexpr size_t MAX_WEBSOCKET_MESSAGE = 256 << 10;  ///< an inventory of
 
 /// Appends one whole frame, masked as RFC 6455 requires of clients.
 void append_websocket_frame(std::string& bytes, WebSocketOpcode opcode, std::string_view payload, uint32_t mask);
-/// The same without a mask, as servers send it.
+/// Likewise without a mask, as servers send it.
 void append_unmasked_websocket_frame(std::string& bytes, WebSocketOpcode opcode, std::string_view payload);
 
 /// Splits received bytes into messages.

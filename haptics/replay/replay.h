@@ -15,8 +15,8 @@ struct ReplayOptions {
     std::optional<double> stiffness, damping;
     /// A modelled hand moves this device along the trace; without it, the device's answers are those of the trace.
     std::optional<TouchModel> touch;
-    bool relevance_anew = false;   ///< recompute relevance even if the trace contains it
-    uint32_t relevance_every = 0;  ///< ticks; 0: when the ball leaves the last one
+    bool relevance_anew = false;   ///< recomputes relevance even if the trace contains it
+    uint32_t relevance_every = 0;  ///< ticks between updates of relevance; 0: when the ball leaves the last patch
 };
 
 /// Fills `patch` with the relevant voxels around `point` for a ball of `radius` (physical) at or above `threshold`. The
@@ -32,14 +32,14 @@ struct ReplayResult {
     double energy_j = 0.0;        ///< work of the forces along the hand's path: above 0, the hand was driven
     double proxy_rms = 0.0;       ///< distance between probe and proxy in contact, physical units
     uint64_t contact_ticks = 0, patches = 0;
-    uint32_t objects = 0, swaps = 0;    ///< objects of the last device; number of device changes
+    uint32_t objects = 0, swaps = 0;    ///< number of objects touched on the last device; number of device changes
     bool is_recorded = false;           ///< the relevance is the trace's; otherwise it was computed
     uint64_t hash = 0;                  ///< FNV-1a of all forces' bits
     uint64_t told = 0, told_equal = 0;  ///< ticks whose force the trace contains, and those with the same bits
     std::vector<uint64_t> tick_ns;      ///< time that each step() took on the real clock
     std::vector<ForceStep> steps;       ///< if requested
 };
-/// Whether the relevance of the trace is used: not with a modelled hand, which goes elsewhere, where none is known.
+/// Whether the trace's relevance is used. Not with a modelled hand: its path differs, and no relevance is known there.
 bool replays_relevance(const Trace& trace, const ReplayOptions& options);
 /// Calls `make_relevance` if the trace's relevance is not used, also when the threshold changes, which takes effect at
 /// once; if it is empty, that fails.

@@ -200,7 +200,7 @@ private:
         const bool is_other = !trace_.swaps.empty() && trace_.swaps.back() == trace_.ticks.size();
         trace_.ticks.push_back(
             read_tick(node, trace_.ticks.empty() ? nullptr : &trace_.ticks.back(), 1'000'000'000 / trace_.rate_hz));
-        // If another device's relevance is not stated, there is none.
+        // If the relevance of another device is not stated, it has none.
         if (is_other && !node["relevance_time"].exists()) trace_.ticks.back().relevance_time_ns = 0;
     }
     void swap_device()

@@ -43,8 +43,8 @@ struct Trace {
     uint32_t rate_hz = 1000;
     DeviceCaps caps;
     std::vector<TraceCaps> later_caps;  ///< sorted by tick
-    /// Ticks from which another device, or the same one after being reopened, answers a restarted servo: it has no
-    /// force, no object, and feels nothing before the next relevance.
+    /// Ticks from which another device, or the same one after being reopened, answers a restarted servo, which has no
+    /// force and no object, and feels nothing before the next relevance.
     std::vector<size_t> swaps;
     std::vector<TraceSettings> settings;  ///< sorted by tick; the first one applies from the start
     /// Whether the trace contains the relevance that the servo used: `relevance`, by tick, and none before the first

@@ -36,8 +36,8 @@ void main()
 {
     const uvec3 cell = params.cell_begin + gl_GlobalInvocationID;
     if (any(greaterThanEqual(cell, params.cell_end))) return;
-    // Samples between the centres of these voxels and the preceding ones are in up to eight cells; if assigned to a
-    // neighbouring voxel, in any of the cells around.
+    // Samples between the centres of these voxels and the preceding ones are in up to eight cells. A sample assigned to
+    // a neighbouring voxel may be in any of the cells around.
     const bool is_empty = imageLoad(leap, ivec3(cell)).x >> LEAP_DISTANCE_SHIFT > 1u;
     bool is_painted = false;
     [[unroll]] for (uint i = 0u; i < 8u && !is_empty; ++i) {

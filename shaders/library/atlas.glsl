@@ -14,7 +14,7 @@
 const uint CODE_BYTES = 2u;
 #else
 layout(constant_id = 15) const uint CODE_BYTES = 2u;
-const int WORD_SHIFT = CODE_BYTES == 1u ? 2 : 1;   // converts a code's position along x to that of its word
+const int WORD_SHIFT = CODE_BYTES == 1u ? 2 : 1;   // shift that converts a code's position along x to that of its word
 const uint CODE_BITS = 8u * CODE_BYTES;
 const uint CODE_MASK = CODE_BYTES == 1u ? 0xffu : 0xffffu;
 const uint CODE_UNIT = CODE_BYTES == 1u ? 257u : 1u;

@@ -105,7 +105,7 @@ Opaque opaque_ahead(const RaycastParams params, float front, float back)
 vec4 classify_step(const RaycastParams params, float front, float back, float part)
 {
     if (PREINTEGRATED < 2u) return classify_change(params, front, back, part);
-    // One step's back and the next one's front are the same point; rounding may leave such a gap between them.
+    // The back of a step and the front of the next one are the same point; rounding may leave such a gap between them.
     const float gap = 0.004;   // codes
     const Opaque ahead = opaque_ahead(params, front, back);
     const float lower = min(front, back) - gap, upper = max(front, back) + gap;

@@ -1,6 +1,6 @@
-// Counters, 64 bits wide on devices without 64-bit atomics: a carry is added when the low half wraps.
-// A group counts in a row of its own as long as there are enough rows, since atomic additions to one place wait for
-// each other; the host adds up the rows.
+// Counters, 64 bits wide on devices without 64-bit atomics: a carry is added when the low half wraps. Each group counts
+// in its own row while there are enough rows, since atomic additions to one address are serialized; the host adds up
+// the rows.
 #include "../counters.h"
 
 layout(binding = 15, scalar) buffer Counters { uvec2 values[]; } counters;

@@ -18,7 +18,7 @@ struct Row {
 struct Density {
     ivec3 corner;      // lower corner, in codes
     vec3 fraction;
-    Row row;           // from the corner, or from the code before it
+    Row row;           // row that begins at the corner, or at the code before it
     float v[8];        // codes at the corners, x fastest
     float beyond[4];   // the next code along x on the nearer side, in the rows (y, z) = 00, 10, 01, 11
 };

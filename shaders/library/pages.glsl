@@ -8,7 +8,7 @@ layout(binding = 9, scalar) buffer Reached { uint bits[]; } reached;
 struct Place {
     uint distance;    // in cells
     uint cell_shift;  // log2 of a cell's side, in voxels
-    uint box_shift;   // leaps end at the cube of 2^box_shift voxels around the position; 31: anywhere
+    uint box_shift;   // leaps are limited to the cube of 2^box_shift voxels around the position; 31: no limit
     uint slot;
     uint level;
     uint entry;
@@ -57,8 +57,8 @@ Place place_at(const RaycastParams params, vec3 position)
     return place;
 }
 
-// Reports to the host that a ray visited this place; visits decide which bricks are loaded. Most rays pass places that
-// others visited before: they only read, since writes to one word wait for each other.
+// Reports to the host that a ray visited this place; visits decide which bricks are loaded. Most rays only read, since
+// others have visited before them: writes to one word are serialized.
 void note_reached(const Place place)
 {
     const uint bit = 1u << (place.entry & 31u);

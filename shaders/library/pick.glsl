@@ -1,13 +1,13 @@
 // The point of a ray that the user points at: where its opacity rises most.
 
-// The result of PICK: the run of samples that adds most to the ray's opacity, and in it the sample that adds most.
+// Result of PICK: the run of samples that adds most to the ray's opacity, and the sample in it that adds most.
 struct Rises {
-    float most, most_at;               // of the best run so far; lengths along the ray
+    float most, most_at;               // of the best run so far; `_at`: lengths along the ray
     float run, steepest, steepest_at;  // of the present run
     float peak, trough;                // largest opacity of a sample of this run, and smallest since then
 };
 
-// A run ends when the opacity of samples has fallen well below its peak and rises again: another structure follows.
+// A run ends when the opacity of samples has fallen well below its peak and rises again, which is another structure.
 // Slight noise does not end a run.
 void note_rise(inout Rises rises, float added, float opacity, float at)
 {

@@ -20,7 +20,7 @@ vec4 painted(uint group, vec4 look)
 }
 #endif
 
-// The density at a point at most half a voxel outside the brick whose first voxel is at `first`.
+// The density at a point in the brick whose first voxel is at `first`, or at most half a voxel outside of it.
 float value_near(vec3 in_brick, ivec3 first)
 {
     const vec3 held = clamp(in_brick, -1.0, float(BRICK_SIZE));   // including its aprons
@@ -28,9 +28,9 @@ float value_near(vec3 in_brick, ivec3 first)
     return value_of(density_at(ivec3(corner) + first, held - corner));
 }
 
-// The density where a step begins or ends, at length `s` along the ray; `texels` are of the step's middle, whose brick
-// reaches that far. One step's end is the next one's beginning, with the same bits if both are in bricks of one level,
-// because only whole numbers are subtracted from a position.
+// The density where a step begins or ends, at length `s` along the ray; `texels` are those of the step's middle; the
+// apron of its brick reaches that far. One step's end is the next one's beginning, with the same bits if both are in
+// bricks of one level, because only whole numbers are subtracted from a position.
 float value_at_end(const RaycastParams params, const Ray ray, float s, const Texels texels, const Place place)
 {
     vec3 lattice = position_at(params, ray, s);

@@ -6,7 +6,7 @@
 // that it left: only the step and counts, which are added to, are carried out of these loops. The sample found is read
 // again.
 
-// After that many iterations, lanes that have found nothing take a sample like the others.
+// Maximum iterations; lanes that have found nothing by then take a sample like the others.
 const uint MAX_SEARCH_TURNS = 20u;
 // Whether the sample at `position` may show anything. Painted samples may, whatever their density; and a step
 // classified by its ends is not judged by its middle.
@@ -19,9 +19,9 @@ bool may_be_seen(const RaycastParams params, vec3 position, const Place place)
 }
 
 #ifdef BITTED
-// With sample bits (leap.h), a sample costs one load until one may show something.
+// With sample bits (leap.h), a sample costs one load as long as none may show something.
 
-// Cells: leaps from places with less empty space around them are not worth a loop. In noise nearly all are short.
+// Minimum empty space, in cells, around places worth leaping from in a loop. In noise, nearly all leaps are short.
 const uint NEAR = 1u;
 
 // Samples per iteration whose density is read after their bits: where noise is above a threshold, bits are set in
@@ -39,7 +39,7 @@ uint bits_ahead(const RaycastParams params, const Ray ray, float begin, uint i)
     uvec3 place = uvec3(ivec3((sample_position(params, ray, begin, i) + 0.5) * parts));
     uint found = 0u;
     [[unroll]] for (uint k = 0u; k < SAMPLE_BITS_AHEAD; ++k) {
-        const uvec3 held = min(place, last);   // a ray may leave the volume; values there are not used
+        const uvec3 held = min(place, last);   // a ray may leave the volume; values outside are not used
         const uint bits = imageLoad(sample_bits, ivec3(held / (uvec3(parts) * uvec3(4u, 4u, 2u)))).x;
         const uint bit = (held.x & 3u * uint(parts.x) | held.y & 3u * uint(parts.y) | held.z & uint(parts.z)) /
                          SAMPLE_BIT_PARTS;
@@ -94,7 +94,7 @@ void search_bits(const RaycastParams params, const Ray ray, float begin, uint en
 }
 #endif
 
-// Advances to a step whose sample may be visible, to the first that may not be searched further, or to `end_step`.
+// Advances to a step whose sample may be visible, to the first step that may not be searched further, or to `end_step`.
 // `unseen` counts samples that showed nothing.
 void search_sample(const RaycastParams params, const Ray ray, float begin, uint end_step, inout uint i,
                    inout uint unseen, inout Work work)

@@ -32,7 +32,7 @@ vec3 lit(const RaycastParams params, float ambient, vec3 color, vec3 normal, flo
     return min(color * (ambient + params.diffuse * mix(1.0, facing, surface)) + highlight, vec3(1.0));
 }
 
-// If the gradient is far below `gradient_fade` there is no surface; otherwise flat regions would sparkle or go dark.
+// A gradient far below `gradient_fade` counts as no surface; otherwise flat regions would sparkle or go dark.
 vec3 shade(const RaycastParams params, float ambient, vec3 color, vec3 slope, vec3 half_way)
 {
     const float square = dot(slope, slope);

@@ -4,13 +4,13 @@
 // accurate ray-voxel intersection techniques for iso-surface ray tracing"). Cells of 4^3 voxels whose range shows that
 // the field stays on the ray's side of the threshold are skipped at once.
 //
-// The inside state of a ray is carried from cell to cell: a crossing lost to rounding at a border is found at the start
-// of the next cell, so there are neither holes nor duplicates. Every variable that outlives an iteration is carried
-// through the loop, since lanes that leave early keep no others.
+// Whether the ray is inside is carried from cell to cell. If rounding loses a crossing at a border, the next cell finds
+// it at its start, so there are neither holes nor duplicates. Variables needed after the loop are carried through it,
+// since lanes that leave early lose all others.
 #include "voxel_code.glsl"
 
-// Reference lengths. A cell with a shorter piece of the ray counts as its neighbour; a thinner shell is ignored. Far
-// along a ray it is at least two ulps, so that every search advances.
+// In reference lengths. A piece of the ray shorter than this counts as part of the neighbouring cell; a shell thinner
+// than this is ignored. Far along a ray it is at least two ulps, so that every search advances.
 float hair_at(float s)
 {
     const float HAIR = 1e-3, TWO_ULPS = 2.384185791015625e-7;
@@ -34,7 +34,7 @@ struct Shell {
 struct Cell {
     bool is_there;
     bool is_missing;  // the ray waits
-    vec3 corner;      // lower, on the lattice of the brick's level
+    vec3 corner;      // lower corner, on the lattice of the brick's level
     ivec3 to_atlas;
     float scale;      // side of a cell, in voxels of level 0
     float exit;       // length along the ray where it leaves the cell
@@ -193,7 +193,7 @@ void search_shell(const RaycastParams params, const Ray ray, inout Shell shell)
             const bool at_low = cubic(c, turns.x) >= 0.0, at_high = cubic(c, turns.y) >= 0.0;
             is_inside = g3 >= 0.0;
             const bool was = shell.is_inside;
-            // The first piece whose ends lie on different sides; SIMD devices would search all three.
+            // Takes the first piece whose ends lie on different sides; SIMD devices would search all three.
             const bool in_first = at_low != was, in_middle = !in_first && at_high != was;
             const vec2 piece = in_first    ? vec2(0.0, turns.x)
                                : in_middle ? turns
@@ -235,7 +235,7 @@ vec2 shell_range(const RaycastParams params, const Ray ray)
     return middle + vec2(-half_chord, half_chord);
 }
 
-// `limit`: the end of the ray's part that is followed now. `kept`, `is_inside`: as an earlier part left them
+// `limit`: end of the part of the ray that is followed now. `kept`, `is_inside`: state left by an earlier part
 // (raycast.h).
 Shell begin_shell(const RaycastParams params, const Ray ray, const Lattice lattice, float limit, vec2 kept,
                   bool is_inside)

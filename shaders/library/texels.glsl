@@ -10,7 +10,7 @@ struct Texels {
 };
 
 // Cell and fraction come from the global position, and only the integer part is moved into the brick: a bricked volume
-// gives the same bits as one in a single texture. If there is no brick, the values read are not used.
+// gives the same bits as one in a single texture. Without a brick, the values that are read are not used.
 Texels texels_at(vec3 position, const Place place)
 {
     Texels texels;

@@ -7,8 +7,8 @@ float occlusion_value(ivec3 texel)
     return float(imageLoad(occlusion, texel).x);
 }
 
-// `lattice`: position in voxels of the brick's level; `to_values`: from there to its texels; `last`: the last voxel of
-// that level.
+// `lattice`: position in voxels of the brick's level; `to_values`: offset from there to its texels; `last`: the last
+// voxel of that level.
 float ambient_share(vec3 lattice, ivec3 to_values, vec3 last)
 {
     const vec3 held = clamp(lattice, vec3(0.0), last);   // no values exist beyond the volume's edge

@@ -43,14 +43,14 @@
 SHARED_BEGIN
 
 SHARED_CONST uint OCCLUSION_SIZES = 2u;  // cell sizes: 2 << size voxels a side
-/// Bricks whose values can be computed at once: enough to keep a GPU busy.
+/// Number of bricks whose values can be computed at once: enough to keep a GPU busy.
 SHARED_CONST uint OCCLUSION_SLICE = 256u;
 /// The scratch images hold them in columns along z, which are in rows along x.
 SHARED_CONST uint OCCLUSION_COLUMN = 16u;
 SHARED_CONST uint OCCLUSION_COLUMNS_A_ROW = 4u;
 SHARED_CONST uint OCCLUSION_NEAR_APRON = 4u;  // voxels
 SHARED_CONST uint OCCLUSION_NEAR_SIDE = 40u;  // BRICK_SIZE + 2 OCCLUSION_NEAR_APRON
-/// The same for paged bricks, whose rays begin in their aprons as well.
+/// Likewise for paged bricks, whose rays begin in their aprons as well.
 SHARED_CONST uint OCCLUSION_NEAR_APRON_PAGED = 8u;
 SHARED_CONST uint OCCLUSION_NEAR_SIDE_PAGED = 48u;
 /// Maximum number of bricks away, on each side of a brick, from which light arrives; sets the largest radius.
@@ -143,7 +143,7 @@ SHARED_FUNCTION uvec3 scratch_place(uint job)
 struct OcclusionLook {
     float strength;
     float curve;
-    float lowest;   ///< value of the curve of points at its first one
+    float lowest;   ///< value of the curve of points at its first point
     uint segments;  ///< number of OcclusionSegment that follow this struct
 };
 

@@ -26,7 +26,7 @@ uint entry_at(uint reach, ivec3 brick_offset)
     return around[grid_index(uvec3(brick_offset + int(reach)), uvec3(2u * reach + 1u))];
 }
 
-// `cell` in cells of the brick; positions outside it are in its neighbours.
+// `cell`: position in cells of the brick; positions outside it are in its neighbours.
 bool cell_is_occupied(uint reach, uvec3 cell_counts, const OcclusionJob job, ivec3 cell)
 {
 #ifdef PAGED

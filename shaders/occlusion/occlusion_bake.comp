@@ -55,13 +55,13 @@ const float MARGIN_4 = 0.853;
 const float WALL_4 = 8.2;
 // ... and its opacity is concentrated this much towards the start of the stretch.
 const float BEND_4 = 0.08;
-// Ramps are softened more with distance, as rays represent the directions around them.
+// Ramps are softened more with distance, since rays represent the directions around them.
 const float SOFT_NEAR[] = {1.25, 0.874, 0.734}, SOFT_2[] = {0.751, 0.59, 0.527};
 
 #include "occlusion_listed.glsl"
 
-// Positions are relative to the block of 4^3 voxels that contains the voxel, plus these many voxels, so that they are
-// positive where they are truncated; so the arithmetic is the same wherever a brick, or its apron, begins.
+// Positions are relative to the block of 4^3 voxels that contains the voxel, plus these numbers of voxels, so that they
+// are positive when truncated: the arithmetic is the same wherever a brick, or its apron, begins.
 const int NEAR_AHEAD = 4, CELLS_AHEAD = 64;
 
 // Converts positions in that block to texels: of the scratch images, which hold jobs stacked along z, and of the cells,
@@ -124,7 +124,7 @@ float opacity_along(const Course course, float along)
     return opacity_of(params.voxels, clamp(code, course.least, course.most));
 }
 
-// The fixed opacity of the voxel there, whatever its density; below 0: none.
+// The fixed opacity of that voxel, whatever its density; below 0: none.
 float held_at(const Block block, vec3 place)
 {
     const ivec3 voxel = ivec3(place + float(NEAR_AHEAD));
@@ -136,8 +136,8 @@ float held_at(const Block block, vec3 place)
     return is_inside ? held : 0.0;
 }
 
-// The surface at a voxel, and the contribution of the half-space behind it to cells of 4: that blocks no ray that
-// leaves it.
+// The surface at a voxel, and the contribution to cells of 4 from the half-space behind it, which blocks no ray that
+// leaves the surface.
 struct Surface {
     vec3 normal;
     float strength;
@@ -145,7 +145,7 @@ struct Surface {
     vec3 heights;   // units along the normal per voxel
     vec3 scale;     // the part of a cell's columns along each axis that is behind it: base - scale * height in cells
     vec3 base;
-    float height;   // of the surface, as dot(heights, position) in cells
+    float height;   // distance of the surface, as dot(heights, position) in cells
     float wall;     // opacity of the half-space behind the surface over the stretch of a tap
 };
 
@@ -217,7 +217,7 @@ float cell_tap(const Surface s, ivec3 cell, uint packed, vec3 weights, float lea
     return beyond_surface(opacity, leaves * s.wall * dot(weights, behind));
 }
 
-// x: light left; y: light that arrived. `left` is the transmittance of the stretch, `half_left` that of half of it.
+// x: light left; y: light that has arrived. `left` is the transmittance of the stretch, `half_left` that of half of it.
 vec2 after(vec2 light, float stretch, float left, float half_left)
 {
     return vec2(light.x * left, light.y + light.x * stretch * half_left);
@@ -235,7 +235,7 @@ float ramp_left(uint packed, vec3 from_middle, float softened)
     const float along = dot(vec3(ramp_slope(packed)), from_middle);
     const float rise = float(ramp_height(packed)) + RAMP_HEIGHTS / RAMP_SLOPES * along;
     const float top = float(packed & 255u), share = clamp(0.5 + softened / RAMP_HEIGHTS * rise, 0.0, 1.0);
-    return 1.0 - top * top * (1.0 / 65025.0) * share;   // 255^2 times that is 1 in floats, too
+    return 1.0 - top * top * (1.0 / 65025.0) * share;   // 255^2 times this is 1 in floats, too
 }
 
 float near_left(const Block block, vec3 place, float softened)
@@ -261,7 +261,7 @@ float along(const Surface s, const Block block, vec3 direction, float leaves, iv
     const vec3 near_2 = begin + params.near_taps[2].distance * step;
     const ivec3 own = in_block + NEAR_AHEAD;
     float left_0 = near_left(block, near_0, SOFT_NEAR[0]), left_1 = near_left(block, near_1, SOFT_NEAR[1]);
-    // The stretch of the last is twice that of the others.
+    // The stretch of the last sample is twice that of the others.
     float half_2 = near_left(block, near_2, SOFT_NEAR[2]);
     half_2 = ivec3(near_2) == own ? 1.0 : half_2;
     const float left_2 = half_2 * half_2;

@@ -13,7 +13,7 @@ SHARED_CONST uint OCCLUSION_TAPS_4 = 2u;
 /// of them are in one voxel, so they share its fixed opacity.
 SHARED_CONST uint OCCLUSION_EDGE_TAPS = 6u;
 SHARED_CONST float OCCLUSION_EDGE_REACH = 1.5f;
-/// Rays begin this far in front of the edge: for this few samples that minimizes the error.
+/// Distance in front of the edge at which rays begin: it minimizes the error of so few samples.
 SHARED_CONST float OCCLUSION_LIFT = 0.13f;
 /// Maximum distance of the edge from the voxel, in units: the reach of rays is bounded.
 SHARED_CONST float OCCLUSION_FURTHEST = 1.2f;
@@ -43,7 +43,7 @@ struct OcclusionBakeParams {
     float guard;  ///< leap.h
     uint aprons[OCCLUSION_SIZES];
     uvec3 cell_counts;  ///< size of the leap grid
-    /// Nearest first; unused ones have a stretch of 0.
+    /// From near to far; unused ones have a stretch of 0.
     OcclusionTap near_taps[OCCLUSION_NEAR_TAPS];
     OcclusionTap taps_2[OCCLUSION_TAPS_2];
     OcclusionTap taps_4[OCCLUSION_TAPS_4];

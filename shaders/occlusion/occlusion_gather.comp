@@ -72,12 +72,12 @@ uint near_of(const OcclusionGatherParams params, const OcclusionJob job, ivec3 v
     const vec3 behind = vec3(code_at(texel + ivec3(1, 0, 0)), code_at(texel + ivec3(0, 1, 0)),
                              code_at(texel + ivec3(0, 0, 1)));
     const vec3 slope = (behind - before) / (2.0 * side);
-    // A coarse voxel covers several: this one is off its centre.
+    // A voxel of a coarse brick covers several of this level: the offset of this one from its centre.
     const vec3 beside = vec3(voxel & int((1u << above) - 1u)) + 0.5 - 0.5 * side;
-    // Densities curve within a voxel: their mean in it differs by this much.
+    // Densities curve within a voxel, so that their mean in it differs by this much.
     const float bend = dot(before + behind - 2.0 * middle, vec3(0.125 / side));
     const float code = middle + dot(slope, beside) + bend;
-    // No extremes beyond the neighbours: where these show nothing, cells are not occupied and never read.
+    // Ignores extremes beyond the neighbours: where these show nothing, cells are not occupied and never read.
     const vec3 least = min(before, behind), most = max(before, behind);
     const float lower = min(middle, min(least.x, min(least.y, least.z)));
     const float upper = max(middle, max(most.x, max(most.y, most.z)));

@@ -6,8 +6,8 @@ const float RAMP_UNEVEN = 230.0;
 // ... this is its maximum steepness across the cube.
 const float STEEPEST_OF_VOXELS = 3.3, STEEPEST_OF_CELLS = 2.6;
 
-// `level`, `squares`: the mean of the opacity in the cube, and of its square, for a `top` of 1. `direction`: in which
-// it rises. If the ramp ends inside the cube, its width follows from the two; if the opacity hardly varies there is no
+// `level`, `squares`: the means of the opacity in the cube and of its square, for a `top` of 1. `direction`: in which
+// it rises. If the ramp ends inside the cube, its width follows from the two; if the opacity hardly varies, there is no
 // ramp inside.
 uint packed_ramp(float top, float level, float squares, vec3 direction, float steepest)
 {

@@ -1,4 +1,4 @@
-// What a ray leaves between two dispatches (raycast.h, KEPT). Needs KEPT.
+// State that a ray leaves between two dispatches (raycast.h, KEPT). Needs KEPT.
 #if defined(PAGED) || defined(SHELLED)
 #define KEEPS
 layout(binding = 13, rgba32f) uniform image2D rays;   // KEPT_NOTHING: one texel
@@ -6,7 +6,7 @@ layout(binding = 13, rgba32f) uniform image2D rays;   // KEPT_NOTHING: one texel
 
 struct Kept {
     vec4 sum;         // KEPT_ALL: what the ray has gathered
-    vec2 shell;       // where the next iso-surface is, and from where on the search goes on
+    vec2 shell;       // position of the next iso-surface, and where the search continues
     uint step;        // KEPT_ALL: the step that is next
     bool is_inside;   // KEPT_ALL: the iso-surface
     bool is_done;     // KEPT_ALL

@@ -17,11 +17,11 @@ layout(binding = 14, r32ui) uniform readonly uimage3D sample_bits;   // leap.h
 // linear RGB (PREINTEGRATED: times opacity), opacity of a full step; then optical depths (raycast.h)
 layout(binding = 3, rgba32f) uniform readonly image2D table;
 
-// Limit of a leap in steps: from the last step (library/lattice.glsl) it still ends at a number of 32 bits.
+// Maximum number of steps of a leap: from the last step (library/lattice.glsl) it still ends at a number of 32 bits.
 const float MAX_LEAP = 2147483648.0;
 const float NO_SHELL = 1e30;   // a length along a ray
-// Lanes that have seen nothing in this many consecutive samples search for the next visible one: soon if the previous
-// search was long, late if nearly every sample is visible, since all lanes wait while one searches.
+// Number of consecutive samples that showed nothing after which a lane searches for the next visible one: small if the
+// previous search was long, large if nearly every sample is visible, since all lanes wait while one searches.
 const uint AWAY_FROM_SEEN = 64u;
 const uint SAMPLES_OF_LEAP = 8u;   // counted as unseen
 const uint LITTLE_PATIENCE = 2u;
@@ -99,7 +99,7 @@ void accumulate(inout vec4 sum, vec4 look)
 
 // A ray's accumulated state, and its position.
 struct March {
-    uint i;        // the next step: the whole ones, then the rest; beyond that, none
+    uint i;        // index of the next step: whole steps, then the rest; beyond that, none
     vec4 sum;
 #ifdef PICKS
     Rises rises;
@@ -110,7 +110,7 @@ struct March {
     Sample rest;   // the sample found there, not added yet
 };
 
-// At a step, with what earlier dispatches have gathered.
+// Begins at a step, with the sum of earlier dispatches.
 March march_from(uint step, vec4 sum)
 {
     March march;
@@ -217,7 +217,7 @@ void take_samples(const RaycastParams params, const Ray ray, const Lattice latti
     } while (searches_on);
 }
 
-// Adds what take_samples() has found behind the whole steps.
+// Adds the sample of the rest that take_samples() has found.
 void add_rest(const RaycastParams params, const Lattice lattice, inout March march)
 {
     if (march.has_rest) {
@@ -226,7 +226,7 @@ void add_rest(const RaycastParams params, const Lattice lattice, inout March mar
     }
 }
 
-// The steps that a dispatch takes of a ray.
+// Range of the steps that a dispatch takes of a ray.
 struct Block {
     uint first, end;
     bool is_last;
@@ -240,7 +240,7 @@ Block block_of(const RaycastParams params, const Lattice lattice)
     return block;
 }
 
-// Whether the device has ended the loop before its end, as nothing else does; the last block may end before the ray.
+// Whether the device has aborted the loop, the only way to stop before its end; the last block may end before the ray.
 bool is_cut_short(const RaycastParams params, const Lattice lattice, const Block block, const March march)
 {
     return march.i < (block.is_last ? step_count(lattice) : block.end) && march.sum.a < params.opacity_limit &&

@@ -14,7 +14,7 @@ layout(constant_id = 2) const uint GROUP_WIDTH = 8u;
 layout(constant_id = 4) const uint HAS_SURFACES = 0u;      // rays end at opaque surfaces (surfaces.comp)
 layout(constant_id = 9) const uint PREINTEGRATED = 0u;     // as in raycast.comp
 layout(constant_id = 11) const uint SMOOTH_BORDERS = 0u;   // as in raycast.comp
-// What rays do for a picture, and not here.
+// Parts of the ray caster that picking does not need.
 const uint SHADED = 0u, COUNT_WORK = 0u, FEEDBACK = 0u, KEPT = KEPT_NOTHING;
 
 layout(binding = 4, rgba32f) uniform image2D color;

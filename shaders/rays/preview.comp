@@ -56,8 +56,8 @@ struct Line {
     vec3 near, direction;
     vec3 safe;          // the direction, nowhere 0
     vec3 inverse;       // 1 / safe
-    float begin, end;   // of its part in the box: lengths along the line
-    ivec3 face;         // through which it enters: an axis, or 0 if it begins in the box
+    float begin, end;   // lengths along the line of its part in the box
+    ivec3 face;         // axis of the face through which it enters; 0 if it begins in the box
 };
 
 Line line_through(const PreviewParams preview, vec3 near, vec3 far, float length_to_far)
@@ -79,7 +79,7 @@ Line line_through(const PreviewParams preview, vec3 near, vec3 far, float length
 struct Hit {
     bool is_hit;
     ivec3 voxel;
-    ivec3 face;   // through which the line enters the voxel, towards its end; 0: the line begins there
+    ivec3 face;   // axis of the face through which the line enters the voxel, towards its end; 0: the line begins there
     float at;     // length along the line
 };
 

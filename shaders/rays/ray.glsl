@@ -15,7 +15,7 @@ struct Span {
     float to_far;       // length of the ray up to the far plane
 };
 
-// `half_way` is 0: kernels with light set it.
+// `half_way` is 0: kernels that compute light set it.
 Ray ray_of(const RaycastParams params, uvec2 pixel, out Span span)
 {
     const vec2 centre = vec2(pixel) + 0.5;
@@ -32,7 +32,7 @@ Ray ray_of(const RaycastParams params, uvec2 pixel, out Span span)
     ray.inverse = mix(1.0 / ray.direction, vec3(1e30), still);
     ray.ahead = vec3(greaterThanEqual(ray.direction, vec3(0.0)));
 
-    // Slabs; an axis along which the ray does not move is an inside test (0 / 0 does not matter there).
+    // Slab test; an axis along which the ray does not move is an inside test (0 / 0 does not matter there).
     const vec3 a = (params.box_lower - near) / ray.direction;
     const vec3 b = (params.box_upper - near) / ray.direction;
     const vec3 entry = mix(min(a, b), vec3(0.0), still);

@@ -75,7 +75,7 @@ layout(binding = 12, rgba32f) uniform readonly image2D surfaces;   // linear RGB
 // values count as 0, whose sign devices may lose.
 const float MIN_ALPHA = 1e-30;
 
-// What earlier dispatches have left of a ray.
+// State of a ray, left by earlier dispatches.
 Kept resume(const RaycastParams params, uvec2 in_part, ivec2 texel)
 {
     Kept kept = Kept(vec4(0.0), vec2(NO_SHELL, -1.0), 0u, false, false);
@@ -91,7 +91,7 @@ Kept resume(const RaycastParams params, uvec2 in_part, ivec2 texel)
     return kept;
 }
 
-// The steps that a dispatch takes of a ray, which may have waited.
+// Range of the steps that a dispatch takes of a ray, which may have waited.
 Block block_of(const RaycastParams params, const Lattice lattice, const Kept kept)
 {
     if (KEPT != KEPT_ALL) return block_of(params, lattice);
@@ -109,7 +109,7 @@ float end_of_block(const RaycastParams params, const Lattice lattice, const Bloc
 }
 
 #ifdef SHELLED
-// Crossings are few, and drawn outside the loops that look for samples and take them.
+// Crossings are few, so they are drawn outside the loops that search and take samples.
 void take_between_shells(const RaycastParams params, const Ray ray, const Lattice lattice, uint end_step,
                          inout Shell shell, inout March march, inout Work work)
 {

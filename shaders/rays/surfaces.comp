@@ -146,7 +146,7 @@ void meet_listed(const SurfaceParams scene, const Line line, float begin, uvec2 
 }
 #endif
 
-// The lit colour of what a line meets.
+// The lit colour of the surface that a line meets.
 vec3 look_of(const RaycastParams params, const SurfaceParams scene, const Line line, const Hit hit)
 {
     const vec3 at = line.origin + hit.at * line.direction;
@@ -155,7 +155,7 @@ vec3 look_of(const RaycastParams params, const SurfaceParams scene, const Line l
 #ifdef LISTED
     if (hit.index != PROBE_INDEX) {
         const Surface surface = surface_at(hit.index);
-        // As in surface_range: from the line's point nearest to the surface.
+        // Computed as in surface_range: from the line's point nearest to the surface.
         const vec3 from = from_origin(scene, surface) - line.origin;
         const float shift = dot(from + 0.5 * surface.along, line.direction);
         const vec3 point = (hit.at - shift) * line.direction - (from - shift * line.direction);

@@ -17,8 +17,8 @@ layout(binding = 2) uniform sampler3D atlas;
 #else
 layout(binding = 2, r32ui) uniform readonly uimage3D atlas;
 #endif
-// Tables are images, not buffers: one load for four components,
-// and lavapipe would read a buffer one lane at a time.
+// Tables are images, not buffers: one load reads four components, and lavapipe would read a buffer one lane at a
+// time.
 #ifdef MASKED
 layout(binding = 5, r8ui) uniform readonly uimage3D mask;
 #define MASK_TABLE_BINDING 6

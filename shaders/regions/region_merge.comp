@@ -12,9 +12,9 @@ layout(binding = 1, scalar) coherent buffer Parents { uint of[]; } parents;
 #include "forest.glsl"
 #include "region.glsl"
 
-// As find_root, and halves the path for later searches: chains stay short, however convoluted a component is. Other
-// threads link roots concurrently: a stale parent is still an ancestor, since parents only ever decrease, and the
-// atomic in `unite` decides.
+// Like find_root, but halves the path for later searches: chains stay short, however convoluted a component is. Other
+// threads link roots concurrently: a stale parent is still an ancestor, since parents only decrease, and the atomic in
+// `unite` decides.
 uint find_root_halving(uint run)
 {
     uint parent = parents.of[run];
@@ -60,7 +60,7 @@ void unite_with_row(ivec3 here, uint word, int dx, int dy, int dz)
     const uint touching = word & shifted;
     for (uint starts = touching & ~(touching << 1); starts != 0u; starts &= starts - 1u) {
         const int bit = findLSB(starts);
-        const int other = bit + dx;   // -1 ... 32: may be in a neighbouring word
+        const int other = bit + dx;   // -1 ... 32: the bit may be in a neighbouring word
         const ivec3 other_word = row + ivec3(other < 0 ? -1 : other > 31 ? 1 : 0, 0, 0);
         const uint other_bits = word_at(other_word);
         const uint mine = word_index(uvec3(here)) * 32u + run_start(word, uint(bit));

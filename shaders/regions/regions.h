@@ -38,7 +38,7 @@ struct RegionParams {
 struct SeedParams {
     uvec3 size;  ///< voxels of the region
     uint words_per_row;
-    ivec3 to_seeds;   ///< offset from a voxel of the region to the same one in the seeds' box
+    ivec3 to_seeds;   ///< offset from a voxel of the region to the same voxel in the seeds' box
     uvec3 seed_size;  ///< voxels
     uint seed_words_per_row;
 };
