@@ -21,10 +21,10 @@ constexpr double IDLE_S = 0.25;
 constexpr double CLICK_S = 0.05;  ///< while a click waits for its second
 /// Without input, sharper tiles are shown at this interval, since drawing the interface takes time from them.
 constexpr double SHARPEN_S = 0.12;
-/// Widgets settle, hover and blink for that long after the last event.
+/// Duration after the last event for which widgets may settle, hover and blink.
 constexpr double AFTERGLOW_S = 0.3;
 
-/// Takes budgets that the command line leaves open from the preferences; the workbench reports errors in these.
+/// Takes budgets that the command line leaves open from the preferences. Errors in these are reported by the workbench.
 gpu::Budget budget_of(const AppOptions& options)
 {
     gpu::Budget budget = options.budget;
@@ -147,8 +147,8 @@ void App::draw()
     if (now - *undrawn_since_s_ > PATIENCE_S) fail("the window cannot be drawn: ", frame_failure_);
 }
 
-/// All images of the window are on their way to the screen, or it is hidden: work goes on, and a frame is tried again,
-/// ever less often.
+/// Called when all images of the window are on their way to the screen, or it is hidden: work goes on, and a frame is
+/// tried again, less and less often.
 void App::try_again_soon()
 {
     constexpr double FIRST_S = 0.002, LAST_S = 0.05, GROWTH = 0.1;
@@ -207,7 +207,7 @@ bool App::something_moves() const
     return bench_->is_stirring() || glm::distance(bench_->document().probe_voxel(), drawn_probe_voxel_) > STIR_VOXELS;
 }
 
-/// When the interface should be drawn next, as far as known: at once, a little later, or not at all.
+/// Returns when the interface should be drawn next, as far as known: at once, a little later, or not at all.
 double App::next_reason_to_draw_s() const
 {
     if (undrawable_since_s_) return 0.0;
@@ -232,7 +232,7 @@ double App::time_to_wait() const
 
 namespace {
 
-/// A motion that another follows at once, while nothing is held: only the last place matters.
+/// Returns whether another motion follows at once while nothing is held, so that only the last position matters.
 bool is_overtaken(const std::vector<InputEvent>& events, const InputEvent& event)
 {
     const size_t next = size_t(&event - events.data()) + 1;
@@ -257,12 +257,12 @@ bool App::ui_has_mouse(const InputEvent& event) const
     return covers(at / glm::dvec2(io.DisplayFramebufferScale.x, io.DisplayFramebufferScale.y));
 }
 
-/// Text goes to the field it is typed into. While panels are used by keyboard, or a popup is open, the keys that move
-/// in them are theirs, and all others mean what they always mean.
+/// Text goes to the field in which it is typed. While panels are used by keyboard, or a popup is open, the keys that
+/// move in them go to them, and all others act as always.
 bool App::ui_has_key(const KeyEvent& event) const
 {
     if (field_has_keys() || choosers_have_keys()) return true;
-    if (!bench_->model().awaits_key.empty()) return false;  // any key may be the one that is chosen
+    if (!bench_->model().awaits_key.empty()) return false;  // any key may be the one to be bound
     return panels_have_keyboard() && moves_in_panels(event);
 }
 
@@ -273,7 +273,7 @@ bool App::panels_have_keyboard() const
     return ImGui::GetIO().NavVisible || has_popup || field_has_keys() || choosers_have_keys();
 }
 
-/// Those that came behind a key that may have opened or closed a field wait for the frame that tells whose they are.
+/// Input after a key that may have opened or closed a field waits for the frame that shows where it goes.
 std::vector<InputEvent> App::events_in_turn(double timeout_s)
 {
     for (InputEvent& event : window_.wait_events(timeout_s)) held_back_.push_back(std::move(event));
@@ -289,7 +289,7 @@ void App::hold_back(std::vector<InputEvent>& events, size_t first)
     events.erase(begin, events.end());
 }
 
-/// Enter and Escape where the interface has them, and what leads to a field. Before its actions are applied.
+/// Handles Enter and Escape in the interface, and keys that lead to a field. Called before its actions are applied.
 bool App::decides_who_has_keys(const KeyEvent& event, bool is_for_ui) const
 {
     if (!event.pressed) return false;
@@ -319,7 +319,7 @@ void App::handle_events(double timeout_s)
             viewport_.handle(event, model(), ui_has_mouse(event), actions_);
         }
         bench_->set_pointer(viewport_.pointer());
-        apply_all();  // the next event may depend on it: the probe's position, the selection
+        apply_all();  // the next event may depend on the action: on the probe's position, the selection
         if (decides) hold_back(events, i + 1);
     }
     if (window_.has_clicks()) keep_drawing(AFTERGLOW_S);

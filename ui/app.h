@@ -21,13 +21,13 @@
 namespace shvr::ui {
 
 struct AppOptions {
-    std::string input;  ///< session, project or volume; empty: nothing is open
+    std::string input;  ///< path of a session, project or volume; empty: nothing is open
     std::vector<std::string> settings;
     std::string device;
     gpu::Budget budget;
     int threads = 0;
     bool validation = false;
-    const std::atomic<bool>* stop = nullptr;  ///< once true, the window is asked to close, as by its button
+    const std::atomic<bool>* stop = nullptr;  ///< once true, the window is asked to close, as if by its button
     bool allow_force = false;                 ///< lets a haptic device with a verified profile push the hand
     std::filesystem::path preferences{};      ///< the file (preferences_file.h); empty: none are read or kept
     std::filesystem::path log{};              ///< receives each action as a line that replays it; empty: none
@@ -89,7 +89,7 @@ private:
     Actions actions_;
     std::vector<InputEvent> held_back_;  ///< for a frame after held_back_in_frame_
     int held_back_in_frame_ = -1;
-    bool was_asked_to_close_ = false;  ///< closing was refused, since saving failed; nothing was done since
+    bool was_asked_to_close_ = false;  ///< closing was refused, since saving failed; nothing has been done since
     bool was_stopped_ = false;         ///< the program was asked to stop from outside (AppOptions::stop)
     std::string frame_failure_;
     std::optional<double> undrawn_since_s_;  ///< time since which every frame has failed
@@ -100,8 +100,8 @@ private:
     // Pace
     double next_frame_s_ = 0.0;
     std::optional<double> undrawable_since_s_;  ///< time since which no image is available, or of the last one's loss
-    double ui_until_s_ = 1.0;                   ///< the interface is drawn at least until then
-    uint64_t ui_until_frame_ = 3;               ///< likewise, at least until that many frames are presented
+    double ui_until_s_ = 1.0;                   ///< time until which the interface is drawn at least
+    uint64_t ui_until_frame_ = 3;               ///< number of frames to present until which it is drawn at least
     double last_keys_s_ = 0.0;
     uint64_t drawn_revision_ = ~uint64_t(0);
     bool drew_complete_ = false;  ///< the interface indicates whether the picture is sharp

@@ -13,7 +13,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Everything that people named. What is derived from it, as histories and lists are, has the same characters.
+/// All names given by the user. Texts derived from them, such as histories and lists, use the same characters.
 void want_glyphs_of(const Model& model)
 {
     want_glyphs(model.volume.name);
@@ -58,14 +58,14 @@ void App::follow_appearance()
     keep_drawing(0.5);  // while panels settle into their new places
 }
 
-/// After panels or the menu were used by keyboard: otherwise what is framed there would take the next Space.
+/// Called after panels or the menu were used by keyboard: otherwise the framed item would take the next Space.
 void App::leave_panels() const
 {
     const bool has_popup = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
     if (ImGui::GetIO().NavVisible && !has_popup && !field_has_keys()) ImGui::SetWindowFocus(nullptr);
 }
 
-/// Inside a frame, since windows are known by then.
+/// Called inside a frame, since windows are known by then.
 void App::follow_focus()
 {
     const std::string what = bench_->take_focus();

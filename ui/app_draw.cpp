@@ -21,7 +21,7 @@ ImU32 color_of(const glm::dvec3& linear, float alpha)
     return ImGui::GetColorU32(ImVec4(encoded(linear.r), encoded(linear.g), encoded(linear.b), alpha));
 }
 
-/// Words lie on a dark ground, so that they are read on any picture.
+/// Words have a dark background, so that they can be read on any picture.
 template <class OnScreen>
 void draw_over(const Marks& marks, const OnScreen& on_screen, ImDrawList& list)
 {
@@ -39,7 +39,7 @@ void draw_over(const Marks& marks, const OnScreen& on_screen, ImDrawList& list)
 
 }  // namespace
 
-/// False if the window cannot show it now.
+/// Returns false if the window cannot show the frame now.
 bool App::draw_ui()
 {
     const double begun = window_.now_s();
@@ -64,7 +64,7 @@ bool App::draw_ui()
         drawn_probe_voxel_ = document.probe_voxel();
     }
     viewport_.set_layout(layout);
-    // On a software device the wait would include this work, and grow with it.
+    // On a software device the wait would include the work submitted here, and grow with it.
     std::function<void(double)> go_on;
     if (is_open && !renderer_->device().traits().is_cpu)
         go_on = [this](double wait_ms) { bench_->screen().submit_ahead(wait_ms); };

@@ -11,7 +11,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Versions from the one that moved the render pass into `Info` on; their header decides.
+/// Versions since the one that moved the render pass into `Info`; their header decides.
 template <class Info>
 void init_vulkan(Info& info, VkRenderPass pass)
 {
@@ -89,8 +89,8 @@ ImVec2 pointer_of(GLFWwindow* window)
 
 }  // namespace
 
-/// All events before a frame are for that frame, and of two that contradict each other the later counts: the back end
-/// hears of the mouse as well, and what is said here comes after that.
+/// All events before a frame are for that frame, and of two contradicting ones the later counts. The back end reports
+/// the mouse as well, and the reports here come after its own.
 void set_up_imgui_input()
 {
     ImGui::GetIO().ConfigInputTrickleEventQueue = false;
@@ -101,7 +101,7 @@ void tell_imgui_key(GLFWwindow* window, int key, bool pressed, int mods)
     if (!is_alt(key)) ImGui_ImplGlfw_KeyCallback(window, key, 0, pressed ? GLFW_PRESS : GLFW_RELEASE, mods);
 }
 
-/// Not as an event: what reads or clears typed text between frames would not find it.
+/// Not passed as an event: code that reads or clears typed text between frames would not find it.
 void tell_imgui_character(GLFWwindow*, unsigned character)
 {
     if (character == 0) return;
@@ -122,7 +122,7 @@ void tell_imgui_buttons(GLFWwindow* window, const MouseFeed::Frame& frame)
 void begin_imgui_frame(GLFWwindow* window, const std::vector<int>& pressed, int mods)
 {
     for (const int key : pressed) tell_imgui_key(window, key, true, mods);
-    ImGui::GetIO().AddKeyEvent(ALT, false);  // otherwise letting go of it, as after a drag, would move on to the menu
+    ImGui::GetIO().AddKeyEvent(ALT, false);  // otherwise releasing it, as after a drag, would move on to the menu
     ImGui::NewFrame();
     for (const int key : pressed)
         if (glfwGetKey(window, key) != GLFW_PRESS) tell_imgui_key(window, key, false, mods);
@@ -155,7 +155,7 @@ void begin_imgui_frame(GLFWwindow* window, const std::vector<int>& pressed, int)
 {
     bool(&down)[512] = ImGui::GetIO().KeysDown;
     for (const int key : pressed) down[key] = true;
-    ImGui::GetIO().KeyAlt = false;  // otherwise letting go of Alt, as after Alt + drag, would move on to the menu
+    ImGui::GetIO().KeyAlt = false;  // otherwise releasing Alt, as after Alt + drag, would move on to the menu
     ImGui::NewFrame();
     for (const int key : pressed) down[key] = glfwGetKey(window, key) == GLFW_PRESS;
 }

@@ -40,14 +40,14 @@ std::string name_of_key(int key)
     return {};
 }
 
-/// On an American keyboard: GLFW's codes of printable keys are ASCII.
+/// Name of the key at that place of an American keyboard: GLFW's codes of printable keys are ASCII.
 std::string name_at_place(int key)
 {
     const std::string name = name_of_key(key);
     return !name.empty() ? name : key > GLFW_KEY_SPACE && key < 127 ? std::string(1, char(key)) : std::string();
 }
 
-/// On the person's keyboard. Digits are taken by place: on some keyboards they need Shift.
+/// Name of the key in the user's layout. Digits are taken by place, since on some keyboards they need Shift.
 std::string name_in_layout(const KeyEvent& event)
 {
     const bool is_digit = event.key >= GLFW_KEY_0 && event.key <= GLFW_KEY_9;
@@ -75,7 +75,7 @@ std::vector<const Shortcut*> shortcuts_for(const KeyEvent& event, int mods, cons
     const std::string in_layout = name_in_layout(event), at_place = name_at_place(event.key);
     add(in_layout, false);
     add(at_place, true);
-    // Keys of an American keyboard that this one perhaps has only with Shift: brackets under German umlauts.
+    // Keys of an American keyboard that this one may have only with Shift: brackets under German umlauts.
     const bool is_letter = in_layout.size() == 1 && std::isalnum(static_cast<unsigned char>(in_layout[0]));
     if (found.empty() && !is_letter && in_layout != at_place) add(at_place, false);
     return found;
@@ -96,7 +96,7 @@ void bind(const KeyEvent& event, const Model& model, Actions& actions)
         actions.push_back(AwaitKey{});
     else if (event.key == GLFW_KEY_DELETE && event.mods == 0)
         actions.push_back(BindKeys{std::string(model.awaits_key), ""});
-    else if (!event.repeated && !key.empty())  // what is no key to bind is refused in words
+    else if (!event.repeated && !key.empty())  // a key that cannot be bound is refused with a message
         actions.push_back(BindKeys{std::string(model.awaits_key), text});
 }
 
@@ -138,7 +138,7 @@ void Keyboard::hold(double seconds, int mods, const std::function<bool(int key)>
         return true;
     });
     for (const Held& held : held_) {
-        // After Ctrl + S, a hand that lets go of Ctrl first holds S for a moment.
+        // After Ctrl + S, a hand that releases Ctrl first still holds S for a moment.
         const std::vector<const Shortcut*> begun = shortcuts_for(held.pressed, held.pressed.mods, model.keymap);
         for (const Shortcut* shortcut : shortcuts_for(held.pressed, mods, model.keymap))
             if (shortcut->mode == Shortcut::Mode::hold && std::ranges::find(begun, shortcut) != begun.end())

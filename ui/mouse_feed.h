@@ -15,11 +15,11 @@ namespace shvr::ui {
 class MouseFeed {
 public:
     static constexpr int BUTTONS = 3;              ///< left, right and middle, as GLFW and Dear ImGui count them
-    static constexpr double DOUBLE_CLICK_S = 0.5;  ///< from press to press: most desktops take 0.4 to 0.5
+    static constexpr double DOUBLE_CLICK_S = 0.5;  ///< maximum time from press to press: most desktops take 0.4 to 0.5
 
     struct Frame {
         std::array<bool, BUTTONS> down{};
-        std::optional<glm::dvec2> at;  ///< where the button was pressed or released, in pixels; none: nothing changed
+        std::optional<glm::dvec2> at;  ///< position of the press or release, in pixels; none: nothing changed
         bool is_double = false;  ///< the same button may have been pressed shortly before; the distance is not checked
     };
 

@@ -23,10 +23,10 @@ struct AppReport {
     std::vector<double> own_idle_ms, own_busy_ms;
     std::vector<double> interval_ms;  ///< time between two frames while something was moving
     std::vector<double> input_ms;     ///< from a key or button until the frame that shows its effect is finished
-    /// From opening the last volume until the device finished the first frame that showed any of it, and all of it
-    /// sharp.
+    /// Time from opening the last volume until the device has finished the first frame that shows any of it, and the
+    /// first that shows all of it sharp.
     std::optional<double> first_picture_ms, sharp_picture_ms;
-    std::vector<double> relevance_ms;  ///< from requesting relevance until the servo has it
+    std::vector<double> relevance_ms;  ///< time from requesting relevance until the servo has it
     uint64_t view_submissions = 0;
     bool view_complete = false;
     ServoState servo;
@@ -41,7 +41,7 @@ struct AppReport {
 
 class RunReport {
 public:
-    /// Times kept per kind: at least this many, at most twice as many.
+    /// Number of times kept per kind: at least this many, at most twice as many.
     static constexpr size_t KEPT = 50'000;
 
     /// Starts the measurement of first pictures: another scan was opened.

@@ -15,7 +15,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Tolerances in pixels: glyphs are moved to whole pixels.
+/// Tolerances in pixels, since glyphs are moved to whole pixels.
 constexpr float NEAR = 0.75f, CUT = 1.0f;
 constexpr int MAX_SPACES = 3;  ///< in a row within one text
 
@@ -64,7 +64,7 @@ std::string utf8_of(unsigned int character)
     return text;
 }
 
-/// The quad whose six indices begin there; nothing if they are other triangles.
+/// The quad whose six indices begin there; null if they are other triangles.
 std::optional<Quad> quad_at(const ImDrawList& list, unsigned int index)
 {
     const ImDrawIdx* const at = &list.IdxBuffer[int(index)];
@@ -77,7 +77,7 @@ std::optional<Quad> quad_at(const ImDrawList& list, unsigned int index)
     return Quad{{{a.pos.x, a.pos.y}, {c.pos.x, c.pos.y}}, {{a.uv.x, a.uv.y}, {c.uv.x, c.uv.y}}};
 }
 
-/// Puts the glyphs of one draw list together.
+/// Joins the glyphs of one draw list into texts.
 class Lines {
 public:
     Lines(std::string window, std::vector<ScreenText>& texts, Glyphs& glyphs)
@@ -88,7 +88,7 @@ public:
     {
         const ImFontGlyph* const glyph = glyphs_.at(quad.texels);
         if (!glyph) return;
-        // The quad as it would be if it were whole.
+        // The quad that would be drawn if it were not cut.
         const glm::vec2 scale = (quad.place.end - quad.place.begin) / (quad.texels.end - quad.texels.begin);
         const glm::vec2 whole_begin = quad.place.begin - (quad.texels.begin - glm::vec2(glyph->U0, glyph->V0)) * scale;
         const glm::vec2 whole_end = quad.place.end + (glm::vec2(glyph->U1, glyph->V1) - quad.texels.end) * scale;

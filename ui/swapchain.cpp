@@ -58,7 +58,7 @@ void Swapchain::create_surface()
 
 namespace {
 
-/// Opaque, or what comes nearest to it: every pixel is drawn opaque.
+/// Opaque if possible; every pixel is drawn opaque anyway.
 VkCompositeAlphaFlagBitsKHR alpha_of(const VkSurfaceCapabilitiesKHR& capabilities)
 {
     for (const auto one : {VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR, VK_COMPOSITE_ALPHA_INHERIT_BIT_KHR,
@@ -67,8 +67,8 @@ VkCompositeAlphaFlagBitsKHR alpha_of(const VkSurfaceCapabilitiesKHR& capabilitie
     return VK_COMPOSITE_ALPHA_POST_MULTIPLIED_BIT_KHR;
 }
 
-/// A picture that a newer one replaces before the screen has shown it: presenting never waits for the screen, as some
-/// drivers do. Where there is none of that, all are shown in turn.
+/// Prefers mailbox: a newer picture replaces one that the screen has not shown, so presenting never waits for the
+/// screen, as some drivers do. Otherwise all are shown in turn.
 VkPresentModeKHR mode_of(VkPhysicalDevice physical, VkSurfaceKHR surface)
 {
     const auto modes = gpu::enumerate<VkPresentModeKHR>([&](uint32_t* count, VkPresentModeKHR* items) {
@@ -202,7 +202,7 @@ void Swapchain::renew_fonts()
 /// Does not wait for the device: resources of the previous swapchain are freed later. False if the window is minimised.
 bool Swapchain::create_swapchain()
 {
-    if (!surface_) create_surface();  // which could not be had when it was lost
+    if (!surface_) create_surface();  // the surface could not be re-created when it was lost
     glfwGetFramebufferSize(window_, &made_for_.x, &made_for_.y);
     VkSurfaceCapabilitiesKHR& capabilities = made_of_;
     check(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical(), surface_, &capabilities),
@@ -246,7 +246,7 @@ bool Swapchain::create_swapchain()
     return true;
 }
 
-/// Puts the swapchain aside, with the image that was taken from it in vain; returns it, for the one that follows.
+/// Retires the swapchain, with the image that was acquired in vain; returns it, for the creation of the next one.
 VkSwapchainKHR Swapchain::retire()
 {
     if (!swapchain_) return VK_NULL_HANDLE;
@@ -260,8 +260,8 @@ VkSwapchainKHR Swapchain::retire()
     return old.swapchain;
 }
 
-/// Frees swapchains whose frames the device has drawn and the screen has taken. Vulkan does not tell the latter but by
-/// giving an image back that was shown later. While a window's edge is dragged every frame has a swapchain of its own,
+/// Frees swapchains whose frames the device has drawn and the screen has taken. Vulkan reveals the latter only by
+/// returning an image that was shown later. While a window's edge is dragged every frame has a swapchain of its own,
 /// none of which gets an image back: of those only the last ones are kept, once the device is done with something that
 /// came after them in the queue, or nothing did.
 void Swapchain::free_retired()

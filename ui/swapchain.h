@@ -24,7 +24,7 @@ public:
     /// Fails if the device cannot present to the window.
     Swapchain(gpu::Device& device, gpu::Memory& memory, GLFWwindow* window);
     ~Swapchain();
-    /// Called once the frame is submitted to the device, before a call that waits for the screen: for about `wait_ms`
+    /// Called once the frame is submitted, before a call that waits for the screen for about `wait_ms`
     /// milliseconds.
     using Meanwhile = std::function<void(double wait_ms)>;
     Swapchain(const Swapchain&) = delete;
@@ -49,7 +49,7 @@ public:
 
 private:
     static constexpr uint32_t FRAMES_IN_FLIGHT = 2;
-    static constexpr uint32_t IMAGES = 3;  ///< one is displayed, one is queued, one is drawn
+    static constexpr uint32_t IMAGES = 3;  ///< number of images: one is displayed, one is queued, one is drawn
     struct Target {
         VkImage image = VK_NULL_HANDLE;
         VkImageView view = VK_NULL_HANDLE;

@@ -1,4 +1,4 @@
-// A frame of the window: what is recorded, submitted and presented, and what is left of one that fails.
+// A frame of the window: recording, submission, presentation, and cleaning up after failures.
 
 #include "ui/swapchain.h"
 
@@ -144,7 +144,7 @@ void Swapchain::complete(Frame& frame) const
 }
 
 /// After a failure half way: its semaphore may be signalled and its fence never be, and an image may be acquired that
-/// is never presented. All of them go, and what was recorded.
+/// is never presented. All of these are destroyed, and so is the recorded work.
 void Swapchain::abandon(Frame& frame)
 {
     device_.wait_idle_or_lost();
@@ -213,7 +213,7 @@ bool Swapchain::prepare(Frame& frame)
 bool Swapchain::acquire(Frame& frame)
 {
     constexpr uint64_t PATIENCE_NS = 10'000'000;  // some drivers have no image yet just after they have made them
-    // Says what vkGetFenceStatus says, and tells validation that the frame was waited for.
+    // Has the same result as vkGetFenceStatus, and informs validation that the frame was waited for.
     const VkResult status = vkWaitForFences(device_.handle(), 1, &frame.done, VK_TRUE, 0);
     check(status, "vkWaitForFences");
     if (status == VK_TIMEOUT) return false;
@@ -292,8 +292,8 @@ bool Swapchain::show(Frame& frame, const std::vector<View::Layer>& layers, const
     return shown != VK_ERROR_OUT_OF_DATE_KHR;
 }
 
-/// Presents, and learns how long that waits for the screen: where each image is shown in turn, many drivers wait until
-/// there is room for another one.
+/// Presents, and measures how long that waits for the screen: where each image is shown in turn, many drivers wait
+/// until there is room for another one.
 VkResult Swapchain::hand_to_screen(const VkPresentInfoKHR& info)
 {
     const auto begun = std::chrono::steady_clock::now();
@@ -304,11 +304,11 @@ VkResult Swapchain::hand_to_screen(const VkPresentInfoKHR& info)
     return result;
 }
 
-/// For the screen, when the next image is handed to it; 0: none that is worth filling.
+/// Expected wait for the screen when the next image is presented; 0: too short to be used.
 double Swapchain::expected_wait_ms() const
 {
-    constexpr double MIN_MS = 1.0, MAX_MS = 50.0;  // longer waits are of a screen that is slow for now
-    // One frame that waited says nothing; and where a newer image replaces the one before, none waits.
+    constexpr double MIN_MS = 1.0, MAX_MS = 50.0;  // ignores longer waits, of a screen that is slow for the moment
+    // A single frame that waited proves nothing; and if newer images replace older ones, none waits.
     const double wait_ms = std::min(*std::ranges::min_element(waits_ms_), MAX_MS);
     return mode_ == VK_PRESENT_MODE_FIFO_KHR && wait_ms >= MIN_MS ? wait_ms : 0.0;
 }

@@ -66,7 +66,7 @@ glm::uvec2 Viewport::pane_pixels(const Model& model) const
     return pane_ < model.panes.size() ? glm::max(model.panes[pane_].pane.pixels(), glm::uvec2(1)) : glm::uvec2(1);
 }
 
-/// In pixels of the pane under the mouse.
+/// The mouse position in pixels of the pane under it.
 glm::dvec2 Viewport::in_pane(const glm::dvec2& at, const Model& model) const
 {
     const glm::uvec2 origin = pane_ < model.panes.size() ? model.panes[pane_].pane.box.begin : glm::uvec2(0);
@@ -103,7 +103,7 @@ void Viewport::press(const ButtonEvent& event, const When& when, const Model& mo
     last_ = pressed_ = event.at;
     was_elsewhere_ = false;
     if (event.button == GLFW_MOUSE_BUTTON_RIGHT && turns) {
-        // The pointer may have come here unnoticed since the probe followed it last.
+        // The pointer may have moved here without events since the probe followed it last.
         if (!is_map && !was_here) actions.emplace_back(ProbeTo{pane_, in_pane(event.at, model), true});
         gesture_ = Gesture::paint;
         actions.emplace_back(Paint{true});
@@ -142,7 +142,7 @@ void Viewport::press_left(const ButtonEvent& event, const When& when, const Mode
         if (model.tool() == Tool::trace && pane_ < model.panes.size())
             pressed_node_ =
                 trace_hit(model.trace, model.panes[pane_].pane, in_pane(event.at, model), model.volume).node;
-        // In the turn tool a double click means something else than two clicks, and something at once.
+        // In the turn tool a double click differs from two clicks, and acts at once.
         if (model.tool() == Tool::turn && is_second_) {
             click_.reset();
             actions.emplace_back(ProbeOnto{pane_, in_pane(event.at, model)});
@@ -203,8 +203,8 @@ void Viewport::begin_drag(const Model& model, Actions& actions)
     actions.emplace_back(DragNode{true});
 }
 
-/// The probe follows a pointer without a button. In slices it stays where it is in tools that point, or the other
-/// slices would follow every motion.
+/// The probe follows a pointer without a pressed button. In slices it stays in place with tools that point, since
+/// otherwise the other slices would follow every motion.
 void Viewport::hover(const Model& model, bool jumps, Actions& actions)
 {
     const Tool tool = model.tool();
@@ -231,7 +231,7 @@ void Viewport::follow(const MoveEvent& event, bool ui_has_mouse, const Model& mo
     if (gesture_ == Gesture::press && glm::distance(event.at, pressed_) > CLICK_PIXELS) begin_drag(model, actions);
     const glm::dvec2 pixel = in_pane(event.at, model);
     switch (gesture_) {
-        // The object follows the mouse, so the eye moves the other way.
+        // The object follows the mouse, so the eye moves the opposite way.
         case Gesture::turn:
             actions.emplace_back(Orbit{-DEGREES_PER_HEIGHT * heights.x, DEGREES_PER_HEIGHT * heights.y});
             break;

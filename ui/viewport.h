@@ -81,17 +81,17 @@ private:
     int button_ = 0;
     glm::dvec2 last_{0.0}, pressed_{0.0};
     std::optional<uint32_t> pressed_node_;
-    bool was_elsewhere_ = true;  ///< the pointer was outside before the next motion
+    bool was_elsewhere_ = true;  ///< set when the pointer was outside before the next motion
     std::optional<Pointer> pointer_;
     double pressed_s_ = 0.0;              ///< latest time of the left button's press
-    bool is_second_ = false;              ///< that press is the second of a double click
+    bool is_second_ = false;              ///< set if that press is the second of a double click
     std::optional<double> last_click_s_;  ///< press time of the last click
     glm::dvec2 last_click_{0.0};
     struct Click {
         SelectAt what;
         double pressed_s = 0.0;
     };
-    std::optional<Click> click_;  ///< click of the turn tool, not yet carried out
+    std::optional<Click> click_;  ///< click of the turn tool that has not been carried out yet
 };
 
 }  // namespace shvr::ui

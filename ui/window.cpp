@@ -22,8 +22,8 @@ std::string glfw_error()
     return description ? description : "no reason given";
 }
 
-/// GLFW 3.4 prefers Wayland, which tells a window neither where it is nor which screen that is on, and lets no program
-/// but the compositor move the pointer, as tests do. With X11 (there, Xwayland) all versions do the same.
+/// GLFW 3.4 prefers Wayland, where a window knows neither its position nor its screen, and only the compositor may move
+/// the pointer, which tests need. With X11 (there, Xwayland), all versions behave alike.
 bool start_glfw()
 {
 #ifdef GLFW_PLATFORM  // since 3.4
@@ -58,7 +58,7 @@ struct Window::Input {
     glm::ivec2 place{0}, size{0};  ///< position and size of the window before full screen
     std::vector<int> pressed;      ///< keys, since the last frame
     MouseFeed mouse;
-    double asked_s = 0.0, answered_s = 0.0;  ///< when events were last waited for, and when that ended
+    double asked_s = 0.0, answered_s = 0.0;  ///< when the last wait for events began, and when it ended
 
     /// When the event at hand can have happened: GLFW does not tell. What is there at once came since the last time.
     double earliest_s() const
@@ -88,7 +88,7 @@ struct Window::Input {
         }
         return *last;
     }
-    /// Screen coordinates to pixels: they differ on some HiDPI systems.
+    /// Factor from screen coordinates to pixels: they differ on some HiDPI systems.
     static glm::dvec2 in_pixels(GLFWwindow* window, const glm::dvec2& at)
     {
         glm::ivec2 size(1), pixels(1);

@@ -57,7 +57,7 @@ struct DamageEvent {};
 struct InputEvent {
     std::variant<KeyEvent, TextEvent, ButtonEvent, MoveEvent, ScrollEvent, DropEvent, DamageEvent> what;
     double time_s = 0.0;         ///< time of receipt
-    double earliest_s = time_s;  ///< earliest time of the event: input during a long frame is received after it
+    double earliest_s = time_s;  ///< earliest time of the event: input during a long frame is received later
 };
 
 class Swapchain;

@@ -61,7 +61,7 @@ Window worst_window(const ImageF& picture, const ImageF& truth)
         for (int x = 0; x + worst.width <= truth.width; ++x) {
             const double here =
                 sum(x + worst.width, y + worst.height) - sum(x, y + worst.height) - sum(x + worst.width, y) + sum(x, y);
-            // Sums of equal errors differ by rounding: the first window wins.
+            // Sums of equal errors differ by rounding, so the first window wins unless another is clearly larger.
             if (here > most + 1e-12) most = here, worst.x = x, worst.y = y;
         }
     return worst;

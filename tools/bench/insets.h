@@ -11,8 +11,8 @@ struct Window {
     bool operator==(const Window&) const = default;
 };
 
-/// The window of a quarter of the sides in which the squared errors sum up to most; in case of a tie the first from the
-/// top.
+/// The window, a quarter of the picture's sides, with the largest sum of squared errors; in case of a tie the first
+/// from the top.
 Window worst_window(const ImageF& picture, const ImageF& truth);
 /// As displayed (8 bits), with each pixel enlarged to `times` x `times`.
 Image8 enlarged(const ImageF& picture, const Window& window, int times);

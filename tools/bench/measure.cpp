@@ -90,12 +90,12 @@ ImageF reference_of(const golden::Studio& studio, const Scene& scene, const Meas
     return image;
 }
 
-/// A run that can be drawn at any time.
+/// A run that can be drawn at any time, since its device is ready.
 struct Prepared {
     const Run* run;
     golden::Studio* studio;
     Session session;
-    size_t passes = 0;  ///< number in a picture for which everything is prepared
+    size_t passes = 0;  ///< number of passes of a picture for which everything is prepared
     int redraws = 0;
 };
 
@@ -135,8 +135,8 @@ Picture draw(Prepared& prepared, bool counted)
     return prepared.studio->picture_of(prepared.session, prepared.studio->camera(), counted);
 }
 
-/// Milliseconds of a picture for which everything is prepared: if another run's settings first require an update (leap
-/// grid, sample bits, table), those of the next picture.
+/// Milliseconds of a picture for which everything is prepared. If the previous run's settings made updates necessary
+/// (leap grid, sample bits, table), the time of the next picture.
 double steady_ms(Prepared& prepared)
 {
     const Picture picture = draw(prepared, false);
@@ -183,7 +183,7 @@ struct Timed {
     std::vector<double> milliseconds = {};
 };
 
-/// Starts another program if it can draw the same picture; otherwise a note states why not.
+/// Starts another program if it can draw the same picture; otherwise adds a note with the reason.
 std::unique_ptr<Peer> started_peer(const Scene& scene, const golden::Studio& studio, const MeasureOptions& options,
                                    std::vector<PeerRun>& runs, std::vector<std::string>& notes)
 {
@@ -235,7 +235,7 @@ Measured first_look_of_peer(Peer& peer, const PeerRun& run, const ImageF& refere
 
 void time_in_turns(std::vector<Timed>& timed, int rounds, const std::function<void(double)>& tell)
 {
-    // Back and forth, so that a machine that becomes slower or faster does so for all.
+    // Alternates the order, so that a machine that becomes slower or faster affects all runs equally.
     for (int round = 0; round < rounds; ++round) {
         tell(double(round) / rounds);
         for (Timed& each : timed) each.milliseconds.push_back(each.draw());

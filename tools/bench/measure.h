@@ -15,7 +15,7 @@ namespace shvr::bench {
 struct MeasureOptions {
     std::string device;
     bool quick = false;
-    int mixed = 0;  ///< number of settings that vary all knobs at once (mixed_runs)
+    int mixed = 0;  ///< number of runs that vary all settings at once (mixed_runs)
     int rounds = 7;
     int threads = 2;  ///< threads of the reference
     PeerOptions peer = {};
@@ -41,7 +41,7 @@ Results who_measures(const std::string& device);
 Error error_of(const ImageF& picture, const ImageF& reference);
 /// Bilinear between pixel centres, with the border repeated.
 ImageF resized(const ImageF& image, int width, int height);
-/// Requires at least one value; the 95th percentile is one of the values.
+/// Needs at least one value; the 95th percentile is one of the values.
 Time time_of(std::vector<double> milliseconds);
 
 }  // namespace shvr::bench

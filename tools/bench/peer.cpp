@@ -24,8 +24,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* FAMILY = "VTK";
 constexpr const char* CAMERA = "bench";
-constexpr int64_t PADDING = 2;  // voxels: VTK's volume ends at the centres of its outermost voxels, and so do its
-                                // gradients
+constexpr int64_t PADDING = 2;  // voxels of padding: VTK's volume ends at the centres of its outermost voxels, and so
+                                // do its gradients
 constexpr int PATIENCE_S = 300;
 constexpr int64_t MAX_COMPLAINT_BYTES = 1 << 20;
 
@@ -209,7 +209,7 @@ std::string Peer::next_line()
         if (end != std::string::npos) {
             const std::string line = received_.substr(0, end);
             received_.erase(0, end + 1);
-            // Other lines printed in between, as by xvfb-run, are not answers.
+            // Ignores other lines printed in between, as by xvfb-run.
             if (line.starts_with("{")) return line;
             continue;
         }

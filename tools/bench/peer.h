@@ -31,7 +31,7 @@ std::vector<PeerRun> peer_runs(const PeerOptions& options, bool quick);
 /// Whether a family of runs is the peer's.
 bool is_peer(const std::string& family);
 
-/// Why VTK cannot draw the same picture, as the end of a sentence; null if it can.
+/// Reason why VTK cannot draw the same picture, as the end of a sentence; null if it can.
 std::optional<std::string> why_not_by_peer(const Session& session, const VolumeSource& source, const Camera& camera,
                                            const std::string& mapper);
 

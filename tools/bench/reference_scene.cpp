@@ -13,8 +13,8 @@ namespace shvr::bench {
 namespace {
 
 constexpr double MAX_CODE = 65535.0;
-// Directions for the definition of ambient occlusion, which is far closer to its limit with these than pictures are
-// (tests/gpu/occlusion/occlusion_test.cpp).
+// Number of directions for the definition of ambient occlusion, which with these is far closer to its limit than
+// pictures are (tests/gpu/occlusion/occlusion_test.cpp).
 constexpr uint32_t OCCLUSION_DIRECTIONS = 128;
 constexpr int OCCLUSION_STEPS = 32;
 

@@ -135,7 +135,7 @@ void compare_runs(const SceneResult& of_a, const Measured& a, const SceneResult&
     for (const auto& [name, value] : b.work) {
         const auto before = std::ranges::find(a.work, name, &std::pair<std::string, uint64_t>::first);
         if (before == a.work.end() || !looked.at_work) continue;
-        // Skipped bricks and rays that end early are saved work.
+        // Skipped bricks and rays that end early are work saved, so more of them is better.
         const bool saves = name == "bricks_skipped" || name == "rays_terminated_early" || name == "leaps";
         add(name, double(before->second), double(value), !saves && value > before->second);
     }
@@ -149,7 +149,7 @@ const Measured* same_run(const SceneResult& scene, const Measured& run)
     return found != scene.runs.end() && found->settings == run.settings ? &*found : nullptr;
 }
 
-/// "only A has tubes; tissue: step 4": the content that only `a` has.
+/// "only A has tubes; tissue: step 4": lists content that only `a` has.
 std::optional<std::string> only_in(const Results& a, const Results& b, const char* name)
 {
     std::string found;

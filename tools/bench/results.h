@@ -34,7 +34,7 @@ struct Measured {
     double scale = 1.0;
     Error error;
     Time time;
-    double first_ms = 0.0;                               ///< time of the first picture, which also prepares
+    double first_ms = 0.0;                               ///< time of the first picture, which includes preparation
     std::vector<std::pair<std::string, uint64_t>> work;  ///< exact counters
     uint64_t device_bytes = 0;
     int redraws = 0;  ///< number of timed pictures that were drawn again because the first one created shared data
@@ -44,9 +44,9 @@ struct Measured {
 struct SceneResult {
     std::string name, what;
     std::string volume;              ///< "64 x 64 x 64 uint8"
-    double reference_seconds = 0.0;  ///< 0: it was kept from an earlier run
+    double reference_seconds = 0.0;  ///< 0: the picture was kept from an earlier run
     std::vector<Measured> runs;
-    std::vector<std::string> notes = {};  ///< sentences: why another program is not among the runs
+    std::vector<std::string> notes = {};  ///< sentences that state why another program is missing from the runs
     /// Time of a fixed amount of processor work (yardstick.h), in the same rounds; null if a GPU drew.
     std::optional<Time> yardstick = {};
 };
@@ -81,7 +81,7 @@ Results read_results(const std::filesystem::path& file);
 std::string csv_of(const Results& results);
 /// The values that are the same in every run on one machine: the error and the work of each of SHVR's runs.
 std::string front_csv(const Results& results);
-/// The fastest run of each scene and family that has at most this RMSE.
+/// The fastest run of each scene and family whose RMSE is at most this.
 std::string equal_error_csv(const Results& results);
 /// For each scene, family and preset of quality: the run with the least error that is no slower than the preset.
 std::string equal_time_csv(const Results& results);
@@ -107,11 +107,11 @@ struct Change {
     std::string scene, run, what;  ///< "rmse", "samples", "median_ms"
     double a = 0.0, b = 0.0, noise = 0.0;
     bool is_regression = false;
-    double machine = 1.0;  ///< for times: how much longer the yardstick took in `b`
+    double machine = 1.0;  ///< for times: the ratio of the yardstick's time in `b` to that in `a`
 };
 struct Comparison {
     std::vector<Change> changes;      ///< all differences; regressions first
-    std::vector<std::string> beside;  ///< sentences: runs that only one of them has, times that are meaningless
+    std::vector<std::string> beside;  ///< sentences about runs that only one of them has, and times that mean nothing
 };
 /// Fails if the two have no run in common. `with_times`: also compares times.
 Comparison compare(const Results& a, const Results& b, bool with_times);

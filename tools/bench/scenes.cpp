@@ -41,7 +41,7 @@ Json points_of(std::initializer_list<Point> points, const char* color = "#f0d8b8
     return {{"points", list}};
 }
 
-/// What scenes share: tubes with noise in the air around them (a mean of 40 and a standard deviation of 5.4).
+/// Shared by several scenes: tubes with noise in the air around them (a mean of 40 and a standard deviation of 5.4).
 Json session_of(int64_t side, const glm::uvec2& pixels, const Json& function)
 {
     return {{"shvr_session", 1},
@@ -85,8 +85,8 @@ std::string scene_names(const std::vector<Scene>& own)
     return names.substr(0, names.size() - 2);
 }
 
-/// As tools/fetch_example left it, without later painting; "-matt": without highlights and fading. Fails if it is
-/// missing.
+/// The example as tools/fetch_example left it, without later painting; "-matt": without highlights and fading. Fails if
+/// it is missing.
 Scene example_scene(const Example& example, bool is_matt, const SceneChoice& choice)
 {
     const std::filesystem::path folder = choice.examples / example.name / "shvr";
@@ -176,7 +176,7 @@ std::vector<Scene> own_scenes(int64_t side, const glm::uvec2& pixels)
                          {"radius", (4 + i) * unit},
                          {"color", i % 2 ? "#ff6020" : "#40c0ff"}});
     scenes.push_back(scene_of("surfaces", "opaque balls in translucent tissue", made(tissue, {{"surfaces", balls}})));
-    // Three of the above as other programs define shading, too.
+    // Three of the scenes above, shaded as other programs define it.
     const Json noisy = points_of({{50, 0.0}, {58, 1.0}, {255, 1.0}});
     scenes.push_back(
         scene_of("tubes-matt", "the clean opaque tubes, matt: as VTK can draw them, too", made(opaque, matt())));
@@ -254,7 +254,7 @@ std::vector<Run> runs_of(const Scene& scene, bool quick)
         runs.push_back({sentence("sampling ", sampling), "sampling", {sentence("render.sampling=", sampling)}});
     for (const double scale : quick ? std::vector{0.5} : std::vector{0.7, 0.5, 0.35})
         runs.push_back({sentence("resolution ", digits_of(scale)), "resolution", {}, scale});
-    // Coarser than in practical use, to see the cost of another program's error level.
+    // Coarser settings than in practice, to see the cost of another program's error level.
     const auto coarse = [&](double scale, double step, bool preintegration) {
         runs.push_back(
             {sentence("coarse ", digits_of(scale), preintegration ? ", pre-integrated " : ", step ", digits_of(step)),

@@ -20,11 +20,11 @@ struct Scene {
     uint64_t budget_device = 0;  ///< bytes; 0: unlimited
 };
 
-/// Scenes of `side` voxels and that many pixels.
+/// Scenes of `side` voxels a side and that many pixels.
 std::vector<Scene> own_scenes(int64_t side, const glm::uvec2& pixels);
 
 struct SceneChoice {
-    std::vector<std::string> names;  ///< empty: all of our own, and the examples that are available
+    std::vector<std::string> names;  ///< names of scenes; empty: all of our own, and the examples that are available
     int64_t side = 64;               ///< voxels
     glm::uvec2 pixels{120, 90};
     std::filesystem::path examples;  ///< folder into which tools/fetch_example put the scans
@@ -42,7 +42,7 @@ struct Run {
     std::string name;                   ///< "step 0.5"
     std::string family;                 ///< "step"
     std::vector<std::string> settings;  ///< "render.step_voxels=0.5"
-    double scale = 1.0;          ///< factor on the picture's sides; smaller pictures are enlarged again, bilinearly
+    double scale = 1.0;          ///< factor of the picture's sides; smaller pictures are enlarged again, bilinearly
     uint64_t budget_device = 0;  ///< bytes; 0: the scene's
 };
 

@@ -15,7 +15,7 @@ namespace shvr::bench {
 namespace {
 
 constexpr int TIMES = 5;
-constexpr double REFERENCE_REACH = 8.0;  // sigmas: the remainder is 1e-15 of the weights
+constexpr double REFERENCE_REACH = 8.0;  // radius in sigmas: the remainder is 1e-15 of the weights
 
 /// Noise from 0 to 1, a deterministic function of the position.
 double noise_at(const Size3& at)

@@ -9,7 +9,7 @@ namespace shvr::bench {
 
 namespace {
 
-constexpr int NUMBERS = 1 << 15;  // 128 KiB: in the nearest caches, like most data that kernels read
+constexpr int NUMBERS = 1 << 15;  // size of the data, 128 KiB: in the nearest caches, like most data that kernels read
 constexpr int ROUNDS_OF_WORK = 150;
 
 /// Multiplies and adds as kernels do, on numbers that stay between 0 and 1.

@@ -3,7 +3,7 @@
 
 namespace shvr::bench {
 
-/// Milliseconds that `threads` threads take for a fixed piece of arithmetic each; a few on a present-day machine.
+/// Milliseconds that `threads` threads take for a fixed piece of arithmetic each: a few on present machines.
 double yardstick_ms(int threads);
 
 }  // namespace shvr::bench

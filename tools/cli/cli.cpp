@@ -17,7 +17,7 @@ namespace shvr::cli {
 
 namespace {
 
-/// Enough for any machine, and products with 2^20 fit into 64 bits.
+/// Maximum number of MiB: enough for any machine, and its product with 2^20 fits into 64 bits.
 constexpr int64_t MAX_MIB = int64_t{1} << 24;
 
 CLI::Validator whole_mib()
@@ -86,12 +86,12 @@ void add_input_options(CLI::App& command, Common& common)
         .add_option_function<std::string>(
             "--raw",
             [&common](const std::string& value) {
-                parse_raw_layout(value);  // an error here is wrong usage, not a bad file
+                parse_raw_layout(value);  // reports wrong usage here instead of a bad file
                 common.settings.push_back("volume.raw=" + value);
             },
             "How a file of bare voxels is laid out")
         ->type_name("WxHxD:TYPE[:big|little][:OFFSET]");
-    // Always text, even if it looks like a number.
+    // The value is always text, even if it looks like a number.
     const auto text = [&](const char* option, const char* key, const char* form, const char* help) {
         command
             .add_option_function<std::string>(
@@ -300,7 +300,7 @@ Opened open(const std::string& path, const Common& common, LongWork& work, Work:
     opened.project = is_picture ? session.pictured : session_file_of(path);
     Session kept = opened.session;
     choose_thresholds(kept, volume, session.statistics);
-    // A picture has its own settings, regardless of later changes of the project's.
+    // A picture has its own settings, which later changes of the project do not affect.
     const WorkFiles files =
         is_picture ? work_files(opened.session, volume)
                    : with_kept_settings(work_files(opened.session, volume, common.settings), kept, common.settings);

@@ -54,7 +54,7 @@ void add_output_options(CLI::App& command, Common& common);
 /// Prints a line on standard error, unless --quiet.
 void say(const Common& common, const std::string& line);
 void warn(const std::vector<std::string>& warnings, const Common& common);
-/// The same for notices of opening work; losses are printed even with --quiet.
+/// Likewise for notices of opening work; losses are printed even with --quiet.
 void warn(const std::vector<Notice>& notices, const Common& common);
 /// Printed even with --quiet.
 void warn_of_losses(const std::vector<std::string>& losses);
@@ -76,7 +76,7 @@ struct Opened {
     std::vector<std::string> warnings;
     std::unique_ptr<Renderer> renderer;
     std::unique_ptr<Annotator> annotator;
-    std::filesystem::path project;     ///< its session's file; empty for a bare volume
+    std::filesystem::path project;     ///< path of its session's file; empty for a bare volume
     std::shared_ptr<const Gaps> gaps;  ///< grows while bricks are read; null: the command needs every voxel
     std::string gaps_told{};           ///< already printed by `warn_of_gaps`
 

@@ -41,7 +41,7 @@ private:
     const Annotator& annotator() const { return bench.document().annotator; }
     const TraceGraph& trace() const { return annotator().document().trace; }
 
-    /// Returns the result of `act`; its errors name the line.
+    /// Returns the result of `act`; errors from it name the line.
     template <class Act>
     auto in_words(const Act& act) const
     {
@@ -149,7 +149,7 @@ std::shared_ptr<Hold> hold_of(const std::string& project)
     return session.empty() ? nullptr : Hold::take(journal_beside(session), "shvr annotate");
 }
 
-/// A script's work on a volume without a project would be kept nowhere.
+/// Without a project, a script's work on a volume would not be stored anywhere.
 [[noreturn]] void refuse_bare_volume(const std::string& project)
 {
     const std::filesystem::path volume = std::filesystem::path(project).lexically_normal();

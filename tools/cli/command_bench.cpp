@@ -24,7 +24,7 @@ struct ErrorBenchOptions {
     std::vector<std::string> mappers = {"fixed"};
     std::string peer, examples;  ///< empty: those of the tree in which the program was built
     int64_t side = 0;            ///< 0: 32 where quick, otherwise 64
-    std::vector<uint32_t> size;  ///< of pictures; empty: 48 x 36 where quick, otherwise 120 x 90
+    std::vector<uint32_t> size;  ///< size of pictures; empty: 48 x 36 if quick, otherwise 120 x 90
     bool quick = false, ignores_time = false;
     int rounds = 0;  ///< 0: 3 where quick, otherwise 7
     int mixed = 0;
@@ -63,7 +63,7 @@ std::filesystem::path in_tree(const std::filesystem::path& path)
     return std::filesystem::exists(found, unknown) ? found : std::filesystem::path();
 }
 
-/// The tree's present commit, from which the program was built unless something was changed since.
+/// The present commit of that tree. The program was built from it unless something was changed since.
 std::string commit_of_tree()
 {
     const std::filesystem::path folder = in_tree(".git");

@@ -53,7 +53,7 @@ void run_export(const ExportCommandOptions& options)
 {
     const ExportTask task = task_of(options);
     check(task);
-    // It contains annotations, but empty files would be written.
+    // An archived project contains annotations, but they are not read: empty files would be written.
     if (const std::string archived = archived_project(options.project); !archived.empty()) fail(archived);
     LongWork long_work(options.common.quiet);
     Gaps gaps;  // annotation is exported regardless of the scan's state

@@ -156,7 +156,7 @@ void run_variant(const GoldenCommandOptions& options, const golden::Variant& var
     posix_spawn_file_actions_destroy(&actions);
     int status = 0;
     if (error == 0) ::waitpid(child, &status, 0);
-    // 3: pictures differ, which is what is being measured.
+    // Exit status 3 means that pictures differ, which is the measured quantity.
     if (error != 0 || !WIFEXITED(status) || (WEXITSTATUS(status) != 0 && WEXITSTATUS(status) != 3))
         fail("goldens could not be drawn as ", variant.name, "; expected exit status 0 or 3 of shvr golden run");
 }
@@ -170,7 +170,7 @@ Json spread_json(const golden::Moved& moved)
             {"light", moved.light}};
 }
 
-/// The command line as a user would type it.
+/// Returns the command line as a user would type it.
 std::string calibrate_command(const GoldenCommandOptions& options)
 {
     return sentence("shvr golden calibrate", options.pattern == "*" ? "" : " '" + options.pattern + "'", " --folder ",

@@ -24,8 +24,8 @@ std::string why_incomplete(const Picture& picture)
     return picture.warnings.empty() ? "not all bricks that rays visited could be drawn" : picture.warnings.front();
 }
 
-/// Which voxels a complete picture shows: with `render.detail` above 0, paged volumes of several levels show coarser
-/// ones than resident volumes do.
+/// States which voxels a complete picture shows: with `render.detail` above 0, paged volumes of several levels show
+/// coarser ones than resident volumes do.
 Json detail_of(const Renderer& renderer, const RenderSettings& render)
 {
     const int level = renderer.volume().finest_level();

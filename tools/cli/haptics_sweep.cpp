@@ -122,7 +122,7 @@ std::vector<Row> sweep(LongWork& work)
             rows.push_back(measured("even", radius, count, truth, [&](const glm::dvec3& at) {
                 return find_sampled_proxy(*patch, at, radius, even);
             }));
-            // One draw may be lucky: uses the mean square of several.
+            // Uses the mean square of several draws, since a single one may be lucky.
             Row all{"random", radius, count};
             for (int draw = 0; draw < DRAWS; ++draw) {
                 const auto drawn = std::span(random).subspan(size_t(draw * count), size_t(count));
@@ -180,7 +180,7 @@ std::string plot_of(const std::vector<Row>& rows)
     for (const Row& row : rows)
         svg << "<circle cx=\"" << x_of(row.microseconds) << "\" cy=\"" << y_of(row.error) << "\" r=\""
             << 2.0 + row.radius / 6.0 << "\" fill=\"" << color_of(row.method) << "\" fill-opacity=\"0.7\"/>\n";
-    // Marks with the same number of points are close together: one label for the three.
+    // Marks with the same number of points are close together, so the three share one label.
     for (const Row& row : rows)
         if (row.points > 0 && row.radius == RADII[std::size(RADII) - 1])
             text(x_of(row.microseconds) + 9.0, y_of(row.error) - 6.0, "start", std::to_string(row.points));

@@ -14,7 +14,7 @@ namespace shvr::cli {
 
 namespace {
 
-/// How often the line is updated while the work reports nothing.
+/// Interval at which the line is updated while the work reports nothing.
 constexpr std::chrono::milliseconds TICK{250};
 
 double seconds_now()
@@ -86,13 +86,13 @@ private:
     std::jthread ticker_;  ///< last, since it uses all members above
 };
 
-std::unique_ptr<Shown> shown;  ///< the live LongWork's; null if it is quiet
+std::unique_ptr<Shown> shown;  ///< instance of the running LongWork; null if it is quiet
 
 }  // namespace
 
 LongWork::LongWork(bool quiet)
 {
-    std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit is then an error like a full disk
+    std::signal(SIGXFSZ, SIG_IGN);  // then exceeding the file size limit is an error like a full disk
     if (!quiet) shown = std::make_unique<Shown>();
 }
 

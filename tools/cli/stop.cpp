@@ -26,7 +26,7 @@ extern "C" void stop(int signal_number)
     const char* const text = signal_number == SIGINT ? "shvr: stopped by Ctrl-C; no file is left half written\n"
                                                      : "shvr: stopped by SIGTERM; no file is left half written\n";
     static_cast<void>(::write(STDERR_FILENO, text, std::strlen(text)) > 0);
-    // The parent process sees that a signal ended the program, so a shell's loop ends, too.
+    // Ends by the signal, so that the parent process sees it and a shell's loop ends, too.
     std::signal(signal_number, SIG_DFL);
     ::raise(signal_number);
 }

@@ -111,7 +111,7 @@ std::vector<std::pair<std::string, uint64_t>> work_of(std::span<const gpu::PassR
 std::vector<std::pair<std::string, uint64_t>> counters_of(const Picture& picture)
 {
     std::vector<std::pair<std::string, uint64_t>> counters = work_of(picture.passes);
-    uint64_t dispatches = 0;  // as declared: a busy machine splits long passes into more
+    uint64_t dispatches = 0;  // number as declared, since a busy machine splits long passes into more
     for (const gpu::PassReport& pass : picture.passes) dispatches += pass.tiles;
     counters.emplace_back("passes", picture.passes.size());
     counters.emplace_back("dispatches", dispatches);
@@ -143,7 +143,7 @@ std::optional<std::string> why_other_work(const Golden& golden, const Drawn& dra
             differing +=
                 sentence(differing.empty() ? "" : ", ", name, " ", value, " (recorded: ", recorded->dump(), ")");
     }
-    // On any machine: a counter that is not recorded guards nothing.
+    // Checked on any machine, since a counter that is not recorded guards nothing.
     if (!missing.empty())
         return sentence(golden.side_car().string(), ": work lacks ", missing,
                         "; expected every counter of the picture, as ", bless_command(golden), " records them");
@@ -180,7 +180,7 @@ Blessed bless(const Golden& golden, const std::string& reason, const StudioOptio
             blessed.new_hash = "unchanged";
             return blessed;
         }
-        // A picture that passes is kept: many small steps, each within the class's limits, would add up.
+        // A picture that passes is kept: otherwise many small changes, each within the class's limits, would add up.
         if (!why_different(drawn.image, before, golden.strictness))
             png = read_file(golden.picture(), MAX_PICTURE_BYTES);
     }

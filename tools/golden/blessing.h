@@ -10,7 +10,7 @@
 
 namespace shvr::golden {
 
-/// The machine that draws: for side-cars and reports.
+/// Description of the machine that draws, for side-cars and reports.
 struct Maker {
     std::string device, driver, processor;
     std::string instructions;  ///< instruction sets of the processor that change rounding: "avx2 fma"
@@ -29,9 +29,9 @@ struct Drawn {
     ImageF light;  ///< the same, before rounding to 8 bits
     Maker maker;
     std::vector<std::pair<std::string, uint64_t>> work;  ///< exact counters by name, summed over passes
-    bool work_is_exact = true;                           ///< false: paged, where counters depend on the disk
+    bool work_is_exact = true;                           ///< false: bricks are paged, and counters depend on the disk
 };
-/// The first picture of a studio, whose passes also prepare.
+/// The first picture of a studio, whose passes include preparation.
 Drawn drawn_by(Studio& studio);
 
 /// Why picture and side-car do not match, or one is missing; null if all is well.
@@ -43,7 +43,7 @@ std::optional<std::string> why_other_work(const Golden& golden, const Drawn& dra
 
 struct Blessed {
     std::string name, old_hash, new_hash;   ///< "none", "unchanged"
-    std::optional<PixelDifference> change;  ///< relative to the previous picture, if sizes are equal
+    std::optional<PixelDifference> change;  ///< difference from the previous picture, if sizes are equal
 };
 /// Draws and writes both files, unless picture, counters and class are
 /// unchanged; a picture that passes is kept, and only the side-car is renewed.

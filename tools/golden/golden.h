@@ -18,7 +18,7 @@ namespace shvr::golden {
 enum class Strictness {
     exact,  ///< the same bits
     tight,  ///< TIGHT_TOLERANCE: rounding of another driver or processor
-    edge,   ///< tight except for EDGE_FRACTION of the pixels, which may be anything: a silhouette off by a pixel
+    edge,   ///< like tight, except for EDGE_FRACTION of the pixels, which may be anything: a silhouette off by a pixel
 };
 inline constexpr Spelling<Strictness> STRICTNESSES[] = {
     {Strictness::exact, "exact"}, {Strictness::tight, "tight"}, {Strictness::edge, "edge"}};
@@ -32,7 +32,7 @@ struct Golden {
     std::string name;
     std::filesystem::path folder;
     std::string why;       ///< what the picture guards
-    std::string loosened;  ///< why it is no stricter; empty unless `strictness` is edge
+    std::string loosened;  ///< reason why it is no stricter; empty unless `strictness` is edge
     Strictness strictness = Strictness::tight;
     std::filesystem::path session_path;  ///< path of a session, project or volume file; empty: `session_text`
     std::string session_text;            ///< JSON; relative paths are relative to `folder`

@@ -31,7 +31,7 @@ constexpr bool is_failure(Status status)
     return status != Status::passed && status != Status::informative;
 }
 
-/// Whether `shvr golden bless` helps: not if nothing was drawn, nor on a device that may not bless.
+/// Whether `shvr golden bless` helps: false if nothing was drawn, and on a device that may not bless.
 constexpr bool can_be_blessed(Status status)
 {
     return status == Status::failed || status == Status::missing;

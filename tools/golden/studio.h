@@ -38,7 +38,7 @@ public:
     /// Loads the volume and paints again.
     void set_up();
 
-    /// May be called repeatedly. Fails if the picture is incomplete or contains NaN or infinities.
+    /// May be called repeatedly. Fails if the picture is incomplete, or contains NaN or infinities.
     Image8 draw();
     Image8 draw(const Session& session, const Camera& camera);
     /// Counts as RenderOptions::count_work does, by pass.

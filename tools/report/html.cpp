@@ -8,7 +8,7 @@ namespace shvr::report {
 
 namespace {
 
-/// What all pages have in common, in light and in dark.
+/// Style that all pages share, in light and in dark.
 constexpr const char* COMMON_STYLE = R"(:root{color-scheme:light dark;--paper:#fff;--ink:#222;--faint:#5a5f66;
 --line:#d8dadd;--field:#eef0f2;--good:#14632b;--bad:#a3161b;--perhaps:#8a5a00;--link:#0b57a4}
 @media (prefers-color-scheme:dark){:root{--paper:#17191c;--ink:#dcdfe3;--faint:#9aa1a9;--line:#3a3f45;--field:#262a2f;

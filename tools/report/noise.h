@@ -13,7 +13,7 @@ constexpr size_t MIN_TIMES = 3;
 /// they are few, since few values spread less than many. Null if there are too few.
 std::optional<double> noise_of(double minimum, double p95, size_t count);
 
-/// The root of the sum of both squares. In a thousand pairs of equal work with ordinary noise, the medians of about one
+/// The root of the sum of both squares. In about one of a thousand pairs of equal work with ordinary noise, the medians
 /// differ by more.
 std::optional<double> noise_of_both(const std::optional<double>& a, const std::optional<double>& b);
 

@@ -162,7 +162,7 @@ private:
     std::vector<uint8_t> pixels_;
 };
 
-/// A logarithmic axis from one tick to another, which are slightly inside it: no mark lies on the frame. Ticks are
+/// A logarithmic axis from one tick to another. Both lie slightly inside, so that no mark lies on the frame. Ticks are
 /// powers of 10, and below two decades also 2 and 5 times these.
 struct Axis {
     double lower = 0.0, upper = 1.0;  ///< exponents of 10
@@ -282,7 +282,7 @@ void draw(Canvas& canvas, const Plot& plot)
     const auto color_of = [&](size_t i) { return plot.series[i].is_other ? INK : COLORS[i % COLORS.size()]; };
     for (size_t i = 0; i < plot.series.size(); ++i)
         if (plot.series[i].is_joined) draw_steps(canvas, plot.series[i], x, y, color_of(i));
-    // Important marks are drawn last: those with a label, with the first series' on top.
+    // Draws important marks last: those with a label, and those of the first series on top.
     for (const bool labelled : {false, true})
         for (size_t i = plot.series.size(); i-- > 0;)
             for (const PlotPoint& point : plot.series[i].points) {

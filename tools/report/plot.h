@@ -12,13 +12,13 @@ namespace shvr::report {
 struct PlotPoint {
     double x = 1.0, y = 1.0;  ///< values not above 0 are left out
     std::string label;        ///< next to the mark; empty: none
-    bool on_front = false;    ///< joined by a line; the others are paler, unless they have a label
+    bool on_front = false;    ///< joined by a line; all other points are paler, unless they have a label
 };
 
 struct PlotSeries {
     std::string name;
     std::vector<PlotPoint> points;
-    bool is_joined = false;  ///< a line of its colour from point to point, all of which are drawn opaque
+    bool is_joined = false;  ///< a line in its colour from point to point, all of which are drawn opaque
     bool is_other = false;   ///< the reference for the others: opaque, in the ink of the axes
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// A question to the file system, answered in the background. A network that does not answer takes minutes, so the
-// main thread never has to wait for it, not even at exit: unneeded answers are dropped.
+// A query to the file system, answered in the background. A network that does not respond takes minutes, so the main
+// thread never waits for it, not even at exit: answers that are no longer needed are dropped.
 
 #include <chrono>
 #include <condition_variable>
@@ -28,7 +28,7 @@ public:
             Answer answer{};
             try {
                 answer = ask();
-            } catch (const std::exception&) {  // no memory: as if there was nothing to say
+            } catch (const std::exception&) {  // out of memory: treated like an empty answer
             }
             const std::scoped_lock lock(state->mutex);
             state->answer = std::move(answer);

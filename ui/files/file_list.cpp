@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A completion of a path looks at no more names than that.
+/// Maximum number of names that a completion of a path examines.
 constexpr size_t MAX_COMPLETED = 200'000;
 
 char lower(char c)
@@ -31,7 +31,7 @@ bool begins_with(std::string_view name, std::string_view text)
     return name.size() >= text.size() && std::ranges::equal(name.substr(0, text.size()), text, {}, lower, lower);
 }
 
-/// The digits at `at`, without zeros before them.
+/// The digits at `at`, without leading zeros.
 std::string_view number_at(std::string_view text, size_t at)
 {
     size_t end = at;
@@ -255,7 +255,7 @@ std::vector<Place> places(const fs::path& open, const std::vector<fs::path>& rec
         const std::string name = folder.filename().string();
         found.push_back({name.empty() ? folder.string() : name, folder});
     };
-    // The files of a project lie in a folder of their own, within the folder that the user calls the project.
+    // The files of a project lie in a subfolder of the folder that the user calls the project.
     const fs::path whole = open.empty() ? open : fs::absolute(open).lexically_normal();
     if (whole.parent_path().filename() == "shvr")
         add(whole.parent_path().parent_path().parent_path());

@@ -10,14 +10,14 @@ namespace {
 
 constexpr int FRAMES_TO_ANSWER = 2;
 constexpr int PATIENCE_FRAMES = 7;  ///< a field behind a dialog never gets the keyboard
-int awaited_in_frame = -1;          ///< the last in which some field awaited it
+int awaited_in_frame = -1;          ///< last frame in which some field awaited it
 
 }  // namespace
 
 void FieldKeys::before_field(bool are_asked_for)
 {
     const int frame = ImGui::GetFrameCount();
-    if (std::exchange(last_frame_, frame) + 1 < frame) {  // it was gone meanwhile, and all of its story with it
+    if (std::exchange(last_frame_, frame) + 1 < frame) {  // the field was gone meanwhile, and its whole state with it
         awaited_since_ = -1;
         early_.clear();
     }
@@ -26,14 +26,14 @@ void FieldKeys::before_field(bool are_asked_for)
         are_here_ = false;
     }
     if (!are_awaited()) return;
-    // Asked in the frame in which a dialog ends, Dear ImGui forgets it.
+    // Dear ImGui forgets a request made in the frame in which a dialog ends.
     if (!are_here_ && (frame - awaited_since_) % FRAMES_TO_ANSWER == 0) {
         ImGui::SetWindowFocus();
         ImGui::SetKeyboardFocusHere();
     }
     ImVector<ImWchar>& typed = ImGui::GetIO().InputQueueCharacters;
     early_.insert(early_.end(), typed.begin(), typed.end());
-    typed.resize(0);  // in the frame in which a field gets the keyboard, it may pass text over
+    typed.resize(0);  // in the frame in which a field gets the keyboard, it may ignore text
     if (!are_here_ && frame - awaited_since_ <= PATIENCE_FRAMES) return;
     awaited_since_ = -1;
     for (const ImWchar character : std::exchange(early_, {}))

@@ -17,7 +17,7 @@ public:
     void before_field(bool are_asked_for);
     /// Call when the field is the item drawn last.
     void after_field();
-    /// Stores a character typed before the field has the keyboard.
+    /// Stores a character typed before the field got the keyboard.
     void type(ImWchar character) { early_.push_back(character); }
     /// Returns whether the keyboard was requested, and the field does not have it yet.
     bool are_awaited() const { return awaited_since_ >= 0; }
@@ -25,7 +25,7 @@ public:
 private:
     int awaited_since_ = -1;  ///< frame of the request; -1: not awaited
     int last_frame_ = -1;     ///< last frame in which the field was drawn
-    bool are_here_ = false;   ///< the field has the keyboard, but not yet the early characters
+    bool are_here_ = false;   ///< the field has the keyboard, but not yet the characters typed before
     std::vector<ImWchar> early_;
 };
 

@@ -1,4 +1,4 @@
-// The font atlas: European letters, and every other character that a text had so far, from whatever fonts are here.
+// The font atlas: European letters, and every other character used in a text so far, from the fonts of this machine.
 
 #include <algorithm>
 #include <cmath>
@@ -13,14 +13,14 @@ namespace shvr::ui {
 
 namespace {
 
-/// The first that exists is the panels' font; otherwise Dear ImGui's own.
+/// The first of these that exists is the panels' font; otherwise Dear ImGui's own is.
 constexpr const char* FONTS[] = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",    // Debian, Ubuntu
                                  "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",  // Fedora
                                  "/usr/share/fonts/TTF/DejaVuSans.ttf",                // Arch
                                  "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf",
                                  "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"};
-/// Fonts tried in order for missing characters. They are read only once a rare character is known:
-/// they are large.
+/// Fonts tried in order for missing characters. They are large, so they are read only when a rare character is
+/// needed.
 constexpr const char* FALLBACKS[] = {
     "/usr/share/fonts/truetype/droid/DroidSansFallbackFull.ttf",  // fonts-droid-fallback
     "/usr/share/fonts-droid-fallback/truetype/DroidSansFallback.ttf",
@@ -72,7 +72,7 @@ void fill(ImFontAtlas& atlas, double pixels, For purpose)
         for (const char* path : FALLBACKS) add_font(atlas, path, size, true, purpose);
 }
 
-/// The next character of UTF-8, and how many bytes it has; what is none is one byte.
+/// The next character of UTF-8, and its number of bytes; an invalid byte counts as one character.
 std::pair<ImWchar, size_t> next_character(std::string_view text)
 {
     const auto byte = [&](size_t i) { return i < text.size() ? uint32_t(uint8_t(text[i])) : 0u; };

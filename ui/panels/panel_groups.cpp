@@ -1,4 +1,4 @@
-// Colour groups as a tree: looks, locks, what is in them, and where they belong.
+// Colour groups as a tree: their looks, locks, contents and parents.
 
 #include "ui/panels/panels.h"
 
@@ -95,7 +95,7 @@ void set_parent(uint8_t group, uint8_t parent, const Model& model, Actions& acti
     set(actions, model, [&](Session& s) { s.groups[group].parent = parent; });
 }
 
-/// A row that is dropped onto another goes below it; onto the row of what is unpainted, below none.
+/// A row dropped onto another becomes its child; dropped onto the row of unpainted voxels, it gets no parent.
 void drag_and_drop(uint8_t group, const Model& model, Actions& actions)
 {
     if (group != 0 && ImGui::BeginDragDropSource()) {
@@ -137,7 +137,7 @@ bool settings_popup(uint8_t group, const Model& model, GroupSettings& settings, 
     return changed;
 }
 
-/// A click on the name chooses the group.
+/// A click on the name activates the group.
 bool name_cell(const GroupRow& row, const Model& model, GroupSettings& settings, Actions& actions)
 {
     const uint8_t group = row.group;
@@ -191,7 +191,7 @@ void count_cell(int64_t count)
     hint("Voxels of this group.");
 }
 
-/// Radius of nodes or internodes of a group, in voxels; set when the hand lets go: one step of the history.
+/// Radius of nodes or internodes of a group, in voxels; applied when the mouse is released: one step of the history.
 void size_cell(const char* id, uint8_t group, size_t count, double radius_units, RadiusOp::Of of, const Model& model,
                Actions& actions)
 {
@@ -267,7 +267,7 @@ void group_row(const GroupRow& row, const Model& model, Actions& actions)
     if (changed && !is_reset) set(actions, model, [&](Session& s) { s.groups[row.group] = settings; });
 }
 
-/// A group with the sizes of what is traced in it.
+/// Draws a group with the sizes of its nodes and internodes.
 void size_row(const GroupRow& row, const Model& model, Actions& actions)
 {
     GroupSettings settings;
@@ -321,7 +321,7 @@ void group_table(const Model& model, Actions& actions)
     ImGui::EndTable();
 }
 
-/// For who has no right mouse button, or no mouse.
+/// For users without a right mouse button, or without a mouse.
 void rename_button(const Model& model, Actions& actions)
 {
     const uint8_t group = model.brush().group;

@@ -76,7 +76,7 @@ std::string all_keys_of(const Shortcut& shortcut, const Keymap& keymap)
     return text;
 }
 
-/// A button with its keys, which waits for the next key.
+/// Draws a button with the shortcut's keys; once clicked, it waits for the next key.
 void keys_of(const Shortcut& shortcut, const Model& model, Actions& actions)
 {
     const bool waits = model.awaits_key == shortcut.id;
@@ -92,7 +92,7 @@ void keys_of(const Shortcut& shortcut, const Model& model, Actions& actions)
                : "Click, then press another key for it. Escape leaves it as it is; Delete takes the key away.");
 }
 
-/// Shows the meaning of a shortcut, other shortcuts with its keys, and the way back to the default.
+/// Shows the meaning of a shortcut, other shortcuts with its keys, and how to restore the default.
 void meaning_of(const Shortcut& shortcut, const Model& model, Actions& actions)
 {
     ImGui::AlignTextToFramePadding();
@@ -116,7 +116,7 @@ bool is_found(const Shortcut& shortcut, const Model& model, const std::string& t
         sentence(shortcut.name, ' ', shortcut.group, ' ', shortcut.id, ' ', all_keys_of(shortcut, model.keymap)), text);
 }
 
-/// The shortcuts under headings; the table is ordered by group.
+/// The shortcuts with headings; the table is ordered by group.
 void key_list(std::span<const Shortcut> listed, const Model& model, const std::string& text, Actions& actions)
 {
     const char* group = "";
@@ -143,7 +143,7 @@ void mouse_list(const std::string& text)
     }
 }
 
-/// The first shortcut of a group near the middle, so that both columns are about equally long.
+/// Finds the first shortcut of a group near the middle, so that both columns are about equally long.
 size_t middle(std::span<const Shortcut> listed)
 {
     size_t at = listed.size() / 2 + std::size(GESTURES) / 2;

@@ -1,4 +1,4 @@
-// The steps of the one history: where one is, what was undone, and where each step was.
+// The steps of the history: the present one, undone ones, and the place of each step.
 
 #include <algorithm>
 #include <string>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr float MAX_HISTORY_LINES = 14.0f;
 
-/// why the last requested step cannot be shown; empty: it can
+/// reason why the last requested step cannot be shown; empty: it can
 std::string why_not_shown;
 
 void show_where(const HistoryList& list, const Model& model, size_t row, Actions& actions)
@@ -63,7 +63,7 @@ void step(const HistoryList& list, const Model& model, size_t row, Actions& acti
 
 }  // namespace
 
-/// The newest at the top, near the present one as a rule.
+/// Newest steps at the top, where the present one usually is.
 void history_panel(const Model& model, Actions& actions)
 {
     const HistoryList list = history_list(model);

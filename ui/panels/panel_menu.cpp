@@ -27,7 +27,7 @@ namespace {
 
 constexpr const char* AXES[] = {"x", "y", "z"};
 
-/// Grey where something speaks against it, which its tooltip says.
+/// Disabled while the action is unavailable; a tooltip states the reason.
 bool reasoned_item(const char* name, const std::string& why)
 {
     const bool is_chosen = ImGui::MenuItem(name, nullptr, false, why.empty());
@@ -35,13 +35,13 @@ bool reasoned_item(const char* name, const std::string& why)
     return is_chosen;
 }
 
-/// The menu item of an action that has no key.
+/// Draws the menu item of an action that has no key.
 void action_item(const char* name, const Action& action, const Model& model, Actions& actions)
 {
     if (reasoned_item(name, why_not(model, action))) actions.push_back(action);
 }
 
-/// Keys that act while held are buttons here, since an item would close the menu at every step.
+/// Keys that act while held are buttons here, since a menu item would close the menu at every step.
 void held_items(const char* group, const Model& model, Actions& actions)
 {
     if (!begin_menu(group, model.is_open)) return;
@@ -101,7 +101,7 @@ void edit_menu(const Model& model, Actions& actions)
 
 // ---- View
 
-/// The visible range along one axis, in voxels; both ends can be dragged.
+/// Draws the visible range along one axis, in voxels; both ends can be dragged.
 void cut_range(int axis, const Model& model, Actions& actions)
 {
     const double size = std::max(double(model.volume.size[axis]), 1.0);
@@ -126,7 +126,7 @@ void cut_menu(const Model& model, Actions& actions)
     ImGui::EndMenu();
 }
 
-/// Shows a panel at its place, or takes it away.
+/// Shows a panel at its place, or hides it.
 void panel_item(const PanelRow& row, const Model& model, Actions& actions)
 {
     const bool is_shown = model.preferences.layout.place_of(row) != PanelPlace::hidden;
@@ -192,7 +192,7 @@ void view_menu(const Model& model, Actions& actions)
 
 // ---- Paint, Probe and Help
 
-/// Returns the keys of a shortcut that exists once per each of the first groups.
+/// Returns the keys of a shortcut that exists once for each of the first groups.
 std::string keys_of(const char* prefix, uint8_t group, const Model& model)
 {
     const Shortcut* const shortcut = shortcut_named(sentence(prefix, int(group)));

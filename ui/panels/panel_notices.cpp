@@ -36,7 +36,7 @@ float recovered_banner(const Model& model, const glm::vec2& begin, float width, 
     return height;
 }
 
-/// In the upper left corner of the graphics window, as wide as it needs to be. Returns its height.
+/// Placed in the upper left corner of the graphics window, as wide as it needs to be. Returns its height.
 float read_only_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions)
 {
     ImGui::SetNextWindowPos({begin.x, begin.y});

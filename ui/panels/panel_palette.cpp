@@ -1,4 +1,4 @@
-// A box to type in, which finds what can be done: by name, as an action's text, or as a setting.
+// A box to type in, which finds actions and settings: by name, as an action's text, or as a setting.
 
 #include <algorithm>
 #include <string>
@@ -53,7 +53,7 @@ bool was_pressed(ImGuiKey key)
     return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key));
 }
 
-/// Name, what it belongs to or why it cannot be done, and its keys.
+/// Draws a line: the name, its group or the reason why it is unavailable, and its keys.
 bool line(const PaletteEntry& entry, bool is_chosen, int number)
 {
     const bool is_grey = !entry.why_not.empty();
@@ -96,7 +96,7 @@ void palette_window(const Model& model, Actions& actions)
     ImGui::SetNextWindowSize({std::min(50.0f * font, viewport.WorkSize.x), 0.0f});
     ImGui::SetNextWindowPos({viewport.GetWorkCenter().x, viewport.WorkPos.y + 2.0f * font}, ImGuiCond_Always,
                             {0.5f, 0.0f});
-    // Arrows choose a line; the text keeps the keyboard.
+    // Arrows select a line; the text field keeps the keyboard.
     const ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
                                    ImGuiWindowFlags_NoNavInputs;

@@ -19,7 +19,7 @@ namespace {
 
 struct PassesState {
     PassLog log;
-    std::string graphed;  ///< pass that the graph is of; empty: all
+    std::string graphed;  ///< pass that the graph shows; empty: all
     std::string path = "passes.json";
 };
 PassesState passes_state;

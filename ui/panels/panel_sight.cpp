@@ -12,7 +12,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Its menu: to go there, to call it something else, to remove it.
+/// Menu of a kept view: go there, rename it, remove it.
 void kept_view(const std::string& name, const Model& model, Actions& actions)
 {
     static std::string edited;

@@ -1,4 +1,4 @@
-// The trace as lists of segments and of nodes: how long, in which group, and where.
+// The trace as lists of segments and of nodes: lengths, groups and positions.
 
 #include <algorithm>
 #include <cstdio>
@@ -110,7 +110,7 @@ void node_row(const NodeRow& row, const Model& model, Actions& actions)
     ImGui::PopID();
 }
 
-/// A click on a heading sorts by it; another one the other way round.
+/// A click on a heading sorts by it; another click reverses the order.
 void take_order()
 {
     ImGuiTableSortSpecs* const specs = ImGui::TableGetSortSpecs();

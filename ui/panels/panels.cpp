@@ -55,7 +55,7 @@ void change(const PanelRow& row, const PanelLayout& changed, Actions& actions)
     actions.push_back(Prefer{patch_of_panel(row.id, changed)});
 }
 
-/// Without a choice of the user, tracing is open once a trace exists or is being made.
+/// Unless the user has chosen, the tracing panel is open once a trace exists or is being made.
 bool is_folded(const PanelRow& row, const Model& model)
 {
     const WindowLayout& layout = model.preferences.layout;
@@ -132,8 +132,8 @@ void side_panel(const ImVec2& at, const ImVec2& size, const Model& model, Action
     ImGui::PopStyleVar(2);
 }
 
-/// The edge between picture and panels: a drag widens them, a double click gives them their usual width. Returns the
-/// width while it is dragged.
+/// Draws the edge between picture and panels: a drag resizes them, a double click restores their usual width. Returns
+/// the width while it is dragged.
 std::optional<double> splitter(const ImVec2& at, float height, float window_width, Actions& actions)
 {
     static std::optional<double> dragged;  // in font sizes
@@ -168,7 +168,7 @@ std::optional<double> splitter(const ImVec2& at, float height, float window_widt
 
 // ---- Windows of their own
 
-/// Places a window where it was left, or cascaded in the picture.
+/// Places a window where it was last, or cascaded in the picture.
 void place_window(const PanelRow& row, size_t number, const Model& model, const ImVec2& window)
 {
     const double font = ImGui::GetFontSize();

@@ -27,7 +27,7 @@ Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& action
 // The panels' contents, each in its own file; engine/workbench/appearance/layout.h lists the panels and their places.
 void probe_panel(const Model& model, Actions& actions);
 void touch_panel(const Model& model, Actions& actions);
-/// Within the touch panel: the connected devices, and the state of the one in use.
+/// Drawn within the touch panel: the connected devices, and the state of the one in use.
 void device_section(const Model& model, Actions& actions);
 void trace_panel(const Model& model, Actions& actions);
 void transfer_function_panel(const Model& model, Actions& actions);
@@ -39,14 +39,14 @@ void aids_panel(const Model& model, Actions& actions);
 void views_panel(const Model& model, Actions& actions);
 void groups_panel(const Model& model, Actions& actions);
 void trace_list_panel(const Model& model, Actions& actions);
-/// Device time per pass of a picture, in a window of its own.
+/// Draws device time per pass of a picture, in a window of its own.
 void passes_window(const Model& model, Actions& actions);
 void history_panel(const Model& model, Actions& actions);
-/// Below the menu, over the whole width: the tools, the active group, and the mouse's functions.
+/// Drawn below the menu, over the whole width: the tools, the active group, and the mouse's functions.
 float tool_bar_height();
 void tool_bar(const ImVec2& at, float width, const Model& model, Actions& actions);
-/// Call before Begin: puts a window where it was left (layout.h), or into the middle, with the usual size in font
-/// sizes.
+/// Call before Begin: puts a window where it was last (layout.h) or, the first time, into the middle, with the usual
+/// size in font sizes.
 void place_kept_window(const char* id, const glm::dvec2& usual_size, const Model& model);
 /// Call after Begin: stores the window's position and size, once the mouse is released.
 void keep_window(const char* id, const Model& model, Actions& actions);
@@ -58,10 +58,10 @@ void messages_window(const Model& model, Actions& actions);
 void menu_bar(const Model& model, Actions& actions);
 /// Draws the menu item of a shortcut. If it is unavailable now, it is grey and says why.
 void shortcut_item(const char* id, const Model& model, Actions& actions, bool is_checked = false);
-/// Items of the menu View: kept views, the pivot of turning, drawings over pictures.
+/// Draws items of the menu View: kept views, the pivot of turning, drawings over pictures.
 void kept_views_menu(const Model& model, Actions& actions);
 void sight_items(const Model& model, Actions& actions);
-/// Within the trace panel: the radius of new nodes.
+/// Drawn within the trace panel: the radius of new nodes.
 void new_nodes(const Model& model, Actions& actions);
 /// Shows the file chooser while the model requests it.
 void open_dialog(const Model& model, Actions& actions);
@@ -74,17 +74,17 @@ void ask_for_name(const Model& model);
 /// Shows the dialog that asks for a file with annotation or a transfer function, from the next frame on.
 void ask_what_to_take(const Model& model);
 void name_and_take_dialogs(const Model& model, Actions& actions);
-/// Items of the menu File for exporting, importing, labelling and comparing; and their dialogs.
+/// Draws items of the menu File for exporting, importing, labelling and comparing; and their dialogs.
 void task_menu(const Model& model);
 /// Returns whether one of these dialogs, as last drawn, waits for the disk.
 bool task_dialog_waits();
 /// Shows the dialog that makes a project of that volume, from the next frame on.
 void ask_to_import(const std::filesystem::path& volume);
-/// Items of the menu File for opening with options and for correcting the spacing; and their dialogs.
+/// Draws items of the menu File for opening with options and for correcting the spacing; and their dialogs.
 void load_menu(const Model& model);
 void load_dialogs(const Model& model, Actions& actions);
 void task_dialogs(const Model& model, Actions& actions);
-/// Lists background jobs; its lower edge is at `lower_middle`, centred.
+/// Draws the list of background jobs, centred, with its lower edge at `lower_middle`.
 void jobs_window(const Model& model, const glm::vec2& lower_middle, Actions& actions);
 /// Draws the page shown while nothing is open.
 void start_page(const Model& model, Actions& actions);

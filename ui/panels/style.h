@@ -30,8 +30,8 @@ void load_fonts(double pixels);
 /// Renders letters of those fonts for picture files (figure.h), with a height in pixels.
 std::vector<TextImage> draw_texts(std::span<const std::string> texts, double pixels);
 
-/// Requests the characters of user text: names, paths, messages. They are in the fonts from the next frame on, if
-/// a font of this machine has them. Any time on the main thread; cheap.
+/// Requests the characters of user text: names, paths, messages. They are in the fonts from the next frame on, if this
+/// machine has a font with them. Cheap; any time on the main thread.
 void want_glyphs(std::string_view text);
 /// Requests the characters typed since the last frame.
 void want_typed_glyphs();

@@ -1,4 +1,4 @@
-// The bar below the menu: what the next click does, and with which group.
+// The bar below the menu: the active tool and group.
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ namespace {
 constexpr float NAMED_FROM = 74.0f;   ///< minimum width, in font sizes, at which tools have their names next to them
 constexpr float GROUP_WIDTH = 13.0f;  ///< width of the active group's name, in font sizes
 
-/// Draws lines into a square of the unit size at `corner`.
+/// Draws lines into a square with sides of one unit at `corner`.
 struct Pen {
     ImDrawList& list;
     ImVec2 corner;
@@ -97,13 +97,13 @@ void draw_sign(Tool tool, const Pen& pen)
     }
 }
 
-/// Returns name, key, and the effect of a click with the tool.
+/// Returns the tooltip of a tool: name, key, and the effect of a click.
 std::string explanation(const ToolRow& row, const Keymap& keymap)
 {
     return sentence(row.name, key_in_brackets(row.shortcut, keymap), "\n", row.hint);
 }
 
-/// A sign, and its name where there is room; the tool in use is underlined as well.
+/// Draws the tool's sign, and its name if there is room; the active tool is underlined as well.
 void tool_button(const ToolRow& row, bool has_name, const Model& model, Actions& actions)
 {
     const bool is_used = model.tool() == row.tool;
@@ -162,7 +162,7 @@ std::string label_of_group(const Model& model, uint8_t group)
     return sentence(int(group), "  ", group_of(model.session.groups, group).name);
 }
 
-/// The button of a shortcut whose name is a sign of its own.
+/// Draws the button of a shortcut whose label is a sign.
 void step_button(const char* sign, const char* id, const Model& model, Actions& actions)
 {
     const Shortcut* const shortcut = shortcut_named(id);

@@ -47,7 +47,7 @@ bool slider(const char* label, double& value, double lower, double upper, const 
 
 namespace {
 
-/// Shows a slider that the mouse holds a mouse of its own, which goes slowly with Shift.
+/// Gives a slider that the mouse holds its own mouse position, which moves slowly with Shift.
 class HeldSlider {
 public:
     explicit HeldSlider(ImGuiID slider) : slider_(slider)
@@ -77,7 +77,7 @@ private:
 
 }  // namespace
 
-/// The number stands on the frame's own colour, before the handle, which shows above and below it.
+/// The number is drawn on the frame's own colour over the handle, which shows above and below it.
 bool slider_scalar(const char* id, ImGuiDataType type, void* value, const void* lower, const void* upper,
                    const char* format, ImGuiSliderFlags flags)
 {
@@ -108,7 +108,7 @@ bool slider_scalar(const char* id, ImGuiDataType type, void* value, const void* 
     return is_changed;
 }
 
-/// Dear ImGui goes ten times as far with Shift.
+/// Compensates for Dear ImGui, which moves ten times as far with Shift.
 bool drag_number(const char* id, double& value, double speed, double lower, double upper, const char* format,
                  ImGuiSliderFlags flags)
 {
@@ -121,7 +121,7 @@ bool is_double_clicked()
 {
     const bool is_hovered = ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenBlockedByPopup);
     if (!is_hovered || !ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) return false;
-    ImGui::ClearActiveID();  // the widget would follow the mouse, or take typed digits
+    ImGui::ClearActiveID();  // releases the mouse: the widget would follow it, or take typed digits
     return true;
 }
 

@@ -19,7 +19,7 @@ inline constexpr ThemeColor WARNING{ColorRole::warning}, ERROR_TEXT{ColorRole::e
 
 /// Adds a tooltip to the widget drawn last, wrapped to a readable width.
 void hint(const char* text);
-/// Likewise, next to a widget that must stay visible: to the left or the right, where there is more room.
+/// Likewise, next to a widget that must stay visible: at the left or the right, where there is more room.
 void hint_beside(const char* text);
 
 /// Draws a label in the left column, for a text (text_label) or a framed widget (label) next to it.

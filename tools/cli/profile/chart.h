@@ -45,7 +45,7 @@ public:
              const std::string& on_it = {}, size_t lane = 0);
     /// A line of values from 0 to the maximum, as steps: each value holds from its time on.
     void line(const std::string& name, const std::vector<std::pair<double, double>>& values, const std::string& most);
-    /// With an axis of ticks that are at least `least_tick` apart.
+    /// Adds an axis whose ticks are at least `least_tick` apart.
     std::string svg(const std::string& unit = "ms", double least_tick = 0.0) const;
 
 private:

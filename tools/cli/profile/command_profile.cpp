@@ -19,7 +19,7 @@ struct ProfileCommandOptions {
     std::string input, size, camera, trace, csv, graph, html, script;
     int frames = 20;
     int replays = 1;  ///< repetitions of the script
-    int warmup = 3;   ///< the first frames compile kernels and wake up the device
+    int warmup = 3;   ///< frames that are not counted: they compile kernels and wake up the device
     bool serialize = false;
     std::string a, b;  ///< files of diff
 };
@@ -94,7 +94,7 @@ Profile measure_frames(const ProfileCommandOptions& options, Opened& opened, Lon
     profile.warnings.insert(profile.warnings.begin(), opened.warnings.begin(), opened.warnings.end());
     profile.device_budget = renderer.memory().device_budget();
     profile.host_budget = renderer.host_budget();
-    // Counting costs time, so it gets its own frame.
+    // Counting costs time, so work is counted in a frame of its own.
     profile.counted =
         renderer.render(opened.session, camera, {.probe = probe, .count_work = true, .statistics = true}).passes;
     return profile;

@@ -28,7 +28,7 @@ const Json* find_pass(const Json& passes, const std::string& name)
     return nullptr;
 }
 
-/// How many times; older profiles that do not state it had many.
+/// Number of measurements; older profiles that do not state it have many.
 size_t count_of(const Json& object, const char* key)
 {
     const auto count = object.find(key);

@@ -40,7 +40,7 @@ std::vector<Need> needs_of(const FrameGraph& graph, const CompiledGraph& compile
 uint64_t most_at_once(const std::vector<Need>& needs)
 {
     uint64_t most = 0;
-    for (const Need& at : needs) {  // the sum only grows where a resource begins
+    for (const Need& at : needs) {  // the sum grows only at steps where a resource begins
         uint64_t sum = 0;
         for (const Need& need : needs)
             if (need.first_step <= at.first_step && at.first_step <= need.last_step) sum += need.bytes;

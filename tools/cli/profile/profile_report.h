@@ -24,7 +24,7 @@ struct Profile {
     int warmup = 0;
     bool serialize = false;
     std::chrono::steady_clock::time_point measured_from{};  ///< start of the frames' clock
-    std::vector<gpu::PassReport> first_frame;               ///< the frame that also prepares: uploads, leap grid
+    std::vector<gpu::PassReport> first_frame;               ///< the frame that includes preparation: uploads, leap grid
     std::vector<ProfiledFrame> frames;                      ///< after the warm-up
     std::vector<gpu::PassReport> counted;                   ///< one more frame, with work counters
     Json bytes;
@@ -35,7 +35,7 @@ struct Profile {
     std::vector<std::string> warnings;
 };
 
-/// Statistics of repeated equal work. p95: at least 95 % of the values are at or below.
+/// Statistics of the same work, repeated. p95: at least 95 % of the values are at or below it.
 struct Spread {
     double minimum = 0.0, median = 0.0, p95 = 0.0, maximum = 0.0;
 };

@@ -11,7 +11,7 @@ namespace shvr::cli {
 
 namespace {
 
-/// Counters; an action's share is the difference of two.
+/// Counter values; an action's share is the difference of two.
 struct SessionCounts {
     uint64_t submits = 0, allocations = 0, uploads = 0, evictions = 0;
     int64_t painted = 0;

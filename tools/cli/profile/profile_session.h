@@ -9,16 +9,16 @@ namespace shvr::cli {
 struct ProfiledAction {
     int line = 0;                         ///< line in the script
     std::string action;                   ///< its key "op"
-    double begin_ms = 0.0, end_ms = 0.0;  ///< on the host's clock, from the first action
+    double begin_ms = 0.0, end_ms = 0.0;  ///< time on the host's clock, from the first action
     // From the beginning of the action; null if the event did not happen before the next action.
-    std::optional<double> paint_ms;       ///< until the voxels that it changed are painted; null: their number is
+    std::optional<double> paint_ms;       ///< time until the voxels that it changed are painted; null: their number is
                                           ///< unchanged
-    std::optional<double> sketch_ms;      ///< until every pane shows at least a sketch of it
+    std::optional<double> sketch_ms;      ///< time until every pane shows at least a sketch of it
     std::optional<double> sharp_ms;       ///< until every pane shows it sharp
     uint64_t submits = 0;                 ///< submissions of the picture
     uint64_t allocations = 0;             ///< allocations of device memory
     uint64_t uploads = 0, evictions = 0;  ///< paged bricks only
-    int64_t voxels_painted = 0;           ///< increase of the voxels in groups; below 0: decrease
+    int64_t voxels_painted = 0;           ///< increase of the number of voxels in groups; below 0: decrease
     uint64_t device_bytes = 0;
 };
 using Replayed = std::vector<ProfiledAction>;  ///< the whole script, done once

@@ -29,7 +29,7 @@ std::optional<Timing> timing_in(const Json& spreads, const char* key, size_t rep
     return timing_of(times, "", replays, file);
 }
 
-/// If only one of them has the time, such as that of paint that the other lacks, that is the change.
+/// If only one of the two has a time, such as that of painting, this is reported as the change.
 Json compared(const char* words, const std::optional<Timing>& a, const std::optional<Timing>& b)
 {
     Json row = compared_times(words, a, b);

@@ -9,7 +9,7 @@ namespace shvr::cli {
 
 namespace {
 
-/// All reports of the passes with one name, over the frames. A frame that did not run it has none.
+/// All reports of passes with one name, over the frames; none for a frame that did not run it.
 struct PassHistory {
     std::vector<double> times, records;
     size_t count = 0;

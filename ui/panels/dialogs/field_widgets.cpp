@@ -22,7 +22,7 @@ std::string title_of(std::string_view key)
     return title;
 }
 
-/// One for all fields: at most one is shown.
+/// One chooser for all fields, since at most one is shown.
 FileChooser chooser({.title = "Choose a file or a folder",
                      .verb = "Choose",
                      .note = "A new name can be typed, too.",
@@ -31,7 +31,7 @@ ImGuiID chooser_of = 0;
 
 constexpr float NAME_COLUMN = 9.0f, VALUE_WIDTH = 26.0f;  ///< in font sizes
 
-/// The name at the left; then comes the widget, whose own label is only an id.
+/// Draws the name at the left; the widget follows, whose own label is only an id.
 std::string begin_row(std::string_view name)
 {
     ImGui::AlignTextToFramePadding();
@@ -117,7 +117,7 @@ public:
             const std::filesystem::path begin = value.empty() ? new_file(name, about) : value;
             chooser.ask(begin, places(begin, {}));
         }
-        // A chooser is drawn by the field that asked for it.
+        // A chooser is drawn by the field that opened it.
         if (chooser_of == id)
             if (const auto path = chooser.draw()) value = *path;
         ImGui::PopID();
@@ -142,7 +142,7 @@ public:
     void other(std::string_view, const std::function<void(const JsonNode&)>&,
                const std::function<std::optional<std::string>()>&, const About&) override
     {}
-    /// An optional section is opened by a box, and closing that takes it away again.
+    /// An optional section is opened by a check box; unchecking removes it.
     void section(std::string_view name, const Visit& visit, const About&) override
     {
         ImGui::PushID(std::string(name).c_str());
@@ -162,14 +162,14 @@ public:
     void mention(std::string_view, const About& about) override { tell(about); }
 
 private:
-    /// "/scans/spike-trace.swc", for a key that names a file to be written.
+    /// Path for a key that names a file to be written: "/scans/spike-trace.swc".
     std::filesystem::path new_file(std::string_view name, const About& about) const
     {
         const std::string ending = name == "project" ? "" : first_ending(about.meaning);
         if (beside_.empty() || (ending.empty() && name != "project")) return beside_.parent_path();
         return beside_.string() + "-" + std::string(name) + ending;
     }
-    /// Describes a widget without text, right of it.
+    /// Describes a widget without text, at its right.
     static void words_beside(const About& about, float fonts)
     {
         ImGui::SameLine();

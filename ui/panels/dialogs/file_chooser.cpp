@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Frames in which one was open, or read a folder, last.
+/// Last frames in which a chooser was open, and in which one read a folder.
 int open_in_frame = -10, reading_in_frame = -10;
 
 bool is_recent(int frame)
@@ -41,7 +41,7 @@ std::string with_slash(const fs::path& folder)
     return text.ends_with('/') ? text : text + "/";
 }
 
-/// Tab completes the path in a field, where that is known soon.
+/// Tab completes the path in a field, if the completion is known soon.
 struct Completion {
     fs::path folder;
     bool has_answered = true;
@@ -121,7 +121,7 @@ void FileChooser::forget_questions()
     is_folder_ = {};
 }
 
-/// Lists that path, if it is a folder, as soon as that is known.
+/// Lists that path, if it is a folder, as soon as this is known.
 void FileChooser::follow(const fs::path& folder)
 {
     followed_ = folder;
@@ -142,7 +142,7 @@ void FileChooser::select(size_t row)
     ++field_number_;
 }
 
-/// Takes the path, or enters it, or says why not; as soon as that is known.
+/// Takes the path, enters it, or states why not, as soon as that is known.
 void FileChooser::accept(const std::string& typed, bool enters_folders)
 {
     forget_questions();
@@ -262,7 +262,7 @@ std::optional<fs::path> FileChooser::contents()
     return accepted_;
 }
 
-/// The line below the list: why a path or a folder is refused, otherwise the note.
+/// Draws the line below the list: why a path or a folder is refused, otherwise the note.
 void FileChooser::note_line(const std::string& failure)
 {
     if (failure.empty()) {
@@ -274,7 +274,7 @@ void FileChooser::note_line(const std::string& failure)
     }
 }
 
-/// The selection of names that are listed, and their number.
+/// Draws the choice of names to list, and their number.
 void FileChooser::filter_row()
 {
     bool changed = false;
@@ -322,7 +322,7 @@ void FileChooser::path_field()
     if (entered) accept(text_, true);
 }
 
-/// The list shows the folder of a whole path that is being typed, once its slash is there.
+/// Shows the folder of a whole path that is being typed, once its slash has been typed.
 void FileChooser::follow_typed()
 {
     if (!text_.ends_with('/') || !(text_.starts_with('/') || text_.starts_with('~'))) return;

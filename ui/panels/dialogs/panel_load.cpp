@@ -1,5 +1,5 @@
-// Opening with choices: what a file is, what loading it takes, and what a person states instead of the file. The
-// spacing of what is open, and its correction.
+// Opening with choices: the file's kind, the resources that loading takes, and the user's statements that replace the
+// file's. The spacing of the open volume, and its correction.
 
 #include <algorithm>
 #include <string>
@@ -30,7 +30,7 @@ struct LoadDialog {
     LoadForm form;
     std::string path;
     std::vector<Choice> choices;  ///< that the file was found to offer
-    int levels = 0;               ///< that the file was found to have; 0: not known
+    int levels = 0;               ///< number of levels that the file was found to have; 0: not known
     bool is_asked_for = false;
 };
 LoadDialog loading;
@@ -45,7 +45,7 @@ void follow_choices(const Candidate* candidate)
     }
 }
 
-/// A list where the file offers several, a field to type in otherwise.
+/// A list if the file offers several choices, otherwise a field to type in.
 bool choice_field(const char* label, const char* key, std::string& value)
 {
     const auto found = std::ranges::find(loading.choices, key, &Choice::key);

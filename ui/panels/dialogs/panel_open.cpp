@@ -1,4 +1,4 @@
-// Ways in: the dialog that asks for a file, and the page that is shown while nothing is open.
+// The dialog that asks for a file, and the page that is shown while nothing is open.
 
 #include <algorithm>
 #include <filesystem>
@@ -122,7 +122,7 @@ void open_dialog(const Model& model, Actions& actions)
         opening.ask(begin, places_of(model));
     }
     if (!model.asks_what_to_open && std::exchange(was_asked, false) && opening.is_open()) opening.close();
-    static std::filesystem::path chosen;  // here last: where it cannot be opened it is asked for once more
+    static std::filesystem::path chosen;  // path chosen here last; if it cannot be opened, the dialog asks again
     if (!chosen.empty() && model.failed_path && *model.failed_path == chosen) {
         opening.ask_again(std::exchange(chosen, {}), places_of(model), std::string(model.open_failure));
         was_asked = true;

@@ -1,4 +1,4 @@
-// Long work: the dialogs in which it is asked for, and how far it is.
+// Long work: the dialogs that request it, and its progress.
 
 #include <chrono>
 #include <cmath>
@@ -21,7 +21,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// "leaf.swc exists and will be replaced"; empty where nothing is.
+/// "leaf.swc exists and will be replaced"; empty if nothing is replaced.
 template <class Task>
 std::string replacement(const Task& task)
 {
@@ -35,7 +35,7 @@ std::string replacement(const Task& task)
 
 /// Result of checking a task on disk.
 struct Verdict {
-    std::string refusal;      ///< why it cannot be; empty: nothing is in its way
+    std::string refusal;      ///< reason why the task is unavailable; empty: it is available
     std::string replacement;  ///< what it replaces
 };
 
@@ -53,9 +53,9 @@ Verdict verdict_on(const Task& task)
 template <class Task>
 constexpr bool WRITES_FILES = !std::is_same_v<Task, EvaluateTask>;
 
-int waits_in_frame = -1;  ///< the last in which a dialog waited for the disk
+int waits_in_frame = -1;  ///< last frame in which a dialog waited for the disk
 
-/// A dialog with the options of a task. They stay as they were left for the next time with the same scan.
+/// A dialog with the options of a task, which are kept for the next time with the same scan.
 template <class Task>
 struct TaskDialog {
     Task task;
@@ -109,7 +109,7 @@ private:
         if (is_known_) return known_.refusal;
         return asked_.is_pending() ? "Waiting for the disk" : "";
     }
-    /// Asks the disk in the background: after each change, and again now and then, since files come and go.
+    /// Checks files in the background: after each change, and again now and then, since files come and go.
     void ask_disk()
     {
         constexpr double AGAIN_S = 1.0;

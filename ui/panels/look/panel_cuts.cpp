@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* AXIS_NAMES[] = {"x", "y", "z"};
 
-/// One plane, in units of `scale` voxels; returns whether it was moved.
+/// Draws one plane, in units of `scale` voxels; returns whether it was moved.
 bool plane(const char* id, double& voxels, double least, double most, double scale, const char* format)
 {
     double value = voxels * scale;
@@ -26,7 +26,7 @@ bool plane(const char* id, double& voxels, double least, double most, double sca
     return true;
 }
 
-/// A row of the table: what is drawn along one axis.
+/// Draws a row of the table: the visible part along one axis.
 bool axis_row(int axis, CutBox& cut, double size, double scale, const char* unit, const char* format)
 {
     ImGui::PushID(unit);
@@ -87,7 +87,7 @@ void cutting_planes(const Model& model, Actions& actions)
         "moves in any case.");
 }
 
-/// A distance from the eye; 0 is no plane.
+/// Draws a distance from the eye; 0 means no plane.
 bool clip(const char* name, double& distance, double reach, const char* none, const char* format, const char* help)
 {
     row(name);

@@ -15,7 +15,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// The point that numbers are of, and whether the mouse has it.
+/// The selected point, whose numbers are shown, and whether the mouse holds it.
 size_t chosen_point = 0;
 bool drags_point = false;
 FineDrag held_point;
@@ -50,7 +50,7 @@ void draw_curve(const OcclusionSettings& settings, const ImVec2& begin, const Im
     }
 }
 
-/// The square: a double click adds a point, a drag moves one, a right click removes it.
+/// Draws the square: a double click adds a point, a drag moves one, a right click removes it.
 void curve_field(const OcclusionSettings& settings, const Model& model, Actions& actions)
 {
     label("");

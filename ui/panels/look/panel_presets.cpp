@@ -21,7 +21,7 @@ namespace {
 /// State of the name dialogs between frames.
 struct NameState {
     std::string name;     ///< typed
-    std::string renamed;  ///< the preset that gets it; empty: the present curve is kept under it
+    std::string renamed;  ///< preset to rename; empty: the name is for the present curve, to be kept
 };
 NameState asked;
 
@@ -33,7 +33,7 @@ void ask_for_preset_name(const std::string& renamed)
     asked = {renamed, renamed};
 }
 
-/// A right click on one that a person keeps.
+/// Menu of a right click on one of the user's presets.
 bool own_menu(const TransferPreset& preset, Actions& actions)
 {
     bool asks = false;
@@ -55,8 +55,8 @@ bool own_menu(const TransferPreset& preset, Actions& actions)
     return asks;
 }
 
-/// The colours of a function from the least to the largest intensity, at the right of the row that was drawn last; the
-/// higher the more opaque, as in the curve.
+/// Draws the colours of a function from the lowest to the highest intensity, at the right of the row drawn last; higher
+/// means more opaque, as in the curve.
 void draw_colors(const TransferFunction& function, const VolumeStatistics& statistics)
 {
     constexpr float COLUMN = 2.0f;
@@ -76,7 +76,7 @@ void draw_colors(const TransferFunction& function, const VolumeStatistics& stati
     }
 }
 
-/// A row of the list, with its colours. Returns whether it was chosen.
+/// Draws a row of the list, with its colours. Returns whether it was chosen.
 bool preset_row(const std::string& name, const TransferFunction& function, const Model& model)
 {
     const float width = ImGui::CalcTextSize(name.c_str()).x + (COLORS_WIDTH + 1.0f) * ImGui::GetFontSize();
@@ -115,7 +115,7 @@ bool list(const Model& model, Actions& actions)
     return asks;
 }
 
-/// Returns the objection to the typed name; empty: none.
+/// Returns the reason why the typed name is refused; empty: it is accepted.
 std::string why_not_named(const Model& model)
 {
     const auto is_it = [](const TransferPreset& preset) { return preset.name == asked.name; };

@@ -30,8 +30,8 @@ using Grip = TransferCurve::Grip;
 
 constexpr float HEIGHT = 150.0f / 14.0f;  ///< height of the curve, in font sizes
 constexpr float POINT_RADIUS = 0.36f;     ///< in font sizes
-constexpr float MARGIN = 0.65f;           ///< around the axes, so that circles at the edge are whole
-constexpr float REACH = 0.65f;            ///< the mouse grabs things within this distance, in font sizes
+constexpr float MARGIN = 0.65f;           ///< margin around the axes, so that circles at the edge are whole
+constexpr float REACH = 0.65f;            ///< distance within which the mouse grabs things, in font sizes
 constexpr float COLUMN = 2.0f;            ///< width of one colour in the coloured area, in pixels
 constexpr float STROKE = 0.11f;           ///< in font sizes
 
@@ -88,7 +88,7 @@ void draw_histogram(const CurveAxes& axes, const WidgetState& state, ImDrawList&
     }
 }
 
-/// The area below the curve, in the function's colours.
+/// Draws the area below the curve, in the function's colours.
 void draw_area(const CurveAxes& axes, const TransferFunction& function, ImDrawList& list)
 {
     for (float x = axes.begin.x; x < axes.end.x; x += COLUMN) {
@@ -99,7 +99,7 @@ void draw_area(const CurveAxes& axes, const TransferFunction& function, ImDrawLi
     }
 }
 
-/// Segments are linear in opacity, and so curved on this axis.
+/// Segments are linear in opacity, and therefore curved on this axis.
 void draw_line(const CurveAxes& axes, const Points& points, ImDrawList& list)
 {
     constexpr int PIECES = 16;
@@ -234,7 +234,7 @@ void drag(const CurveAxes& axes, TransferCurve& curve, const Model& model, const
     }
 }
 
-/// The wheel shifts all points, slowly with Shift. The panel does not scroll below the mouse.
+/// The wheel shifts all points, slowly with Shift. The panel itself does not scroll under the mouse.
 void use_wheel(TransferCurve& curve, const Model& model, const WidgetState& state, Actions& actions)
 {
     ImGuiIO& io = ImGui::GetIO();
