@@ -95,7 +95,7 @@ MAY_INCLUDE = {
     "ui/panels/dialogs": "engine/base engine/session engine/workbench/models engine/workbench/actions "
     "engine/workbench/lists engine/workbench/bindings ui/files ui/panels",
     "ui/panels/touch": "engine/workbench/models engine/workbench/lists engine/workbench/edits engine/workbench/bindings "
-    "ui/panels",
+    "engine/workbench/words ui/panels",
     "ui": "engine/base engine/gpu engine/live haptics engine/workbench engine/workbench/models engine/workbench/sight "
     "engine/workbench/edits engine/workbench/bindings ui/panels",
     "tests": "*",

@@ -9,6 +9,7 @@
 
 #include <imgui/imgui.h>
 
+#include "engine/workbench/appearance/panel_rows.h"
 #include "engine/workbench/bindings/preferences_file.h"
 #include "ui/panels/style.h"
 #include "ui/panels/widgets.h"
@@ -17,34 +18,18 @@ namespace shvr::ui {
 
 namespace {
 
-struct PanelBody {
-    const char* id = "";
-    void (*draw)(const Model& model, Actions& actions) = nullptr;
-};
-/// The panels' contents; their order and titles are in engine/workbench/appearance/layout.cpp.
-constexpr PanelBody BODIES[] = {
-    {"transfer_function", transfer_function_panel},
-    {"groups", groups_panel},
-    {"probe", probe_panel},
-    {"touch", touch_panel},
-    {"trace", trace_panel},
-    {"trace_list", trace_list_panel},
-    {"light", light_panel},
-    {"occlusion", occlusion_panel},
-    {"cuts", cuts_panel},
-    {"quality", quality_panel},
-    {"aids", aids_panel},
-    {"views", views_panel},
-    {"history", history_panel},
-};
+constexpr bool has_body(const PanelRow& row)
+{
+    return std::ranges::any_of(PANEL_BODIES, [&](const PanelBody& each) { return each.id == row.id; });
+}
+static_assert(std::ranges::all_of(PANELS, has_body), "panels.h lacks the function of a panel");
+static_assert(std::size(PANEL_BODIES) == std::size(PANELS), "panel_rows.h lacks the row of a panel");
 
 constexpr float SPLITTER = 6.0f / 14.0f;  ///< its width, in font sizes
 
 void draw_body(const PanelRow& row, const Model& model, Actions& actions)
 {
-    const auto body =
-        std::ranges::find_if(BODIES, [&](const PanelBody& each) { return std::strcmp(each.id, row.id) == 0; });
-    if (body == std::end(BODIES)) return;
+    const auto body = std::ranges::find_if(PANEL_BODIES, [&](const PanelBody& each) { return each.id == row.id; });
     ImGui::PushID(row.id);
     body->draw(model, actions);
     ImGui::PopID();

@@ -2,6 +2,8 @@
 // The panels around the graphics window. Each function draws state and returns the user's actions; none changes
 // anything but its own widgets. Call between Window::begin_ui and Window::present, main thread.
 
+#include <string_view>
+
 #include <imgui/imgui.h>
 
 #include "engine/workbench/actions/action.h"
@@ -24,24 +26,44 @@ bool covers(const glm::dvec2& at);
 /// left. While nothing is open, the start page replaces tools and panels.
 Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& actions);
 
-// The panels' contents, each in its own file; engine/workbench/appearance/layout.h lists the panels and their places.
+// The panels' contents, each in its own file; engine/workbench/appearance/panel_rows.h has their titles and order.
+void transfer_function_panel(const Model& model, Actions& actions);
+void groups_panel(const Model& model, Actions& actions);
 void probe_panel(const Model& model, Actions& actions);
 void touch_panel(const Model& model, Actions& actions);
-/// Drawn within the touch panel: the connected devices, and the state of the one in use.
-void device_section(const Model& model, Actions& actions);
 void trace_panel(const Model& model, Actions& actions);
-void transfer_function_panel(const Model& model, Actions& actions);
+void trace_list_panel(const Model& model, Actions& actions);
 void light_panel(const Model& model, Actions& actions);
 void occlusion_panel(const Model& model, Actions& actions);
-void quality_panel(const Model& model, Actions& actions);
 void cuts_panel(const Model& model, Actions& actions);
+void quality_panel(const Model& model, Actions& actions);
 void aids_panel(const Model& model, Actions& actions);
 void views_panel(const Model& model, Actions& actions);
-void groups_panel(const Model& model, Actions& actions);
-void trace_list_panel(const Model& model, Actions& actions);
+void history_panel(const Model& model, Actions& actions);
+struct PanelBody {
+    std::string_view id;  ///< as in panel_rows.h
+    void (*draw)(const Model& model, Actions& actions) = nullptr;
+};
+inline constexpr PanelBody PANEL_BODIES[] = {
+    {"transfer_function", transfer_function_panel},
+    {"groups", groups_panel},
+    {"probe", probe_panel},
+    {"touch", touch_panel},
+    {"trace", trace_panel},
+    {"trace_list", trace_list_panel},
+    {"light", light_panel},
+    {"occlusion", occlusion_panel},
+    {"cuts", cuts_panel},
+    {"quality", quality_panel},
+    {"aids", aids_panel},
+    {"views", views_panel},
+    {"history", history_panel},
+};
+
+/// Drawn within the touch panel: the connected devices, and the state of the one in use.
+void device_section(const Model& model, Actions& actions);
 /// Draws device time per pass of a picture, in a window of its own.
 void passes_window(const Model& model, Actions& actions);
-void history_panel(const Model& model, Actions& actions);
 /// Drawn below the menu, over the whole width: the tools, the active group, and the mouse's functions.
 float tool_bar_height();
 void tool_bar(const ImVec2& at, float width, const Model& model, Actions& actions);

@@ -5,6 +5,7 @@
 
 #include "engine/session/quality.h"
 #include "engine/workbench/bindings/tools.h"
+#include "engine/workbench/words/touch_words.h"
 
 namespace shvr::ui {
 
@@ -85,31 +86,13 @@ std::string sentence_about(const OcclusionSettings& was, const OcclusionSettings
                     " of the light arrives, ", percent(moved->seen), " is seen", off);
 }
 
-std::string sentence_about(ProxyLaw guidance)
-{
-    switch (guidance) {
-        case ProxyLaw::potential: return "Guidance: smooth";
-        case ProxyLaw::mean: return "Guidance: mean of what is relevant";
-        case ProxyLaw::thesis: return "Guidance: mean of 3000 random points";
-    }
-    return {};
-}
-
 /// Empty if only numbers changed, which need no sentence of their own.
 std::string sentence_about(const FeelSettings& was, const FeelSettings& is)
 {
-    if (was.mode != is.mode) {
-        switch (is.mode) {
-            case TouchMode::proximity: return "Touching: pulled to the middle of all that is near";
-            case TouchMode::surface: return "Touching: held on surfaces, until you pull towards yourself";
-            case TouchMode::object: return "Touching: follows the object first touched, and no neighbour";
-        }
-    }
+    if (was.mode != is.mode) return words_of(is.mode).sentence;
     if (was.strength != is.strength) return sentence("Strength ", std::round(100.0 * is.strength), " %");
     if (was.groups != is.groups && is.groups.empty()) return "Everything at or above the haptic threshold is felt";
-    if (was.plane != is.plane)
-        return is.plane == TouchPlane::none ? std::string("The probe moves freely")
-                                            : sentence("The probe stays in its plane across ", spelled(is.plane));
+    if (was.plane != is.plane) return words_of(is.plane).sentence;
     if (was.at_proxy != is.at_proxy)
         return is.at_proxy ? "Tools act at the middle of what is touched" : "Tools act at the probe";
     if (was.to_nodes != is.to_nodes)
@@ -134,7 +117,7 @@ std::string special_sentence(const Session& was, const Session& is)
     if (before.guided != after.guided)
         return after.guided ? "Guidance on: the probe is pulled to what is at or above the haptic threshold"
                             : "Guidance off";
-    if (before.guidance != after.guidance) return sentence_about(after.guidance);
+    if (before.guidance != after.guidance) return words_of(after.guidance).sentence;
     if (before.touch != after.touch) return sentence_about(before.touch, after.touch);
     if (before.shell != after.shell)
         return after.shell ? "Iso-surface around the probe on, at the paint threshold"

@@ -9,6 +9,7 @@
 #include "engine/workbench/edits/edit.h"
 #include "engine/workbench/lists/group_list.h"
 #include "engine/workbench/models/hand_view.h"
+#include "engine/workbench/words/touch_words.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
 
@@ -16,40 +17,19 @@ namespace shvr::ui {
 
 namespace {
 
+/// Draws a row of buttons, one for each value.
 template <class Value>
-struct Choice3 {
-    Value value;
-    const char* name;
-    const char* hint;
-};
-
-template <class Value, size_t COUNT>
-std::optional<Value> radio(const Choice3<Value> (&choices)[COUNT], Value value)
+std::optional<Value> radio(Value value)
 {
     std::optional<Value> chosen;
-    for (size_t i = 0; i < COUNT; ++i) {
-        if (i > 0) ImGui::SameLine();
-        if (ImGui::RadioButton(choices[i].name, value == choices[i].value)) chosen = choices[i].value;
-        hint(choices[i].hint);
+    for (const Spelling<Value>& each : spellings_of(value)) {
+        if (each.value != spellings_of(value).front().value) ImGui::SameLine();
+        const TouchWords words = words_of(each.value);
+        if (ImGui::RadioButton(words.name, value == each.value)) chosen = each.value;
+        hint(words.hint);
     }
     return chosen;
 }
-
-constexpr Choice3<TouchMode> MODES[] = {
-    {TouchMode::proximity, "near", "Pulled to the middle of all that the probe touches: along roots and vessels."},
-    {TouchMode::surface, "surface", "Held where the probe dips into something; pull towards yourself to get off."},
-    {TouchMode::object, "object",
-     "Follows what is touched first and everything connected with it, past neighbours that it does not touch."}};
-static_assert(std::size(MODES) == std::size(TOUCH_MODES));
-constexpr Choice3<ProxyLaw> LAWS[] = {
-    {ProxyLaw::potential, "smooth", "Grows from nothing at the first touch, and never drives the hand by itself."},
-    {ProxyLaw::mean, "mean", "To the mean of what lies in the probe."},
-    {ProxyLaw::thesis, "points", "To the mean of 3000 random points: rougher, as the first SHVR did it."}};
-static_assert(std::size(LAWS) == std::size(PROXY_LAWS));
-constexpr Choice3<TouchPlane> PLANES[] = {{TouchPlane::none, "free", "The probe goes wherever the hand does."},
-                                          {TouchPlane::x, "x", "It stays in its plane across x."},
-                                          {TouchPlane::y, "y", "It stays in its plane across y."},
-                                          {TouchPlane::z, "z", "It stays in its plane across z."}};
 
 void threshold(const Model& model, Actions& actions)
 {
@@ -152,7 +132,7 @@ void tools(const Model& model, Actions& actions)
          "A short push against your hand where the probe begins to touch something. Only for devices with motors.",
          model, actions, &FeelSettings::clicks);
     label("Plane");
-    if (const auto plane = radio(PLANES, model.session.probe.touch.plane))
+    if (const auto plane = radio(model.session.probe.touch.plane))
         set(actions, model, [&](Session& s) { s.probe.touch.plane = *plane; });
     double scale = model.session.interaction.workspace_scale;
     const bool is_moved = slider("Workspace", scale, MIN_WORKSPACE_SCALE, MAX_WORKSPACE_SCALE, "%.2f times",
@@ -183,10 +163,10 @@ void touch_panel(const Model& model, Actions& actions)
         hint(sentence("Switches all force off at once. ", name_with_key("let_go", model.keymap), ".").c_str());
     }
     label("Touches");
-    if (const auto mode = radio(MODES, model.session.probe.touch.mode))
+    if (const auto mode = radio(model.session.probe.touch.mode))
         set(actions, model, [&](Session& s) { s.probe.touch.mode = *mode; });
     label("Pull");
-    if (const auto law = radio(LAWS, model.session.probe.guidance))
+    if (const auto law = radio(model.session.probe.guidance))
         set(actions, model, [&](Session& s) { s.probe.guidance = *law; });
     threshold(model, actions);
     strength(model, actions);

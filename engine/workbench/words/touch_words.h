@@ -1,0 +1,18 @@
+#pragma once
+// Names, hints and messages of the modes of touch, the laws of guidance and the planes that hold the probe. Pure; any
+// thread.
+
+#include "engine/session/session.h"
+
+namespace shvr::ui {
+
+struct TouchWords {
+    const char* name = "";      ///< on a button
+    const char* hint = "";      ///< what it does
+    const char* sentence = "";  ///< the status bar's message when it is chosen
+};
+TouchWords words_of(TouchMode mode);
+TouchWords words_of(ProxyLaw law);
+TouchWords words_of(TouchPlane plane);
+
+}  // namespace shvr::ui
