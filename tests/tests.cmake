@@ -67,7 +67,7 @@ foreach(SHVR_LAYER IN LISTS layers)
 endforeach()
 
 # Libraries in place of those that are loaded at run time (tests/stubs/README.md).
-foreach(stub hd_stub hd_partial hung_disk short_memory)
+foreach(stub hd_stub hd_partial hung_disk no_locks short_memory)
     add_library(shvr_${stub} MODULE tests/stubs/${stub}.cpp)
     target_compile_features(shvr_${stub} PRIVATE cxx_std_20)
     target_include_directories(shvr_${stub} PRIVATE ${CMAKE_SOURCE_DIR})
@@ -158,9 +158,13 @@ file(GLOB_RECURSE durability_tests CONFIGURE_DEPENDS tests/durability/*.cpp)
 shvr_test_program(durability shvr_durability_tests 300 ${durability_tests})
 target_link_libraries(shvr_durability_tests PRIVATE shvr_test_support)
 # Calls that change files go through tests/durability/watched_calls.cpp.
-foreach(call open write pwrite fsync fdatasync ftruncate rename unlink)
+foreach(call open write pwrite fsync fdatasync ftruncate rename renameat2 unlink)
     target_link_options(shvr_durability_tests PRIVATE -Wl,--wrap=${call})
 endforeach()
+# Locks that fail, and other names of this computer.
+add_dependencies(shvr_durability_tests shvr_no_locks)
+set_property(TEST durability/two_writers durability/interleaved_writers APPEND PROPERTY ENVIRONMENT
+    LD_PRELOAD=$<TARGET_FILE:shvr_no_locks> ASAN_OPTIONS=verify_asan_link_order=0)
 
 # hidapi and a real kernel, in a virtual machine: tests/vm/README.md.
 add_executable(shvr_vm_test EXCLUDE_FROM_ALL tests/vm/hid_kernel.cpp tests/vm/uhid_device.cpp)

@@ -41,14 +41,15 @@ MAY_INCLUDE = {
     "engine/annotation/files": "engine/base engine/volume engine/annotation engine/annotation/trace engine/formats "
     "engine/formats/export engine/formats/zarr engine/projects shaders",
     "engine/annotation/script": "engine/base engine/annotation engine/annotation/trace",
+    "engine/annotation/writers": "engine/base",
     "engine/annotation/work": "engine/base engine/volume engine/annotation engine/annotation/files "
-    "engine/annotation/trace engine/projects",
+    "engine/annotation/trace engine/annotation/writers engine/projects",
     "engine/session": "engine/base engine/touch engine/volume engine/look engine/annotation engine/annotation/trace engine/formats "
     "engine/formats/zarr engine/projects",
     "engine/jobs": "engine/base",
     "engine/tasks": "engine/base engine/volume engine/look engine/components engine/formats/export engine/annotation "
-    "engine/annotation/trace engine/annotation/measures engine/annotation/files engine/annotation/work engine/projects "
-    "engine/session engine/jobs",
+    "engine/annotation/trace engine/annotation/measures engine/annotation/files engine/annotation/writers "
+    "engine/projects engine/session engine/jobs",
     "engine/device": "engine/base engine/volume engine/gpu engine/passes engine/look engine/bricks engine/annotation "
     "engine/annotation/trace engine/annotation/work shaders",
     "engine/picture": "engine/base engine/volume engine/passes engine/look engine/annotation/work engine/session engine/device",
@@ -105,7 +106,8 @@ MAY_INCLUDE = {
     "tools/golden tools/report",
     "tools/golden": "engine/base engine/annotation/script engine/session engine/live shaders tools/report",
     "tools": "engine/base engine/volume engine/graph engine/projects engine/annotation/script engine/annotation/trace "
-    "engine/annotation/work engine/session engine/jobs engine/tasks engine/picture engine/live haptics haptics/devices haptics/hid ui engine/workbench "
+    "engine/annotation/work engine/annotation/writers engine/session engine/jobs engine/tasks engine/picture engine/live "
+    "haptics haptics/devices haptics/hid ui engine/workbench "
     "engine/workbench/touch engine/workbench/bindings "
     "tools/golden tools/bench tools/report",
 }

@@ -4,7 +4,7 @@
 #include <iomanip>
 #include <utility>
 
-#include "engine/annotation/work/hold.h"
+#include "engine/annotation/writers/hold.h"
 #include "engine/base/text.h"
 #include "engine/volume/grid.h"
 #include "engine/volume/unit.h"
@@ -156,6 +156,10 @@ ImportResult run(const ImportTask& task, ProgressReporter& reporter)
     // Replacing a project also deletes its annotation, so no process may be writing it.
     const std::filesystem::path session = task.project / "shvr" / "session.json";
     const std::shared_ptr<Hold> hold = task.overwrite ? Hold::take(journal_beside(session), task.program) : nullptr;
+    if (hold && !hold->doubtful().empty())
+        throw JournalTaken(sentence(hold->journal().string(), ": is open for writing in ",
+                                    in_words(hold->doubtful().front()),
+                                    "; expected nobody else to be writing a project that is to be replaced"));
     if (task.overwrite) refuse_own_source(task);
     const Clock::time_point begin = Clock::now();
     const std::unique_ptr<VolumeSource> source = open_as_told(task);

@@ -7,11 +7,13 @@ import socket
 import subprocess
 import time
 import unittest
+from pathlib import Path
 
-from harness import ENVIRONMENT, SHVR, CliTest, Volume
+from harness import ENVIRONMENT, SHVR, CliTest, Volume, run
 from test_annotate import paint
 
 PATIENCE_S = 60
+NO_LOCKS = Path(SHVR).resolve().parent / "stubs" / "libno_locks.so"
 
 
 class Writers(CliTest):
@@ -21,15 +23,19 @@ class Writers(CliTest):
         self.session = self.write_session(volume={"path": name})
         self.lock = self.folder / "session.journal.lock"
 
-    def begin(self, *arguments):
+    def is_marked_by(self, program):
+        marks = self.folder.glob(f"session.journal.*.{program.pid}.*.lock")
+        return any(f"process: {program.pid}\n" in mark.read_text() for mark in marks)
+
+    def begin(self, *arguments, **environment):
         """A program that holds the project and waits for its script; returns it once it holds."""
         program = subprocess.Popen([SHVR, "annotate", self.session, "--script", "-", "--json", *arguments],
                                    stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                   env=ENVIRONMENT)
+                                   env={**ENVIRONMENT, **environment})
         self.addCleanup(program.communicate)
         self.addCleanup(program.kill)
         end = time.monotonic() + PATIENCE_S
-        while not (self.lock.exists() and f"process: {program.pid}\n" in self.lock.read_text()):
+        while not self.is_marked_by(program):
             self.assertIsNone(program.poll())
             self.assertLess(time.monotonic(), end)
             time.sleep(0.01)
@@ -48,7 +54,7 @@ class Writers(CliTest):
         return paint("fill", "box", group, 0, 0.4, [[group + 0.5, 1.5, 1.5]])
 
     def files(self):
-        return {path.name: path.read_bytes() for path in self.folder.iterdir() if path != self.lock}
+        return {path.name: path.read_bytes() for path in self.folder.iterdir() if path.suffix != ".lock"}
 
     def test_the_second_is_told_who_holds_the_project_before_any_work(self):
         self.annotate([self.dab(1), {"op": "save"}])
@@ -109,6 +115,46 @@ class Writers(CliTest):
         self.lock.mkdir()
         self.annotate([self.dab(1), {"op": "save"}])
         self.annotate([{"op": "expect", "voxels_in_group": {"1": 1}}])
+
+    def elsewhere(self, host, locks="hollow"):
+        """The environment of a program on another computer, on a file system whose locks do not exclude."""
+        return {"LD_PRELOAD": str(NO_LOCKS), "SHVR_LOCKS": locks, "SHVR_HOST": host,
+                "ASAN_OPTIONS": "verify_asan_link_order=0"}
+
+    def test_without_locks_that_exclude_the_second_is_refused_all_the_same(self):
+        for locks in ("ENOSYS", "ENOLCK", "ENOTSUP", "hollow"):
+            with self.subTest(locks=locks):
+                here = {"LD_PRELOAD": str(NO_LOCKS), "SHVR_LOCKS": locks, "ASAN_OPTIONS": "verify_asan_link_order=0"}
+                first = self.begin(**here)
+                first.send_signal(signal.SIGSTOP)
+                script = self.write_script("script.jsonl", [self.dab(2), {"op": "save"}])
+                result = run("annotate", self.session, "--script", script, environment=here)
+                self.assertEqual(result.returncode, 1)
+                self.assertIn(f"is open for writing in shvr annotate, process {first.pid} on ", result.stderr)
+                first.send_signal(signal.SIGCONT)
+                self.finish(first, [self.dab(1), {"op": "undo"}, {"op": "save"}])
+        self.assertEqual([name for name in self.files() if "journal" in name], ["session.journal"])
+
+    def test_a_writer_on_another_computer_loses_nothing_and_who_comes_second_is_told(self):
+        """The first is stopped while the second works, saves and ends."""
+        self.annotate([self.dab(1), {"op": "save"}])
+        before = self.files()["session.journal"]
+        first = self.begin(**self.elsewhere("node1"))
+        first.stdin.write(json.dumps(self.dab(2)) + "\n")
+        first.stdin.flush()
+        first.send_signal(signal.SIGSTOP)
+        script = self.write_script("script.jsonl", [self.dab(3), {"op": "save"}])
+        second = run("annotate", self.session, "--script", script, environment=self.elsewhere("node2"))
+        self.assertEqual(second.returncode, 0, second.stderr)
+        self.assertIn(f"is open for writing in shvr annotate, process {first.pid} on node1", second.stderr)
+        self.assertIn("leaves this file to it, as " + str(self.folder / "session.journal.old"), second.stderr)
+        first.send_signal(signal.SIGCONT)
+        # It reads the project once its script is complete, so it goes on with what the second did.
+        self.finish(first, [{"op": "save"}])
+        self.annotate([{"op": "expect", "voxels_in_group": {"1": 1, "2": 1, "3": 1}}])
+        self.assertEqual(self.files()["session.journal.old"], before)
+        for mark in self.folder.glob("*.lock"):
+            self.fail(f"{mark} is left")
 
     def test_a_project_is_not_replaced_under_the_hands_of_its_writer(self):
         volume = Volume.noise((9, 8, 7), seed=2).write(self.folder, "other")

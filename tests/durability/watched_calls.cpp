@@ -16,6 +16,7 @@ ssize_t __real_write(int file, const void* bytes, size_t count);
 ssize_t __real_pwrite(int file, const void* bytes, size_t count, off_t at);
 int __real_ftruncate(int file, off_t size);
 int __real_rename(const char* from, const char* to);
+int __real_renameat2(int from_folder, const char* from, int to_folder, const char* to, unsigned flags);
 int __real_unlink(const char* path);
 }
 
@@ -166,6 +167,13 @@ int __wrap_rename(const char* from, const char* to)
 {
     return made({FileCall::Kind::rename, absolute(from), absolute(to), 0, {}},
                 [&](int) { return __real_rename(from, to); });
+}
+
+/// Relative to no folder, which is all that the program uses.
+int __wrap_renameat2(int from_folder, const char* from, int to_folder, const char* to, unsigned flags)
+{
+    return made({FileCall::Kind::rename, absolute(from), absolute(to), 0, {}},
+                [&](int) { return __real_renameat2(from_folder, from, to_folder, to, flags); });
 }
 
 int __wrap_unlink(const char* path)

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "engine/annotation/work/holder_text.h"
+#include "engine/annotation/writers/holder_text.h"
 #include "engine/base/text.h"
 #include "tests/fuzz/support/attempt.h"
 #include "tests/fuzz/support/input_folder.h"

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <iostream>
 
-#include "engine/annotation/work/hold.h"
+#include "engine/annotation/writers/hold.h"
 #include "engine/base/image_file.h"
 #include "engine/base/text.h"
 #include "engine/live/previewer.h"

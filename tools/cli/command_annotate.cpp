@@ -3,7 +3,7 @@
 #include <concepts>
 
 #include "engine/annotation/script/script.h"
-#include "engine/annotation/work/hold.h"
+#include "engine/annotation/writers/hold.h"
 #include "engine/base/text.h"
 #include "engine/workbench/workbench.h"
 #include "tools/cli/cli.h"

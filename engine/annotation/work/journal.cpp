@@ -43,15 +43,43 @@ int sync(int file)
     return 0;
 }
 
-FileDescriptor opened(const fs::path& path)
+[[noreturn]] void refuse_changed(const fs::path& path, const JournalScan& before)
 {
-    FileDescriptor file(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666));
+    throw JournalTaken(sentence(path.string(), ": another process has written it since it was read; expected ",
+                                before.file_bytes, " bytes: open it again"));
+}
+
+/// The file as it was read, locked; created if it was not there.
+FileDescriptor opened(const fs::path& path, const JournalScan& before)
+{
+    const bool was_there = before.inode != 0;
+    const int creating = was_there ? 0 : O_CREAT | O_EXCL;
+    FileDescriptor file(::open(path.c_str(), O_RDWR | creating | O_CLOEXEC | O_NONBLOCK, 0666));
+    if (!file && errno == (was_there ? ENOENT : EEXIST)) refuse_changed(path, before);
     if (!file) fail(path.string(), ": cannot be written: ", reason_of(errno));
     // Some network file systems have no locks.
     if (::flock(file.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
         throw JournalTaken(
             sentence(path.string(), ": another process is annotating this; expected no other: close it there first"));
+    struct stat status {};
+    if (::fstat(file.number(), &status) != 0) fail(path.string(), ": cannot be read: ", reason_of(errno));
+    if (uint64_t(status.st_size) != before.file_bytes || (was_there && status.st_ino != before.inode))
+        refuse_changed(path, before);
     return file;
+}
+
+/// The bytes from `at` to `end`.
+void copy(const FileDescriptor& file, const fs::path& path, uint64_t at, uint64_t end, AtomicWriter& to)
+{
+    std::vector<std::byte> piece(size_t{1} << 20);
+    while (at < end) {
+        const auto wanted = size_t(std::min<uint64_t>(piece.size(), end - at));
+        const ssize_t count = ::pread(file.number(), piece.data(), wanted, off_t(at));
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) fail(path.string(), ": cannot be read: ", reason_of(count < 0 ? errno : EIO));
+        to.append(std::span(piece).first(size_t(count)));
+        at += uint64_t(count);
+    }
 }
 
 /// Path of the first of .rest1, .rest2, ... that does not exist.
@@ -67,40 +95,39 @@ fs::path free_rest(const fs::path& path)
 
 }  // namespace
 
-Journal::Journal(const fs::path& path, JournalScan before)
-    : path_(path), file_(opened(path)), end_(before.end), checksum_(before.checksum())
+void copy_bytes(const FileDescriptor& file, const fs::path& path, uint64_t end, std::span<const std::byte> head,
+                AtomicWriter& to)
+{
+    const uint64_t known = std::min<uint64_t>(head.size(), end);
+    to.append(head.first(size_t(known)));
+    copy(file, path, known, end, to);
+}
+
+void expect_as_read(const fs::path& path, const JournalScan& before)
+{
+    if (before.inode != 0)
+        static_cast<void>(opened(path, before));
+    else if (std::error_code ignored; fs::exists(fs::symlink_status(path, ignored)))
+        refuse_changed(path, before);
+}
+
+Journal::Journal(const fs::path& path, JournalScan before, std::shared_ptr<const Hold> hold)
+    : path_(path), file_(opened(path, before)), hold_(std::move(hold)), end_(before.end), checksum_(before.checksum())
 {
     records_ = std::move(before.records);
     last_ = records_.size();
-    struct stat status {};
-    if (::fstat(file_.number(), &status) != 0) fail(path.string(), ": cannot be read: ", reason_of(errno));
-    const bool was_there = before.inode != 0;
-    if (uint64_t(status.st_size) != before.file_bytes || (was_there && status.st_ino != before.inode))
-        throw JournalTaken(sentence(path.string(), ": another process has written it since it was read; expected ",
-                                    before.file_bytes, " bytes: open it again"));
     try {
-        if (end_ == 0 || end_ < before.file_bytes) begin(free_rest(path));
+        // Only now: whoever claims the journal later finds this file, and leaves it to this process.
+        if (hold_ && !hold_->is_kept()) refuse_changed(path, before);
+        if (end_ == 0 || end_ < before.file_bytes || !before.head.empty()) begin(free_rest(path), before.head);
     } catch (...) {
-        if (!was_there) ::unlink(path.c_str());
+        if (before.inode == 0 && is_in_place()) ::unlink(path.c_str());
         throw;
     }
     thread_ = std::thread([this] { write(); });
 }
 
-void Journal::copy(uint64_t at, uint64_t end, AtomicWriter& to) const
-{
-    std::vector<std::byte> piece(size_t{1} << 20);
-    while (at < end) {
-        const auto wanted = size_t(std::min<uint64_t>(piece.size(), end - at));
-        const ssize_t count = ::pread(file_.number(), piece.data(), wanted, off_t(at));
-        if (count < 0 && errno == EINTR) continue;
-        if (count <= 0) fail(path_.string(), ": cannot be read: ", reason_of(count < 0 ? errno : EIO));
-        to.append(std::span(piece).first(size_t(count)));
-        at += uint64_t(count);
-    }
-}
-
-void Journal::begin(const fs::path& rest)
+void Journal::begin(const fs::path& rest, std::span<const std::byte> head)
 {
     const auto check = [&](int error) {
         if (error != 0) fail(path_.string(), ": cannot be written: ", reason_of(error));
@@ -109,10 +136,11 @@ void Journal::begin(const fs::path& rest)
     check(::fstat(file_.number(), &status) == 0 ? 0 : errno);
     if (const auto bytes = uint64_t(status.st_size); bytes > end_) {
         AtomicWriter writer(rest);
-        copy(end_, bytes, writer);
+        copy(file_, path_, end_, bytes, writer);
         writer.commit();
         check(::ftruncate(file_.number(), off_t(end_)) == 0 ? 0 : errno);
     }
+    check(write_all(file_.number(), 0, head));
     if (end_ == 0) {
         const std::vector<std::byte> header = journal_header();
         check(write_all(file_.number(), 0, header));
@@ -194,13 +222,29 @@ bool Journal::is_in_place() const
     return held.st_ino == named.st_ino && held.st_dev == named.st_dev;
 }
 
+fs::path Journal::present_name() const
+{
+    struct stat held {
+    }, named{};
+    if (::fstat(file_.number(), &held) != 0) return {};
+    const auto is_name = [&](const fs::path& path) {
+        return ::lstat(path.c_str(), &named) == 0 && held.st_ino == named.st_ino && held.st_dev == named.st_dev;
+    };
+    if (is_in_place()) return path_;
+    const fs::path folder = path_.has_parent_path() ? path_.parent_path() : fs::path(".");
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+        if (is_name(entry->path())) return path_.parent_path() / entry->path().filename();
+    return {};
+}
+
 void Journal::copy_to(const fs::path& path) const
 {
     std::unique_lock lock(mutex_);
     const uint64_t end = end_;
     lock.unlock();
     AtomicWriter writer(path);
-    copy(0, end, writer);
+    copy(file_, path_, 0, end, writer);
     writer.commit();
 }
 
@@ -282,6 +326,7 @@ void Journal::write()
                     failure = sentence(path_.string(), ": cannot be synced: ", reason_of(error),
                                        "; unsaved work stays in memory, and writing is tried again");
                 next_sync = Clock::now() + SYNC_INTERVAL;
+                if (hold_ && !hold_->is_kept()) is_claimed_ = true;
             }
         }
         if (!failure.empty()) {

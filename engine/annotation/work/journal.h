@@ -6,11 +6,13 @@
 //   append (main thread, never waits) -> queue -> frame, write, sync (the journal's thread) -> durable
 //
 // While writing fails, nothing is lost and no caller waits: records stay in memory, `failure` states the reason, and
-// writing is retried every second. Only one process writes a journal: it holds it (hold.h) and, if that is not possible
-// or an older program does not know of it, a lock on the file itself; both end with the process.
+// writing is retried every second. Only one process writes a journal: the one that holds it (hold.h), which also locks
+// the file itself, for older programs. A file that is there is written only by whoever held the journal before it was
+// opened and after; a new one is created exclusively.
 //
 // One thread appends; any thread may query.
 
+#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <memory>
@@ -18,8 +20,8 @@
 #include <thread>
 #include <utility>
 
-#include "engine/annotation/work/hold.h"
 #include "engine/annotation/work/journal_file.h"
+#include "engine/annotation/writers/hold.h"
 
 namespace shvr {
 
@@ -27,9 +29,10 @@ class AtomicWriter;
 
 class Journal {
 public:
-    /// Continues after the valid prefix in `before`; data after it is kept as JOURNAL.rest1, .rest2 and so on. Fails if
-    /// the file cannot be created or written, with JournalTaken if another process holds it.
-    Journal(const std::filesystem::path& path, JournalScan before);
+    /// Continues after the valid prefix in `before`; data after it is kept as JOURNAL.rest1, .rest2 and so on, and a
+    /// damaged head is repaired. Fails if the file cannot be created or written, with JournalTaken if another process
+    /// holds it. `hold`: null for a journal that no other process knows of.
+    Journal(const std::filesystem::path& path, JournalScan before, std::shared_ptr<const Hold> hold = {});
     /// Tries to write the queue first.
     ~Journal();
     Journal(const Journal&) = delete;
@@ -47,6 +50,10 @@ public:
     /// False if the file was removed or replaced since it was
     /// opened: data written to it will be lost.
     bool is_in_place() const;
+    /// Whether another process claimed the journal (Hold::is_kept), as found after the last write.
+    bool is_claimed() const { return is_claimed_; }
+    /// The file's present name, also if it was renamed in its folder; empty if it has none.
+    std::filesystem::path present_name() const;
     /// Writes everything that is on disk to another file, atomically.
     void copy_to(const std::filesystem::path& path) const;
     /// Why writing fails at present; empty if it does not.
@@ -68,13 +75,13 @@ private:
     void frame_all(std::deque<Waiting>& waiting);
     /// Returns the reason of a failure; empty on success.
     std::string write_from(uint64_t at, const std::deque<Waiting>& waiting, size_t first) const;
-    void begin(const std::filesystem::path& rest);
+    void begin(const std::filesystem::path& rest, std::span<const std::byte> head);
     std::string sync_beginning() const;
-    /// The file's bytes from `at` to `end`.
-    void copy(uint64_t at, uint64_t end, AtomicWriter& to) const;
 
     std::filesystem::path path_;
     FileDescriptor file_;
+    std::shared_ptr<const Hold> hold_;
+    std::atomic<bool> is_claimed_ = false;
 
     mutable std::mutex mutex_;
     std::condition_variable appended_, tried_;
@@ -92,5 +99,12 @@ private:
     bool is_to_begin_ = false;  ///< header or length may not be on disk yet; used by the journal's thread
     std::thread thread_;
 };
+
+/// Appends the first `end` bytes of a journal; `head`: as in JournalScan.
+void copy_bytes(const FileDescriptor& file, const std::filesystem::path& path, uint64_t end,
+                std::span<const std::byte> head, AtomicWriter& to);
+
+/// Fails with JournalTaken if another process has written, created or replaced the file since it was read, or locks it.
+void expect_as_read(const std::filesystem::path& path, const JournalScan& before);
 
 }  // namespace shvr

@@ -13,6 +13,7 @@
 #include <memory>
 #include <utility>
 
+#include "engine/annotation/work/journal_head.h"
 #include "engine/base/error.h"
 
 namespace shvr {
@@ -24,7 +25,7 @@ namespace fs = std::filesystem;
 constexpr char MAGIC[] = {'S', 'H', 'V', 'R', 'J', 'R', 'N', 'L'};
 constexpr uint32_t VERSION = 1;
 constexpr size_t FILE_HEADER_BYTES = 16;
-constexpr size_t HEADER_BYTES = 40;
+constexpr size_t HEADER_BYTES = RECORD_HEADER_BYTES;
 constexpr size_t CHECKSUM_AT = 32;
 constexpr uint16_t COMPRESSED = 1;
 /// Below this size a zstd frame saves nothing.
@@ -65,8 +66,9 @@ uint64_t checksum_of(uint64_t before, const Header& header, std::span<const std:
     return checksum.value();
 }
 
-/// Returns the number of bytes read; fewer at the end of the file.
-size_t read_at(const FileDescriptor& file, const fs::path& path, uint64_t at, std::span<std::byte> into)
+/// Returns the number of bytes read; fewer at the end of the file. `head`: as in JournalScan.
+size_t read_at(const FileDescriptor& file, const fs::path& path, uint64_t at, std::span<std::byte> into,
+               std::span<const std::byte> head = {})
 {
     size_t done = 0;
     while (done < into.size()) {
@@ -76,15 +78,35 @@ size_t read_at(const FileDescriptor& file, const fs::path& path, uint64_t at, st
         if (count == 0) break;
         done += size_t(count);
     }
+    for (size_t i = 0; i < done && at + i < head.size(); ++i) into[i] = head[at + i];
     return done;
+}
+
+bool has_plausible_sizes(const JournalRecord& record)
+{
+    return record.bytes <= MAX_RECORD_BYTES && (record.is_compressed || record.bytes == record.stored_bytes);
+}
+
+/// `label_bytes` and the record's fields, without label and checksum.
+JournalRecord fields_of(const Header& header, uint64_t at, uint64_t& label_bytes)
+{
+    label_bytes = get(&header[6], 2);
+    return {.kind = RecordKind(get(&header[0], 4)),
+            .label = {},
+            .about = get(&header[24], 8),
+            .content_at = at + HEADER_BYTES + label_bytes,
+            .stored_bytes = get(&header[8], 8),
+            .bytes = get(&header[16], 8),
+            .is_compressed = (get(&header[4], 2) & COMPRESSED) != 0};
 }
 
 /// False if it has no header yet, as a power cut leaves a journal that has just begun: some or none of its bytes are
 /// present, and the rest is zero. Fails if it is not a journal.
-bool has_file_header(const FileDescriptor& file, const fs::path& path, uint64_t file_bytes)
+bool has_file_header(const FileDescriptor& file, const fs::path& path, const JournalScan& scan)
 {
+    const uint64_t file_bytes = scan.file_bytes;
     std::array<std::byte, FILE_HEADER_BYTES> header{};
-    const size_t there = read_at(file, path, 0, header);
+    const size_t there = read_at(file, path, 0, header, scan.head);
     const std::vector<std::byte> ours = journal_header();
     bool is_whole = there == FILE_HEADER_BYTES, is_ours_in_part = file_bytes <= FILE_HEADER_BYTES;
     for (size_t i = 0; i < there; ++i) {
@@ -117,7 +139,7 @@ std::vector<std::byte> framed(JournalRecord& record, std::span<const std::byte> 
     record.label.resize(std::min<size_t>(record.label.size(), UINT16_MAX));
     record.bytes = record.stored_bytes = content.size();
     std::vector<std::byte> compressed;
-    if (content.size() >= MIN_COMPRESSED_BYTES) {
+    if (content.size() >= MIN_COMPRESSED_BYTES && record.kind != RecordKind::head) {
         compressed.resize(ZSTD_compressBound(content.size()));
         const size_t made = ZSTD_compress(compressed.data(), compressed.size(), content.data(), content.size(), 1);
         SHVR_CHECK(ZSTD_isError(made) == 0, ZSTD_getErrorName(made));
@@ -161,29 +183,25 @@ JournalScan scan_journal(const fs::path& path)
     if (!S_ISREG(status.st_mode)) fail(path.string(), ": is not a regular file; expected a journal, or no such file");
     scan.file_bytes = uint64_t(status.st_size);
     scan.inode = status.st_ino;
-    if (!has_file_header(file, path, scan.file_bytes)) return scan;
+    std::vector<std::byte> body(std::min<uint64_t>(scan.file_bytes, MAX_HEAD_BYTES));
+    body.resize(read_at(file, path, 0, body));
+    scan.head = repaired_head(body, path);
+    if (!has_file_header(file, path, scan)) return scan;
     scan.end = FILE_HEADER_BYTES;
 
-    std::vector<std::byte> body;
     for (;;) {
         Header header;
-        if (read_at(file, path, scan.end, header) < HEADER_BYTES) break;
-        const auto kind = uint32_t(get(&header[0], 4));
-        const uint64_t flags = get(&header[4], 2), label_bytes = get(&header[6], 2);
-        JournalRecord record{.kind = RecordKind(kind),
-                             .label = {},
-                             .about = get(&header[24], 8),
-                             .content_at = scan.end + HEADER_BYTES + label_bytes,
-                             .stored_bytes = get(&header[8], 8),
-                             .bytes = get(&header[16], 8),
-                             .is_compressed = (flags & COMPRESSED) != 0};
+        if (read_at(file, path, scan.end, header, scan.head) < HEADER_BYTES) break;
+        uint64_t label_bytes = 0;
+        JournalRecord record = fields_of(header, scan.end, label_bytes);
         const uint64_t left = scan.file_bytes - std::min(scan.file_bytes, scan.end + HEADER_BYTES);
         if (record.stored_bytes > left || label_bytes > left - record.stored_bytes) break;
-        if (record.bytes > MAX_RECORD_BYTES || (!record.is_compressed && record.bytes != record.stored_bytes)) break;
+        if (!has_plausible_sizes(record)) break;
         body.resize(label_bytes + record.stored_bytes);
-        if (read_at(file, path, scan.end + HEADER_BYTES, body) < body.size()) break;
+        if (read_at(file, path, scan.end + HEADER_BYTES, body, scan.head) < body.size()) break;
         record.checksum = checksum_of(scan.checksum(), header, body);
         if (record.checksum != get(&header[CHECKSUM_AT], 8)) break;
+        const auto kind = uint32_t(record.kind);
         if (kind > uint32_t(LAST_KIND) && kind < FIRST_ADDITION)
             fail(path.string(), ": record ", scan.records.size() + 1, " is of kind ", kind,
                  ", which this program does not know; expected 1 to ", uint32_t(LAST_KIND),
@@ -195,10 +213,27 @@ JournalScan scan_journal(const fs::path& path)
     return scan;
 }
 
-std::vector<std::byte> content_of(const JournalRecord& record, const FileDescriptor& file, const fs::path& path)
+std::optional<ParsedRecord> parse_record(std::span<const std::byte> bytes, uint64_t checksum_before)
+{
+    Header header;
+    if (bytes.size() < header.size()) return std::nullopt;
+    std::ranges::copy(bytes.first(header.size()), header.begin());
+    uint64_t label_bytes = 0;
+    JournalRecord record = fields_of(header, 0, label_bytes);
+    const std::span<const std::byte> rest = bytes.subspan(header.size());
+    if (record.stored_bytes > rest.size() || label_bytes > rest.size() - record.stored_bytes) return std::nullopt;
+    if (!has_plausible_sizes(record)) return std::nullopt;
+    const size_t body_bytes = size_t(label_bytes + record.stored_bytes);
+    record.checksum = checksum_of(checksum_before, header, rest.first(body_bytes));
+    if (record.checksum != get(&header[CHECKSUM_AT], 8)) return std::nullopt;
+    return ParsedRecord{std::move(record), header.size() + body_bytes};
+}
+
+std::vector<std::byte> content_of(const JournalRecord& record, const FileDescriptor& file, const fs::path& path,
+                                  std::span<const std::byte> head)
 {
     std::vector<std::byte> stored(record.stored_bytes);
-    if (read_at(file, path, record.content_at, stored) < stored.size())
+    if (read_at(file, path, record.content_at, stored, head) < stored.size())
         fail(path.string(), ": ends before byte ", record.content_at + record.stored_bytes,
              "; expected what was written there");
     if (!record.is_compressed) return stored;

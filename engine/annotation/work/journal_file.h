@@ -6,7 +6,8 @@
 // little-endian. Flag 1: the content is a zstd frame. The checksum is XXH3-64 of the whole record except itself, seeded
 // with the checksum of the previous record, so that records are valid in their order or not at all. Readers take the
 // longest valid prefix. Kinds from 128 on are additions that readers may skip; an unknown kind below that is from a
-// newer program, and refused. A record's number is its position in the file, from 1.
+// newer program, and refused. A record's number is its position in the file, from 1. The first bytes and the first
+// record stand twice (journal_head.h).
 //
 // Any thread may call these.
 
@@ -43,6 +44,8 @@ enum class RecordKind : uint32_t {
     kept = 129,
     /// JournalSpace, once: space of the positions in this journal. Older programs skip it, and accept any spacing.
     space = 130,
+    /// The second record: repeats all bytes before it, never compressed. Older programs skip it.
+    head = 131,
 };
 constexpr RecordKind LAST_KIND = RecordKind::respaced;  ///< the last kind that is not an addition
 constexpr uint32_t FIRST_ADDITION = 128;
@@ -64,6 +67,8 @@ struct JournalScan {
     uint64_t end = 0;         ///< end of the valid prefix
     uint64_t file_bytes = 0;  ///< including unreadable data at the end
     uint64_t inode = 0;       ///< 0: there is no file
+    /// The bytes that should be at the file's beginning, if some of those are damaged; they are read instead.
+    std::vector<std::byte> head{};
 
     /// Checksum of the last record; 0 if there is none.
     uint64_t checksum() const { return records.empty() ? 0 : records.back().checksum; }
@@ -74,12 +79,21 @@ struct JournalScan {
 /// More than any single command paints; larger sizes are refused before memory is allocated.
 constexpr uint64_t MAX_RECORD_BYTES = uint64_t{1} << 30;
 
-/// Fails if the file is not a journal, is from a newer program, or cannot be read.
+/// Fails if the file is not a journal, is from a newer program, or cannot be read; with JournalDamaged if its head is
+/// beyond repair.
 JournalScan scan_journal(const std::filesystem::path& path);
 
-/// The content of a record. Fails if the file no longer holds it.
+/// The content of a record. Fails if the file no longer holds it. `head`: as in JournalScan.
 std::vector<std::byte> content_of(const JournalRecord& record, const FileDescriptor& file,
-                                  const std::filesystem::path& path);
+                                  const std::filesystem::path& path, std::span<const std::byte> head = {});
+
+constexpr size_t MAGIC_BYTES = 8, VERSION_BYTES = 4, RECORD_HEADER_BYTES = 40;
+/// The record at the beginning of `bytes`, with `content_at` relative to it; null if it is cut or damaged.
+struct ParsedRecord {
+    JournalRecord record;
+    size_t bytes = 0;  ///< of the whole record
+};
+std::optional<ParsedRecord> parse_record(std::span<const std::byte> bytes, uint64_t checksum_before);
 
 /// The 16 bytes at the start of the file.
 std::vector<std::byte> journal_header();

@@ -2,8 +2,6 @@
 
 #include <sys/stat.h>
 
-#include <cerrno>
-#include <cstdio>
 #include <map>
 #include <set>
 
@@ -11,6 +9,7 @@
 #include "engine/annotation/files/mask_import.h"
 #include "engine/annotation/files/offset_import.h"
 #include "engine/annotation/work/journal_file.h"
+#include "engine/annotation/writers/no_replace.h"
 #include "engine/base/atomic_writer.h"
 
 namespace shvr {
@@ -181,10 +180,19 @@ fs::path old_of(const fs::path& path)
 
 fs::path set_aside(const fs::path& path)
 {
-    const fs::path old = old_of(path);
-    if (std::rename(path.c_str(), old.c_str()) != 0)
-        fail(old.string(), ": cannot be written, to keep ", path.filename().string(), " there: ", reason_of(errno));
+    fs::path old = old_of(path);
+    while (!rename_to_free(path, old)) old = old_of(path);  // another process has just taken that name
     sync_folder(old);
+    return old;
+}
+
+std::optional<fs::path> put_in_place(const fs::path& file, const fs::path& path)
+{
+    std::optional<fs::path> old;
+    std::error_code ignored;
+    if (fs::exists(fs::symlink_status(path, ignored))) old = set_aside(path);
+    while (!rename_to_free(file, path)) old = set_aside(path);
+    sync_folder(path);
     return old;
 }
 

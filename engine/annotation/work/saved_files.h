@@ -71,5 +71,8 @@ std::optional<FileStamp> stamp_of(const std::filesystem::path& path);
 std::filesystem::path old_of(const std::filesystem::path& path);
 /// Renames a file or folder to its `old_of`, and returns that; fails if it cannot.
 std::filesystem::path set_aside(const std::filesystem::path& path);
+/// Renames `file`, which is synced, to `path`, and sets aside whatever is there, at whatever moment it came there.
+/// Returns the last name that this got; null if there was nothing.
+std::optional<std::filesystem::path> put_in_place(const std::filesystem::path& file, const std::filesystem::path& path);
 
 }  // namespace shvr

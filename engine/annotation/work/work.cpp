@@ -4,15 +4,9 @@
 #include <chrono>
 #include <utility>
 
-#include "engine/base/atomic_writer.h"
+#include "engine/annotation/work/journal_head.h"
 
 namespace shvr {
-
-namespace {
-
-namespace fs = std::filesystem;
-
-}  // namespace
 
 Work::Work(const Size3& size, VoxelType type) : size_(size), type_(type), document_(empty_document())
 {
@@ -45,7 +39,7 @@ void Work::fetch_from_journal(History& history) const
 std::vector<std::byte> Work::content_of(RecordNumber number) const
 {
     if (journal_) return journal_->read(number);
-    return shvr::content_of(scan_.records.at(number - 1), scanned_.value(), files_.journal);
+    return shvr::content_of(scan_.records.at(number - 1), scanned_.value(), files_.journal, scan_.head);
 }
 
 // ---- Working ----
@@ -53,6 +47,7 @@ std::vector<std::byte> Work::content_of(RecordNumber number) const
 void Work::refuse_if_only_looking() const
 {
     if (!only_looks_) return;
+    if (!claimed_.empty()) throw JournalTaken(claimed_);
     throw JournalTaken(sentence(files_.journal.string(), ": is open to be looked at only",
                                 "; expected it open for writing, since this would change it"));
 }
@@ -60,6 +55,7 @@ void Work::refuse_if_only_looking() const
 void Work::begin_journal()
 {
     refuse_if_only_looking();
+    expect_hold();
     expect_choice();  // disputed differences would no longer fit
     if (is_saving_as_) fail("the work is being saved under another name; expected that to have ended");
     if (journal_)
@@ -72,9 +68,13 @@ void Work::begin_journal()
 void Work::open_journal()
 {
     if (files_.journal.empty()) return;
+    int error = 0;
+    if (!hold_) hold_ = Hold::take(files_.journal, program_, error);
+    if (!hold_) fail(files_.journal.string(), ": cannot be written: ", reason_of(error));
+    if (!hold_->doubtful().empty()) leave_journal_to_others();
     if (is_to_set_aside_) set_journal_aside();
     const bool is_new = scan_.records.empty();
-    journal_ = std::make_shared<Journal>(files_.journal, scan_);
+    journal_ = std::make_shared<Journal>(files_.journal, scan_, hold_);
     scanned_.reset();
     if (is_new)
         begin_records();
@@ -89,7 +89,10 @@ void Work::begin_records()
     space_to_note_.reset();
     journaled_kept_.clear();
     kept_from_outside_ = false;
-    journal_->append(RecordKind::subject, {}, bytes_of(JournalSubject{size_, type_, files_.volume_hash}));
+    std::vector<std::byte> subject = bytes_of(JournalSubject{size_, type_, files_.volume_hash});
+    std::vector<std::byte> repeated = repeated_head(subject);
+    journal_->append(RecordKind::subject, {}, std::move(subject));
+    journal_->append(RecordKind::head, {}, std::move(repeated));
     journal_->append(RecordKind::space, {}, bytes_of(JournalSpace{files_.volume.spacing, files_.volume.unit}));
     // Makes the journal readable without the files.
     std::vector<std::byte> state = bytes_of(document_);
@@ -115,30 +118,6 @@ void Work::continue_records()
     append_kept(files_.kept, 0);
     known_kept_ = last_kept_;
     record_files(RecordKind::known);
-}
-
-/// If the file was removed or replaced, data written to it would be lost with this process: the journal is restored,
-/// and the other file is kept under another name.
-void Work::keep_journal_in_place()
-{
-    if (journal_->is_in_place()) return;
-    journal_->flush();
-    if (is_there(files_.journal)) set_aside(files_.journal);
-    journal_->copy_to(files_.journal);
-    journal_.reset();
-    journal_ = std::make_shared<Journal>(files_.journal, scan_journal(files_.journal));
-}
-
-void Work::set_journal_aside()
-{
-    {
-        // Not while another process writes it.
-        const Journal nobody_else(files_.journal, scan_);
-    }
-    scanned_.reset();
-    set_aside(files_.journal);
-    scan_ = {};
-    is_to_set_aside_ = false;
 }
 
 RecordNumber Work::record(RecordKind kind, std::string label, std::vector<std::byte> content)
@@ -251,7 +230,8 @@ bool Work::is_kept() const
     if (!journal_) return true;
     try {
         journal_->flush();
-        return journal_->is_in_place();
+        // What another process has claimed is kept under the name that it gave it.
+        return journal_->is_in_place() || (hold_ && !hold_->is_kept() && !journal_->present_name().empty());
     } catch (const Error&) {
         return false;
     }
@@ -275,7 +255,9 @@ std::function<void()> Work::flusher() const
 
 void Work::flush()
 {
-    if (journal_) journal_->flush();
+    if (!journal_) return;
+    journal_->flush();
+    if (!only_looks_) expect_hold();
 }
 
 Work::JournalState Work::journal() const

@@ -16,9 +16,9 @@
 #include <memory>
 #include <optional>
 
-#include "engine/annotation/work/hold.h"
 #include "engine/annotation/work/journal.h"
 #include "engine/annotation/work/saved_files.h"
+#include "engine/annotation/writers/hold.h"
 #include "engine/base/progress.h"
 #include "engine/projects/import_volume.h"
 
@@ -90,6 +90,11 @@ public:
 
     /// True if commands and saves are refused.
     bool only_looks() const { return only_looks_; }
+    /// Whether another process has claimed the journal since the last call, as the last write to it revealed. From then
+    /// on this work only looks; `claimed` says why, and where its journal is kept.
+    bool look_for_claim();
+    const std::string& claimed() const { return claimed_; }
+    const std::string& claimed_by() const { return claimed_by_; }  ///< as in `in_words`; empty: nobody
     /// Null if there is none.
     std::shared_ptr<Hold> hold() const { return hold_; }
 
@@ -196,6 +201,14 @@ private:
     Document empty_document() const;
     void refuse_if_only_looking() const;
 
+    // Other writers
+    void note_claim();
+    void expect_hold();
+    void tell_doubtful(std::vector<Notice>& notices) const;
+    void leave_journal_to_others();
+    void keep_journal_in_place();
+    void set_journal_aside();
+
     // Opening
     std::vector<Notice> open_once();
     void read_journal();
@@ -234,8 +247,6 @@ private:
     void open_journal();
     void begin_records();
     void continue_records();
-    void keep_journal_in_place();
-    void set_journal_aside();
     RecordNumber record(RecordKind kind, std::string label = {}, std::vector<std::byte> content = {});
     void record_files(RecordKind kind, std::string label = {});
     void append_kept(const SettingValues& values, RecordNumber about);
@@ -269,8 +280,10 @@ private:
     std::optional<FileDescriptor> scanned_;  ///< its file
     bool is_to_set_aside_ = false;           ///< the journal that was read does not belong to this work
     bool only_looks_ = false;
-    bool is_fresh_ = false;  ///< started empty next to files of earlier work
-    std::string program_;    ///< as in Holder
+    bool takes_files_ = false;  ///< and not a journal that cannot be read
+    bool is_fresh_ = false;     ///< started empty next to files of earlier work
+    std::string program_;       ///< as in Holder
+    std::string claimed_, claimed_by_;
     std::shared_ptr<Hold> hold_;
     std::vector<Dispute> disputes_;
     std::vector<Change> settings_from_outside_;  ///< difference between settings and the session's file, to be recorded
@@ -333,6 +346,7 @@ private:
     Document document_{.mask = Mask(Size3(0)), .trace = {}};
     std::vector<LabelImage::Color> looks_;
     std::shared_ptr<Journal> journal_;
+    std::shared_ptr<const Hold> hold_;
     std::array<bool, 3> touched_{};
     std::array<Seen, 3> seen_;
     SavedFiles known_;

@@ -1,6 +1,7 @@
 // Opens work: the journal, the saved files next to it, and which of them counts if they differ.
 
 #include <fcntl.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -10,6 +11,7 @@
 
 #include "engine/annotation/files/mask_image.h"
 #include "engine/annotation/files/volume_place.h"
+#include "engine/annotation/work/journal_head.h"
 #include "engine/annotation/work/work.h"
 #include "engine/base/atomic_writer.h"
 #include "engine/base/text.h"
@@ -86,12 +88,16 @@ std::vector<Notice> Work::open(const WorkFiles& files, const Opening& opening)
     program_ = opening.program;
     keeps_settings_ = !files.kept.empty();
     kept_ = files.kept;
-    const bool is_given = opening.hold && plain(opening.hold->journal()) == plain(files.journal);
+    const bool is_given =
+        opening.hold && plain(opening.hold->journal()) == plain(files.journal) && opening.hold->is_kept();
     if (!only_looks_) hold_ = is_given ? opening.hold : Hold::take(files.journal, opening.program);
+    takes_files_ = opening.belief == Belief::files || opening.start == Start::fresh;
     if (opening.start == Start::fresh) {
         open_fresh();
         opening_progress_ = {};
-        return {};
+        std::vector<Notice> told;
+        tell_doubtful(told);
+        return told;
     }
     std::vector<Notice> notices = open_once();
     // Changes seen now may be those of a save that another process is making.
@@ -100,6 +106,7 @@ std::vector<Notice> Work::open(const WorkFiles& files, const Opening& opening)
         notices = open_once();
     }
     opening_progress_ = {};
+    tell_doubtful(notices);
     for (Notice& notice : choose(opening.belief).notices) notices.push_back(std::move(notice));
     return notices;
 }
@@ -132,6 +139,9 @@ std::vector<Notice> Work::open_once()
                                     " bytes are an incomplete or damaged record; expected complete ones; the ",
                                     scan_.records.size(), " records before are used"),
                            true});
+    if (!scan_.head.empty())
+        notices.push_back({sentence(name, ": its first bytes are damaged; expected them as their repetition has them, ",
+                                    "which is used; nothing is lost, and the next writing repairs them")});
     unsaved_ = steps_since_save(scan_);
     touched_.fill(unsaved_ > 0);
     if (unsaved_ > 0)
@@ -147,10 +157,19 @@ std::vector<Notice> Work::open_once()
 void Work::read_journal()
 {
     scanned_.reset();
-    scan_ = files_.journal.empty() ? JournalScan{} : scan_journal(files_.journal);
-    if (scan_.inode == 0) return;
-    scanned_.emplace(::open(files_.journal.c_str(), O_RDONLY | O_CLOEXEC));
+    scan_ = {};
+    if (!is_there(files_.journal)) return;
+    scanned_.emplace(::open(files_.journal.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (!*scanned_) fail(files_.journal.string(), ": cannot be opened: ", reason_of(errno));
+    try {
+        scan_ = scan_journal(files_.journal);
+    } catch (const JournalDamaged&) {
+        if (!takes_files_) throw;
+        struct stat status {};
+        if (::fstat(scanned_->number(), &status) != 0) throw;
+        scan_.inode = status.st_ino;
+        scan_.file_bytes = uint64_t(status.st_size);
+    }
 }
 
 /// Existing files belong to earlier work. They are renamed and kept if that work's journal does not hold them.

@@ -76,8 +76,13 @@ std::unique_ptr<Work::SavingAs> Work::begin_save_as(const WorkFiles& to, std::ve
 void Work::SavingAs::write(const std::function<void()>& save_session, const Progress& progress)
 {
     SHVR_CHECK(!is_written_, "a save is written once");
-    std::shared_ptr<Hold> hold = Hold::take(files_.journal, program_);  // released last
-    expect_free(files_, session_);                                      // checked again
+    int error = 0;
+    std::shared_ptr<Hold> hold = Hold::take(files_.journal, program_, error);  // released last
+    if (before_ && !hold) fail(files_.journal.string(), ": cannot be written: ", reason_of(error));
+    if (hold && !hold->doubtful().empty())
+        throw JournalTaken(sentence(files_.journal.string(), ": is open for writing in ",
+                                    in_words(hold->doubtful().front()), "; expected nobody else to use this name"));
+    expect_free(files_, session_);  // checked again
     Made made;
     double done = 0.0;
     const auto tell_step = [&] { tell(progress, done++ / double(PARTS.size() + 2)); };
@@ -87,7 +92,7 @@ void Work::SavingAs::write(const std::function<void()>& save_session, const Prog
         before_->flush();
         made.add(files_.journal);
         before_->copy_to(files_.journal);
-        journal = std::make_unique<Journal>(files_.journal, scan_journal(files_.journal));
+        journal = std::make_unique<Journal>(files_.journal, scan_journal(files_.journal), hold);
         journal->append(RecordKind::saving, {}, {});
         journal->flush();
     }

@@ -100,6 +100,7 @@ std::unique_ptr<Work::Saving> Work::begin_save(std::vector<LabelImage::Color> lo
     saving->document_ = document_;
     saving->looks_ = std::move(looks);
     saving->journal_ = journal_;
+    saving->hold_ = hold_;
     saving->touched_ = touched_;
     saving->seen_ = seen_;
     saving->known_ = known_;
@@ -137,6 +138,9 @@ void Work::Saving::write(Part part)
 {
     const fs::path& file = file_of(files_, part);
     Seen& seen = seen_[size_t(part)];
+    if (hold_ && !hold_->is_kept())
+        throw JournalTaken(sentence(file.string(), ": is not saved, since another process has taken the journal ",
+                                    files_.journal.string(), " over; expected this process to be its only writer"));
     if (is_foreign(part)) {
         const fs::path old = set_aside(file);
         saved_.notices.push_back(
@@ -192,6 +196,10 @@ Work::Saved Work::end_save(Saving& saving)
     unsaved_ = unsaved_since_saving_;
     misses_files_ = false;
     touched_ = touched_since_saving_;
+    if (!only_looks_ && hold_ && !hold_->is_kept()) {
+        note_claim();
+        saving.saved_.notices.push_back({claimed_, true});
+    }
     return saving.saved_;
 }
 

@@ -178,7 +178,7 @@ void Work::keep_settings(const SettingValues& values)
     if (journal_) return write_kept();
     const bool is_there = !scan_.records.empty() && !is_to_set_aside_;
     // Without a hold another program may write the journal, until a command takes the hold.
-    if (!is_there || !hold_ || !disputes_.empty() || cannot_keep_) return;
+    if (!is_there || !hold_ || !hold_->doubtful().empty() || !disputes_.empty() || cannot_keep_) return;
     try {
         open_journal();
     } catch (const Error&) {

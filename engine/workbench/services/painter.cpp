@@ -90,6 +90,8 @@ void Painter::extend_stroke()
 void Painter::follow_stroke()
 {
     Annotator& annotator = document_->annotator;
+    if (annotator.work().look_for_claim()) say(annotator.work().claimed(), Weight::error);
+    if (document_->holder.empty()) document_->holder = annotator.work().claimed_by();
     const std::string failure = annotator.work().journal().failure;
     if (failure != journal_failure_)
         say(failure.empty() ? "The journal can be written again: all work is kept" : failure,

@@ -1,0 +1,86 @@
+#pragma once
+// The single writer of a journal: from opening for writing until closing, one process holds it. Two means tell others:
+//
+// - A mark of its own beside the journal (writer_mark.h), which no other process can create or mistake. It alone decides
+//   who may write: a process that finds the mark of a running one is refused. Where nobody can tell whether the owner
+//   has ended, the journal's file is never written by anybody else: who comes later continues in a copy (`claim`).
+// - A lock of the system on JOURNAL.lock (open file description), where the file system has locks: it ends with the
+//   process, other computers see it, and older programs know it.
+//
+// Readers need neither, and can query the holder. One thread at a time, except where stated.
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+
+namespace shvr {
+
+/// Another process is writing the journal, or has written it since it was read.
+class JournalTaken : public Error {
+public:
+    using Error::Error;
+};
+
+/// The content of JOURNAL.lock and of marks; missing parts are empty.
+struct Holder {
+    std::string program;  ///< "shvr annotate"
+    std::string process;  ///< process id
+    std::string host, user;
+    std::string since;            ///< local time, "2026-11-22 13:20:05"
+    bool may_have_ended = false;  ///< nobody here can tell
+};
+/// "shvr annotate, process 4711 on lab3 of user ada, since 2026-11-22 13:20:05"
+std::string in_words(const Holder& holder);
+
+class Hold {
+public:
+    /// Fails with JournalTaken, naming the holder, if another hold (also in this process) exists on the journal. Null
+    /// if there is no journal, or if no file can be created beside it; then `error` is the reason. `program`: as in
+    /// Holder.
+    static std::shared_ptr<Hold> take(const std::filesystem::path& journal, std::string_view program, int& error);
+    static std::shared_ptr<Hold> take(const std::filesystem::path& journal, std::string_view program);
+    /// Releases the lock, and removes the files.
+    ~Hold();
+    Hold(const Hold&) = delete;
+
+    const std::filesystem::path& journal() const { return journal_; }
+    /// False if another process has claimed the journal meanwhile: this one must not begin to write it, and what it
+    /// still writes to the file that it has open stays apart. Any thread.
+    bool is_kept() const;
+    /// Another process that writes the journal now. Null if none does.
+    std::optional<Holder> successor() const;
+    /// The name of a file beside the journal that no other process uses.
+    std::filesystem::path own_name() const;
+    /// Releases the lock only, so that this process can take another hold after it has lost this one.
+    void unlock() { lock_.reset(); }
+
+    /// Processes that held the journal, and may still: they cannot be asked from here.
+    const std::vector<Holder>& doubtful() const { return doubtful_; }
+    /// Takes the journal from those. False if all of them have closed it meanwhile. If true, their file must not be
+    /// written: it is to be kept under another name, a copy put in its place, and then `end_claim` called.
+    bool claim();
+    void end_claim();
+
+private:
+    Hold(std::filesystem::path journal, std::filesystem::path mark);
+    bool looks_alone(bool is_last_try);
+
+    std::filesystem::path journal_, mark_;
+    std::optional<FileDescriptor> lock_;
+    std::vector<Holder> doubtful_;
+    std::vector<std::filesystem::path> doubtful_marks_;
+};
+
+/// The process that holds a journal; null if there is none, or it cannot be determined.
+std::optional<Holder> holder_of(const std::filesystem::path& journal);
+
+/// "scan.journal.lock" for "scan.journal".
+std::filesystem::path lock_path(const std::filesystem::path& journal);
+
+}  // namespace shvr

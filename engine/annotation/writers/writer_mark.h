@@ -1,0 +1,45 @@
+#pragma once
+// Marks of the processes that may write a journal: files beside it, each created exclusively by one process and named
+// after it, so that no two processes ever mean the same file by a name, and a name is never used again:
+//
+//     JOURNAL.HOST.PROCESS.KERNEL.START.FOLDER.COUNT.lock
+//
+// A process makes its mark, then looks for others. Of two processes at least the later one sees the other, without any
+// lock of the system. Whether the owner of a mark has ended follows from its name; across computers it often does not.
+//
+// Any thread may call these.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/annotation/writers/hold.h"
+
+namespace shvr {
+
+struct WriterMark {
+    enum class Owner {
+        running,
+        unknown,  ///< on another computer, in another container, or before a restart of this one
+        ended,
+    };
+    std::filesystem::path path;
+    Owner owner = Owner::unknown;
+    Holder holder{};            ///< as the file says, or else its name and time
+    bool is_described = false;  ///< false: its owner has not looked for others yet
+};
+
+/// Creates this process's mark. Null if that is impossible; `error` is the reason.
+std::optional<std::filesystem::path> make_mark(const std::filesystem::path& journal, int& error);
+/// Failures do not matter: the name is sufficient.
+void describe_mark(const std::filesystem::path& mark, const Holder& holder);
+
+/// All marks of a journal except `own`. Null if the folder cannot be listed.
+std::optional<std::vector<WriterMark>> marks_of(const std::filesystem::path& journal,
+                                                const std::filesystem::path& own = {});
+
+/// The name to which a mark is renamed when its owner is not to write any more. Such a mark still counts as one.
+std::filesystem::path revoked(const std::filesystem::path& mark);
+
+}  // namespace shvr
