@@ -6,10 +6,15 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <limits>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 
 namespace shvr {
 namespace {
@@ -44,7 +49,84 @@ std::atomic<const char*>* list(const char* name)
     return nullptr;
 }
 
+constexpr std::string_view PREFIX = ".shvr-", SUFFIX = ".tmp";
+constexpr std::chrono::hours FOREIGN_AGE{24};
+/// An append of many bytes syncs after this many, so that the last sync, which nothing interrupts, is short.
+constexpr uint64_t BYTES_PER_SYNC = uint64_t{64} << 20;
+
+/// The host's name as a part of a file name.
+std::string host_of_names()
+{
+    char name[256] = {};
+    if (::gethostname(name, sizeof name - 1) != 0) return "host";
+    std::string safe;
+    for (const char character : std::string_view(name).substr(0, 64)) {
+        const bool is_safe = is_digit(character) || (character >= 'a' && character <= 'z') ||
+                             (character >= 'A' && character <= 'Z') || character == '.';
+        safe += is_safe ? character : '_';
+    }
+    return safe.empty() ? "host" : safe;
+}
+
+/// The process and host of ".shvr-PID-N-HOST.tmp"; earlier versions left out the host. Null for other names.
+struct Owner {
+    pid_t process = 0;
+    std::string host{};  ///< empty: not stated
+};
+std::optional<Owner> owner_of(std::string_view name)
+{
+    if (!name.starts_with(PREFIX) || !name.ends_with(SUFFIX)) return std::nullopt;
+    name.remove_prefix(PREFIX.size());
+    name.remove_suffix(SUFFIX.size());
+    const size_t first = name.find('-');
+    if (first == std::string_view::npos) return std::nullopt;
+    const size_t second = std::min(name.find('-', first + 1), name.size());
+    const std::optional<int64_t> process = whole_of(name.substr(0, first));
+    const std::optional<int64_t> number = whole_of(name.substr(first + 1, second - first - 1));
+    if (!process || !number || *process < 1 || *process > std::numeric_limits<pid_t>::max()) return std::nullopt;
+    return Owner{pid_t(*process), std::string(name.substr(std::min(second + 1, name.size())))};
+}
+
+bool is_dead(pid_t process)
+{
+    return ::kill(process, 0) != 0 && errno == ESRCH;
+}
+
+/// Whether a file stays unfinished: its process is dead here, or the file is old where that cannot be known.
+bool is_left(const Owner& owner, const fs::directory_entry& entry)
+{
+    std::error_code error;
+    const fs::file_time_type written = entry.last_write_time(error);
+    if (error || !entry.is_regular_file(error) || error) return false;
+    const bool is_old = fs::file_time_type::clock::now() - written > FOREIGN_AGE;
+    if (owner.host == host_of_names()) return is_dead(owner.process);
+    return is_old && (!owner.host.empty() || is_dead(owner.process));
+}
+
 }  // namespace
+
+fs::path link_target(const fs::path& path)
+{
+    constexpr int MAX_LINKS = 40;  // as in Linux
+    fs::path target = fs::absolute(path).lexically_normal();
+    std::error_code ignored;
+    for (int links = 0; links < MAX_LINKS && fs::is_symlink(target, ignored); ++links) {
+        const fs::path next = fs::read_symlink(target, ignored);
+        target = fs::weakly_canonical(target.parent_path(), ignored) / next;
+    }
+    const fs::path folder = fs::weakly_canonical(target.parent_path(), ignored);
+    return ignored ? target : folder / target.filename();
+}
+
+void collect_temporary_files(const fs::path& folder)
+{
+    std::error_code error;
+    for (fs::directory_iterator entry(folder.empty() ? fs::path(".") : folder, error);
+         !error && entry != fs::directory_iterator(); entry.increment(error)) {
+        const std::optional<Owner> owner = owner_of(entry->path().filename().string());
+        if (owner && is_left(*owner, *entry)) ::unlink(entry->path().c_str());
+    }
+}
 
 void remove_temporary_files()
 {
@@ -86,6 +168,10 @@ void AtomicWriter::append(std::span<const std::byte> content)
         // Some network file systems report "nothing written" for "full".
         if (count == 0) refuse(ENOSPC);
         content = content.subspan(size_t(count));
+        unsynced_bytes_ += uint64_t(count);
+        if (unsynced_bytes_ < BYTES_PER_SYNC) continue;
+        unsynced_bytes_ = 0;
+        if (::fdatasync(descriptor_.number()) != 0 && errno != EINTR) refuse(errno);
     }
 }
 
@@ -133,7 +219,7 @@ FileDescriptor AtomicWriter::create()
     // was left by a dead process with our process id.
     static std::atomic<unsigned> count = 0;
     while (true) {
-        temporary_ = target_.parent_path() / sentence(".shvr-", ::getpid(), "-", count++, ".tmp");
+        temporary_ = target_.parent_path() / sentence(PREFIX, ::getpid(), "-", count++, "-", host_of_names(), SUFFIX);
         FileDescriptor descriptor(::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
         if (descriptor) return descriptor;
         if (errno != EEXIST && errno != EINTR) refuse(errno);

@@ -19,6 +19,14 @@ namespace shvr {
 /// Syncs the folder that contains `path`, so that a new or renamed file survives a power cut.
 void sync_folder(const std::filesystem::path& path);
 
+/// The file that a path leads to: symbolic links are followed, also dangling ones. Writers replace links; what a user
+/// names as an output is written where it leads.
+std::filesystem::path link_target(const std::filesystem::path& path);
+
+/// Removes what writers that were killed have left in a folder: temporary files of dead processes of this host, and
+/// those of other hosts that are older than a day. Never fails.
+void collect_temporary_files(const std::filesystem::path& folder);
+
 /// Removes the temporary files of all writers that have not committed. For signal handlers: calls only
 /// async-signal-safe functions. The program must terminate afterwards.
 void remove_temporary_files();
@@ -49,6 +57,7 @@ private:
     std::optional<mode_t> old_permissions_;
     FileDescriptor descriptor_;
     bool is_renamed_ = false;
+    uint64_t unsynced_bytes_ = 0;
     std::atomic<const char*>* listed_ = nullptr;  ///< the slot in which remove_temporary_files finds its name
 };
 
