@@ -181,7 +181,10 @@ private:
             } else {
                 sleep_until(std::max(SteadyClock::now() + RETRY_EVERY, next_try_));
                 if (!is_running_) break;
+                const SteadyClock::time_point begun = SteadyClock::now();
                 channels_ = connect(options_);
+                if (!channels_.states)
+                    next_try_ = SteadyClock::now() + (SteadyClock::now() - begun);  // half a core at most
                 if (channels_.states)
                     begin();
                 else

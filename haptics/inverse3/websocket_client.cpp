@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <optional>
 #include <random>
 
 namespace shvr {
@@ -18,14 +19,16 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr int MAX_RECEIVES = 64;  ///< at a time, of 16 KiB: a flood of messages must not keep us from sending
+constexpr int MAX_RECEIVES = 4;  ///< at a time, of 16 KiB: a flood of messages must not keep us from sending
 
+/// False once the time is up, even if there is something: bytes that keep coming must not extend a deadline.
 bool wait_for(int descriptor, short what, SteadyClock::time_point until)
 {
     for (;;) {
         const auto rest = std::chrono::ceil<milliseconds>(until - SteadyClock::now());
+        if (rest.count() <= 0) return false;
         pollfd each{.fd = descriptor, .events = what, .revents = 0};
-        const int ready = ::poll(&each, 1, int(std::max<int64_t>(rest.count(), 0)));
+        const int ready = ::poll(&each, 1, int(rest.count()));
         if (ready > 0) return true;
         if (ready == 0 || errno != EINTR) return false;
     }
@@ -135,11 +138,12 @@ bool WebSocketClient::receive()
 
 WebSocketReader::Event WebSocketClient::next()
 {
+    // One pong for many pings, the last one's, as RFC 6455 (5.5.3) allows: a flood of pings costs no flood of answers.
+    std::optional<std::string> ping;
     WebSocketReader::Event event = reader_.next();
-    while (event == WebSocketReader::Event::ping) {
-        send_frame(WebSocketOpcode::pong, reader_.payload());
-        event = reader_.next();
-    }
+    for (; event == WebSocketReader::Event::ping; event = reader_.next()) ping = reader_.payload();
+    // An answer that was cut off would garble all later frames.
+    if (ping && !send_frame(WebSocketOpcode::pong, *ping)) return WebSocketReader::Event::close;
     return event;
 }
 

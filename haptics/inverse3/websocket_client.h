@@ -27,11 +27,11 @@ public:
     /// Receives pending data; false if the connection has ended. Complete messages are still available through
     /// `next()`.
     bool receive();
-    /// The next message; pings are answered here.
+    /// The next message; pings are answered here, several with one answer. `close` if they cannot be.
     WebSocketReader::Event next();
     std::string_view payload() const { return reader_.payload(); }
     const char* trouble() const { return reader_.trouble(); }
-    /// Waits until there is something to receive; false on a timeout.
+    /// Waits until there is something to receive; false once the time is up, even if there is something.
     bool wait(std::chrono::steady_clock::time_point until) const;
     /// Announces that no more will be sent.
     void close();

@@ -1,9 +1,15 @@
 #include "haptics/inverse3/inverse3_link.h"
 
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -112,6 +118,102 @@ std::atomic<uint64_t> virtual_ns{0};
 constexpr milliseconds NEVER = std::chrono::hours(1);
 
 }  // namespace
+
+namespace {
+
+/// Listens on a port of this machine, answers a handshake, and then sends the same bytes again and again.
+class Flood {
+public:
+    explicit Flood(std::string bytes) : bytes_(std::move(bytes))
+    {
+        listener_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        socklen_t size = sizeof address;
+        REQUIRE(::bind(listener_, reinterpret_cast<sockaddr*>(&address), size) == 0);
+        REQUIRE(::listen(listener_, 1) == 0);
+        REQUIRE(::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size) == 0);
+        port_ = ntohs(address.sin_port);
+        thread_ = std::thread(&Flood::run, this);
+    }
+    ~Flood()
+    {
+        ::shutdown(listener_, SHUT_RDWR);
+        thread_.join();
+        ::close(listener_);
+    }
+    uint16_t port() const { return port_; }
+
+private:
+    void run()
+    {
+        for (;;) {
+            const int client = ::accept(listener_, nullptr, nullptr);
+            if (client < 0) return;
+            std::string request(4096, 0);
+            request.resize(size_t(std::max<ssize_t>(::recv(client, request.data(), request.size(), 0), 0)));
+            constexpr std::string_view NAME = "Sec-WebSocket-Key: ";
+            const size_t at = request.find(NAME);
+            const std::string key = at == std::string::npos
+                                        ? ""
+                                        : request.substr(at + NAME.size(), request.find("\r\n", at) - at - NAME.size());
+            const std::string answer =
+                "HTTP/1.1 101 Switching Protocols\r\nSec-WebSocket-Accept: " + websocket_accept(key) + "\r\n\r\n";
+            bool is_open = ::send(client, answer.data(), answer.size(), MSG_NOSIGNAL) > 0;
+            std::string unread(65536, 0);
+            while (is_open) {  // until the client leaves
+                is_open = ::send(client, bytes_.data(), bytes_.size(), MSG_NOSIGNAL) > 0;
+                static_cast<void>(::recv(client, unread.data(), unread.size(), MSG_DONTWAIT));
+            }
+            ::close(client);
+        }
+    }
+
+    std::string bytes_;
+    int listener_ = -1;
+    uint16_t port_ = 0;
+    std::thread thread_;
+};
+
+std::string many_pings()
+{
+    std::string pings;
+    for (int i = 0; i < 20'000; ++i) pings += std::string("\x89\0", 2);
+    return pings;
+}
+
+}  // namespace
+
+TEST_CASE("a peer that sends without end, and never what is expected, is given up at the deadline")
+{
+    // Pings, parts of a message that never ends, and frames that mean nothing.
+    for (const std::string& bytes : {many_pings(), std::string(20'000, '\0'), std::string("\x8a\0", 2)}) {
+        const Flood flood(bytes);
+        const Inverse3Found found =
+            find_inverse3({.port = flood.port(), .event_port = 1, .connect_timeout = milliseconds(50)});
+        CHECK(found.is_service);
+        CHECK(found.device_id.empty());
+        CHECK(found.trouble != "");
+    }
+}
+
+TEST_CASE("during a flood of pings the force is taken back, and that is shown")
+{
+    Inverse3Service service;
+    const auto device = pulling(service);
+    service.set_stalled(true);
+    const Clock::time_point start = Clock::now();
+    const std::string pings = many_pings();
+    CHECK(insists_until(*device, [&] {
+        service.send_bytes(pings);
+        return zero_after_ms(service.heard(), start) >= 0.0;
+    }));
+    CHECK(insists_until(*device, [&] {
+        service.send_bytes(pings);
+        return device->trouble() != std::string();
+    }));
+}
 
 TEST_CASE("at 1 kHz for some seconds no message is lost")
 {
