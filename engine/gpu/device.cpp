@@ -85,17 +85,31 @@ std::optional<Family> compute_family(VkInstance instance, VkPhysicalDevice physi
     return best;
 }
 
-DeviceHas what_it_has(VkPhysicalDevice physical, const DeviceTraits& traits)
+/// Why a device with Vulkan 1.3 cannot run the kernels; empty: it can.
+std::string why_it_cannot(VkPhysicalDevice physical)
 {
+    VkPhysicalDeviceVulkan12Features has12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+    VkPhysicalDeviceFeatures2 has{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &has12};
+    vkGetPhysicalDeviceFeatures2(physical, &has);
+    // Scalar layout is optional in 1.3, but every desktop driver and lavapipe have it; the shared headers depend on it.
+    if (!has12.scalarBlockLayout)
+        return "the Vulkan feature scalarBlockLayout is missing; expected a driver that has it";
     const auto features = [&](VkFormat format) {
         VkFormatProperties found;
         vkGetPhysicalDeviceFormatProperties(physical, format, &found);
         return found.optimalTilingFeatures;
     };
-    return {.limits = traits.limits,
-            .max_buffer_bytes = traits.max_buffer_bytes,
-            .r8_uint = features(VK_FORMAT_R8_UINT),
-            .r32_uint = features(VK_FORMAT_R32_UINT)};
+    const bool stores_r16 = features(VK_FORMAT_R16_UNORM) & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
+    if (!stores_r16 || !has.features.shaderStorageImageExtendedFormats)
+        return "R16_UNORM storage images cannot be read; expected a driver that can read them";
+    VkPhysicalDeviceMaintenance4Properties buffers{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES};
+    VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &buffers};
+    vkGetPhysicalDeviceProperties2(physical, &properties);
+    return why_too_limited({.limits = properties.properties.limits,
+                            .max_buffer_bytes = buffers.maxBufferSize,
+                            .r8_uint = features(VK_FORMAT_R8_UINT),
+                            .r32_uint = features(VK_FORMAT_R32_UINT)})
+        .value_or("");
 }
 
 }  // namespace
@@ -244,7 +258,9 @@ void Device::create_instance(const DeviceOptions& options)
                                     .ppEnabledLayerNames = layers.data(),
                                     .enabledExtensionCount = uint32_t(extensions.size()),
                                     .ppEnabledExtensionNames = extensions.data()};
-    SHVR_VK(vkCreateInstance(&info, nullptr, &instance_));
+    const VkResult made = vkCreateInstance(&info, nullptr, &instance_);
+    if (made == VK_ERROR_INCOMPATIBLE_DRIVER) fail(NO_DRIVER);
+    check(made, "vkCreateInstance");
     if (!debug_utils) return;
     const auto load = [&](const char* name) { return vkGetInstanceProcAddr(instance_, name); };
     set_name_ = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(load("vkSetDebugUtilsObjectNameEXT"));
@@ -265,14 +281,17 @@ void Device::choose_physical(const DeviceOptions& options)
         VkPhysicalDeviceProperties properties;
         vkGetPhysicalDeviceProperties(physical, &properties);
         families.push_back(compute_family(instance_, physical, options));
+        const bool has_1_3 = properties.apiVersion >= VK_API_VERSION_1_3;
         rows.push_back({.name = properties.deviceName,
                         .type = properties.deviceType,
-                        .has_1_3 = properties.apiVersion >= VK_API_VERSION_1_3,
+                        .has_1_3 = has_1_3,
                         .computes = families.back().has_value(),
-                        .presents = families.back() && families.back()->presents});
+                        .presents = families.back() && families.back()->presents,
+                        .lacks = has_1_3 ? why_it_cannot(physical) : ""});
     }
     const char* const named = std::getenv("SHVR_DEVICE");
-    const size_t best = best_device(rows, !options.device.empty() ? options.device : named ? named : "");
+    const size_t best = options.device.empty() ? best_device(rows, named ? named : "", "SHVR_DEVICE")
+                                               : best_device(rows, options.device);
     physical_ = devices[best];
     queue_family_ = families[best]->index;
     read_traits();
@@ -338,22 +357,6 @@ std::optional<uint64_t> Device::heap_bytes_left() const
     return budget.heapBudget[heap_] - std::min(budget.heapBudget[heap_], budget.heapUsage[heap_]);
 }
 
-namespace {
-
-/// Fails where the device lacks a feature that kernels depend on.
-void check_features(const DeviceTraits& traits, const VkPhysicalDeviceFeatures2& has,
-                    const VkPhysicalDeviceVulkan12Features& has12)
-{
-    // Scalar layout is optional in 1.3, but every desktop driver and lavapipe have it; the shared headers depend on it.
-    if (!has12.scalarBlockLayout)
-        fail("device ", traits.name,
-             ": the Vulkan feature scalarBlockLayout is missing; expected a driver that has it");
-    if (!traits.storage_r16 || !has.features.shaderStorageImageExtendedFormats)
-        fail("device ", traits.name, ": R16_UNORM storage images cannot be read; expected a driver that can read them");
-}
-
-}  // namespace
-
 void Device::create_device(const DeviceOptions& options)
 {
     VkPhysicalDeviceVulkan13Features has13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
@@ -361,8 +364,6 @@ void Device::create_device(const DeviceOptions& options)
                                            .pNext = &has13};
     VkPhysicalDeviceFeatures2 has{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &has12};
     vkGetPhysicalDeviceFeatures2(physical_, &has);
-    check_features(traits_, has, has12);
-    if (const auto why = why_too_limited(what_it_has(physical_, traits_))) fail("device ", traits_.name, ": ", *why);
 
     // Every device has both. Robust image access makes out-of-bounds reads 0: word_at(-1) of density_exact.glsl at the
     // atlas's edge, whose result is not used, would be undefined without it. No kernel accesses buffers out of bounds

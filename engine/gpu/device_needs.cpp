@@ -1,6 +1,7 @@
 #include "engine/gpu/device_needs.h"
 
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 
 namespace shvr::gpu {
 
@@ -47,29 +48,41 @@ int rank(VkPhysicalDeviceType type)
     }
 }
 
+/// Why a device cannot be used, whatever shows its pictures; empty: it can.
+std::string why_unfit(const DeviceRow& row)
+{
+    if (!row.has_1_3) return "it does not support Vulkan 1.3";
+    return row.computes ? row.lacks : "it does not compute";
+}
+
 }  // namespace
 
-size_t best_device(const std::vector<DeviceRow>& rows, const std::string& wanted)
+size_t best_device(const std::vector<DeviceRow>& rows, const std::string& wanted, const std::string& wanted_by)
 {
-    if (rows.empty()) fail("no Vulkan device found; expected a GPU driver, or mesa-vulkan-drivers (lavapipe)");
+    if (rows.empty()) fail(NO_DRIVER);
     const bool by_index = !wanted.empty() && wanted.find_first_not_of("0123456789") == std::string::npos;
-    std::optional<size_t> best, unseen;
+    std::optional<size_t> best, unseen, unfit;
     std::string names;
     for (size_t i = 0; i < rows.size(); ++i) {
         const DeviceRow& row = rows[i];
-        names += sentence(names.empty() ? "" : ", ", i, ": ", row.name);
-        const bool is_meant = by_index ? std::to_string(i) == wanted : row.name.find(wanted) != std::string::npos;
-        if (!is_meant || !row.has_1_3 || !row.computes) continue;
-        std::optional<size_t>& of_its_kind = row.presents ? best : unseen;
+        const std::string why = why_unfit(row);
+        names += sentence(names.empty() ? "" : ", ", i, ": ", row.name, why.empty() ? "" : " (" + why + ")");
+        const bool is_meant =
+            by_index ? std::to_string(i) == wanted : lower_case(row.name).find(lower_case(wanted)) != std::string::npos;
+        if (!is_meant) continue;
+        std::optional<size_t>& of_its_kind = !why.empty() ? unfit : row.presents ? best : unseen;
         if (!of_its_kind || rank(row.type) < rank(rows[*of_its_kind].type)) of_its_kind = i;
     }
     if (best) return *best;
     if (unseen)
         fail("device ", rows[*unseen].name, " cannot show pictures in a window on this display",
              "; --device chooses another; found ", names);
-    fail(wanted.empty() ? "no device supports Vulkan 1.3 and compute"
-                        : "--device is '" + wanted + "', which no device with Vulkan 1.3 and compute matches",
-         "; found ", names);
+    if (wanted.empty())
+        fail("no device can be used; expected one with Vulkan 1.3 that runs all kernels; found ", names);
+    if (unfit)
+        fail("device ", rows[*unfit].name, ", as ", wanted_by, " '", wanted,
+             "' says, cannot be used: ", why_unfit(rows[*unfit]), "; found ", names);
+    fail(wanted_by, " is '", wanted, "', which no device matches; found ", names);
 }
 
 }  // namespace shvr::gpu

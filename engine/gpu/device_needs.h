@@ -27,16 +27,23 @@ struct DeviceHas {
 /// Why such a device cannot run the kernels, as a message that states what it has and what is expected; null: it can.
 std::optional<std::string> why_too_limited(const DeviceHas& has);
 
+/// The message if there is no driver at all.
+inline constexpr const char* NO_DRIVER =
+    "no Vulkan device found; expected a GPU driver, or the package mesa-vulkan-drivers (lavapipe)";
+
 /// One of the machine's devices.
 struct DeviceRow {
     std::string name;
     VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
     bool has_1_3 = true;
     bool computes = true;
-    bool presents = true;  ///< whether it can present to the window, if there is one
+    bool presents = true;  ///< can present to the window, if there is one
+    std::string lacks{};   ///< why it cannot run the kernels; empty: it can, or is not known to be unable
 };
 /// Returns the index of the device to use: among those that meet all requirements, hardware before software, discrete
-/// before integrated. `wanted`: part of a name, or an index; empty: any. On failure, lists the devices found.
-size_t best_device(const std::vector<DeviceRow>& rows, const std::string& wanted);
+/// before integrated. `wanted`: part of a name in any case, or an index; empty: any. `wanted_by`: where that comes
+/// from. On failure, lists the devices found, each with the reason why it cannot be used.
+size_t best_device(const std::vector<DeviceRow>& rows, const std::string& wanted,
+                   const std::string& wanted_by = "--device");
 
 }  // namespace shvr::gpu

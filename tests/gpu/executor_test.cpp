@@ -374,7 +374,5 @@ TEST_CASE("a device that does not exist is refused with the list of those that d
 {
     const std::string message =
         message_of([] { gpu::Device device({.device = "no such device", .validation = false}); });
-    CHECK(
-        message.find("--device is 'no such device', which no device with Vulkan 1.3 and compute matches; found 0: ") !=
-        std::string::npos);
+    CHECK(message.find("--device is 'no such device', which no device matches; found 0: ") != std::string::npos);
 }

@@ -127,6 +127,7 @@ TEST_CASE("of several devices the best is taken that can show the window, and wh
                                       {.name = "Video 2", .type = DISCRETE, .computes = false}};
     CHECK(best_device(rows, "") == 1);  // the display hangs on the integrated one
     CHECK(best_device(rows, "lava") == 0);
+    CHECK(best_device(rows, "LavaPipe") == 0);
     CHECK(best_device(rows, "0") == 0);
     std::vector<DeviceRow> without_window = rows;
     without_window[2].presents = true;
@@ -134,9 +135,26 @@ TEST_CASE("of several devices the best is taken that can show the window, and wh
     CHECK_THROWS_WITH(best_device(rows, "Large"),
                       "device Large 9 cannot show pictures in a window on this display; "
                       "--device chooses another; found 0: lavapipe, 1: Slim 5, 2: Large 9, "
-                      "3: Old 1, 4: Video 2");
-    CHECK_THROWS_AS(best_device(rows, "Old"), Error);
+                      "3: Old 1 (it does not support Vulkan 1.3), 4: Video 2 (it does not compute)");
+    CHECK_THROWS_WITH(best_device(rows, "Old"),
+                      "device Old 1, as --device 'Old' says, cannot be used: it does not support Vulkan 1.3; found "
+                      "0: lavapipe, 1: Slim 5, 2: Large 9, 3: Old 1 (it does not support Vulkan 1.3), "
+                      "4: Video 2 (it does not compute)");
     CHECK_THROWS_AS(best_device(rows, "Video"), Error);
+    CHECK_THROWS_WITH(best_device({{.name = "A 1"}}, "llvmpipe", "SHVR_DEVICE"),
+                      "SHVR_DEVICE is 'llvmpipe', which no device matches; found 0: A 1");
     CHECK_THROWS_AS(best_device(rows, "7"), Error);
-    CHECK_THROWS_AS(best_device({}, ""), Error);
+    CHECK_THROWS_WITH(best_device({}, ""),
+                      "no Vulkan device found; expected a GPU driver, or the package mesa-vulkan-drivers (lavapipe)");
+    // One that lacks something hides no other, however well it ranks.
+    std::vector<DeviceRow> partly{{.name = "lavapipe", .type = SOFTWARE},
+                                  {.name = "Mock", .type = DISCRETE, .lacks = "a feature is missing"}};
+    CHECK(best_device(partly, "") == 0);
+    CHECK_THROWS_WITH(best_device(partly, "mock"),
+                      "device Mock, as --device 'mock' says, cannot be used: a feature is missing; found 0: lavapipe, "
+                      "1: Mock (a feature is missing)");
+    partly.erase(partly.begin());
+    CHECK_THROWS_WITH(best_device(partly, ""),
+                      "no device can be used; expected one with Vulkan 1.3 that runs all kernels; found 0: Mock (a "
+                      "feature is missing)");
 }
