@@ -5,7 +5,10 @@
 #include <chrono>
 #include <exception>
 #include <new>
+#include <system_error>
 #include <utility>
+
+#include "engine/base/error.h"
 
 namespace shvr {
 namespace {
@@ -22,13 +25,17 @@ double estimate_left(double first_fraction, double fraction, double seconds)
     return first_fraction >= 0.0 && gone > 0.0 ? std::max(0.0, (1.0 - fraction) / gone * seconds) : -1.0;
 }
 
-/// The message of the exception being handled.
-std::string failure_in_words()
+/// The message of the exception being handled, in the job `what`.
+std::string failure_in_words(const std::string& what)
 {
     try {
         throw;
     } catch (const std::bad_alloc&) {
-        return "host memory is exhausted";
+        return "host memory is exhausted while " + what + "; expected more, or a smaller --budget-host";
+    } catch (const std::system_error& error) {
+        if (error.code() != std::errc::resource_unavailable_try_again) return error.what();
+        return sentence("no further thread can be started while ", what, " (", error.what(),
+                        "); expected a higher limit of processes (ulimit -u), or fewer threads: --threads 1");
     } catch (const std::exception& error) {
         return error.what();
     } catch (...) {
@@ -169,7 +176,7 @@ void Jobs::work()
         } catch (const Stopped& stopped) {
             if (!job.is_cancelled) failure = stopped.what();
         } catch (...) {
-            failure = failure_in_words();
+            failure = failure_in_words(job.what);
         }
         lock.lock();
         job.completion = std::move(completion);
@@ -229,7 +236,7 @@ std::vector<Jobs::Finished> Jobs::finish()
         try {
             job->completion();
         } catch (...) {
-            told.failure = failure_in_words();
+            told.failure = failure_in_words(job->what);
         }
     }
 }

@@ -185,7 +185,7 @@ TEST_CASE("whatever a job or its completion throws is its failure, and the next 
     const std::vector<Jobs::Finished> finished = jobs.wait();
     REQUIRE(finished.size() == 7);
     const char* const failures[] = {"disk.raw: is full",
-                                    "host memory is exhausted",
+                                    "host memory is exhausted while b; expected more, or a smaller --budget-host",
                                     "an error of an unknown kind",
                                     "not cancelled, but stopped",
                                     "no room for the result",
