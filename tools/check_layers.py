@@ -33,7 +33,7 @@ MAY_INCLUDE = {
     "engine/formats/zip": "engine/base",
     "engine/formats/zarr": "engine/base engine/volume engine/formats engine/formats/zip shaders",
     "engine/formats/headers": "engine/base engine/volume engine/formats engine/formats/raw",
-    "engine/formats/export": "engine/base engine/volume",
+    "engine/formats/export": "engine/base engine/volume engine/formats",
     "engine/bricks": "engine/base engine/volume engine/look shaders",
     "engine/projects": "engine/base engine/volume engine/formats engine/formats/zarr shaders",
     "engine/annotation/trace": "engine/base engine/volume engine/annotation",

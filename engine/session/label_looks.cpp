@@ -5,6 +5,8 @@
 
 #include "engine/base/error.h"
 #include "engine/base/image.h"
+#include "engine/base/text.h"
+#include "engine/formats/nrrd_head.h"
 #include "engine/formats/zarr/ome_zarr_labels.h"
 
 namespace shvr {
@@ -34,6 +36,33 @@ GroupSettings settings_of(const LabelLook& look, const ColorGroup& standard)
     return settings;
 }
 
+/// The segments of a segmentation of 3D Slicer: colours are shares of sRGB there.
+LabelLooks looks_in_segments(const std::filesystem::path& file, const NrrdHead& head)
+{
+    LabelLooks read;
+    for (const NrrdSegment& segment : segments_of(head)) {
+        LabelLook look{.value = segment.label_value, .name = segment.name};
+        const std::vector<std::string_view> words = words_of(segment.color);
+        // Opacity is not stated: the default one stays.
+        std::array<uint8_t, 4> rgba = rgba_of(default_group(uint8_t(std::clamp<int64_t>(look.value, 1, 255))));
+        bool is_color = words.size() == 3;
+        for (size_t channel = 0; is_color && channel < 3; ++channel) {
+            const double share = number_of(words[channel]).value_or(-1.0);
+            is_color = share >= 0.0 && share <= 1.0;
+            if (is_color) rgba[channel] = byte_of(share);
+        }
+        if (is_color)
+            look.rgba = rgba;
+        else if (!segment.color.empty())
+            read.warnings.push_back(sentence(file.string(), ": Segment", segment.number, "_Color is ",
+                                             in_quotes(segment.color),
+                                             "; expected three numbers from 0 to 1; it is left out"));
+        read.looks.push_back(std::move(look));
+    }
+    if (read.warnings.size() > 1) read.warnings.resize(1);
+    return read;
+}
+
 }  // namespace
 
 std::vector<LabelImage::Color> label_looks(const Groups& groups, const Mask& mask)
@@ -53,7 +82,8 @@ std::vector<std::string> take_label_looks(const std::filesystem::path& mask, Gro
     if (mask.empty()) return {};
     LabelLooks read;
     try {
-        read = read_label_looks(mask);
+        const std::optional<NrrdHead> head = read_nrrd_head(mask);
+        read = head ? looks_in_segments(mask, *head) : read_label_looks(mask);
     } catch (const Error& error) {
         return {error.what()};  // the mask's reader reports the details
     }

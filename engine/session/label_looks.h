@@ -1,7 +1,8 @@
 #pragma once
-// The looks of colour groups in the label image that stores a mask (OME-Zarr, image-label: colors and properties).
-// Colours are sRGB of 8 bits per channel there, alpha the opacity; the format cannot represent the tree of groups or
-// which groups are hidden or locked.
+// The looks of colour groups in the file that stores a mask: an OME-Zarr label image (image-label: colors and
+// properties), or a segmentation of 3D Slicer (.seg.nrrd: names and colours of segments, without opacity). Colours are
+// sRGB of 8 bits per channel there, alpha the opacity; neither can represent the tree of groups or which groups are
+// hidden or locked.
 
 #include <filesystem>
 #include <string>
@@ -16,9 +17,9 @@ namespace shvr {
 /// The looks of all groups that are painted or defined, in ascending order.
 std::vector<LabelImage::Color> label_looks(const Groups& groups, const Mask& mask);
 
-/// For each group that `groups` does not define, takes its look from the label image `mask`, if that differs from the
-/// default. Labels above 255 are not groups. Does nothing if `mask` is not a label image. Returns a warning for each
-/// list with malformed entries.
+/// For each group that `groups` does not define, takes its look from the file `mask`, if that differs from the default.
+/// Labels above 255 are not groups. Does nothing if `mask` is neither a label image nor a segmentation. Returns a
+/// warning for each list with malformed entries.
 std::vector<std::string> take_label_looks(const std::filesystem::path& mask, Groups& groups);
 
 }  // namespace shvr

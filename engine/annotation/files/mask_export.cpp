@@ -1,12 +1,24 @@
 #include "engine/annotation/files/mask_export.h"
 
 #include "engine/annotation/files/mask_file.h"
+#include "engine/annotation/files/mask_segments.h"
 #include "engine/annotation/files/mask_source.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/formats/export/volume_export.h"
 
 namespace shvr {
+
+namespace {
+
+const std::vector<NrrdPair> NO_PAIRS;
+
+bool is_nrrd(const std::filesystem::path& path)
+{
+    return lower_case(path.extension().string()) == ".nrrd";
+}
+
+}  // namespace
 
 bool is_label_image(const std::filesystem::path& path)
 {
@@ -32,9 +44,9 @@ void export_mask(const std::filesystem::path& path, const Mask& mask, const Volu
             groups, path, image,
             {.version = version, .progress = [&](const ImportProgress& done) { tell(progress, done.fraction); }}));
     else if (is_volume_export(path))
-        export_volume(path, groups, progress);
+        export_volume(path, groups, progress, is_nrrd(path) ? segment_pairs(path, mask, image.colors) : NO_PAIRS);
     else
-        save_mask(path, mask);
+        save_mask(path, mask, progress);
 }
 
 }  // namespace shvr

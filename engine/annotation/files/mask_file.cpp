@@ -9,9 +9,7 @@
 
 namespace shvr {
 
-namespace {}  // namespace
-
-void save_mask(const std::filesystem::path& path, const Mask& mask)
+void save_mask(const std::filesystem::path& path, const Mask& mask, const Progress& progress)
 {
     const glm::i64vec3 counts = mask.brick_counts();
     AtomicWriter writer(path);
@@ -27,6 +25,7 @@ void save_mask(const std::filesystem::path& path, const Mask& mask)
             });
         }
         writer.append(std::as_bytes(std::span(bytes)));
+        if (strip.ends_slice()) tell(progress, double(strip.z + 1) / double(mask.size().z));
     });
     writer.commit();
 }

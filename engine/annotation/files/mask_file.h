@@ -4,11 +4,13 @@
 #include <filesystem>
 
 #include "engine/annotation/mask.h"
+#include "engine/base/progress.h"
 
 namespace shvr {
 
-/// Writes row by row to a temporary file next to `path`, syncs and renames it: a failed save leaves the old file.
-void save_mask(const std::filesystem::path& path, const Mask& mask);
+/// Writes row by row to a temporary file next to `path`, syncs and renames it: a failed save leaves the old
+/// file. An exception from `progress` cancels it.
+void save_mask(const std::filesystem::path& path, const Mask& mask, const Progress& progress = {});
 
 /// Fails, naming both sizes, if the file does not hold exactly one byte per voxel of `size`.
 /// Returns records, so that loading is a command like any other.

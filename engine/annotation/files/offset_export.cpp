@@ -71,7 +71,7 @@ void export_offsets(const std::filesystem::path& path, const DensityField& field
     if (!is_offset_export(path))
         fail(path.string(), ": has the extension ", in_quotes(path.extension().string()),
              "; expected .offset, .nrrd or .tif");
-    if (is_bare(path)) return save_offsets(path, field);
+    if (is_bare(path)) return save_offsets(path, field, progress);
     export_volume(path, FieldSource(field, volume), progress);
 }
 

@@ -53,7 +53,7 @@ uint32_t checked(const std::filesystem::path& path, VoxelType type, uint32_t bit
 
 }  // namespace
 
-void save_offsets(const std::filesystem::path& path, const DensityField& field)
+void save_offsets(const std::filesystem::path& path, const DensityField& field, const Progress& progress)
 {
     const glm::i64vec3 counts = field.brick_counts();
     const int64_t bytes = file_bytes_of(field.type());
@@ -71,6 +71,7 @@ void save_offsets(const std::filesystem::path& path, const DensityField& field)
             });
         }
         writer.append(content);
+        if (strip.ends_slice()) tell(progress, double(strip.z + 1) / double(field.size().z));
     });
     writer.commit();
 }

@@ -5,11 +5,13 @@
 #include <filesystem>
 
 #include "engine/annotation/density.h"
+#include "engine/base/progress.h"
 
 namespace shvr {
 
-/// Writes row by row to a temporary file next to `path`, syncs and renames it: a failed save leaves the old file.
-void save_offsets(const std::filesystem::path& path, const DensityField& field);
+/// Writes row by row to a temporary file next to `path`, syncs and renames it: a failed save leaves the old
+/// file. An exception from `progress` cancels it.
+void save_offsets(const std::filesystem::path& path, const DensityField& field, const Progress& progress = {});
 
 /// Fails if the file's size is not that of such a volume's offsets (naming both), or if an offset is not finite or
 /// beyond `offset_limit`.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <string_view>
 
 #include "engine/base/atomic_writer.h"
 #include "engine/base/error.h"
@@ -44,6 +45,44 @@ std::string nrrd_axes(const VolumeInfo& info)
                     "\nspace origin: ", in_brackets(info.origin));
 }
 
+/// Whether a replaced file's field stays true: it describes neither voxels nor axes, or axes that stay as they were.
+bool is_kept(const std::string& field, bool has_same_axes, bool has_space)
+{
+    constexpr std::string_view ANY[] = {"content", "number", "sample units", "sampleunits"};
+    constexpr std::string_view OF_AXES[] = {"thicknesses", "labels", "centers", "centerings"};
+    if (std::ranges::find(ANY, field) != std::end(ANY)) return true;
+    if (field == "measurement frame") return has_space;
+    return has_same_axes && std::ranges::find(OF_AXES, field) != std::end(OF_AXES);
+}
+
+std::string value_of(const NrrdHead& head, std::string_view field)
+{
+    const auto found = std::ranges::find(head.fields, field, &NrrdPair::key);
+    return found != head.fields.end() ? found->value : std::string();
+}
+
+/// The header of a volume that replaces the file at `path`.
+std::string nrrd_header(const std::filesystem::path& path, const VolumeInfo& info, const std::vector<NrrdPair>& pairs)
+{
+    const char* const type = info.type == VoxelType::float32   ? "float"
+                             : info.type == VoxelType::float64 ? "double"
+                                                               : name_of(info.type);
+    NrrdHead kept = read_nrrd_head(path).value_or(NrrdHead{});
+    std::string header = sentence("NRRD000", std::max(kept.version, 4), "\n");
+    for (const std::string& comment : kept.comments) header += comment + "\n";
+    header += sentence("type: ", type, "\ndimension: 3\n", nrrd_axes(info),
+                       bytes_of(info.type) > 1 ? "\nendian: little" : "", "\nencoding: raw\n");
+    const bool has_same_axes =
+        value_of(kept, "dimension") == "3" && words_of(value_of(kept, "sizes")) == words_of(digits_of(info.size));
+    for (const NrrdPair& field : kept.fields)
+        if (is_kept(field.key, has_same_axes, states_place(info))) header += field.key + ": " + field.value + "\n";
+    std::erase_if(kept.pairs, [](const NrrdPair& pair) { return pair.key == NRRD_CONTENT_KEY; });
+    if (info.format == "mask" || info.format == "offsets") set_pair(kept.pairs, NRRD_CONTENT_KEY, info.format);
+    for (const NrrdPair& pair : pairs) set_pair(kept.pairs, pair.key, pair.value);
+    for (const NrrdPair& pair : kept.pairs) header += spelled(pair) + "\n";
+    return header + "\n";
+}
+
 }  // namespace
 
 int64_t export_rows(const VolumeInfo& info)
@@ -52,15 +91,11 @@ int64_t export_rows(const VolumeInfo& info)
     return std::clamp<int64_t>(STRIP_BYTES / row_bytes, 1, info.size.y);
 }
 
-void export_nrrd(const std::filesystem::path& path, const VolumeSource& source)
+void export_nrrd(const std::filesystem::path& path, const VolumeSource& source, const std::vector<NrrdPair>& pairs)
 {
     static_assert(std::endian::native == std::endian::little);
     const VolumeInfo& info = source.info();
-    const char* const type = info.type == VoxelType::float32   ? "float"
-                             : info.type == VoxelType::float64 ? "double"
-                                                               : name_of(info.type);
-    const std::string header = sentence("NRRD0004\ntype: ", type, "\ndimension: 3\n", nrrd_axes(info),
-                                        bytes_of(info.type) > 1 ? "\nendian: little" : "", "\nencoding: raw\n\n");
+    const std::string header = nrrd_header(path, info, pairs);
     AtomicWriter writer(path);
     writer.append(std::as_bytes(std::span(header)));
     const int64_t step = export_rows(info);
@@ -81,13 +116,14 @@ bool is_volume_export(const std::filesystem::path& path)
     return form == ".nrrd" || form == ".tif" || form == ".tiff";
 }
 
-void export_volume(const std::filesystem::path& path, const VolumeSource& source, const Progress& progress)
+void export_volume(const std::filesystem::path& path, const VolumeSource& source, const Progress& progress,
+                   const std::vector<NrrdPair>& pairs)
 {
     static_cast<void>(voxel_count(source.info()));
     if (!is_volume_export(path))
         fail(path.string(), ": has the extension ", in_quotes(path.extension().string()), "; expected .nrrd or .tif");
     const ToldSource told(source, progress);
-    if (form_of(path) == ".nrrd") return export_nrrd(path, told);
+    if (form_of(path) == ".nrrd") return export_nrrd(path, told, pairs);
     export_tiff(path, told);
 }
 

@@ -10,17 +10,24 @@
 
 #include <filesystem>
 
+#include "engine/formats/nrrd_head.h"
 #include "engine/volume/source.h"
 
 namespace shvr {
 
+/// The key of an exported NRRD that tells a mask or density offsets from a scan: "shvr_content:=mask".
+inline constexpr const char* NRRD_CONTENT_KEY = "shvr_content";
+
 bool is_volume_export(const std::filesystem::path& path);
 
-/// Replaces an existing file atomically. Fails for any other extension.
-void export_volume(const std::filesystem::path& path, const VolumeSource& source, const Progress& progress = {});
+/// Replaces an existing file atomically. Fails for any other extension. An NRRD file keeps the comments, key/value
+/// pairs and fields of the NRRD file that it replaces, except those that describe voxels and axes; `pairs` are set in
+/// it, and ignored for TIFF.
+void export_volume(const std::filesystem::path& path, const VolumeSource& source, const Progress& progress = {},
+                   const std::vector<NrrdPair>& pairs = {});
 
 /// Writers of one format each; for volume_export.cpp.
-void export_nrrd(const std::filesystem::path& path, const VolumeSource& source);
+void export_nrrd(const std::filesystem::path& path, const VolumeSource& source, const std::vector<NrrdPair>& pairs);
 void export_tiff(const std::filesystem::path& path, const VolumeSource& source);
 
 /// The rows of a slice that an export reads at a time: 256 KiB, or one row.

@@ -36,6 +36,16 @@ void go_through(const JsonNode& list, const char* expected, std::vector<std::str
 
 }  // namespace
 
+bool is_ome_zarr_label(const std::filesystem::path& folder)
+{
+    try {
+        const std::optional<ZarrNode> node = read_zarr_node(folder);
+        return node && node->ome()["image-label"].exists();
+    } catch (const Error&) {
+        return false;
+    }
+}
+
 LabelLooks read_label_looks(const std::filesystem::path& folder)
 {
     LabelLooks result;

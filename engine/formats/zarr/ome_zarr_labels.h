@@ -22,6 +22,8 @@ struct LabelLooks {
     std::vector<std::string> warnings{};  ///< warnings: at most one per list, about its first invalid entry
 };
 
+/// Whether the folder (or the path into an archive) is a label image; false if it cannot be read.
+bool is_ome_zarr_label(const std::filesystem::path& folder);
 /// Empty if the folder (or the path into an archive) is not a label image. Fails if its attributes are not JSON.
 LabelLooks read_label_looks(const std::filesystem::path& folder);
 

@@ -1,0 +1,112 @@
+#include "engine/formats/nrrd_head.h"
+
+#include <algorithm>
+
+#include "engine/base/text.h"
+#include "engine/formats/header_fields.h"
+
+namespace shvr {
+
+namespace {
+
+constexpr std::string_view SEGMENT = "Segment";
+constexpr int64_t MAX_SEGMENTS = 1 << 20;
+
+/// Backslashes and line ends are escaped in values.
+std::string unescaped(std::string_view text)
+{
+    std::string plain;
+    for (size_t at = 0; at < text.size(); ++at) {
+        const char next = at + 1 < text.size() ? text[at + 1] : '\0';
+        const bool is_escape = text[at] == '\\' && (next == 'n' || next == '\\');
+        plain += !is_escape ? text[at] : next == 'n' ? '\n' : '\\';
+        at += is_escape;
+    }
+    return plain;
+}
+
+std::string escaped(std::string_view text)
+{
+    std::string safe;
+    for (const char character : text)
+        if (character == '\\')
+            safe += "\\\\";
+        else if (character == '\n')
+            safe += "\\n";
+        else
+            safe += character;
+    return safe;
+}
+
+/// The number of "Segment3_Name" and the rest, "Name"; null for other keys.
+std::optional<std::pair<int64_t, std::string_view>> segment_key(std::string_view key)
+{
+    if (!key.starts_with(SEGMENT)) return std::nullopt;
+    key.remove_prefix(SEGMENT.size());
+    const size_t line = key.find('_');
+    if (line == std::string_view::npos) return std::nullopt;
+    const std::optional<int64_t> number = whole_of(key.substr(0, line));
+    if (!number || *number < 0 || *number > MAX_SEGMENTS) return std::nullopt;
+    return std::pair(*number, key.substr(line + 1));
+}
+
+}  // namespace
+
+std::optional<NrrdHead> read_nrrd_head(const std::filesystem::path& path)
+{
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored) || !read_head(path, 4).starts_with("NRRD"))
+        return std::nullopt;
+    const std::string text = read_head(path);
+    std::string_view rest = text;
+    const std::string_view magic = take_line(rest);
+    if (magic.size() != 8 || !magic.starts_with("NRRD000") || magic[7] < '1' || magic[7] > '6') return std::nullopt;
+    NrrdHead head{.version = magic[7] - '0'};
+    while (!rest.empty()) {
+        const std::string_view line = take_line(rest);
+        if (line.empty()) break;
+        const size_t colon = line.find(':');
+        if (line.starts_with('#')) {
+            head.comments.emplace_back(line);
+        } else if (colon != std::string_view::npos && line.substr(colon).starts_with(":=")) {
+            head.pairs.push_back({std::string(line.substr(0, colon)), unescaped(line.substr(colon + 2))});
+        } else if (colon != std::string_view::npos) {
+            const std::string name = lower_case(trimmed(line.substr(0, colon)));
+            head.fields.push_back({name, std::string(trimmed(line.substr(colon + 1)))});
+            if (name == "data file" || name == "datafile") break;  // names may follow
+        }
+    }
+    return head;
+}
+
+std::string spelled(const NrrdPair& pair)
+{
+    return escaped(pair.key) + ":=" + escaped(pair.value);
+}
+
+void set_pair(std::vector<NrrdPair>& pairs, std::string_view key, std::string value)
+{
+    const auto found = std::ranges::find(pairs, key, &NrrdPair::key);
+    if (found != pairs.end())
+        found->value = std::move(value);
+    else
+        pairs.push_back({std::string(key), std::move(value)});
+}
+
+std::vector<NrrdSegment> segments_of(const NrrdHead& head)
+{
+    std::vector<NrrdSegment> segments;
+    for (const NrrdPair& pair : head.pairs) {
+        const auto key = segment_key(pair.key);
+        if (!key) continue;
+        auto found = std::ranges::find(segments, key->first, &NrrdSegment::number);
+        if (found == segments.end())
+            found = segments.insert(found, {.number = key->first, .label_value = key->first + 1});
+        if (key->second == "Name") found->name = pair.value;
+        if (key->second == "Color") found->color = pair.value;
+        if (key->second == "LabelValue") found->label_value = whole_of(trimmed(pair.value)).value_or(0);
+    }
+    return segments;
+}
+
+}  // namespace shvr
