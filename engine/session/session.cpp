@@ -1,6 +1,8 @@
 #include "engine/session/session.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -112,6 +114,26 @@ void expect_volume_of_picture(const fs::path& picture, const Session& session)
          "with --set volume.path=...");
 }
 
+/// A setting that a later one replaces would never be read, however wrong it is; so it is read with those before it.
+void check_replaced_settings(const JsonDocument& document, const std::vector<std::string>& settings,
+                             const fs::path& folder)
+{
+    const auto key_of = [](const std::string& setting) { return setting.substr(0, setting.find('=')); };
+    for (size_t i = 0; i + 1 < settings.size(); ++i) {
+        const std::string key = key_of(settings[i]);
+        const bool is_replaced = std::any_of(settings.begin() + ptrdiff_t(i) + 1, settings.end(), [&](const auto& by) {
+            const std::string later = key_of(by);
+            return key == later || key.starts_with(later + ".") ||
+                   (later == "render.quality" && key.starts_with("render."));
+        });
+        if (!is_replaced) continue;
+        JsonDocument alone = session_document("{}", document.origin());
+        alone.value() = document.value();
+        apply_settings(alone, {settings.begin(), settings.begin() + ptrdiff_t(i) + 1});
+        static_cast<void>(read_session(alone, folder));
+    }
+}
+
 std::pair<JsonDocument, UnmeasuredSession> open_unmeasured(const fs::path& path,
                                                            const std::vector<std::string>& settings)
 {
@@ -126,6 +148,7 @@ std::pair<JsonDocument, UnmeasuredSession> open_unmeasured(const fs::path& path,
                             : fs::exists(fs::symlink_status(file, ignored))
                                 ? session_document(read_text(file, MAX_SESSION_BYTES), file.string())
                                 : document_for_project(file, opened.losses);
+    check_replaced_settings(document, settings, fs::absolute(file).parent_path());
     apply_settings(document, settings);
     Session& session = opened.session;
     session = read_session(document, fs::absolute(file).parent_path());
@@ -153,6 +176,21 @@ UnmeasuredSession open_unmeasured_session(const fs::path& path, const std::vecto
     return open_unmeasured(path, settings).second;
 }
 
+namespace {
+
+/// Points of a transfer function are float32, on the device and in files.
+void expect_range_of_points(const Session& session, const VolumeStatistics& statistics)
+{
+    constexpr double LARGEST = std::numeric_limits<float>::max();
+    const ValueRange range = statistics.range();
+    if (std::abs(range.lower) <= LARGEST && std::abs(range.upper) <= LARGEST) return;
+    fail(session.volume_path.string(), ": its intensities go from ", range.lower, " to ", range.upper,
+         "; expected the range of float32, up to ", LARGEST,
+         ", in which a transfer function can be made: scale them down, or give one with --tf");
+}
+
+}  // namespace
+
 OpenedSession open_session(const fs::path& path, const std::vector<std::string>& settings,
                            const OpeningOptions& options)
 {
@@ -166,6 +204,8 @@ OpenedSession open_session(const fs::path& path, const std::vector<std::string>&
     opened.warnings = warnings_of(opened.statistics);
     for (std::string& warning : take_label_looks(opened.session.mask_path, opened.session.groups))
         opened.warnings.push_back(std::move(warning));
+    const bool is_stated = document.root()["transfer_function"].exists() && opened.session.transfer_preset.empty();
+    if (!is_stated) expect_range_of_points(opened.session, opened.statistics);
     if (std::string& preset = opened.session.transfer_preset; !preset.empty())
         opened.session.transfer_function =
             transfer_function_of(transfer_preset_named(std::exchange(preset, {})), opened.statistics);
