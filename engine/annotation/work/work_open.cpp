@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -90,7 +91,13 @@ std::vector<Notice> Work::open(const WorkFiles& files, const Opening& opening)
     kept_ = files.kept;
     const bool is_given =
         opening.hold && plain(opening.hold->journal()) == plain(files.journal) && opening.hold->is_kept();
-    if (!only_looks_) hold_ = is_given ? opening.hold : Hold::take(files.journal, opening.program);
+    if (!only_looks_) {
+        hold_ = is_given ? opening.hold : Hold::take(files.journal, opening.program);
+        std::set<fs::path> folders;  // in which killed programs may have left the files of a save
+        for (const fs::path& file : {files.journal, files.mask, files.trace, files.density})
+            if (!file.empty()) folders.insert(file.parent_path());
+        for (const fs::path& folder : folders) collect_temporary_files(folder);
+    }
     takes_files_ = opening.belief == Belief::files || opening.start == Start::fresh;
     if (opening.start == Start::fresh) {
         open_fresh();
