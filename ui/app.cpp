@@ -51,7 +51,8 @@ App::App(const AppOptions& options) : options_(options), window_("SHVR", options
     appearance_.scale = window_.content_scale();
     set_style(appearance_);
     attach();
-    WorkbenchOptions wanted{.allow_force = options.allow_force,
+    WorkbenchOptions wanted{.saves_outside = options.saves_outside,
+                            .allow_force = options.allow_force,
                             .preferences = options.preferences,
                             .now_s = [this] { return window_.now_s(); },
                             .version = options.version,

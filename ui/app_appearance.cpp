@@ -19,6 +19,7 @@ void want_glyphs_of(const Model& model)
     want_glyphs(model.volume.name);
     want_glyphs(model.session_path.native());
     want_glyphs(model.holder);
+    want_glyphs(model.outside);
     for (const auto& [group, settings] : model.session.groups) want_glyphs(settings.name);
     for (const auto& [name, camera] : model.session.cameras) want_glyphs(name);
     for (const std::filesystem::path& path : model.preferences.recent) want_glyphs(path.native());

@@ -171,7 +171,9 @@ gpu::DeviceOptions Window::device_needs() const
     gpu::DeviceOptions options;
     uint32_t count = 0;
     const char** names = glfwGetRequiredInstanceExtensions(&count);
-    if (!names) fail("Vulkan cannot show pictures on this display (", glfw_error(), ")");
+    if (!names)
+        fail("Vulkan cannot show pictures on this display (", glfw_error(),
+             "); expected a GPU driver, or the package mesa-vulkan-drivers (lavapipe)");
     options.instance_extensions.assign(names, names + count);
     options.can_present = [](VkInstance instance, VkPhysicalDevice physical, uint32_t family) {
         return glfwGetPhysicalDevicePresentationSupport(instance, physical, family) == GLFW_TRUE;

@@ -398,6 +398,14 @@ private:
     WorkPool pool_;  ///< last: its tasks use all members above
 };
 
+/// Where unfinished work could not be removed, a sentence about it; otherwise empty.
+std::string remains_of(const fs::path& part)
+{
+    std::error_code error;
+    if (part.extension() != ".part" || !fs::exists(fs::symlink_status(part, error))) return {};
+    return sentence("; ", part.string(), " could not be removed: the same command replaces it, rm -r removes it");
+}
+
 /// Exports a label image, completely or not at all.
 ImportReport import_all(const VolumeSource& labels, const fs::path& target, const ImportOptions& options)
 {
@@ -406,7 +414,12 @@ ImportReport import_all(const VolumeSource& labels, const fs::path& target, cons
         return job.run();
     } catch (const ImportStopped&) {
         job.abandon();
-        throw ImportStopped(target.string() + ": stopped; no file is left half written");
+        throw ImportStopped(target.string() + ": stopped; no file is left half written" + remains_of(job.folder()));
+    } catch (const Error& error) {
+        job.abandon();
+        const std::string remains = remains_of(job.folder());
+        if (remains.empty()) throw;
+        fail(error.what(), remains);
     } catch (...) {
         job.abandon();
         throw;
@@ -452,6 +465,13 @@ ImportReport import_sparse(const VolumeSource& labels, const fs::path& target, c
         folder.finish();
         report.project = folder.path();
         return report;
+    } catch (const Error& error) {
+        const bool is_stopped = dynamic_cast<const ImportStopped*>(&error) != nullptr;
+        folder.abandon();
+        const std::string remains = remains_of(folder.path());
+        if (remains.empty()) throw;
+        if (is_stopped) throw ImportStopped(error.what() + remains);
+        fail(error.what(), remains);
     } catch (...) {
         folder.abandon();
         throw;
@@ -466,13 +486,14 @@ ImportReport import_volume(const VolumeSource& source, const fs::path& origin, c
     if (options.halving == Halving::label) check_labels(source.info(), options.preparation);
     Import::check_size(source, project, options.preparation);
     Import job(source, origin, project, options);
-    constexpr const char* KEPT = "; what is done is kept, and the same command goes on from there";
+    constexpr const char* GOES_ON = ", and the same command goes on from there; rm -r removes it";
+    const fs::path part = job.folder();
     try {
         return job.run();
     } catch (const ImportStopped&) {
-        throw ImportStopped(sentence(job.folder().string(), ": the import was stopped", KEPT));
+        throw ImportStopped(sentence(job.folder().string(), ": the import was stopped; what is done is kept", GOES_ON));
     } catch (const Error& error) {
-        fail(error.what(), KEPT);
+        fail(error.what(), "; what is done is kept in ", part.string(), GOES_ON);
     }
 }
 

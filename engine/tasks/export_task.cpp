@@ -127,15 +127,19 @@ void check(const ExportTask& task)
 void check(const ExportTask& task, const AnnotationView& annotation)
 {
     check(task);
-    for (const std::filesystem::path& path : replaced_files(task)) check_output_is_not(annotation.volume_path, path);
+    for (const auto& path : {task.mask, task.offset, task.trace, task.mesh, task.metrics})
+        check_output_is_not(annotation.volume_path, path);
     if (!task.trace.empty() || !task.mesh.empty()) expect_trace(annotation);
     static_cast<void>(project_labels(task, annotation.project));
 }
 
-ExportResult run(const ExportTask& task, const AnnotationView& annotation, ProgressReporter& reporter,
+ExportResult run(const ExportTask& asked, const AnnotationView& annotation, ProgressReporter& reporter,
                  const std::function<void(const ExportResult& so_far)>& wrote)
 {
-    check(task, annotation);
+    check(asked, annotation);
+    ExportTask task = asked;
+    for (std::filesystem::path* path : {&task.mask, &task.offset, &task.trace, &task.mesh, &task.metrics})
+        if (!path->empty()) *path = written_path(*path);
     const TraceSpace space = space_of(annotation.volume);
     ExportResult result = summary_of(annotation);
     const auto note = [&](const std::filesystem::path& path) {

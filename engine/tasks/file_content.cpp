@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <fstream>
 
+#include "engine/annotation/files/stated_content.h"
 #include "engine/annotation/trace/trace_file.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/json.h"
+#include "engine/base/text.h"
 #include "engine/session/session.h"
 
 namespace shvr {
@@ -16,6 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int64_t MAX_JSON_BYTES = int64_t{16} << 20;
+constexpr const char* LOADED = "a mask, density offsets, a trace or a transfer function";
 constexpr const char* EXPECTED =
     "; expected a volume, a session, a project, a mask, density offsets, a trace, a transfer function or a picture "
     "that was made here";
@@ -53,36 +56,59 @@ int64_t bytes_of_offset(VoxelType type)
     return bytes_of(type) == 1 ? 2 : 4;
 }
 
-std::optional<FileContent> content_of_bare(const fs::path& path, const VolumeInfo& open)
+std::optional<FileContent> content_of_bare(const fs::path& path, const VolumeInfo* open)
 {
-    std::error_code ignored;
-    const auto bytes = int64_t(fs::file_size(path, ignored));
-    const int64_t voxels = voxel_count(open);
-    if (bytes == voxels) return FileContent::mask;
-    if (bytes == voxels * bytes_of_offset(open.type)) return FileContent::offsets;
+    if (open) {
+        std::error_code ignored;
+        const auto bytes = int64_t(fs::file_size(path, ignored));
+        const int64_t voxels = voxel_count(*open);
+        if (bytes == voxels) return FileContent::mask;
+        if (bytes == voxels * bytes_of_offset(open->type)) return FileContent::offsets;
+    }
+    const std::string extension = lower_case(path.extension().string());
+    if (extension == ".mask") return FileContent::mask;  // of another size, which its reader refuses
+    if (extension == ".offset") return FileContent::offsets;
     return std::nullopt;
 }
 
-std::optional<FileContent> content_of(const fs::path& path, const VolumeInfo* open)
+WhatItIs content_of_volume(const fs::path& path, const VolumeInfo* open)
 {
-    std::error_code ignored;
-    if (fs::is_directory(path, ignored))
-        return session_file_of(path).empty() ? FileContent::volume : FileContent::project;
-    const std::string begin = first_bytes(path);
-    const size_t first = begin.find_first_not_of(" \t\r\n");
-    if (begin.starts_with("\x89PNG")) return FileContent::picture;
-    if (first != std::string::npos && begin[first] == '{') return content_of_json(path);
-    if (begin.find("<graphml") != std::string::npos || begin.find("<rsml") != std::string::npos)
-        return FileContent::trace;
-    if (is_trace_file(path) && begins_like_a_trace(begin)) return FileContent::trace;
     try {
-        static_cast<void>(open_unmeasured_session(path));
-        return FileContent::volume;
+        const UnmeasuredSession opened = open_unmeasured_session(path);
+        if (const std::optional<StatedContent> stated = stated_content(path))
+            return {.content = *stated == StatedContent::mask ? FileContent::mask : FileContent::offsets};
+        const bool is_as_large = open && opened.source->info().size == open->size;
+        if (is_as_large) return {.content = {}, .may_be_annotation = true};
+        return {.content = FileContent::volume};
     } catch (const Error&) {
-        if (open)
-            if (const std::optional<FileContent> bare = content_of_bare(path, *open)) return bare;
+        if (const std::optional<FileContent> bare = content_of_bare(path, open)) return {.content = bare};
         throw;
     }
+}
+
+WhatItIs content_of(const fs::path& path, const VolumeInfo* open)
+{
+    std::error_code ignored;
+    if (fs::is_directory(path, ignored)) {
+        if (!session_file_of(path).empty()) return {.content = FileContent::project};
+        return content_of_volume(path, open);
+    }
+    const std::string begin = first_bytes(path);
+    const size_t first = begin.find_first_not_of(" \t\r\n");
+    if (begin.starts_with("\x89PNG")) return {.content = FileContent::picture};
+    if (first != std::string::npos && begin[first] == '{') return {.content = content_of_json(path)};
+    if (begin.find("<graphml") != std::string::npos || begin.find("<rsml") != std::string::npos)
+        return {.content = FileContent::trace};
+    if (is_trace_file(path) && begins_like_a_trace(begin)) return {.content = FileContent::trace};
+    return content_of_volume(path, open);
+}
+
+const char* name_of_opened(FileContent content)
+{
+    return content == FileContent::session   ? "a session"
+           : content == FileContent::project ? "a project"
+           : content == FileContent::picture ? "a picture"
+                                             : "a volume";
 }
 
 }  // namespace
@@ -90,12 +116,39 @@ std::optional<FileContent> content_of(const fs::path& path, const VolumeInfo* op
 WhatItIs what_is(const fs::path& path, const VolumeInfo* open)
 {
     try {
-        const std::optional<FileContent> content = content_of(path, open);
-        if (content) return {content, {}};
-        return {std::nullopt, path.string() + ": is none of what can be taken" + EXPECTED};
+        const WhatItIs found = content_of(path, open);
+        if (found.content || found.may_be_annotation) return found;
+        return {.content = {}, .why_not = path.string() + ": is none of what can be taken" + EXPECTED};
     } catch (const Error& error) {
-        return {std::nullopt, error.what()};
+        return {.content = {}, .why_not = error.what()};
     }
+}
+
+WhatItIs what_annotation_is(const fs::path& path, const VolumeInfo& open)
+{
+    const auto refused = [](std::string why) { return WhatItIs{.content = {}, .why_not = std::move(why)}; };
+    const WhatItIs found = what_is(path, &open);
+    if (found.may_be_annotation) {
+        const VoxelType type = open_unmeasured_session(path).source->info().type;
+        const bool is_mask = type == VoxelType::uint8 || type == VoxelType::uint16 || type == VoxelType::uint32;
+        return is_mask ? WhatItIs{.content = FileContent::mask} : found;
+    }
+    if (!found.content) return found;
+    switch (*found.content) {
+        case FileContent::mask:
+        case FileContent::offsets:
+        case FileContent::trace:
+        case FileContent::transfer_function: return found;
+        case FileContent::volume:
+            return refused(sentence(
+                path.string(), ": is a volume of ", digits_of(open_unmeasured_session(path).source->info().size),
+                " voxels; expected annotation of ", digits_of(open.size), " voxels, the size of the open scan"));
+        case FileContent::session:
+        case FileContent::project:
+        case FileContent::picture: break;
+    }
+    return refused(
+        sentence(path.string(), ": is ", name_of_opened(*found.content), "; expected ", LOADED, "; Open opens it"));
 }
 
 }  // namespace shvr

@@ -22,9 +22,15 @@ enum class FileContent {
 };
 struct WhatItIs {
     std::optional<FileContent> content;
-    std::string why_not{};  ///< if the content is none of these: a sentence with the path
+    /// A volume of the open volume's size that does not state whether it is another scan, a mask or offsets; `content`
+    /// is empty then, and the user is asked.
+    bool may_be_annotation = false;
+    std::string why_not{};  ///< if it is none of these: a sentence with the path
 };
-/// `open`: the currently open volume, whose size identifies bare masks and offsets; null: none.
+/// `open`: the currently open volume, whose size identifies masks and offsets; null: none.
 WhatItIs what_is(const std::filesystem::path& path, const VolumeInfo* open);
+/// The same for a file that is to be loaded into the open volume: never a volume, session, project or picture. A volume
+/// of another size is refused with both sizes; one of unsigned integers is a mask.
+WhatItIs what_annotation_is(const std::filesystem::path& path, const VolumeInfo& open);
 
 }  // namespace shvr

@@ -137,9 +137,11 @@ void check(const LabelTask& task, const VolumeSource& source, const fs::path& vo
          option_name(task.names, "output"), ", or label a part of the volume");
 }
 
-LabelResult run(const LabelTask& task, const VolumeSource& source, const std::string& name, ProgressReporter& reporter)
+LabelResult run(const LabelTask& asked, const VolumeSource& source, const std::string& name, ProgressReporter& reporter)
 {
-    check(task, source, {});
+    check(asked, source, {});
+    LabelTask task = asked;
+    if (!task.output.empty()) task.output = written_path(task.output);
     const Clock::time_point begin = Clock::now();
     ComponentOptions wanted{
         .threshold = task.threshold,

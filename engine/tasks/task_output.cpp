@@ -3,13 +3,43 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <string_view>
 
+#include "engine/base/atomic_writer.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 
 namespace shvr {
 
+namespace fs = std::filesystem;
+
 namespace {
+
+/// The extension of a file that may be a slice, in one spelling; empty for others.
+std::string slice_extension(const fs::path& path)
+{
+    const std::string extension = lower_case(path.extension().string());
+    if (extension == ".tiff") return ".tif";
+    if (extension == ".jpeg") return ".jpg";
+    constexpr std::string_view SLICES[] = {".tif", ".png", ".bmp", ".jpg", ".dcm"};
+    return std::ranges::find(SLICES, extension) != std::end(SLICES) ? extension : std::string();
+}
+
+/// Whether `output` lies, or would lie, directly in a folder of slices with its extension. A Zarr image may contain
+/// other images; in other folders each file is a slice.
+bool is_among_slices(const fs::path& folder, const fs::path& output)
+{
+    std::error_code ignored;
+    const std::string extension = slice_extension(output);
+    if (extension.empty() || !fs::is_directory(folder, ignored)) return false;
+    for (const char* name : {".zattrs", ".zgroup", ".zarray", "zarr.json"})
+        if (fs::exists(folder / name, ignored)) return false;
+    if (!fs::equivalent(fs::absolute(output).parent_path(), folder, ignored)) return false;
+    for (fs::directory_iterator entry(folder, ignored); !ignored && entry != fs::directory_iterator();
+         entry.increment(ignored))
+        if (slice_extension(entry->path()) == extension) return true;
+    return false;
+}
 
 void expect_writable(const std::string& name, const std::filesystem::path& folder)
 {
@@ -43,21 +73,25 @@ void check_output_place(const std::filesystem::path& path)
     if (std::filesystem::is_directory(path, ignored)) fail(name, ": is a folder; expected the name of a file");
 }
 
-void check_output_is_not(const std::filesystem::path& input, const std::filesystem::path& output)
+fs::path written_path(const fs::path& path)
 {
-    namespace fs = std::filesystem;
     std::error_code ignored;
-    if (input.empty() || output.empty() || !fs::exists(output, ignored)) return;
-    // A Zarr image may contain other images; in other folders each file is a slice.
-    const auto is_zarr = [&](const char* name) { return fs::exists(input / name, ignored); };
-    const char* const zarr[] = {".zattrs", ".zgroup", ".zarray", "zarr.json"};
-    const std::string extension = lower_case(output.extension().string());
-    const bool is_slice = (extension == ".tif" || extension == ".tiff") && fs::is_directory(input, ignored) &&
-                          std::ranges::none_of(zarr, is_zarr) &&
-                          fs::equivalent(fs::absolute(output).parent_path(), input, ignored);
-    if (is_slice || fs::equivalent(output, input, ignored))
-        fail(output.string(), ": is read", is_slice ? ", as a part of " + input.string() : std::string(),
+    fs::path target = fs::is_symlink(path, ignored) ? link_target(path) : path;
+    collect_temporary_files(target.parent_path());
+    return target;
+}
+
+void check_output_is_not(const fs::path& input, const fs::path& output)
+{
+    if (input.empty() || output.empty()) return;
+    std::error_code ignored;
+    if (fs::exists(output, ignored) && fs::equivalent(output, input, ignored))
+        fail(output.string(), ": is read; expected another name, since it would be lost");
+    if (!is_among_slices(input, output)) return;
+    if (fs::exists(output, ignored))
+        fail(output.string(), ": is read, as a part of ", input.string(),
              "; expected another name, since it would be lost");
+    fail(output.string(), ": would be read as a slice of ", input.string(), "; expected a name in another folder");
 }
 
 void check_output_folder(const std::filesystem::path& path)

@@ -1,6 +1,7 @@
 """Every command's reaction to wrong usage and to unexpected files; --help lists the commands."""
 import json
 import os
+import struct
 import subprocess
 import unittest
 from pathlib import Path
@@ -185,7 +186,65 @@ class Usage(ErrorTest):
                               (["profile", session, "--frames", "1", "--trace", session], "session.json")):
             with self.subTest(command=command):
                 self.check_refused(*command, says=[name, "is read", "it would be lost"])
+        of_slices = self.write_session("of-slices.json", volume={"path": "slices"})
+        before[of_slices] = of_slices.read_bytes()
+        (self.folder / "link").symlink_to(slices)
+        for command in (["export", of_slices, "--mask", slices / "x.tif"],
+                        ["export", of_slices, "--offset", slices / "x.TIFF"],
+                        ["export", of_slices, "--mask", self.folder / "link" / "x.tif"],
+                        ["label", slices, "--threshold", "1", "-o", slices / "x.tif"]):
+            with self.subTest(command=command):
+                self.check_refused(*command, says=["would be read as a slice of", "a name in another folder"])
         self.assertEqual({path: path.read_bytes() for path in self.folder.rglob("*") if path.is_file()}, before)
+        self.check("export", of_slices, "--mask", slices / "x.nrrd")   # no slice
+        self.check("info", slices)
+
+    def test_without_a_driver_the_package_is_named(self):
+        session = self.write_session()
+        result = run("render", session, "-o", self.folder / "a.png",
+                     environment={"VK_ICD_FILENAMES": "/none.json", "VK_DRIVER_FILES": "/none.json"})
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("no Vulkan device found; expected a GPU driver, or the package mesa-vulkan-drivers (lavapipe)",
+                      result.stderr)
+
+    def test_what_is_wrong_is_said_before_the_volume_is_read(self):
+        session = self.write_session()
+        output = self.folder / "a.png"
+        for command in (["render", session, "-o", output], ["profile", session]):
+            for camera in ("nowhere", '{"eye": 3}'):
+                said = self.check_refused(*command, "--camera", camera, says=["camera"])
+                self.assertNotIn("warning", said)
+        # However many options replace a setting, it must be right.
+        for options in (["--set", "render.size=wrong", "--size", "24x16"],
+                        ["--set", "render.step_voxels=wrong", "--set", "render.quality=draft"],
+                        ["--set", "light.ambient=-7", "--set", "light.ambient=0.5"]):
+            self.check_refused("render", session, "-o", output, *options, says=[options[1].partition("=")[0]])
+        for one, other in (("--trace", "--graph"), ("--csv", "--html")):
+            name = self.folder / "same.json"
+            extra = {"--csv": ".csv", "--html": ".html"}
+            if one == "--csv":   # names that differ, of one file
+                os.symlink(self.folder / "q.html", self.folder / "q.csv")
+            first = name if one == "--trace" else self.folder / ("q" + extra[one])
+            second = name if one == "--trace" else self.folder / ("q" + extra[other])
+            self.check_refused("profile", session, one, first, other, second, status=2,
+                               says=[f"{one} and {other} are both ", "expected a file for each"])
+        self.assertFalse(output.exists())
+
+    def test_intensities_beyond_float32_name_their_file(self):
+        scan = self.folder / "huge.nrrd"
+        scan.write_bytes(b"NRRD0004\ntype: double\ndimension: 3\nsizes: 4 4 4\nendian: little\nencoding: raw\n\n"
+                         + struct.pack("<64d", *(i * 1e300 for i in range(64))))
+        self.check_refused("render", scan, "-o", self.folder / "a.png",
+                           says=["huge.nrrd: its intensities go from 0 to 6.3e+301", "the range of float32"])
+
+    def test_escape_codes_of_arguments_do_not_reach_the_terminal(self):
+        evil = "\x1b[31mred\x07\u009b2J"
+        for command in (["info", self.folder / evil], [evil], ["render", "--" + evil], ["render", self.write_session(),
+                        "-o", self.folder / "a.png", "--camera", evil], ["info", self.write_session(), "--set", evil]):
+            result = run(*command)
+            self.assertNotEqual(result.returncode, 0)
+            for code in ("\x1b", "\x07", "\u009b"):
+                self.assertNotIn(code, result.stderr + result.stdout, command)
 
     def test_without_a_display_the_window_says_so(self):
         for arguments in [[], ["view"], ["view", self.write_session()]]:

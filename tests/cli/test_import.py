@@ -403,7 +403,7 @@ class EndingEarly(CliTest):
             self.assertEqual((process.returncode, output), (1, ""))
             said = [line for line in said.splitlines() if line.startswith("shvr: ")]
             self.assertEqual(said, [f"shvr: {self.folder}/project.part: the import was stopped; what is done is kept, "
-                                    "and the same command goes on from there"])
+                                    "and the same command goes on from there; rm -r removes it"])
             self.assertFalse((self.folder / "project").exists())
             self.check_finished()
             self.clear()

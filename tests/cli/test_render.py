@@ -229,7 +229,7 @@ class Render(CliTest):
         session = self.write_session(volume={"procedural": "tubes", "size": [64, 64, 64], "seed": 3})
         picture, _ = self.render(session, "a.png")
         before = picture.read_bytes()
-        for number in [signal.SIGINT, signal.SIGTERM]:
+        for number in [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGPIPE]:
             with subprocess.Popen([SHVR, "render", session, "-o", picture, "--size", "65536x65536"],
                                   stderr=subprocess.PIPE, text=True, env=ENVIRONMENT) as process:
                 while not list(self.folder.glob(".shvr-*.tmp")):
@@ -237,8 +237,9 @@ class Render(CliTest):
                     time.sleep(0.01)
                 process.send_signal(number)
                 said = process.stderr.read()
-                self.assertEqual(process.wait(), 1, said)
-            self.assertIn("a.png: stopped", said)
+                # Who reads no more gets no sentence, and the signal as the status.
+                self.assertEqual(process.wait(), -number if number == signal.SIGPIPE else 1, said)
+            self.assertIn("" if number == signal.SIGPIPE else "a.png: stopped", said)
             self.assertEqual(picture.read_bytes(), before)
             self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["a.png", "session.json"])
 

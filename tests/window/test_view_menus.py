@@ -15,7 +15,7 @@ PREPARED = {"copy_measurements": "measure", "clear_measurements": "measure", "me
 INNER = {"Open recent", "Look from", "Kept views", "Panels", "Turn the view", "Move the view", "Distance blending",
          "Cutting planes", "Clip planes", "Touch", "Group of the selection", "view 1", "Remove"}
 DIALOGS = {"Save as...", "Open with options...", "Correct the spacing...", "Import as project...", "Export...",
-           "Label connected parts...", "Compare with a reference...", "Take from a file..."}
+           "Label connected parts...", "Compare with a reference...", "Load annotation..."}
 EXPECTED = {
     "Copy the session": "copy_session", "Revert to the last save": "revert", "Shading": "set light.shaded",
     "Show everything": "reset_cuts", "Go there": "look_from", "Remove this view": "forget_camera",

@@ -110,7 +110,7 @@ class Photographs(Seen):
             self.photograph(arrangement)
         self.press("F10")
         for entry in ("Save as...", "Open with options...", "Correct the spacing...", "Import as project...",
-                      "Export...", "Label connected parts...", "Compare with a reference...", "Take from a file..."):
+                      "Export...", "Label connected parts...", "Compare with a reference...", "Load annotation..."):
             self.click_on("File", "##MainMenuBar")
             self.click_on(entry, "##Menu_00")
             self.see("Cancel")

@@ -61,7 +61,7 @@ class Writers(Seen):
         report = self.finish()  # by one key
         said = "\n".join(report["messages"])
         self.assertIn(f"read only, for it is open for writing in shvr annotate, process {holder.pid} on ", said)
-        self.assertIn("session.json: is not saved, since the project is open for writing", said)
+        self.assertIn("session.json: is not saved, since it is open for writing", said)
         self.assertEqual(sorted(report["voxels_in_group"]), ["3"])
         self.assertEqual(self.files(), before)
         _, errors = holder.communicate('{"op":"save"}\n', PATIENCE_S)
@@ -87,6 +87,28 @@ class Writers(Seen):
         after = self.files()
         self.assertEqual({name: after[name] for name in before}, before)
         self.annotate(self.folder / "session-copy.json", [{"op": "expect", "voxels_in_group": report["voxels_in_group"]}])
+
+    def test_a_session_that_saves_outside_its_folder_is_read_only_until_the_user_agrees(self):
+        inside, outside = self.folder / "inside", self.folder / "mine.mask"
+        inside.mkdir()
+        session = self.write_ball(annotation={"mask": "../mine.mask"})
+        session = session.rename(inside / session.name)
+        self.open_project(session)
+        self.see("Read only: this session writes files outside its folder: annotation.mask, which is ")
+        self.do("key", "ctrl+s", pause_s=0)
+        self.see("Error: ", "Status")
+        self.assertFalse(outside.exists())
+        self.assertEqual([path.name for path in inside.iterdir()], [session.name])
+        self.click_on("Write there")
+        self.see_no_more("Write there")
+        self.see_picture()
+        self.check_probe(*self.middle())
+        self.paint()
+        self.press("Ctrl+S")
+        self.wait_for_file(outside)
+        report = self.finish()
+        said = "\n".join(report["messages"])
+        self.assertIn("session.json: is not saved, since its session writes outside its folder", said)
 
     def test_a_window_that_is_read_only_tries_again(self):
         session = self.write_ball()

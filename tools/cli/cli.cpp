@@ -9,6 +9,7 @@
 #include "engine/live/previewer.h"
 #include "engine/session/kept_settings.h"
 #include "engine/session/lasting_settings.h"
+#include "engine/session/outside_files.h"
 #include "engine/tasks/task_options.h"
 #include "engine/volume/unit.h"
 #include "tools/golden/blessing.h"
@@ -49,6 +50,12 @@ void add_belief_option(CLI::App& command, Common& common)
             "journal")
         ->type_name("files|journal")
         ->check(CLI::IsMember({"files", "journal"}));
+}
+
+void add_outside_option(CLI::App& command, Common& common)
+{
+    command.add_flag("--outside", common.outside,
+                     "Write files that the session names outside its own folder; otherwise that is refused");
 }
 
 void add_incomplete_option(CLI::App& command, bool& allows_incomplete, const std::string& does)
@@ -258,13 +265,25 @@ struct Readable {
 
 }  // namespace
 
-Opened open(const std::string& path, const Common& common, LongWork& work, Work::Opening opening)
+void check_outside(const std::string& path, const Session& session, const Common& common)
+{
+    if (common.outside) return;
+    const std::filesystem::path file = session_file_of(path);
+    const std::string outside = file.empty() ? std::string() : files_outside(session, file, common.settings);
+    if (!outside.empty())
+        fail(file.string(), ": names files outside its folder: ", outside,
+             "; expected files inside it; --outside writes there");
+}
+
+Opened open(const std::string& path, const Common& common, LongWork& work, Work::Opening opening,
+            const CheckSession& check)
 {
     std::unique_ptr<Renderer> renderer;
     std::shared_ptr<Gaps> gaps;
     if (common.allows_incomplete) gaps.reset(new Gaps(gaps_of(*common.allows_incomplete, OptionNames::command_line)));
     OpeningOptions options{.measure = {.progress = work.begin("opening " + path), .gaps = gaps.get()}};
     options.before_reading = [&](const Session& session, const VolumeSource& source) {
+        if (check) check(session, source.info());
         const char* validation = std::getenv("SHVR_VALIDATION");
         renderer = std::make_unique<Renderer>(
             Renderer::Options{.device = {common.device, validation && *validation == '1'},
@@ -311,6 +330,14 @@ Opened open(const std::string& path, const Common& common, LongWork& work, Work:
     opened.renderer->scene().show_surfaces(opened.session.surfaces, opened.annotator->document().trace,
                                            opened.session.groups);
     return opened;
+}
+
+void check_camera(const std::string& name, const Session& session, const VolumeInfo& volume)
+{
+    std::error_code ignored;
+    const bool is_object = trimmed(name).starts_with('{');
+    if (name.empty() || (!is_object && std::filesystem::exists(session.journal_path, ignored))) return;
+    static_cast<void>(camera_named(session, name, volume));
 }
 
 void warn_of_gaps(Opened& opened, const std::string& path, const Common& common)

@@ -32,6 +32,7 @@ struct Common {
     bool json = false;
     std::optional<bool> allows_incomplete;  ///< null: the command has no such option
     Belief belief = Belief::ask;
+    bool outside = false;  ///< the session may write files outside its folder
 };
 
 /// --set, --raw, --spacing, --unit
@@ -45,6 +46,10 @@ void add_device_options(CLI::App& command, Common& common);
 void add_version_option(CLI::App& command, std::optional<OmeZarrVersion>& version, const std::string& otherwise);
 /// --believe, for commands that open annotation.
 void add_belief_option(CLI::App& command, Common& common);
+/// --outside, for commands that write the files that a session names.
+void add_outside_option(CLI::App& command, Common& common);
+/// Fails if the session would write outside its folder and --outside is not given. `path`: what was opened.
+void check_outside(const std::string& path, const Session& session, const Common& common);
 /// --allow-incomplete, for commands whose result needs all voxels.
 void add_incomplete_option(CLI::App& command, bool& allows_incomplete, const std::string& does);
 void add_incomplete_option(CLI::App& command, Common& common, const std::string& does);
@@ -85,7 +90,12 @@ struct Opened {
 };
 /// Refuses volumes that are too large for the budgets before reading voxels, and unreadable ones unless
 /// `common.allows_incomplete`.
-Opened open(const std::string& path, const Common& common, LongWork& work, Work::Opening opening = {.only_look = true});
+/// `check` refuses a session before its voxels are read.
+using CheckSession = std::function<void(const Session& session, const VolumeInfo& volume)>;
+Opened open(const std::string& path, const Common& common, LongWork& work, Work::Opening opening = {.only_look = true},
+            const CheckSession& check = {});
+/// Fails if there is no camera of that name; a journal may hold further ones. Empty: the session's own.
+void check_camera(const std::string& name, const Session& session, const VolumeInfo& volume);
 /// Warns about parts that could not be read since the last call: bricks are read while pictures are drawn.
 void warn_of_gaps(Opened& opened, const std::string& path, const Common& common);
 

@@ -143,10 +143,14 @@ void check_radii(const std::vector<ScriptLine>& script, const std::string& name,
 }
 
 /// Null if the project is a volume without a journal, or no lock can be kept there.
-std::shared_ptr<Hold> hold_of(const std::string& project)
+std::shared_ptr<Hold> hold_of(const std::string& project, const Common& common)
 {
     const std::filesystem::path session = session_file_of(project);
-    return session.empty() ? nullptr : Hold::take(journal_beside(session), "shvr annotate");
+    if (session.empty()) return nullptr;
+    Session named;
+    named.journal_path = journal_beside(session);
+    check_outside(project, named, common);  // its lock lies there, too
+    return Hold::take(named.journal_path, "shvr annotate");
 }
 
 /// Without a project, a script's work on a volume would not be stored anywhere.
@@ -161,13 +165,14 @@ std::shared_ptr<Hold> hold_of(const std::string& project)
 
 void run_annotate(const AnnotateCommandOptions& options)
 {
-    const std::shared_ptr<Hold> hold = hold_of(options.project);  // refused before any work
+    const std::shared_ptr<Hold> hold = hold_of(options.project, options.common);  // refused before any work
     const std::string name = name_of_script(options.script);
     const std::vector<ScriptLine> script = read_script(options.script);
     LongWork work(options.common.quiet);
     Opened opened = open(
         options.project, options.common, work,
-        {.start = options.fresh ? Work::Start::fresh : Work::Start::as_left, .hold = hold, .program = "shvr annotate"});
+        {.start = options.fresh ? Work::Start::fresh : Work::Start::as_left, .hold = hold, .program = "shvr annotate"},
+        [&](const Session& session, const VolumeInfo&) { check_outside(options.project, session, options.common); });
     if (opened.project.empty()) refuse_bare_volume(options.project);
     check_radii(script, name, opened.source->info());
     ui::Workbench bench(*opened.renderer, {.has_servo = false, .is_script = true});
@@ -234,12 +239,14 @@ void run_actions(const AnnotateCommandOptions& options)
     Renderer renderer({.device = {options.common.device, validation && *validation == '1'},
                        .budget = {options.common.budget_device_mib << 20, options.common.budget_host_mib << 20},
                        .threads = options.common.threads});
-    ui::Workbench bench(renderer, {.has_servo = false, .slices_follow = false});
+    ui::Workbench bench(renderer,
+                        {.has_servo = false, .saves_outside = options.common.outside, .slices_follow = false});
     static_cast<void>(work.begin("opening " + options.project));
     bench.open(options.project, options.common.settings);
     if (bench.document().only_looks())
-        throw JournalTaken(sentence(options.project, ": is open for writing in ", bench.document().holder,
-                                    "; expected it to be closed there first"));
+        throw JournalTaken(sentence(
+            options.project, ": cannot be annotated: ", bench.document().why_only_looks(),
+            bench.document().outside.empty() ? "; expected it to be closed there first" : "; --outside writes there"));
     static_cast<void>(work.begin("replaying " + name));
     bench.set_hand_down(true);  // the log states where a step of settings ends
     size_t done = 0;
@@ -287,6 +294,7 @@ void add_annotate(CLI::App& program)
                       "Start without the existing annotation; its journal is kept as JOURNAL.old");
     command->add_flag("--verbose", options->verbose, "A line for each command that paints or adds a node");
     add_belief_option(*command, options->common);
+    add_outside_option(*command, options->common);
     add_device_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer(

@@ -67,9 +67,10 @@ void check_gates(const ImageDifference& difference, const CompareCommandOptions&
                                  " levels root mean square; --max-rmse allows ", *options.max_rmse));
 }
 
-void run_compare(const CompareCommandOptions& options)
+void run_compare(CompareCommandOptions options)
 {
     check_output("--diff", options.difference, {".png"});
+    if (!options.difference.empty()) options.difference = written_path(options.difference).string();
     for (const std::string& picture : {options.a, options.b}) check_output_is_not(picture, options.difference);
     LongWork work(options.common.quiet);
     static_cast<void>(work.begin("reading pictures"));

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <iomanip>
 
+#include "engine/base/atomic_writer.h"
 #include "engine/tasks/import_task.h"
 #include "tools/cli/cli.h"
 
@@ -77,7 +78,10 @@ void run_import(const ImportCommandOptions& options)
 {
     ImportTask task = options.task;
     task.volume = options.volume;
-    task.project = options.project;
+    // A link to the project stays; its target is made.
+    std::error_code ignored;
+    const bool is_link = std::filesystem::is_symlink(options.project, ignored);
+    task.project = is_link ? link_target(options.project) : std::filesystem::path(options.project);
     task.crop = parse_crop(options.crop);
     task.blur_voxels = parse_blur(options.blur);
     task.threads = options.common.threads;

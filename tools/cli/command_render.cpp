@@ -58,6 +58,7 @@ Picture draw(PictureFile& file, const Opened& opened, const RenderCommandOptions
 void run_render(RenderCommandOptions options)
 {
     check_output("--output", options.output, {".png", ".pfm"});
+    options.output = written_path(options.output).string();
     check_output_is_not(options.input, options.output);
     if (!options.size.empty()) {
         const glm::uvec2 size = parse_size(options.size);
@@ -70,7 +71,11 @@ void run_render(RenderCommandOptions options)
                                                    : Json{{"preset", options.transfer_function}}.dump()));
     }
     LongWork work(options.common.quiet);
-    Opened opened = open(options.input, options.common, work);
+    const auto check = [&](const Session& session, const VolumeInfo& volume) {
+        check_output_is_not(session.volume_path, options.output);
+        check_camera(options.camera, session, volume);
+    };
+    Opened opened = open(options.input, options.common, work, {.only_look = true}, check);
     const std::string& wanted = options.camera.empty() ? opened.session.camera_name : options.camera;
     const Camera camera = camera_named(opened.session, wanted, opened.source->info());
     const std::optional<ProbeLook> probe = shown_probe(opened.session, *opened.renderer, *opened.annotator);

@@ -84,6 +84,7 @@ void run_view(const ViewCommandOptions& options)
                           .budget = {common.budget_device_mib << 20, common.budget_host_mib << 20},
                           .threads = common.threads,
                           .validation = validation && *validation == '1',
+                          .saves_outside = common.outside,
                           .allow_force = options.allow_force,
                           .preferences = ui::preferences_file(),
                           .log = options.log,
@@ -112,6 +113,7 @@ void add_view(CLI::App& program)
     command->add_flag("--allow-force", options->allow_force,
                       "Let a haptic device put force on the hand; one on HID only with a verified profile");
     command->add_option("--log", options->log, "Write each action as a line that shvr annotate replays");
+    add_outside_option(*command, options->common);
     add_device_options(*command, options->common);
     add_output_options(*command, options->common);
     command->footer(

@@ -1,5 +1,6 @@
 #include "tools/cli/long_work.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -9,6 +10,8 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+
+#include "engine/base/text.h"
 
 namespace shvr::cli {
 
@@ -86,7 +89,8 @@ private:
     std::jthread ticker_;  ///< last, since it uses all members above
 };
 
-std::unique_ptr<Shown> shown;  ///< instance of the running LongWork; null if it is quiet
+std::string last_what;
+std::unique_ptr<Shown> shown;  ///< the live LongWork's; null if it is quiet
 
 }  // namespace
 
@@ -104,7 +108,8 @@ LongWork::~LongWork()
 Progress LongWork::begin(const std::string& what)
 {
     stop_if_asked();
-    if (shown) shown->begin(what);
+    last_what = what;
+    if (shown) shown->begin(printable(what));
     return [this](double fraction) {
         stop_if_asked();
         if (shown) shown->show(fraction, {}, -1.0);
@@ -121,6 +126,18 @@ void LongWork::stop_if_asked() const
     if (is_asked_to_stop()) throw Stopped(sentence(StopRequest::in_words(), "; no file is left half written"));
 }
 
+std::string last_begun()
+{
+    return last_what;
+}
+
+int64_t peak_mebibytes()
+{
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss / 1024;
+}
+
 void clear_progress()
 {
     if (shown) shown->clear();
@@ -128,10 +145,11 @@ void clear_progress()
 
 void print_beside_progress(const std::string& line)
 {
+    const std::string safe = printable(line);
     if (shown)
-        shown->print(line);
+        shown->print(safe);
     else
-        std::cerr << line << '\n';
+        std::cerr << safe << '\n';
 }
 
 }  // namespace shvr::cli

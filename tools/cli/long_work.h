@@ -3,6 +3,7 @@
 // (engine/base/progress.h), and Ctrl-C ends it with a sentence.
 
 #include <atomic>
+#include <cstdint>
 #include <string>
 
 #include "engine/jobs/progress_reporter.h"
@@ -31,6 +32,10 @@ private:
     StopRequest stop_;
 };
 
+/// What was begun last, in words: "loading scan.nrrd"; empty: nothing.
+std::string last_begun();
+/// The largest amount of memory that this process has held.
+int64_t peak_mebibytes();
 /// Erases the progress line from the terminal until the next update; call it before anything is printed.
 void clear_progress();
 /// Prints a line on standard error without mixing it with the progress line.

@@ -6,6 +6,7 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include "engine/base/text.h"
 #include "tools/cli/cli.h"
@@ -88,9 +89,17 @@ int run(int argc, char** argv)
     return Exit::done;
 }
 
+/// " while loading scan.nrrd"; empty: nothing long was begun.
+std::string while_doing()
+{
+    const std::string what = shvr::cli::last_begun();
+    return what.empty() ? what : " while " + what;
+}
+
 int report(const char* message, Exit status)
 {
-    std::fprintf(stderr, "shvr: %s\n", message);
+    // Arguments and files may hold what a terminal would act on.
+    std::fprintf(stderr, "shvr: %s\n", shvr::printable(message).c_str());
     return status;
 }
 
@@ -118,7 +127,18 @@ int main(int argc, char** argv)
             shvr::sentence(error.what(), "; shvr view looks at it meanwhile and shvr export copies it").c_str(),
             Exit::world);
     } catch (const std::bad_alloc&) {
-        return report("host memory is exhausted", Exit::world);
+        return report(shvr::sentence("host memory is exhausted", while_doing(), ", with ", shvr::cli::peak_mebibytes(),
+                                     " MiB in use; expected more, or less to hold: --budget-host bounds what a paged "
+                                     "volume takes, shvr import --downscale or --crop makes it smaller")
+                          .c_str(),
+                      Exit::world);
+    } catch (const std::system_error& error) {
+        if (error.code() != std::errc::resource_unavailable_try_again) return report(error.what(), Exit::world);
+        return report(shvr::sentence("no further thread can be started", while_doing(), " (", error.what(),
+                                     "); expected a higher limit of processes (ulimit -u) or of memory (ulimit -v), "
+                                     "or fewer threads: --threads 1")
+                          .c_str(),
+                      Exit::world);
     } catch (const std::exception& error) {
         return report(error.what(), Exit::world);
     }

@@ -1,7 +1,8 @@
 #pragma once
-// Ctrl-C and SIGTERM end every command with a sentence, and no file is left half written. During long work
-// (long_work.h) a command ends at its next step, with exit status 1; otherwise at once and by the signal, which loses
-// nothing, since files appear completely or not at all.
+// Ctrl-C, SIGTERM and SIGHUP (a terminal that was closed) end every command with a sentence, SIGPIPE (the reader of the
+// output has left) at once and silently, and no file is left half written. During long work (long_work.h) a command
+// ends at its next step, with exit status 1; otherwise at once and by the signal, which loses nothing, since files
+// appear completely or not at all.
 
 #include <atomic>
 
@@ -23,7 +24,7 @@ public:
 
     bool is_made() const { return flag(); }
     static const std::atomic<bool>& flag();
-    /// "stopped by Ctrl-C" or "stopped by SIGTERM".
+    /// "stopped by Ctrl-C", "stopped by SIGTERM" or "stopped by SIGHUP".
     static const char* in_words();
 };
 

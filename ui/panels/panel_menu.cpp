@@ -75,7 +75,7 @@ void file_menu(const Model& model, Actions& actions)
     action_item("Revert to the last save", RevertOp{}, model, actions);
     ImGui::Separator();
     task_menu(model);
-    if (reasoned_item("Take from a file...", model.is_open ? "" : "nothing is open")) ask_what_to_take(model);
+    if (reasoned_item("Load annotation...", model.is_open ? "" : "nothing is open")) ask_what_to_take(model);
     if (model.is_open)
         hint("A mask, offsets, a trace or a transfer function, into this scan. Or drop it on the window.");
     ImGui::Separator();

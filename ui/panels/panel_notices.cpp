@@ -1,6 +1,7 @@
 // Notices before work begins: another process writes the project, or saved files were changed.
 
 #include <algorithm>
+#include <optional>
 
 #include <imgui/imgui.h>
 
@@ -12,6 +13,7 @@ namespace shvr::ui {
 namespace {
 
 constexpr const char* QUESTION = "Saved annotation was changed by another program";
+constexpr const char* UNCLEAR = "Scan or annotation?";
 
 constexpr ImGuiWindowFlags BANNER = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
@@ -44,12 +46,16 @@ float read_only_banner(const Model& model, const glm::vec2& begin, float width, 
     ImGui::PushStyleColor(ImGuiCol_WindowBg, color_of(ColorRole::notice));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
     ImGui::Begin("Read only", nullptr, BANNER);
+    const bool is_outside = !model.outside.empty();
     if (ImGui::Button("Work on a copy")) actions.push_back(WorkOnCopy{});
     ImGui::SameLine();
-    if (ImGui::Button("Try again")) actions.push_back(Open{model.session_path});
+    if (ImGui::Button(is_outside ? "Write there" : "Try again"))
+        actions.push_back(Open{.path = model.session_path, .saves_outside = is_outside});
     ImGui::PushTextWrapPos(0.0f);
-    ImGui::Text("Read only: open for writing in %.*s. Nothing that is changed here is saved.", int(model.holder.size()),
-                model.holder.data());
+    const std::string_view why = is_outside ? model.outside : model.holder;
+    ImGui::Text("Read only: %s %.*s. Nothing that is changed here is saved.",
+                is_outside ? "this session writes files outside its folder:" : "open for writing in", int(why.size()),
+                why.data());
     ImGui::PopTextWrapPos();
     const float height = ImGui::GetWindowHeight();
     ImGui::End();
@@ -78,14 +84,42 @@ void question_of_belief(const Model& model, Actions& actions)
     ImGui::EndPopup();
 }
 
+/// Asks for the use of a file that has the size of the open scan.
+void question_of_use(const Model& model, Actions& actions)
+{
+    if (!model.unclear_file) return;
+    const UnclearFile& file = *model.unclear_file;
+    if (!ImGui::IsPopupOpen(UNCLEAR)) ImGui::OpenPopup(UNCLEAR);
+    ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
+    ImGui::SetNextWindowSize({40.0f * ImGui::GetFontSize(), 0.0f});
+    if (!ImGui::BeginPopupModal(UNCLEAR, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::Text("%s has the size of the open scan, and does not state what it is.", file.path.c_str());
+    ImGui::PopTextWrapPos();
+    std::optional<Action> chosen;
+    const auto button = [&](const char* name, FileUse use) {
+        if (ImGui::Button(name)) chosen = TakeFile{file.path, file.beside, use};
+    };
+    button("Load as the mask", FileUse::mask);
+    button("Load as density offsets", FileUse::offsets);
+    if (file.may_be_scan) button("Open as another scan", FileUse::scan);
+    if (ImGui::Button("Cancel") || ImGui::IsKeyPressed(ImGuiKey_Escape)) chosen = DismissUnclearFile{};
+    if (chosen) {
+        actions.push_back(*chosen);
+        ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndPopup();
+}
+
 }  // namespace
 
 float notices(const Model& model, const glm::vec2& begin, float width, Actions& actions)
 {
     float top = begin.y;
-    if (!model.holder.empty()) top += read_only_banner(model, begin, width, actions);
+    if (!model.holder.empty() || !model.outside.empty()) top += read_only_banner(model, begin, width, actions);
     if (!model.recovered.empty()) top += recovered_banner(model, {begin.x, top}, width, actions);
     question_of_belief(model, actions);
+    question_of_use(model, actions);
     return top - begin.y;
 }
 

@@ -40,7 +40,8 @@ struct Screenshot {
 /// Runs in the background: the open document stays until the next one is loaded.
 struct Open {
     std::filesystem::path path;
-    std::string settings{};  ///< settings for this opening, as --set takes them: "volume.channel=red", one per line
+    std::string settings{};      ///< for this opening, as --set takes them: "volume.channel=red", one per line
+    bool saves_outside = false;  ///< the user agrees that the session writes files outside its folder
 };
 
 /// Inspects a file without its voxels, for the open dialog: Model::candidate.
@@ -49,15 +50,36 @@ struct LookAtFile {
     std::string settings{};      ///< as in Open
 };
 
+/// The use of a file: what its contents say, or what the user says.
+enum class FileUse { by_contents, scan, mask, offsets, trace, look };
+inline constexpr Spelling<FileUse> FILE_USES[] = {
+    {FileUse::by_contents, "by_contents"}, {FileUse::scan, "scan"},   {FileUse::mask, "mask"},
+    {FileUse::offsets, "offsets"},         {FileUse::trace, "trace"}, {FileUse::look, "look"}};
+constexpr std::span<const Spelling<FileUse>> spellings_of(FileUse)
+{
+    return FILE_USES;
+}
+
 /// Takes a file dropped onto the window: opens volumes, sessions, projects and pictures, and takes annotation and
-/// transfer functions into the open document, as steps that undo takes back. The contents decide the kind of file. If
-/// one of several files can be opened, the others are taken into it.
+/// transfer functions into the open document, as steps that undo takes back. The contents decide the kind of file; if
+/// they leave open whether it is a scan or annotation, the user is asked (Model::unclear_file). If one of several
+/// files can be opened, the others are taken into it.
 struct TakeFile {
     std::filesystem::path path;
     std::string beside{};  ///< paths of files dropped with it, one per line
+    FileUse use = FileUse::by_contents;
 };
 
-/// Corrects the volume's spacing: saves the work, and reopens it with the new spacing. Positions stay at their voxels.
+/// Loads annotation or a transfer function into the open document, as a step that undo takes back. Opens nothing.
+struct LoadAnnotation {
+    std::filesystem::path path;
+    FileUse what = FileUse::by_contents;
+};
+
+/// Leaves the file alone of which the user is asked what it is.
+struct DismissUnclearFile {};
+
+/// Corrects the volume's spacing: saves the work, and opens it with this one. Positions stay at their voxels.
 struct CorrectSpacing {
     glm::dvec3 spacing{1.0};
     std::string unit;
@@ -151,6 +173,7 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
         [](auto& f, Open& a) {
             f.path("path", a.path, {.is_required = true});
             f.text("settings", a.settings, {"as --set takes them, one a line"});
+            f.flag("saves_outside", a.saves_outside, {"the session may write files outside its folder"});
         }),
     row<LookAtFile, FileTaker>({"look_at_file", "Look at a file", WORK_GROUP,
                                 "reads a file's header, and estimates what loading it takes", Needs::nothing},
@@ -166,7 +189,23 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
                                  f.path("path", a.path, {.is_required = true});
                                  f.text("beside", a.beside,
                                         {"paths of the other files in the same drop, one per line"});
+                                 f.choice("use", a.use, {"what the file is, if its contents do not state it"});
                              }),
+    row<LoadAnnotation, FileTaker>(
+        {"load", "Load annotation", WORK_GROUP,
+         "loads a mask, density offsets, a trace or a transfer function (look) into the open scan, and opens nothing"},
+        [](auto& f, LoadAnnotation& a) {
+            f.path("path", a.path, {.is_required = true});
+            f.choice("what", a.what, {"what the file is, if its contents do not state it"});
+        },
+        [](const auto&, const LoadAnnotation& action) -> std::string {
+            return action.what == FileUse::scan ? "a scan is opened, not loaded" : "";
+        }),
+    row<DismissUnclearFile, FileTaker>({"dismiss_unclear_file", "Cancel", WORK_GROUP,
+                                        "leaves a dropped file alone that could be scan or annotation", Needs::nothing},
+                                       NO_FIELDS,
+                                       [](const auto& model, const DismissUnclearFile&)
+                                           -> std::string { return model.unclear_file ? "" : "no file is unclear"; }),
     row<CorrectSpacing, Saver>(
         {"correct_spacing", "Correct the spacing", WORK_GROUP,
          "saves, and reopens with another spacing; nodes stay at their voxels"},

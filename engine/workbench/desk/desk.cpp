@@ -49,6 +49,7 @@ DocumentModel Desk::document_model() const
             .session_path = document->session_path,
             .has_session_file = document->has_session_file(),
             .holder = document->holder,
+            .outside = document->outside,
             .messages = messages};
 }
 

@@ -25,6 +25,7 @@ struct WorkbenchOptions {
     /// For scripts, which do exactly what they state: no setting becomes a step or is kept, saves write annotation
     /// alone, to the files that the session names, and what is selected stays so.
     bool is_script = false;
+    bool saves_outside = false;           ///< sessions may write outside their folders without a question
     bool allow_force = false;             ///< lets a haptic device with a verified profile push the hand
     std::filesystem::path preferences{};  ///< the file (preferences_file.h); empty: none are read or kept
     std::function<double()> now_s{};      ///< seconds of any clock; null: the system's

@@ -11,6 +11,7 @@
 #include "engine/session/kept_settings.h"
 #include "engine/session/label_looks.h"
 #include "engine/session/lasting_settings.h"
+#include "engine/session/outside_files.h"
 
 namespace shvr::ui {
 
@@ -36,7 +37,7 @@ std::optional<std::string> text_of_session(const std::filesystem::path& path)
 }
 
 Document::Read Document::read(OpenedSession opened, const std::filesystem::path& input,
-                              const std::vector<std::string>& overridden, Work::Opening opening)
+                              const std::vector<std::string>& overridden, Work::Opening opening, bool may_write_outside)
 {
     Session& session = opened.session;
     const VolumeInfo& volume = opened.source->info();
@@ -51,6 +52,11 @@ Document::Read Document::read(OpenedSession opened, const std::filesystem::path&
         read.work = std::make_unique<Work>(volume.size, volume.type);
         read.notices = read.work->open(files, how);
     };
+    if (!may_write_outside) read.outside = files_outside(session, path, overridden);
+    if (!read.outside.empty()) {
+        opening.only_look = true;
+        opening.hold.reset();
+    }
     try {
         open_work(opening);
     } catch (const JournalTaken& taken) {
@@ -75,6 +81,7 @@ Document::Document(Renderer& renderer, Read read, const View::Options& view_opti
       touch(renderer),
       messages(std::move(read.notices)),
       holder(std::move(read.holder)),
+      outside(std::move(read.outside)),
       is_script_(read.is_script),
       overridden_(std::move(read.overridden)),
       session_text_(std::move(read.session_text))

@@ -33,14 +33,16 @@ struct Document {
         std::unique_ptr<Work> work;
         std::vector<Notice> notices{};
         std::string holder{};
+        std::string outside{};
         std::optional<std::string> session_text{};
         bool is_script = false;  ///< as WorkbenchOptions::is_script
     };
     /// Reads the saved work of a session. `overridden`: "key=value" settings in which the session differs from its
     /// file. `hold`: the hold of the document that this one replaces, which may be the same. If another process writes
-    /// the work, it is opened read-only. Fails if it cannot be read. Any thread.
+    /// the work, or the session would write outside its folder and `may_write_outside` is not set, it is opened
+    /// read-only. Fails if it cannot be read. Any thread.
     static Read read(OpenedSession opened, const std::filesystem::path& input,
-                     const std::vector<std::string>& overridden, Work::Opening opening);
+                     const std::vector<std::string>& overridden, Work::Opening opening, bool may_write_outside);
     /// Shows it in the renderer's scene, which has its volume. Fails as Scene::show does. The mouse moves the probe.
     Document(Renderer& renderer, Read read, const View::Options& view_options);
     Document(const Document&) = delete;
@@ -58,6 +60,8 @@ struct Document {
     std::vector<SurfaceLook> surfaces;  ///< moved out of the session, since views copy the session every frame
     std::vector<Notice> messages;       ///< notes from opening the work
     std::string holder;                 ///< another process that writes the work, in words; empty: none
+    std::string outside;                ///< files that the session would write outside its folder, which the user has
+                                        ///< not agreed to (outside_files.h); empty: none
     bool drags_node = false;            ///< the selected node follows the probe
 
     // State of the open document that is no part of the work
@@ -116,8 +120,13 @@ struct Document {
     bool has_session_file() const { return session_text_.has_value(); }
     bool is_saved() const { return work_is_saved() && edits_are_saved(); }
     bool work_is_saved() const { return only_looks() || annotator.work().is_saved(); }
-    /// Returns whether painting and saving are unavailable: another process writes the work.
+    /// Returns whether painting and saving are unavailable, and why.
     bool only_looks() const { return annotator.work().only_looks(); }
+    std::string why_only_looks() const
+    {
+        return outside.empty() ? "it is open for writing in " + holder
+                               : "its session writes outside its folder: " + outside;
+    }
     bool is_script() const { return is_script_; }
     /// Call after any possible change of the session, except the place: clears the cached answer of is_saved().
     void note_edit() { edits_are_saved_.reset(); }

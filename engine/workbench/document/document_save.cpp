@@ -53,8 +53,9 @@ std::filesystem::path free_copy_path(const std::filesystem::path& session_file)
 std::shared_ptr<Document::Saving> Document::begin_save(Parts parts)
 {
     if (only_looks())
-        throw JournalTaken(sentence(session_path.string(), ": is not saved, since the project is open for writing in ",
-                                    holder, "; expected it to be closed there, or a copy to work on"));
+        throw JournalTaken(sentence(session_path.string(), ": is not saved, since ", why_only_looks(),
+                                    outside.empty() ? "; expected it to be closed there, or a copy to work on"
+                                                    : "; expected a choice: there, or a copy to work on"));
     std::shared_ptr<Saving> saving(new Saving);
     if (parts == Parts::work) {
         saving->work_ = annotator.work().begin_save(label_looks(session.groups, annotator.document().mask));

@@ -21,6 +21,8 @@ struct DocumentModel {
     const std::filesystem::path& session_path;
     bool has_session_file = false;  ///< false: a bare scan that was never saved
     std::string_view holder{};      ///< another process that writes the project: this window then only looks
+    std::string_view outside{};     ///< files that the session would write outside its folder, without the user's
+                                    ///< agreement: this window then only looks
     const MessageLog& messages;
 };
 

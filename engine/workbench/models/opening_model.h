@@ -28,6 +28,13 @@ struct Candidate {
     std::vector<std::string> warnings{};
 };
 
+/// A file that could be a scan or annotation of the open one: the user says which (TakeFile).
+struct UnclearFile {
+    std::filesystem::path path;
+    std::string beside{};     ///< as in TakeFile
+    bool may_be_scan = true;  ///< otherwise only annotation was asked for
+};
+
 /// Made by the opener.
 struct OpeningModel {
     std::span<const std::string> recovered{};  ///< notes on recovered or set-aside work at opening, until dismissed
@@ -39,7 +46,8 @@ struct OpeningModel {
 
 /// Made by the taker of files.
 struct CandidateModel {
-    const Candidate* candidate = nullptr;  ///< null: none
+    const Candidate* candidate = nullptr;       ///< null: none
+    const UnclearFile* unclear_file = nullptr;  ///< null: none
 };
 
 /// Made by the runner of tasks.

@@ -7,6 +7,8 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/file.h"
 #include "engine/base/json.h"
+#include "engine/session/label_looks.h"
+#include "engine/session/lasting_settings.h"
 #include "engine/session/session_patch.h"
 #include "engine/workbench/services/services.h"
 
@@ -50,6 +52,8 @@ FileTaker::FileTaker(Services& all) : Service(all.desk), opener_(all.opener), se
 void FileTaker::act(const Open& action)
 {
     candidate_.reset();
+    unclear_.reset();
+    if (action.saves_outside) opener_.allow_outside(action.path);
     opener_.begin_open(action.path, lines_of(action.settings));
 }
 
@@ -111,36 +115,93 @@ void FileTaker::act(const LookAtFile& action)
 
 void FileTaker::act(const TakeFile& action)
 {
-    std::vector<std::filesystem::path> paths{action.path};
-    for (const std::string& line : lines_of(action.beside)) paths.emplace_back(line);
-    if (paths.size() > 1) return take_together(std::move(paths));
+    unclear_.reset();
+    std::vector<std::filesystem::path> others;
+    for (const std::string& line : lines_of(action.beside)) others.emplace_back(line);
+    if (action.use == FileUse::scan) return opener_.begin_open(action.path, {}, others);
+    if (action.use != FileUse::by_contents) {
+        take_as(action.use, action.path);
+        for (const std::filesystem::path& path : others) act(TakeFile{.path = path});
+        return;
+    }
+    if (!others.empty()) {
+        others.insert(others.begin(), action.path);
+        return take_together(std::move(others));
+    }
     std::optional<VolumeInfo> volume;
     if (document_) volume = document_->volume();
-    jobs_.start("looking at " + short_name(action.path), [this, path = action.path, volume](ProgressReporter&) {
-        const WhatItIs found = what_is(path, volume ? &*volume : nullptr);
-        const bool is_function = found.content == FileContent::transfer_function;
-        return Jobs::Completion([this, path, found, text = is_function ? read_text(path, MAX_JSON_BYTES) : ""] {
+    const std::filesystem::path open = document_ ? document_->session.volume_path : std::filesystem::path();
+    jobs_.start("looking at " + short_name(action.path), [this, path = action.path, volume, open](ProgressReporter&) {
+        WhatItIs found = what_is(path, volume ? &*volume : nullptr);
+        // The scan that is open is no annotation of itself.
+        std::error_code ignored;
+        if (found.may_be_annotation && std::filesystem::equivalent(path, open, ignored))
+            found = {.content = FileContent::volume};
+        return Jobs::Completion([this, path, found] {
+            if (found.may_be_annotation) return ask_what_it_is({.path = path});
             if (!found.content) fail(found.why_not);
-            if (*found.content == FileContent::transfer_function) return take_transfer_function(path, text);
             take(*found.content, path);
         });
     });
 }
 
-/// Finds out first what can be opened: annotation dropped with a scan must not go into the document that is still open.
+/// By intent: no scan is closed by it, whatever the file is.
+void FileTaker::act(const LoadAnnotation& action)
+{
+    unclear_.reset();
+    if (action.what != FileUse::by_contents) return take_as(action.what, action.path);
+    jobs_.start("looking at " + short_name(action.path),
+                [this, path = action.path, volume = document_->volume()](ProgressReporter&) {
+                    const WhatItIs found = what_annotation_is(path, volume);
+                    return Jobs::Completion([this, path, found] {
+                        if (found.may_be_annotation) return ask_what_it_is({.path = path, .may_be_scan = false});
+                        if (!found.content) fail(found.why_not);
+                        take(*found.content, path);
+                    });
+                });
+}
+
+void FileTaker::act(const DismissUnclearFile&)
+{
+    unclear_.reset();
+}
+
+/// A script cannot be asked.
+void FileTaker::ask_what_it_is(UnclearFile file)
+{
+    if (options_.is_script)
+        fail(file.path.string(), ": could be ", file.may_be_scan ? "a scan, " : "",
+             "a mask or density offsets; expected \"what\" or \"use\" to state which");
+    say(file.path.string() + " has the size of the open scan; choose what it is", Weight::done);
+    unclear_ = std::move(file);
+}
+
+/// Annotation that comes with a scan must not go into the one that is still open. A volume as large as that is the scan
+/// of a mask that is dropped with it; without one, the user is asked.
 void FileTaker::take_together(std::vector<std::filesystem::path> paths)
 {
-    jobs_.start(sentence("looking at ", paths.size(), " files"), [this, paths](ProgressReporter&) {
+    std::optional<VolumeInfo> volume;
+    if (document_) volume = document_->volume();
+    jobs_.start(sentence("looking at ", paths.size(), " files"), [this, paths, volume](ProgressReporter&) {
         std::vector<std::filesystem::path> opened, others;
+        bool is_unclear = false, has_mask = false;
         for (const std::filesystem::path& path : paths) {
-            const WhatItIs found = what_is(path, nullptr);
-            (found.content && is_opened(*found.content) ? opened : others).push_back(path);
+            const WhatItIs found = what_is(path, volume ? &*volume : nullptr);
+            is_unclear = is_unclear || found.may_be_annotation;
+            has_mask = has_mask || found.content == FileContent::mask;
+            const bool may_open = found.may_be_annotation || (found.content && is_opened(*found.content));
+            (may_open ? opened : others).push_back(path);
         }
-        return Jobs::Completion([this, opened, others] {
+        return Jobs::Completion([this, opened, others, asks = is_unclear && !has_mask] {
             if (opened.size() > 1)
                 fail(opened[0].string(), " and ", opened[1].string(),
                      ": each can be opened; expected one scan, session or project at a time, alone or with its mask, "
                      "offsets and trace; slices of one scan are opened as their folder");
+            if (opened.size() == 1 && asks) {
+                std::string beside;
+                for (const std::filesystem::path& path : others) beside += path.string() + '\n';
+                return ask_what_it_is({.path = opened[0], .beside = beside});
+            }
             if (opened.size() == 1) return opener_.begin_open(opened[0], {}, others);
             for (const std::filesystem::path& path : others) act(TakeFile{.path = path});
         });
@@ -150,46 +211,71 @@ void FileTaker::take_together(std::vector<std::filesystem::path> paths)
 void FileTaker::take(FileContent content, const std::filesystem::path& path)
 {
     if (is_opened(content)) return opener_.begin_open(path, {});
-    if (!document_) fail(path.string(), ": belongs to a volume; expected that to be open, to take it into");
-    if (content == FileContent::mask) return take_annotation(Part::mask, path);
-    if (content == FileContent::offsets) return take_annotation(Part::offsets, path);
-    if (content == FileContent::trace) return take_annotation(Part::trace, path);
+    take_as(content == FileContent::mask      ? FileUse::mask
+            : content == FileContent::offsets ? FileUse::offsets
+            : content == FileContent::trace   ? FileUse::trace
+                                              : FileUse::look,
+            path);
 }
 
-void FileTaker::take_transfer_function(const std::filesystem::path& path, const std::string& text)
+void FileTaker::take_as(FileUse use, const std::filesystem::path& path)
 {
     if (!document_) fail(path.string(), ": belongs to a volume; expected that to be open, to take it into");
-    if (is_preset(text, path)) {
-        Session after = document_->session;
-        const TransferPreset preset = parse_transfer_preset(text, path.stem().string(), path.string());
-        after.transfer_function = transfer_function_of(preset, document_->statistics);
-        settings_.take_session(std::move(after));
-    } else {
-        settings_.act(Set{patch_of("transfer_function=" + text)});
-    }
-    settings_.record_settings();
-    say("The transfer function of " + path.string() + " is taken; undo takes it back");
+    if (use == FileUse::look) return take_transfer_function(path);
+    take_annotation(use == FileUse::mask ? Part::mask : use == FileUse::offsets ? Part::offsets : Part::trace, path);
 }
 
-/// Reads the file on the worker; its content becomes one step of the history.
+void FileTaker::take_transfer_function(const std::filesystem::path& path)
+{
+    jobs_.start("reading " + short_name(path), [this, path](ProgressReporter&) {
+        return Jobs::Completion([this, path, text = read_text(path, MAX_JSON_BYTES)] {
+            if (!document_) fail(path.string(), ": belongs to a volume; expected that to be open, to take it into");
+            if (is_preset(text, path)) {
+                Session after = document_->session;
+                const TransferPreset preset = parse_transfer_preset(text, path.stem().string(), path.string());
+                after.transfer_function = transfer_function_of(preset, document_->statistics);
+                settings_.take_session(std::move(after));
+            } else {
+                settings_.act(Set{patch_of("transfer_function=" + text)});
+            }
+            settings_.record_settings();
+            say("The transfer function of " + path.string() + " is taken; undo takes it back");
+        });
+    });
+}
+
+/// Reads it on the worker; it becomes one step of the history, together with the names and colours of groups that a
+/// mask states and the session does not.
 void FileTaker::take_annotation(Part part, const std::filesystem::path& path)
 {
     const VolumeInfo volume = document_->volume();
     WorkFiles files{.volume_hash = document_->session.volume_hash, .volume = volume};
     (part == Part::mask ? files.mask : part == Part::trace ? files.trace : files.density) = path;
     const uint64_t opening = desk_.openings;
-    jobs_.start("reading " + short_name(path), [this, part, path, volume, files, opening](ProgressReporter&) {
+    const Groups groups = document_->session.groups;
+    jobs_.start("reading " + short_name(path), [this, part, path, volume, files, opening, groups](ProgressReporter&) {
         const auto found = std::make_shared<shvr::Document>(
             shvr::Document{.mask = Mask(volume.size), .trace = {}, .density = DensityField(volume.size, volume.type)});
         load(part, files, *found);
-        return Jobs::Completion([this, part, path, found, opening] {
+        Groups looks = groups;
+        if (part == Part::mask) static_cast<void>(take_label_looks(path, looks));
+        return Jobs::Completion([this, part, path, found, opening, groups, looks] {
             if (!document_ || desk_.openings != opening)
                 fail(path.string(), ": belongs to a volume that is no longer open");
             Annotator& annotator = document_->annotator;
             if (annotator.stroke_is_running()) fail(path.string(), ": a stroke is being painted; drop it again");
             settings_.record_settings();
-            const Command* const command = annotator.perform(sentence(name_of(part), " of ", short_name(path)),
-                                                             changes_between(part, annotator.document(), *found));
+            std::vector<Change> changes = changes_between(part, annotator.document(), *found);
+            if (looks != groups && document_->session.groups == groups && !document_->is_script()) {
+                Session after = document_->session;
+                after.groups = looks;
+                const SettingValues before = annotator.work().settings();
+                const auto known = before.find("groups");
+                changes.emplace_back(SettingChange{"groups", known == before.end() ? std::string() : known->second,
+                                                   lasting_settings(after).at("groups")});
+            }
+            const Command* const command =
+                annotator.perform(sentence(name_of(part), " of ", short_name(path)), std::move(changes));
             if (!command) return say(path.string() + ": its " + name_of(part) + " is already in use");
             settings_.show_changes(*command);
             say(sentence("The ", name_of(part), " of ", path.string(), " is taken; undo takes it back"));

@@ -114,7 +114,8 @@ void Opener::read_next()
         opening.journal_bytes = work.journal().bytes;
     }
     const std::filesystem::path path = opening.path;
-    const auto read = [path, settings = opening.settings, how, flush, goes_on = !options_.is_script,
+    const bool may_write_outside = options_.saves_outside || allowed_outside_.contains(path);
+    const auto read = [path, settings = opening.settings, how, flush, may_write_outside, goes_on = !options_.is_script,
                        &renderer =
                            renderer_](ProgressReporter& reporter) -> std::pair<Document::Read, std::optional<Session>> {
         const std::string name = short_name(path);
@@ -135,7 +136,8 @@ void Opener::read_next()
                                              reporter.begin("making coarser levels of " + name));
         Work::Opening with_progress = how;
         with_progress.progress = reporter.begin("reading the work on " + name);
-        return {Document::read(std::move(opened), input, settings, std::move(with_progress)), std::move(pictured)};
+        return {Document::read(std::move(opened), input, settings, std::move(with_progress), may_write_outside),
+                std::move(pictured)};
     };
     opening.number =
         jobs_.start("opening " + short_name(path),
@@ -277,7 +279,7 @@ void Opener::welcome(const std::filesystem::path& path, const std::vector<std::s
     const std::filesystem::path& session = document_->session_path;  // a scan's session, saved next to it
     if (document_->has_session_file() && session != path && session.parent_path() == path.parent_path())
         status += ", and goes on with " + session.filename().string();
-    if (document_->only_looks()) status += "; read only, for it is open for writing in " + document_->holder;
+    if (document_->only_looks()) status += "; read only, for " + document_->why_only_looks();
     for (const std::string& loss : losses) status += "; " + loss;
     for (const std::string& warning : document_->volume().warnings) status += "; " + warning;
     for (const Notice& notice : document_->messages) status += "; " + notice.text;

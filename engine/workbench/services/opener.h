@@ -10,6 +10,7 @@
 // one is loaded, and restored if that fails or is cancelled.
 
 #include <exception>
+#include <set>
 
 #include "engine/workbench/desk/service.h"
 
@@ -41,6 +42,8 @@ public:
     /// Starts opening with settings as --set takes them. `taken_into_it`: annotation dropped together with it.
     void begin_open(const std::filesystem::path& path, const std::vector<std::string>& settings,
                     std::vector<std::filesystem::path> taken_into_it = {});
+    /// The session at this path may write outside its folder, whenever it is opened here.
+    void allow_outside(const std::filesystem::path& path) { allowed_outside_.insert(path); }
     /// Opens and waits until it is done; saves nothing before. Fails if it cannot be opened.
     void open(const std::filesystem::path& path, const std::vector<std::string>& settings, Work::Opening how);
     /// Takes a document that the caller has opened; the renderer's scene is of its volume.
@@ -93,6 +96,7 @@ private:
     std::shared_ptr<std::exception_ptr> awaited_failure_;  ///< failure of the opening that `open` waits for
     Jobs::Number next_return_ = Jobs::Number{1} << 48;     ///< number range of its own, apart from jobs
     std::unique_ptr<Document> away_;  ///< the open document without a scene, while the device has room for one only
+    std::set<std::filesystem::path> allowed_outside_;
     std::vector<std::string> recovered_;
     std::string open_failure_;
     std::filesystem::path failed_path_;

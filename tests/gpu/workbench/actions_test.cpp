@@ -161,6 +161,9 @@ const Row ROWS[] = {
     {R"({"op":"take_file","path":"FOLDER/look.json"})", "saved, transfer_function, undo"},
     {R"({"op":"take_file","path":"FOLDER/line.txt"})", "saved, trace, undo"},
     {R"({"op":"take_file","path":"FOLDER/other.mask"})", "saved, undo, voxels"},
+    {R"({"op":"load","path":"FOLDER/other.mask"})", "saved, undo, voxels"},
+    {R"({"op":"load","path":"FOLDER/line.txt","what":"trace"})", "saved, trace, undo"},
+    {R"({"op":"dismiss_unclear_file"})", "unclear_file", {R"({"op":"take_file","path":"FOLDER/as_large.nrrd"})"}},
     {R"({"op":"forget_recent","path":"FOLDER/scan.json"})", "file preferences.json"},
     {R"({"op":"ask_open","on":true})", "asks"},
     {R"({"op":"choose_keys","set":"thesis"})", "file preferences.json, keys"},
@@ -213,6 +216,8 @@ struct Bench {
                      "{\"shvr_stylus_trace\":1,\"unit\":\"voxel\"}\n"
                      "{\"settings\":{\"to_volume\":[1000,0,0,0,1000,0,0,0,1000],\"origin\":[20,18,16]}}\n"
                      "{\"at\":[0,0,0],\"buttons\":1}\n{\"at\":[0.001,0,0]}\n");
+        folder.write("as_large.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 40 36 32\nencoding: raw\n\n" +
+                                          std::string(40 * 36 * 32, '\4'));
         folder.write("other.mask", std::string(40 * 36 * 32, '\4'));
         bench->open(write_tubes_session(folder.path), {});
         settle(*bench);

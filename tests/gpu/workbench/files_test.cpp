@@ -169,6 +169,107 @@ TEST_CASE_FIXTURE(OnDevice, "what is dropped is taken by its contents, whatever 
     CHECK(desk.bench.messages().all().back().weight == Weight::error);  // a session is one by its name, .json
 }
 
+TEST_CASE_FIXTURE(OnDevice, "a mask is not taken for a scan: it is loaded, refused with both sizes, or asked about")
+{
+    Desk desk(renderer());
+    desk.open("scan.nrrd");
+    desk.bench.perform(
+        PaintOp{.brush = Brush::fill, .group = 3, .threshold = 100, .radius_voxels = 5, .path = {{12, 10, 8}}});
+    desk.bench.perform(PaintOp{.brush = Brush::fill,
+                               .radius_voxels = 3,
+                               .path = {{12, 10, 8}},
+                               .density = DensityBrush{.offset = 40},
+                               .paints_group = false});
+    const int64_t painted = desk.bench.model().voxels_by_group[3];
+    REQUIRE(painted > 0);
+    ExportTask task;
+    task.mask = desk.path("mask.nrrd");
+    task.offset = desk.path("offsets.nrrd");
+    desk.bench.perform(task);
+    settle(desk.bench);
+    task = {};
+    task.mask = desk.path("mask.tif");
+    desk.bench.perform(task);
+    settle(desk.bench);
+    task.mask = desk.path("labels.zarr");
+    desk.bench.perform(task);
+    settle(desk.bench);
+    const auto scan_is_open = [&] { return desk.bench.document().session.volume_path.filename() == "scan.nrrd"; };
+    const auto perform = [&](const Action& action) {
+        desk.bench.perform(action);
+        settle(desk.bench);
+        CHECK(scan_is_open());
+    };
+    const auto erase = [&] {
+        perform(PaintOp{.brush = Brush::fill, .group = 0, .threshold = 0, .radius_voxels = 30, .path = {{12, 10, 8}}});
+        CHECK(desk.bench.model().voxels_by_group[3] == 0);
+    };
+    const std::string shrunk = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 12 20 16\nencoding: raw\n";
+    desk.folder.write("small.nrrd", shrunk + "\n" + std::string(12 * 20 * 16, '\1'));
+    desk.folder.write("small-mask.nrrd", shrunk + "shvr_content:=mask\n\n" + std::string(12 * 20 * 16, '\1'));
+    desk.folder.write("small.mask", std::string(12 * 20 * 16, '\1'));
+    for (const bool is_dropped : {false, true}) {
+        CAPTURE(is_dropped);
+        const auto take = [&](const char* name) {
+            if (is_dropped) return perform(TakeFile{.path = desk.path(name)});
+            perform(LoadAnnotation{.path = desk.path(name)});
+        };
+        for (const char* name : {"mask.nrrd", "labels.zarr"}) {
+            CAPTURE(name);
+            erase();
+            take(name);
+            CHECK(desk.bench.model().voxels_by_group[3] == painted);
+            CHECK(desk.bench.model().unclear_file == nullptr);
+            perform(UndoOp{1});
+            CHECK(desk.bench.model().voxels_by_group[3] == 0);
+        }
+        take("offsets.nrrd");
+        CHECK(desk.said("its density offsets is already in use"));
+        // A TIFF states nothing: by intent it is a mask, dropped it may be another scan.
+        take("mask.tif");
+        if (is_dropped) {
+            REQUIRE(desk.bench.model().unclear_file);
+            CHECK(desk.bench.model().unclear_file->path == desk.path("mask.tif"));
+            CHECK(desk.bench.model().unclear_file->may_be_scan);
+            CHECK(desk.bench.model().voxels_by_group[3] == 0);
+            perform(DismissUnclearFile{});
+            CHECK(desk.bench.model().unclear_file == nullptr);
+            take("mask.tif");
+            perform(TakeFile{.path = desk.path("mask.tif"), .use = FileUse::mask});
+        }
+        CHECK(desk.bench.model().unclear_file == nullptr);
+        CHECK(desk.bench.model().voxels_by_group[3] == painted);
+        for (const char* name : {"small-mask.nrrd", "small.mask", "small.nrrd"}) {
+            if (is_dropped && std::string(name) == "small.nrrd") continue;  // another scan, by what it states
+            CAPTURE(name);
+            take(name);
+            CHECK(desk.bench.messages().all().back().weight == Weight::error);
+            const std::string last = desk.bench.messages().all().back().text;
+            CAPTURE(last);
+            CHECK(last.find("expected") != std::string::npos);
+            const bool has_sizes = last.find("12 20 16") != std::string::npos || last.find("3840") != std::string::npos;
+            CHECK(has_sizes);
+            CHECK(desk.bench.model().voxels_by_group[3] == painted);
+        }
+    }
+    // Floats may be offsets or a mask of another program; by intent they are no scan.
+    std::string floats = "NRRD0004\ntype: float\ndimension: 3\nsizes: 24 20 16\nencoding: raw\nendian: little\n\n";
+    desk.folder.write("floats.nrrd", floats + std::string(size_t{4} * 24 * 20 * 16, '\0'));
+    perform(LoadAnnotation{.path = desk.path("floats.nrrd")});
+    REQUIRE(desk.bench.model().unclear_file);
+    CHECK_FALSE(desk.bench.model().unclear_file->may_be_scan);
+    perform(DismissUnclearFile{});
+    desk.folder.write("other.session.json", R"({"shvr_session": 1, "volume": {"path": "small.nrrd"}})");
+    perform(LoadAnnotation{.path = desk.path("other.session.json")});
+    CHECK(desk.said("is a session; expected a mask, density offsets, a trace or a transfer function"));
+    // Dropped again, the scan that is open is not its own mask; and what the user says counts.
+    perform(TakeFile{.path = desk.path("scan.nrrd")});
+    CHECK(desk.bench.model().unclear_file == nullptr);
+    desk.bench.perform(TakeFile{.path = desk.path("mask.tif"), .use = FileUse::scan});
+    settle(desk.bench);
+    CHECK(desk.bench.document().session.volume_path.filename() == "mask.tif");
+}
+
 TEST_CASE_FIXTURE(OnDevice, "annotation that is dropped with its scan goes into that, not into what is open")
 {
     Desk desk(renderer());

@@ -240,7 +240,7 @@ TEST_CASE("an import that was stopped or failed anywhere goes on, and gives the 
                 } catch (const ImportStopped& stopped) {
                     CHECK(stopped.what() == (folder.path / "project.part").string() +
                                                 ": the import was stopped; what is done is kept, and the same command "
-                                                "goes on from there");
+                                                "goes on from there; rm -r removes it");
                 } catch (const Error& error) {
                     CHECK(contains(error.what(), "source: cannot be read: Input/output error; what is done is kept"));
                 }

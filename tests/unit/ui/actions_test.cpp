@@ -93,6 +93,7 @@ std::vector<Action> samples()
             Open{"/tmp/a b.json", "volume.channel=red\nvolume.spacing=[1,1,2]"},
             LookAtFile{"/tmp/a b.nrrd", "volume.frame=2"},
             TakeFile{"/tmp/a b.swc"},
+            LoadAnnotation{"/tmp/a b.tif", FileUse::offsets},
             CorrectSpacing{{0.5, 0.5, 2.0}, "um"},
             DismissNotices{},
             ForgetRecent{"/tmp/gone.nrrd"},

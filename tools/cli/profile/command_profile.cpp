@@ -3,6 +3,7 @@
 #include <chrono>
 #include <iostream>
 
+#include "engine/base/atomic_writer.h"
 #include "engine/base/file.h"
 #include "engine/live/previewer.h"
 #include "tools/cli/profile/profile_session.h"
@@ -127,6 +128,13 @@ void run_profile(ProfileCommandOptions options)
     check_output("--csv", options.csv, {".csv"});
     check_output("--html", options.html, {".html"});
     check_output("--graph", options.graph, {".dot", ".svg", ".json"});
+    const std::pair<const char*, const std::string&> outputs[] = {
+        {"--trace", options.trace}, {"--csv", options.csv}, {"--html", options.html}, {"--graph", options.graph}};
+    for (const auto& [option, output] : outputs)
+        for (const auto& [other, same] : outputs)
+            if (&output < &same && !output.empty() && !same.empty() && link_target(output) == link_target(same))
+                throw UsageError(
+                    sentence(option, " and ", other, " are both '", output, "'; expected a file for each"));
     for (const std::string& output : {options.trace, options.csv, options.html, options.graph})
         for (const std::string& input : {options.input, options.script}) check_output_is_not(input, output);
     if (!options.size.empty()) {
@@ -135,7 +143,10 @@ void run_profile(ProfileCommandOptions options)
     }
     if (!options.script.empty()) return run_session(options);
     LongWork work(options.common.quiet);
-    Opened opened = open(options.input, options.common, work);
+    const auto check = [&](const Session& session, const VolumeInfo& volume) {
+        check_camera(options.camera, session, volume);
+    };
+    Opened opened = open(options.input, options.common, work, {.only_look = true}, check);
     const Profile profile = measure_frames(options, opened, work);
     check_validation(opened);
 
@@ -225,6 +236,7 @@ void add_profile(CLI::App& program)
         ->capture_default_str()
         ->needs(script);
     add_belief_option(*command, options->common);
+    add_outside_option(*command, options->common);
     add_device_options(*command, options->common);
     add_output_options(*command, options->common);
     add_diff(*command, options);

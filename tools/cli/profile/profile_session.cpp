@@ -67,12 +67,13 @@ Renderer::Options renderer_options(const Common& common)
 class Stage {
 public:
     Stage(const std::filesystem::path& input, const Common& common)
-        : renderer(renderer_options(common)), bench(renderer, {.has_servo = false})
+        : renderer(renderer_options(common)), bench(renderer, {.has_servo = false, .saves_outside = common.outside})
     {
         bench.open(input, common.settings);
         if (bench.document().only_looks())
-            fail(input.string(), ": is open for writing in ", bench.document().holder,
-                 "; expected it to be closed there first");
+            fail(input.string(), ": cannot be changed: ", bench.document().why_only_looks(),
+                 bench.document().outside.empty() ? "; expected it to be closed there first"
+                                                  : "; --outside writes there");
     }
     /// Runs until the picture is complete, which does not count for the first action.
     void set_up(const std::function<void()>& poll)

@@ -27,10 +27,10 @@ FileChooser saving({.title = "Continue under another name",
                     .verb = "Save",
                     .note = "Session (.json); mask, trace and history are written next to it. Existing files stay.",
                     .wanted = FileChooser::Wanted::new_file});
-FileChooser taking({.title = "Take annotation or a curve from a file",
-                    .verb = "Take",
-                    .note = "Mask, offsets, trace or transfer function, recognised by its contents. It replaces the "
-                            "present one; undo restores that.",
+FileChooser taking({.title = "Load annotation or a curve",
+                    .verb = "Load",
+                    .note = "Mask (also NRRD, TIFF or OME-Zarr of the scan's size), offsets, trace or transfer "
+                            "function. It replaces the present one; undo restores that.",
                     .wanted = FileChooser::Wanted::file});
 
 std::vector<Place> places_of(const Model& model)
@@ -156,7 +156,7 @@ void ask_what_to_take(const Model& model)
 void name_and_take_dialogs(const Model& model, Actions& actions)
 {
     if (const auto path = saving.draw()) actions.push_back(SaveAs{*path});
-    if (const auto path = taking.draw(); path && model.is_open) actions.push_back(TakeFile{.path = *path});
+    if (const auto path = taking.draw(); path && model.is_open) actions.push_back(LoadAnnotation{.path = *path});
 }
 
 void start_page(const Model& model, Actions& actions)
