@@ -72,15 +72,15 @@ PixelDifference compare_pixels(const Image8& a, const Image8& b)
 {
     check_comparable(a, b);
     // Integers, so the result does not depend on the order of summation.
-    std::array<int64_t, 4> sums{};
-    int64_t sum_of_squares = 0, over_1 = 0, over_4 = 0;
+    std::array<int64_t, 4> sums{}, squares{};
+    int64_t over_1 = 0, over_4 = 0;
     int largest = 0;
     for (size_t pixel = 0; pixel < a.rgba.size(); pixel += 4) {
         int largest_here = 0;
         for (size_t channel = 0; channel < 4; ++channel) {
             const int difference = a.rgba[pixel + channel] - b.rgba[pixel + channel];
             sums[channel] += difference;
-            sum_of_squares += int64_t{difference} * difference;
+            squares[channel] += int64_t{difference} * difference;
             largest_here = std::max(largest_here, std::abs(difference));
         }
         largest = std::max(largest, largest_here);
@@ -90,8 +90,9 @@ PixelDifference compare_pixels(const Image8& a, const Image8& b)
     const double pixels = double(a.rgba.size()) / 4.0;
     PixelDifference result;
     result.max_abs = largest;
-    result.rmse = std::sqrt(double(sum_of_squares) / (4.0 * pixels));
-    if (sum_of_squares > 0) result.psnr_db = 20.0 * std::log10(255.0 / result.rmse);
+    result.rmse = std::sqrt(double(squares[0] + squares[1] + squares[2]) / (3.0 * pixels));
+    result.alpha_rmse = std::sqrt(double(squares[3]) / pixels);
+    if (result.rmse > 0.0) result.psnr_db = 20.0 * std::log10(255.0 / result.rmse);
     for (const int64_t sum : sums) {
         result.mean_error = std::max(result.mean_error, double(std::abs(sum)) / pixels / 255.0);
     }

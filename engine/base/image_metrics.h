@@ -1,7 +1,7 @@
 #pragma once
 // Measures how much two pictures of the same size differ: numbers to report, and tolerances for gates. Everything
 // compares the stored bytes, sRGB with straight alpha; nothing is composited. Alpha counts as a fourth channel where a
-// comment says "all channels"; SSIM and FLIP use RGB only. Any thread may call these.
+// comment says "all channels"; RMSE, PSNR, SSIM and FLIP use RGB only. Any thread may call these.
 
 #include <optional>
 #include <string>
@@ -14,8 +14,9 @@ namespace shvr {
 /// Metrics that are cheap to compute and suitable for gates.
 struct PixelDifference {
     double max_abs = 0.0;           ///< 8-bit levels, all channels
-    double rmse = 0.0;              ///< 8-bit levels, all channels
-    std::optional<double> psnr_db;  ///< 20 log10(255 / rmse); null if the pictures are equal (it is infinite)
+    double rmse = 0.0;              ///< 8-bit levels, over red, green and blue
+    double alpha_rmse = 0.0;        ///< 8-bit levels, over alpha
+    std::optional<double> psnr_db;  ///< 20 log10(255 / rmse); null if the colours are equal (it is infinite)
     double mean_error = 0.0;        ///< |mean of the signed difference| / 255, maximum over all channels: a tint
     double fraction_over_1 = 0.0;   ///< fraction of pixels with any channel off by more than 1 level
     double fraction_over_4 = 0.0;   ///< the same for 4 levels

@@ -343,16 +343,17 @@ Error error_of(const ImageF& picture, const ImageF& reference)
         fail("a picture of ", picture.width, " x ", picture.height, " pixels cannot be compared with a reference of ",
              reference.width, " x ", reference.height);
     Error error;
-    double squares = 0.0;
-    size_t count = 0;
+    double squares = 0.0, alpha_squares = 0.0;
     for (size_t i = 0; i < picture.rgba.size(); ++i) {
-        if (i % 4 == 3) continue;
+        const bool is_alpha = i % 4 == 3;
         const double difference = double(picture.rgba[i]) - double(reference.rgba[i]);
-        squares += difference * difference;
-        error.max_abs = std::max(error.max_abs, std::abs(difference));
-        ++count;
+        (is_alpha ? alpha_squares : squares) += difference * difference;
+        double& most = is_alpha ? error.alpha_max_abs : error.max_abs;
+        most = std::max(most, std::abs(difference));
     }
-    error.rmse = std::sqrt(squares / double(std::max<size_t>(count, 1)));
+    const auto pixels = double(std::max<size_t>(picture.rgba.size() / 4, 1));
+    error.rmse = std::sqrt(squares / (3.0 * pixels));
+    error.alpha_rmse = std::sqrt(alpha_squares / pixels);
     const ImageDifference seen = compare(to_image8(picture), to_image8(reference));
     error.psnr_db = seen.psnr_db;
     error.ssim = seen.ssim;

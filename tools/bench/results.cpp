@@ -22,6 +22,8 @@ constexpr int64_t MAX_BENCH_BYTES = int64_t{64} << 20;
 constexpr int SCHEMA = 1;
 constexpr double ERROR_MARGIN = 1.01;
 constexpr double MIN_ERROR = 1e-7;  // of a float
+/// Files of older versions lack the error of alpha. NaN differs from nothing.
+constexpr double NOT_MEASURED = std::numeric_limits<double>::quiet_NaN();
 
 Json json_of(const Measured& run)
 {
@@ -35,6 +37,8 @@ Json json_of(const Measured& run)
             {"error",
              {{"rmse", error.rmse},
               {"max_abs", error.max_abs},
+              {"alpha_rmse", error.alpha_rmse},
+              {"alpha_max_abs", error.alpha_max_abs},
               {"psnr_db", error.psnr_db ? Json(*error.psnr_db) : Json(nullptr)},
               {"ssim", error.ssim},
               {"flip_mean", error.flip_mean},
@@ -61,6 +65,8 @@ Measured measured_of(const Json& json)
     const Json& error = json.at("error");
     run.error = {.rmse = error.at("rmse"),
                  .max_abs = error.at("max_abs"),
+                 .alpha_rmse = error.value("alpha_rmse", NOT_MEASURED),
+                 .alpha_max_abs = error.value("alpha_max_abs", NOT_MEASURED),
                  .psnr_db = {},
                  .ssim = error.at("ssim"),
                  .flip_mean = error.at("flip_mean"),
@@ -132,6 +138,8 @@ void compare_runs(const SceneResult& of_a, const Measured& a, const SceneResult&
     };
     error("rmse", a.error.rmse, b.error.rmse);
     error("max_abs", a.error.max_abs, b.error.max_abs);
+    error("alpha_rmse", a.error.alpha_rmse, b.error.alpha_rmse);
+    error("alpha_max_abs", a.error.alpha_max_abs, b.error.alpha_max_abs);
     for (const auto& [name, value] : b.work) {
         const auto before = std::ranges::find(a.work, name, &std::pair<std::string, uint64_t>::first);
         if (before == a.work.end() || !looked.at_work) continue;

@@ -17,7 +17,8 @@ namespace shvr::bench {
 /// FLIP in 8 bits, as displayed (engine/base/image_metrics.h).
 struct Error {
     double rmse = 0.0, max_abs = 0.0;
-    std::optional<double> psnr_db;  ///< null if the 8-bit pictures are equal
+    double alpha_rmse = 0.0, alpha_max_abs = 0.0;  ///< the same of alpha; NaN where not measured
+    std::optional<double> psnr_db;                 ///< null if the 8-bit colours are equal
     double ssim = 1.0, flip_mean = 0.0, flip_p99 = 0.0;
     double fraction_over_1 = 0.0, fraction_over_4 = 0.0;  ///< fraction of the pixels that are off by more levels of 255
 };

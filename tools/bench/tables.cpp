@@ -50,8 +50,9 @@ std::vector<std::string> families_of(const SceneResult& scene)
 std::string csv_of(const Results& results)
 {
     std::string text =
-        "scene,run,family,settings,scale,rmse,max_abs,psnr_db,ssim,flip_mean,flip_p99,fraction_over_1,"
-        "fraction_over_4,min_ms,median_ms,median_low_ms,median_high_ms,p95_ms,first_ms,device_bytes,on_front";
+        "scene,run,family,settings,scale,rmse,max_abs,alpha_rmse,alpha_max_abs,psnr_db,ssim,flip_mean,flip_p99,"
+        "fraction_over_1,fraction_over_4,min_ms,median_ms,median_low_ms,median_high_ms,p95_ms,first_ms,device_bytes,on_"
+        "front";
     std::vector<std::string> names;
     for (const SceneResult& scene : results.scenes)
         for (const Measured& run : scene.runs)
@@ -67,6 +68,7 @@ std::string csv_of(const Results& results)
             text += sentence(
                 cell(scene.name), ",", cell(run.name), ",", cell(run.family), ",", cell(settings), ",",
                 digits_of(run.scale), ",", digits_of(error.rmse), ",", digits_of(error.max_abs), ",",
+                digits_of(error.alpha_rmse), ",", digits_of(error.alpha_max_abs), ",",
                 error.psnr_db ? digits_of(*error.psnr_db) : std::string(), ",", digits_of(error.ssim), ",",
                 digits_of(error.flip_mean), ",", digits_of(error.flip_p99), ",", digits_of(error.fraction_over_1), ",",
                 digits_of(error.fraction_over_4), ",", digits_of(run.time.min_ms), ",", digits_of(run.time.median_ms),

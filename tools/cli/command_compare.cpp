@@ -25,6 +25,7 @@ Json to_json(const ImageDifference& difference, const Image8& image)
     return {{"size", {image.width, image.height}},
             {"max_abs", difference.max_abs},
             {"rmse", difference.rmse},
+            {"alpha_rmse", difference.alpha_rmse},
             {"psnr_db", difference.psnr_db ? Json(*difference.psnr_db) : Json(nullptr)},
             {"ssim", difference.ssim},
             {"flip_mean", difference.flip_mean},
@@ -44,10 +45,11 @@ void print_text(const ImageDifference& difference)
 {
     print_line("largest difference", difference.max_abs, " of 255");
     print_line("root mean square", difference.rmse, " of 255");
+    print_line("root mean square of alpha", difference.alpha_rmse, " of 255");
     if (difference.psnr_db)
         print_line("signal to noise (PSNR)", *difference.psnr_db, " dB");
     else
-        print_line("signal to noise (PSNR)", "infinite: the pictures are equal", "");
+        print_line("signal to noise (PSNR)", "infinite: the colours are equal", "");
     print_line("similarity (SSIM)", difference.ssim, "");
     print_line("visible difference (FLIP)", difference.flip_mean,
                sentence(", 99 % below ", difference.flip_p99).c_str());
@@ -64,6 +66,9 @@ void check_gates(const ImageDifference& difference, const CompareCommandOptions&
                                  " levels; --max-abs allows ", *options.max_abs));
     if (options.max_rmse && difference.rmse > *options.max_rmse)
         throw GateError(sentence(options.a, " and ", options.b, " differ by ", difference.rmse,
+                                 " levels root mean square; --max-rmse allows ", *options.max_rmse));
+    if (options.max_rmse && difference.alpha_rmse > *options.max_rmse)
+        throw GateError(sentence("alpha of ", options.a, " and ", options.b, " differs by ", difference.alpha_rmse,
                                  " levels root mean square; --max-rmse allows ", *options.max_rmse));
 }
 
@@ -102,7 +107,9 @@ void add_compare(CLI::App& program)
     command->add_option("--diff", options->difference, "Picture to write (.png): the difference times 16");
     command->add_option("--max-abs", options->max_abs, "Exit 3 where a channel differs by more levels of 255")
         ->check(CLI::NonNegativeNumber);
-    command->add_option("--max-rmse", options->max_rmse, "Exit 3 where the root mean square is more levels of 255")
+    command
+        ->add_option("--max-rmse", options->max_rmse,
+                     "Exit 3 where the root mean square, of the colours or of alpha, is more levels of 255")
         ->check(CLI::NonNegativeNumber);
     add_output_options(*command, options->common);
     command->footer("Example:\n  shvr compare before.png after.png --diff difference.png --max-abs 2");

@@ -165,6 +165,7 @@ Json spread_json(const golden::Moved& moved)
 {
     return {{"max_abs", moved.pixels.max_abs},
             {"rmse", moved.pixels.rmse},
+            {"alpha_rmse", moved.pixels.alpha_rmse},
             {"mean_error", moved.pixels.mean_error},
             {"fraction_over_1", moved.pixels.fraction_over_1},
             {"light", moved.light}};

@@ -36,6 +36,7 @@ void widen(PixelDifference& most, const PixelDifference& other)
 {
     most.max_abs = std::max(most.max_abs, other.max_abs);
     most.rmse = std::max(most.rmse, other.rmse);
+    most.alpha_rmse = std::max(most.alpha_rmse, other.alpha_rmse);
     most.mean_error = std::max(most.mean_error, other.mean_error);
     most.fraction_over_1 = std::max(most.fraction_over_1, other.fraction_over_1);
     most.fraction_over_4 = std::max(most.fraction_over_4, other.fraction_over_4);
@@ -61,6 +62,7 @@ bool allows_twice(const PixelDifference& most, Strictness strictness)
     if (strictness == Strictness::exact) return most.max_abs == 0.0;
     const PixelDifference twice{.max_abs = MARGIN * most.max_abs,
                                 .rmse = MARGIN * most.rmse,
+                                .alpha_rmse = MARGIN * most.alpha_rmse,
                                 .psnr_db = {},
                                 .mean_error = MARGIN * most.mean_error,
                                 .fraction_over_1 = MARGIN * most.fraction_over_1,

@@ -101,6 +101,7 @@ std::string metrics_of(const ImageDifference& difference)
     };
     row("largest difference, levels of 255", difference.max_abs);
     row("RMSE, levels of 255", difference.rmse);
+    row("RMSE of alpha, levels of 255", difference.alpha_rmse);
     if (difference.psnr_db) row("PSNR, dB", *difference.psnr_db);
     row("SSIM", difference.ssim);
     row("FLIP, mean", difference.flip_mean);

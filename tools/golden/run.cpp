@@ -162,6 +162,7 @@ Json json_of(const Result& result)
     if (const auto& difference = result.difference)
         metrics = {{"max_abs", difference->max_abs},
                    {"rmse", difference->rmse},
+                   {"alpha_rmse", difference->alpha_rmse},
                    {"psnr_db", difference->psnr_db ? Json(*difference->psnr_db) : Json(nullptr)},
                    {"ssim", difference->ssim},
                    {"flip_mean", difference->flip_mean},

@@ -10,8 +10,8 @@ class Compared(CliTest):
     def result(self, **keys):
         """A file of one run, as --compare reads it."""
         run = {"name": "step 1", "family": "step", "settings": [], "scale": 1.0,
-               "error": {"rmse": 1e-3, "max_abs": 1e-2, "psnr_db": 50.0, "ssim": 1.0, "flip_mean": 0.01,
-                         "flip_p99": 0.1},
+               "error": {"rmse": 1e-3, "max_abs": 1e-2, "alpha_rmse": 0.0, "alpha_max_abs": 0.0, "psnr_db": 50.0,
+                         "ssim": 1.0, "flip_mean": 0.01, "flip_p99": 0.1},
                "min_ms": 9.0, "median_ms": 10.0, "p95_ms": 11.0, "first_ms": 20.0,
                "work": {"samples": 1000, "bricks_skipped": 50, "passes": 3}, "device_bytes": 1, "on_front": True}
         for key, value in keys.items():
@@ -33,6 +33,10 @@ class Compared(CliTest):
         self.assertEqual(self.compare(0, rmse=1.005e-3)["changes"], [])
         self.assertEqual(self.compare(3, rmse=1.02e-3)["changes"][0]["what"], "rmse")
         self.assertEqual(self.compare(0, rmse=0.5e-3)["regressions"], 0)
+        self.assertEqual(self.compare(3, alpha_rmse=1e-5)["changes"][0]["what"], "alpha_rmse")
+        older = self.result()
+        del older["scenes"][0]["runs"][0]["error"]["alpha_rmse"]
+        self.check("bench", "--compare", self.write_json("older.json", older), self.folder / "b.json")
         # Work: a single sample or pass; what is saved is none.
         self.assertEqual(self.compare(3, samples=1001)["changes"][0]["what"], "samples")
         self.assertEqual(self.compare(3, passes=4)["changes"][0]["what"], "passes")

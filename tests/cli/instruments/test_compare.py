@@ -1,11 +1,13 @@
 """shvr compare: error between two pictures."""
+import json
 import struct
 import unittest
 import zlib
 
 from harness import CliTest, read_png_header
 
-KEYS = ["max_abs", "rmse", "psnr_db", "ssim", "flip_mean", "flip_p99", "fraction_over_1", "fraction_over_4"]
+KEYS = ["max_abs", "rmse", "alpha_rmse", "psnr_db", "ssim", "flip_mean", "flip_p99", "fraction_over_1",
+        "fraction_over_4"]
 
 
 def write_png(path, width, height, pixel):
@@ -36,7 +38,7 @@ class Compare(CliTest):
     def test_a_known_difference(self):
         result = self.check_json("compare", self.a, self.b)
         self.assertEqual(result["max_abs"], 6)
-        self.assertAlmostEqual(result["rmse"], (10 * 36 / 800) ** 0.5, places=9)
+        self.assertAlmostEqual(result["rmse"], (10 * 36 / 600) ** 0.5, places=9)
         self.assertAlmostEqual(result["fraction_over_1"], 0.05, places=9)
         self.assertAlmostEqual(result["fraction_over_4"], 0.05, places=9)
         self.assertLess(result["ssim"], 1)
@@ -58,6 +60,14 @@ class Compare(CliTest):
             result = self.check("compare", self.a, self.b, *gate, "--json", status=3)
             self.assertIn(gate[0], result.stderr)
             self.assertIn('"max_abs"', result.stdout)  # the numbers are printed either way
+
+    def test_the_error_of_alpha_is_gated(self):
+        faint = write_png(self.folder / "faint.png", 20, 10, lambda x, y: (100, 100, 100, 251))
+        result = self.check("compare", self.a, faint, "--max-rmse", "3", "--json", status=3)
+        self.assertIn("alpha of", result.stderr)
+        numbers = json.loads(result.stdout)
+        self.assertEqual((numbers["rmse"], numbers["alpha_rmse"], numbers["psnr_db"]), (0, 4, None))
+        self.check("compare", self.a, faint, "--max-rmse", "4")
 
     def test_sizes_that_differ_are_refused(self):
         other = write_png(self.folder / "other.png", 10, 20, lambda x, y: (0, 0, 0, 255))

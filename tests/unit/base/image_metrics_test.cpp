@@ -116,17 +116,21 @@ TEST_CASE("pixel metrics are what their definitions say")
         b.rgba[148] = 110;
         const PixelDifference difference = compare_pixels(a, b);
         CHECK(difference.max_abs == 10.0);
-        CHECK(difference.rmse == doctest::Approx(std::sqrt(100.0 / 400.0)));
-        CHECK(*difference.psnr_db == doctest::Approx(20.0 * std::log10(255.0 / 0.5)));
+        CHECK(difference.rmse == doctest::Approx(std::sqrt(100.0 / 300.0)));
+        CHECK(difference.alpha_rmse == 0.0);
+        CHECK(*difference.psnr_db == doctest::Approx(10.0 * std::log10(255.0 * 255.0 * 3.0)));
         CHECK(difference.mean_error == doctest::Approx(10.0 / 100.0 / 255.0));
         CHECK(difference.fraction_over_1 == 0.01);
         CHECK(difference.fraction_over_4 == 0.01);
     }
-    SUBCASE("alpha counts as a channel")
+    SUBCASE("alpha counts as a channel of the largest difference and has an RMSE of its own")
     {
         b.rgba[3] = 252;
         const PixelDifference difference = compare_pixels(a, b);
         CHECK(difference.max_abs == 3.0);
+        CHECK(difference.rmse == 0.0);
+        CHECK(difference.alpha_rmse == doctest::Approx(0.3));
+        CHECK_FALSE(difference.psnr_db.has_value());
         CHECK(difference.fraction_over_1 == 0.01);
         CHECK(difference.fraction_over_4 == 0.0);
     }
@@ -144,6 +148,13 @@ TEST_CASE("pixel metrics are what their definitions say")
         CHECK(compare_pixels(a, b).fraction_over_1 == 0.01);
         CHECK(compare_pixels(a, b).fraction_over_4 == 0.0);
     }
+}
+
+TEST_CASE("black and white differ by the whole range")
+{
+    const PixelDifference difference = compare_pixels(plain(BLACK), plain(WHITE));
+    CHECK(difference.rmse == 255.0);
+    CHECK(*difference.psnr_db == 0.0);
 }
 
 TEST_CASE("comparison does not depend on the order of the pictures")
