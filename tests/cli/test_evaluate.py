@@ -72,10 +72,22 @@ class Evaluate(CliTest):
         mine = self.trace("mine.txt", self.TRUTH[:2] + [((4, 12, 10), (4, 12, 18))])
         result = self.evaluate(*arguments, "--trace", mine)
         self.assertEqual((result["segments"], result["topological_errors"]), ([2, 3], 1))
-        self.assertEqual(result["topological_errors_by_kind"], {"wrong": 1, "doubled": 0, "gaps": 0})
+        self.assertEqual(result["topological_errors_by_kind"],
+                         {"wrong": 1, "doubled": 0, "gaps": 0, "breaks": 0, "spurs": 0, "superfluous": 0})
         # Nodes at z 10 are inside, those at 12 half or less, those at 14, 16 and 18 outside.
         self.assertEqual(result["node_out"][1], mine.read_text().count("-v"))
         self.assertGreaterEqual(result["node_out"][0], 3)
+
+    def test_a_broken_tube_and_a_spur_count_by_kind(self):
+        truth_mask = self.mask("truth.mask", lambda x, y, z: 1)
+        truth = self.trace("truth.txt", [((2, 12, 10), (30, 12, 10))])
+        arguments = ["--truth-mask", truth_mask, "--truth-trace", truth, "--volume", self.session]
+        for chains, kind in [([((2, 12, 10), (14, 12, 10)), ((18, 12, 10), (30, 12, 10))], "breaks"),
+                             ([((2, 12, 10), (14, 12, 10)), ((14, 12, 10), (30, 12, 10)),
+                               ((14, 12, 10), (14, 14, 10))], "spurs")]:
+            result = self.evaluate(*arguments, "--trace", self.trace("mine.txt", chains))
+            self.assertEqual(result["topological_errors"], 1, kind)
+            self.assertEqual(result["topological_errors_by_kind"][kind], 1)
 
     def test_a_trace_one_voxel_beside_the_truth(self):
         truth_mask = self.mask("truth.mask", lambda x, y, z: 1)

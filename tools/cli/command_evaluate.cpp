@@ -57,8 +57,9 @@ void add_traces(const TraceComparison& comparison, const std::string& unit, Json
     };
     result["segments"] = {comparison.segments_found, comparison.segments_total};
     result["topological_errors"] = comparison.topological_errors();
-    result["topological_errors_by_kind"] = {
-        {"wrong", comparison.wrong}, {"doubled", comparison.doubled}, {"gaps", comparison.gaps}};
+    result["topological_errors_by_kind"] = {{"wrong", comparison.wrong}, {"doubled", comparison.doubled},
+                                            {"gaps", comparison.gaps},   {"breaks", comparison.breaks},
+                                            {"spurs", comparison.spurs}, {"superfluous", comparison.superfluous}};
     result["centreline_rms_um"] = in_um(comparison.centreline_rms);
     result["centreline_most_um"] = in_um(comparison.centreline_most);
     result["centreline_rms"] = number_or_null(comparison.centreline_rms);

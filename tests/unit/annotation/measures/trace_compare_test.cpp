@@ -76,6 +76,7 @@ TEST_CASE("a branch stands for a branch, though another node is nearer")
     const TraceComparison found = compare(drawing.trace, truth.trace, 0.0);
     CHECK(found.segments_found == 3);
     CHECK(found.gaps == 0);
+    CHECK(found.spurs == 1);
 }
 
 TEST_CASE("of nodes of one kind the nearest stands for an end, whatever its number")
