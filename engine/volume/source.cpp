@@ -105,11 +105,8 @@ int64_t for_each_finite(const Measured& measured, double lower, double upper, co
 }
 
 /// Excludes outliers from the statistics' range, if there are any.
-template <class T>
 void find_bulk(OutlierFinder& outliers, VolumeStatistics& statistics)
 {
-    // Not needed if all integers have codes of their own.
-    if (std::is_integral_v<T> && statistics.maximum - statistics.minimum <= 65535.0) return;
     const std::optional<OutlierFinder::Bulk> bulk = outliers.bulk();
     if (!bulk) return;
     statistics.bulk = bulk->range;
@@ -124,7 +121,7 @@ VolumeStatistics measure_wide(const Measured& measured)
     ValueRange all{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     long double sum = 0.0L;
     int64_t finite = 0;
-    OutlierFinder outliers(measured.walk.voxels() + measured.walk.rest());
+    OutlierFinder outliers(measured.walk.voxels() + measured.walk.rest(), std::is_integral_v<T>);
     statistics.not_finite = for_each_finite<T>(measured, 0.0, 0.5, [&](double value, int64_t times) {
         all.lower = std::min(all.lower, value);
         all.upper = std::max(all.upper, value);
@@ -136,7 +133,7 @@ VolumeStatistics measure_wide(const Measured& measured)
     statistics.minimum = all.lower;
     statistics.maximum = all.upper;
     statistics.mean = double(sum / static_cast<long double>(finite));
-    find_bulk<T>(outliers, statistics);
+    find_bulk(outliers, statistics);
     const ValueRange range = statistics.range();
     for_each_finite<T>(measured, 0.5, 1.0,
                        [&](double value, int64_t times) { statistics.histogram[bin_of(range, value)] += times; });
@@ -254,12 +251,15 @@ VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest)
     if (present.empty()) return statistics;  // nothing could be read
     statistics.minimum = present.front().first;
     statistics.maximum = present.back().first;
-    long double sum = 0.0L;
     int64_t voxels = 0;
+    for (const auto& [value, count] : present) voxels += count;
+    OutlierFinder outliers(voxels, true);
+    for (const auto& [value, count] : present) outliers.add(value, count);
+    find_bulk(outliers, statistics);
+    long double sum = 0.0L;
     for (const auto& [value, count] : present) {
         statistics.histogram[bin_of(statistics.range(), value)] += count;
         sum += static_cast<long double>(value) * static_cast<long double>(count);
-        voxels += count;
     }
     statistics.mean = double(sum / static_cast<long double>(voxels));
     return statistics;
@@ -296,6 +296,35 @@ VolumeStatistics measure(const VolumeSource& source, const MeasureOptions& optio
     return statistics;
 }
 
+namespace {
+
+/// Whether outliers have the codes of the nearer end (window_for). What looks like integers is taken for such.
+bool are_clamped(const VolumeStatistics& statistics)
+{
+    const auto [lower, upper] = statistics.range();
+    const double all = statistics.maximum - statistics.minimum;
+    const bool is_whole = std::floor(lower) == lower && std::floor(upper) == upper &&
+                          std::floor(statistics.minimum) == statistics.minimum &&
+                          std::floor(statistics.maximum) == statistics.maximum;
+    return !(is_whole && all <= 65535.0) && all > 5.0 * (upper - lower);
+}
+
+std::string warning_of_outliers(const VolumeStatistics& statistics)
+{
+    const bool is_one = statistics.beyond_bulk == 1;
+    const std::string first =
+        sentence(statistics.beyond_bulk, is_one ? " voxel lies" : " voxels lie", " far outside ",
+                 statistics.bulk->lower, " to ", statistics.bulk->upper, ", where all others are (with ",
+                 is_one ? "it" : "them", " the range is ", statistics.minimum, " to ", statistics.maximum, "), and ");
+    if (are_clamped(statistics))
+        return sentence(first, is_one ? "is shown as if it were" : "are shown as if they were",
+                        " at the nearer end of that range");
+    return sentence(first, is_one ? "counts" : "count",
+                    " neither for the histogram's range nor for automatic settings");
+}
+
+}  // namespace
+
 std::vector<std::string> warnings_of(const VolumeStatistics& statistics)
 {
     std::vector<std::string> warnings;
@@ -304,14 +333,7 @@ std::vector<std::string> warnings_of(const VolumeStatistics& statistics)
         warnings.push_back(sentence(statistics.not_finite, is_one ? " voxel is" : " voxels are",
                                     " NaN or infinite and ", is_one ? "is" : "are", " left out of every number"));
     }
-    if (statistics.bulk) {
-        const bool is_one = statistics.beyond_bulk == 1;
-        warnings.push_back(sentence(
-            statistics.beyond_bulk, is_one ? " voxel lies" : " voxels lie", " far outside ", statistics.bulk->lower,
-            " to ", statistics.bulk->upper, ", where all others are (with ", is_one ? "it" : "them", " the range is ",
-            statistics.minimum, " to ", statistics.maximum, "), and ",
-            is_one ? "is shown as if it were" : "are shown as if they were", " at the nearer end of that range"));
-    }
+    if (statistics.bulk) warnings.push_back(warning_of_outliers(statistics));
     if (statistics.sampled_voxels > 0) {
         warnings.push_back(sentence("intensities were estimated from a sample of ", statistics.sampled_voxels,
                                     " voxels; others may lie beyond ", statistics.range().lower, " to ",

@@ -186,7 +186,13 @@ IntensityWindow window_for(VoxelType type, const VolumeStatistics& statistics)
     const bool is_partial = statistics.measured_level > 0 || statistics.sampled_voxels > 0;
     if (is_partial && type == VoxelType::uint16) return window_for(type, 0.0, 65535.0);
     if (is_partial && type == VoxelType::int16) return window_for(type, -32768.0, 32767.0);
-    return window_for(type, statistics.range().lower, statistics.range().upper);
+    constexpr double MAX_WIDENING = 5.0;
+    const auto [lower, upper] = statistics.range();
+    // Halved, because doubles may lie so far apart that their difference is infinite.
+    const double half_all = 0.5 * statistics.maximum - 0.5 * statistics.minimum, half = 0.5 * upper - 0.5 * lower;
+    const bool is_exact = !is_float(type) && 2.0 * half_all <= MAX_CODE;
+    if (is_exact || half_all <= MAX_WIDENING * half) return window_for(type, statistics.minimum, statistics.maximum);
+    return window_for(type, lower, upper);
 }
 
 }  // namespace shvr

@@ -87,8 +87,8 @@ struct VolumeStatistics {
     double mean = 0.0;
     int64_t not_finite = 0;
     std::vector<int64_t> histogram{};  ///< 256 bins over range(); values outside it count in the first or last bin
-    /// The extremes, except for a few outliers, if these would leave too few codes for the other voxels. Null if every
-    /// integer has its own code.
+    /// The extremes without a few outliers: fill values, broken voxels, dead and hot ones (outliers.h). Null if there
+    /// are none.
     std::optional<ValueRange> bulk{};
     int64_t beyond_bulk = 0;     ///< number of outliers
     int measured_level = 0;      ///< the level that was measured; above 0, its voxels are means
@@ -113,8 +113,8 @@ struct IntensityWindow {
     bool operator==(const IntensityWindow&) const = default;
 };
 
-/// The window over VolumeStatistics::range(). For 16-bit integers of which only a coarser level or a sample was
-/// measured: over all values of the type, since other voxels may exceed the range.
+/// The window over all values; over range() if outliers left others less than a fifth of the codes, and not each
+/// integer has one. Over all of the type for 16-bit integers measured in part, since other voxels may exceed the range.
 IntensityWindow window_for(VoxelType type, const VolumeStatistics& statistics);
 IntensityWindow window_for(VoxelType type, double minimum, double maximum);
 
