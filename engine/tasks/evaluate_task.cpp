@@ -200,14 +200,21 @@ private:
             option_name(task_.names, "truth_group"), " ", int(truth.begin()->first), "=", int(mask.begin()->first)));
     }
 
+    TraceGraph read_trace(const fs::path& path, const TraceSpace& space)
+    {
+        TraceFile file = load_trace(path, space);
+        for (std::string& warning : file.warnings) result_.warnings.push_back(std::move(warning));
+        return std::move(file.trace);
+    }
+
     void compare_traces(const Mask& truth, const TraceSpace& space)
     {
-        const TraceGraph trace = load_trace(task_.trace, space).trace;
+        const TraceGraph trace = read_trace(task_.trace, space);
         result_.nodes = score_nodes(trace, truth, space.spacing);
         result_.internodes = score_internodes(trace, truth, space.spacing);
         if (task_.truth_trace.empty()) return;
         result_.slack = task_.slack.value_or(std::max({space.spacing.x, space.spacing.y, space.spacing.z}));
-        result_.traces = compare(trace, load_trace(task_.truth_trace, space).trace, *result_.slack);
+        result_.traces = compare(trace, read_trace(task_.truth_trace, space), *result_.slack);
     }
 
     const EvaluateTask& task_;

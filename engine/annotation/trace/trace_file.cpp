@@ -103,7 +103,10 @@ TraceFile load_trace(const std::filesystem::path& path, const std::optional<Trac
 {
     const std::string form = extension_of(path);
     if (!is_trace_file(path)) refuse_extension(path, ".graphml, .txt, .swc or .rsml");
-    const std::string text = read_text(path, MAX_BYTES);
+    const std::string bytes = read_text(path, MAX_BYTES);
+    constexpr std::string_view BYTE_ORDER_MARK = "\xef\xbb\xbf";
+    std::string_view text = bytes;
+    if (text.starts_with(BYTE_ORDER_MARK)) text.remove_prefix(BYTE_ORDER_MARK.size());
     TraceReader reader(path.string());
     if (form == ".graphml")
         read_trace_graphml(reader, text);
@@ -113,10 +116,17 @@ TraceFile load_trace(const std::filesystem::path& path, const std::optional<Trac
         read_trace_rsml(reader, text, expected);
     else
         read_trace_swc(reader, text);
+    reader.refuse_if_nothing_is_left();
+    if (form == ".swc" && expected && !reader.stated.unit && expected->unit != "um" && !reader.trace.nodes().empty())
+        reader.warn(
+            sentence(path.string(), ": states no unit; its lengths are taken in ", expected->unit,
+                     ", the unit of the volume, although SWC files are usually in um: add the line \"# unit um\""
+                     " to the file if they are"));
+    reader.to_unit_of(expected);
     reader.to_volume_space(expected);
     const StatedSpace& stated = reader.stated;
     if (expected) check_space(path.string(), stated, *expected);
-    TraceFile file{std::move(reader.trace), std::nullopt};
+    TraceFile file{std::move(reader.trace), std::nullopt, reader.warnings()};
     if (!stated.size || !stated.spacing || !stated.unit) return file;
     file.space = {.size = *stated.size, .spacing = *stated.spacing, .unit = *stated.unit};
     if (!stated.is_physical) return file;

@@ -10,7 +10,7 @@
 // preserves them to the last bit; or physical space, for other programs, where only GraphML preserves the last bits,
 // since it holds both. A file without that statement is in volume space. In the thesis's text, as in SWC, the statement
 // is in lines that begin with "#". Everything is in the volume's unit, except in RSML, which counts in pixels: written
-// as voxels along x, and converted from other units of length on reading; a round trip costs the last bit or two. An
+// as voxels along x. Other units of length are converted on reading. A round trip of RSML costs the last bit or two. An
 // internode has no group of its own in SWC and RSML, and only GraphML preserves numbers and the radii of groups.
 //
 // Files are untrusted: every refusal is one sentence with file, line or element, value and what was expected. Any
@@ -40,9 +40,12 @@ std::string trace_text(const std::filesystem::path& path, const TraceGraph& trac
 struct TraceFile {
     TraceGraph trace;
     std::optional<TraceSpace> space;  ///< if the file states all of it
+    /// What was read past in SWC, GraphML and RSML of other programs, one sentence a kind, and what was assumed. Such a
+    /// file may hold more than the trace: keep it before saving over it.
+    std::vector<std::string> warnings{};
 };
-/// Returns the trace in volume space. At most 256 MiB and 4 million nodes. Fails if a stated size, spacing, unit (RSML:
-/// no length) or place differs from `expected`.
+/// Returns the trace in volume space. At most 256 MiB and 4 million nodes. Lengths are converted to the unit of
+/// `expected`. Fails if a stated size, spacing, unit (that is no length) or place differs from `expected`.
 TraceFile load_trace(const std::filesystem::path& path, const std::optional<TraceSpace>& expected);
 
 /// Whether `load_trace` supports the extension.

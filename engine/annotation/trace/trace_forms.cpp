@@ -162,6 +162,56 @@ void TraceReader::state(const std::string& where, std::string_view name, std::st
     }
 }
 
+void TraceReader::read_past(const Error& odd, const std::string& done)
+{
+    const std::string text = odd.what();
+    const size_t at = text.rfind("; expected ");
+    const std::string kind = (at == std::string::npos ? text : text.substr(at)) + done;
+    for (Oddity& known : warnings_)
+        if (known.kind == kind) {
+            ++known.count;
+            return;
+        }
+    warnings_.push_back({text + "; " + done, kind, 1});
+}
+
+std::vector<std::string> TraceReader::warnings() const
+{
+    std::vector<std::string> texts;
+    for (const Oddity& each : warnings_)
+        texts.push_back(each.count == 1 ? each.first
+                                        : sentence(each.first, ", and so on in ", each.count - 1, " more places"));
+    return texts;
+}
+
+void TraceReader::refuse_if_nothing_is_left() const
+{
+    if (!trace.nodes().empty()) return;
+    for (const Oddity& each : warnings_)
+        if (!each.kind.empty()) fail(each.first, "; no node is left");
+}
+
+void TraceReader::to_unit_of(const std::optional<TraceSpace>& expected)
+{
+    if (!expected || !stated.unit || *stated.unit == expected->unit) return;
+    const std::optional<double> from = micrometres_in(*stated.unit), to = micrometres_in(expected->unit);
+    if (!from || !to) return;
+    const double factor = *from / *to;
+    std::vector<TraceNodeChange> changes;
+    for (const auto& [number, node] : trace.nodes())
+        changes.push_back({number, node, TraceNode{node.position * factor, node.radius * factor, node.group}});
+    for (const TraceNodeChange& change : changes) trace.apply(change, Direction::forwards);
+    std::vector<TraceSizeChange> sizes;
+    for (const auto& [group, radius] : trace.internode_radii()) sizes.push_back({group, radius, radius * factor});
+    for (const TraceSizeChange& change : sizes) trace.apply(change, Direction::forwards);
+    for (auto& [number, position] : exact) position *= factor;
+    if (stated.spacing) *stated.spacing *= factor;
+    if (stated.origin) *stated.origin *= factor;
+    warn(sentence(file_, ": lengths were converted from ", *stated.unit, " to ", expected->unit,
+                  ", the unit of the volume"));
+    stated.unit = expected->unit;
+}
+
 void TraceReader::to_volume_space(const std::optional<TraceSpace>& expected)
 {
     if (!stated.is_physical) return;

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "engine/annotation/trace/trace_file.h"
+#include "engine/base/error.h"
 #include "engine/base/text.h"
 
 namespace shvr {
@@ -43,7 +44,8 @@ std::string comments_of(const TraceWriting& writing);
 /// the two, and a place only after it.
 void read_space_comment(TraceReader& reader, const std::string& where, std::string_view comment);
 
-/// Collects nodes and internodes from a file and refuses malformed traces. `where` begins every message.
+/// Collects nodes and internodes from a file, and refuses malformed traces or reads past what is odd. `where` begins
+/// every message.
 class TraceReader {
 public:
     explicit TraceReader(std::string file) : file_(std::move(file)) {}
@@ -65,12 +67,39 @@ public:
     /// file does not state it.
     void to_volume_space(const std::optional<TraceSpace>& expected);
 
+    /// Records an oddity that was read past, and what was done about it ("left out"). Of each kind, which is what was
+    /// expected, the first is kept, with the number of all.
+    void read_past(const Error& odd, const std::string& done);
+    /// Runs `read`, and leaves out what it refuses.
+    template <class Read>
+    void leave_out_if_odd(const Read& read)
+    {
+        try {
+            read();
+        } catch (const Error& odd) {
+            read_past(odd, "it is left out");
+        }
+    }
+    /// Fails with the first oddity if nothing but oddities was read.
+    void refuse_if_nothing_is_left() const;
+    /// One sentence for each kind of oddity.
+    std::vector<std::string> warnings() const;
+    void warn(const std::string& warning) { warnings_.push_back({warning, {}, 1}); }
+
+    /// Converts lengths to the unit of `expected`, if the file states another and both are lengths.
+    void to_unit_of(const std::optional<TraceSpace>& expected);
+
     StatedSpace stated{};
     TraceGraph trace{};
     std::map<uint32_t, glm::dvec3> exact{};  ///< in volume space, for nodes whose file holds both; used if they agree
 
 private:
+    struct Oddity {
+        std::string first, kind;
+        int64_t count;
+    };
     std::string file_;
+    std::vector<Oddity> warnings_;
 };
 
 void read_trace_text(TraceReader& reader, std::string_view text);

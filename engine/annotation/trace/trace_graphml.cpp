@@ -45,9 +45,7 @@ public:
                  "; expected a complete XML document");
         pugi::xml_node graph;
         for (const pugi::xml_node& child : root.children()) {
-            if (name_of(child) == "key")
-                keys_[child.attribute("id").value()] =
-                    child.attribute("attr.name").as_string(child.attribute("id").value());
+            if (name_of(child) == "key") add_key(child);
             if (name_of(child) == "graph" && !graph) graph = child;
         }
         if (!graph) fail(reader_.file(), ": has no element graph; expected one");
@@ -57,14 +55,31 @@ public:
 private:
     using Data = std::map<std::string, std::string>;
 
-    /// Maps the names of the keys to their values.
-    Data data_of(const pugi::xml_node& node) const
+    struct Key {
+        std::string name, domain;
+        std::optional<std::string> value_by_default;
+    };
+
+    void add_key(const pugi::xml_node& key)
+    {
+        const char* const id = key.attribute("id").value();
+        Key read{key.attribute("attr.name").as_string(id), key.attribute("for").as_string("all"), std::nullopt};
+        for (const pugi::xml_node& child : key.children())
+            if (name_of(child) == "default") read.value_by_default = std::string(trimmed(child.text().get()));
+        keys_[id] = std::move(read);
+    }
+
+    /// Maps the names of the keys to their values. `domain`: what a key must be for to have its default.
+    Data data_of(const pugi::xml_node& node, std::string_view domain) const
     {
         Data data;
+        for (const auto& [id, key] : keys_)
+            if (key.value_by_default && (key.domain == "all" || key.domain == domain))
+                data[key.name] = *key.value_by_default;
         for (const pugi::xml_node& child : node.children()) {
             if (name_of(child) != "data") continue;
             const auto key = keys_.find(child.attribute("key").value());
-            if (key != keys_.end()) data[key->second] = std::string(trimmed(child.text().get()));
+            if (key != keys_.end()) data[key->second.name] = std::string(trimmed(child.text().get()));
         }
         return data;
     }
@@ -81,19 +96,21 @@ private:
                 edges.push_back(child);
                 edges_are_numbered &= number_in(child.attribute("id").value(), 'e').has_value();
             } else if (name_of(child) == "hyperedge") {
-                fail(reader_.file(), ": holds a hyperedge; expected edges that join two nodes");
+                reader_.read_past(Error(reader_.file() + ": holds a hyperedge; expected edges that join two nodes"),
+                                  "it is left out");
             }
         }
-        for (const pugi::xml_node& node : nodes) read_node(node, nodes_are_numbered);
-        for (const pugi::xml_node& edge : edges) read_edge(edge, edges_are_numbered);
-        read_data(data_of(graph));
+        for (const pugi::xml_node& node : nodes) reader_.leave_out_if_odd([&] { read_node(node, nodes_are_numbered); });
+        for (const pugi::xml_node& edge : edges) reader_.leave_out_if_odd([&] { read_edge(edge, edges_are_numbered); });
+        read_data(data_of(graph, "graph"));
     }
 
     void read_node(const pugi::xml_node& node, bool is_numbered)
     {
         const std::string id = node.attribute("id").value();
         const std::string where = reader_.file() + ": node " + in_quotes(id);
-        const Data data = data_of(node);
+        if (numbers_.contains(id)) fail(where, ": is defined twice; expected each id once");
+        const Data data = data_of(node, "node");
         const auto value = [&](const char* key, const char* otherwise) {
             const auto found = data.find(key);
             if (found != data.end()) return found->second;
@@ -104,8 +121,9 @@ private:
             {reader_.coordinate(where, "x", value("x", nullptr)), reader_.coordinate(where, "y", value("y", nullptr)),
              reader_.coordinate(where, "z", value("z", nullptr))},
             reader_.radius(where, value("radius", "1")),
-            reader_.group(where, value("group", "1"))};
+            group_of(where, value("group", "1"))};
         const uint32_t number = reader_.add_node(where, read, is_numbered ? number_in(id, 'n') : std::nullopt);
+        numbers_.emplace(id, number);
         if (const auto exact = data.find("volume_position"); exact != data.end()) {
             const std::vector<std::string_view> words = words_of(exact->second);
             if (words.size() != 3) fail(where, ": volume_position is ", in_quotes(exact->second), "; expected x y z");
@@ -113,7 +131,20 @@ private:
                                      reader_.coordinate(where, "volume_position", words[1]),
                                      reader_.coordinate(where, "volume_position", words[2])};
         }
-        if (!numbers_.emplace(id, number).second) fail(where, ": is defined twice; expected each id once");
+    }
+
+    /// Attributes of the type "double" write "5.0".
+    uint8_t group_of(const std::string& where, const std::string& word)
+    {
+        try {
+            return reader_.group(where, word);
+        } catch (const Error& odd) {
+            const std::optional<double> number = number_of(word);
+            if (number && (*number == 0.0 || (*number >= 1.0 && *number <= 255.0 && uint8_t(*number) == *number)))
+                return uint8_t(*number);
+            reader_.read_past(odd, "group 1 is taken");
+            return 1;
+        }
     }
 
     void read_edge(const pugi::xml_node& edge, bool is_numbered)
@@ -125,12 +156,12 @@ private:
         for (const std::string& end : {source, target})
             if (!numbers_.contains(end))
                 fail(where, ": node ", in_quotes(end), " does not exist; expected the id of a node of the file");
-        const Data data = data_of(edge);
+        const Data data = data_of(edge, "edge");
         const auto group = data.find("group");
-        reader_.add_internode(where,
-                              {numbers_.at(source), numbers_.at(target),
-                               reader_.group(where, group == data.end() ? "1" : std::string_view(group->second))},
-                              is_numbered ? number_in(id, 'e') : std::nullopt);
+        reader_.add_internode(
+            where,
+            {numbers_.at(source), numbers_.at(target), group_of(where, group == data.end() ? "1" : group->second)},
+            is_numbered ? number_in(id, 'e') : std::nullopt);
     }
 
     void read_data(const Data& data)
@@ -169,7 +200,7 @@ private:
     }
 
     TraceReader& reader_;
-    std::map<std::string, std::string> keys_;  ///< id -> name
+    std::map<std::string, Key> keys_;          ///< by id
     std::map<std::string, uint32_t> numbers_;  ///< id of a node -> its number
 };
 

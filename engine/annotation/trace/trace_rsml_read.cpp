@@ -1,13 +1,16 @@
 // Reads RSML (trace_rsml.cpp writes it): the metadata's unit and resolution, and for each root its polyline, its
-// functions "diameter" and "group" along the polyline, and its child roots. Other elements and attributes are ignored,
-// since other programs write many. A nested root begins at the parent's node where its first point lies; otherwise it
-// is joined to the nearest node of the parent. All numbers are pixels (https://rootsystemml.github.io/format/metadata):
-// `resolution` pixels make one `unit`. If the unit is "pixel", or neither is stated, a pixel is a voxel along x. A
-// missing unit is the volume's, and a missing resolution is 1. Lengths are converted to the volume's unit. Without a
-// diameter the radius is one pixel. Positions declared physical by the metadata are converted once the whole file is
-// read.
+// functions "diameter" and "group" over the polyline, the length or uniform, and its child roots. Other elements and
+// attributes are ignored, since other programs write many. A nested root begins at the parent's node where its first
+// point lies; otherwise it is joined to the nearest node of the parent. All numbers are pixels
+// (https://rootsystemml.github.io/format/metadata): `resolution` pixels make one `unit`. If the unit is "pixel", or
+// neither is stated, a pixel is a voxel along x. A missing unit is the volume's, and a missing resolution is 1. Lengths
+// are converted to the volume's unit. Without a diameter the radius is one pixel. Positions declared physical by the
+// metadata are converted once the whole file is read.
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
+
 #include "engine/annotation/trace/trace_forms.h"
 #include "engine/annotation/trace/trace_index.h"
 #include "engine/annotation/trace/trace_xml.h"
@@ -132,18 +135,83 @@ private:
             if (name_of(child) == "root") waiting.push_back({child, axis});
     }
 
-    std::vector<std::string> samples_of(const pugi::xml_node& root, std::string_view name, size_t points) const
+    /// The values of a function at the points of a polyline, `along` which they lie; empty if there is none. Functions
+    /// over the length, or with samples at equal distances, are linear between two samples; a group is the nearer's.
+    std::vector<std::string> samples_of(const pugi::xml_node& root, const std::string& where, std::string_view name,
+                                        const std::vector<double>& along)
     {
-        for (const pugi::xml_node& function : child_named(root, "functions").children()) {
-            if (name_of(function) != "function" || function.attribute("name").value() != name) continue;
-            // Functions over the length, or at equal distances, have no sample per point.
-            if (std::string_view(function.attribute("domain").value()) != "polyline") continue;
-            std::vector<std::string> samples;
+        std::vector<pugi::xml_node> functions;
+        for (const pugi::xml_node& function : child_named(root, "functions").children())
+            if (name_of(function) == "function" && function.attribute("name").value() == name)
+                functions.push_back(function);
+        const auto domain_of = [](const pugi::xml_node& function) {
+            return std::string_view(function.attribute("domain").value());
+        };
+        // One value a point needs no interpolation.
+        std::ranges::stable_partition(functions,
+                                      [&](const auto& function) { return domain_of(function) == "polyline"; });
+        for (const pugi::xml_node& function : functions) {
+            const std::string_view domain = domain_of(function);
+            std::vector<pugi::xml_node> samples;
             for (const pugi::xml_node& sample : function.children())
-                if (name_of(sample) == "sample") samples.push_back(value_of(sample));
-            if (samples.size() == points) return samples;
+                if (name_of(sample) == "sample") samples.push_back(sample);
+            std::vector<std::string> values;
+            if (domain == "polyline" && samples.size() == along.size())
+                for (const pugi::xml_node& sample : samples) values.push_back(value_of(sample));
+            if (domain == "length" || domain == "uniform")
+                values = values_along(samples, domain == "uniform", name != "group", along);
+            if (!values.empty()) return values;
+            reader_.read_past(Error(sentence(where, ": function ", in_quotes(name), " has ", samples.size(),
+                                             " samples over the domain ", in_quotes(domain),
+                                             "; expected one a point over \"polyline\", or samples of a number over "
+                                             "\"length\" or \"uniform\"")),
+                              "it is left out");
         }
         return {};
+    }
+
+    /// Empty if a sample is no number, or its position is none.
+    static std::vector<std::string> values_along(const std::vector<pugi::xml_node>& samples, bool is_uniform,
+                                                 bool is_linear, const std::vector<double>& along)
+    {
+        std::vector<std::pair<double, double>> known;  // position, value
+        for (const pugi::xml_node& sample : samples) {
+            const std::optional<double> value = number_of(value_of(sample));
+            const double share = samples.size() > 1 ? double(known.size()) / double(samples.size() - 1) : 0.0;
+            const std::optional<double> position =
+                is_uniform ? share * along.back() : number_of(trimmed(sample.attribute("position").value()));
+            if (!value || !position || !std::isfinite(*value) || !std::isfinite(*position)) return {};
+            known.emplace_back(*position, *value);
+        }
+        if (known.empty()) return {};
+        std::ranges::stable_sort(known, {}, &std::pair<double, double>::first);
+        std::vector<std::string> values;
+        for (const double at : along) {
+            const auto after = std::ranges::lower_bound(known, at, {}, &std::pair<double, double>::first);
+            if (after == known.begin() || after == known.end()) {
+                values.push_back(digits_of(after == known.end() ? known.back().second : after->second));
+                continue;
+            }
+            const auto before = std::prev(after);
+            const double t = (at - before->first) / (after->first - before->first);
+            values.push_back(digits_of(is_linear ? (1.0 - t) * before->second + t * after->second
+                                                 : (t < 0.5 ? before : after)->second));
+        }
+        return values;
+    }
+
+    /// How far along the polyline its points lie, in the file's numbers. Points that are no numbers are refused later.
+    static std::vector<double> distances_along(const std::vector<pugi::xml_node>& points)
+    {
+        std::vector<double> along;
+        glm::dvec3 last(0.0);
+        for (const pugi::xml_node& point : points) {
+            const glm::dvec3 at(point.attribute("x").as_double(), point.attribute("y").as_double(),
+                                point.attribute("z").as_double());
+            along.push_back(along.empty() ? 0.0 : along.back() + glm::length(at - last));
+            last = at;
+        }
+        return along;
     }
 
     std::shared_ptr<Axis> read_root(const pugi::xml_node& root, Axis* parent)
@@ -155,8 +223,9 @@ private:
         for (const pugi::xml_node& point : polyline.children())
             if (name_of(point) == "point") points.push_back(point);
         if (points.empty()) fail(where, ": has no geometry with a polyline of points; expected one");
-        const std::vector<std::string> diameters = samples_of(root, "diameter", points.size());
-        const std::vector<std::string> groups = samples_of(root, "group", points.size());
+        const std::vector<double> along = distances_along(points);
+        const std::vector<std::string> diameters = samples_of(root, where, "diameter", along);
+        const std::vector<std::string> groups = samples_of(root, where, "group", along);
         const std::string group = group_of(root);
         const auto axis = std::make_shared<Axis>();
         axis->is_parent = bool(child_named(root, "root"));

@@ -2,6 +2,7 @@
 // z radius parent", parents before children, parent -1 for a root. Written as SWC+ and the standardised form require:
 // numbers from 1 without gaps. The type holds the colour group, since no neurite type fits plants.
 
+#include <cmath>
 #include <map>
 
 #include "engine/annotation/trace/trace_forms.h"
@@ -30,6 +31,53 @@ void read_comment(TraceReader& reader, const std::string& where, std::string_vie
         for (size_t axis = 1; axis < 4; ++axis)
             if (number_of(words[axis]) != 1.0)
                 fail(where, ": SCALE is ", in_quotes(rest), "; expected 1 1 1: positions in the volume's unit");
+}
+
+/// Numbers of samples, as some programs write them: "1.0".
+std::optional<int64_t> number_of_sample(TraceReader& reader, const std::string& where, const char* field,
+                                        std::string_view word)
+{
+    if (const std::optional<int64_t> whole = whole_of(word)) return whole;
+    const std::optional<double> number = number_of(word);
+    if (!number || *number != std::floor(*number) || std::abs(*number) > double(MAX_SAMPLE_NUMBER)) return std::nullopt;
+    reader.read_past(
+        Error(sentence(where, ": ", field, " is ", in_quotes(word), "; expected a number without a fraction")),
+        "it is taken as one");
+    return int64_t(*number);
+}
+
+/// The type of a neurite may be any number; only those that are groups are kept.
+uint8_t group_of(TraceReader& reader, const std::string& where, std::string_view word)
+{
+    try {
+        return reader.group(where, word);
+    } catch (const Error& odd) {
+        const std::optional<double> number = number_of(word);
+        if (!number) throw;
+        const bool is_whole = *number == std::floor(*number) && *number >= 0.0 && *number <= 255.0;
+        reader.read_past(odd, is_whole ? "it is taken as one" : "group 1 is taken");
+        return is_whole ? uint8_t(*number) : uint8_t{1};
+    }
+}
+
+Sample sample_of(TraceReader& reader, const std::string& where, int line, std::string_view text,
+                 std::map<int64_t, uint32_t>& nodes)
+{
+    const std::vector<std::string_view> words = words_of(text);
+    if (words.size() < 7) fail(where, ": is ", in_quotes(text), "; expected n type x y z radius parent");
+    const std::optional<int64_t> sample = number_of_sample(reader, where, "n", words[0]);
+    const std::optional<int64_t> parent = number_of_sample(reader, where, "parent", words[6]);
+    if (!sample || *sample < 0 || *sample > MAX_SAMPLE_NUMBER)
+        fail(where, ": n is ", in_quotes(words[0]), "; expected a whole number from 0 to ", MAX_SAMPLE_NUMBER);
+    if (!parent || *parent < -1 || *parent > MAX_SAMPLE_NUMBER)
+        fail(where, ": parent is ", in_quotes(words[6]), "; expected -1 or the number of a sample");
+    if (nodes.contains(*sample)) fail(where, ": sample ", *sample, " is defined twice; expected each number once");
+    const TraceNode node{{reader.coordinate(where, "x", words[2]), reader.coordinate(where, "y", words[3]),
+                          reader.coordinate(where, "z", words[4])},
+                         reader.radius(where, words[5]),
+                         group_of(reader, where, words[1])};
+    return {line, nodes.emplace(*sample, reader.add_node(where, node)).first->second,
+            *parent == -1 ? std::nullopt : parent};
 }
 
 }  // namespace
@@ -64,28 +112,20 @@ void read_trace_swc(TraceReader& reader, std::string_view text)
         const std::string where = sentence(reader.file(), ":", number);
         if (line.starts_with("#")) read_comment(reader, where, line);
         if (line.empty() || line.starts_with("#")) continue;
-        const std::vector<std::string_view> words = words_of(line);
-        if (words.size() < 7) fail(where, ": is ", in_quotes(line), "; expected n type x y z radius parent");
-        const std::optional<int64_t> sample = whole_of(words[0]), parent = whole_of(words[6]);
-        if (!sample || *sample < 0 || *sample > MAX_SAMPLE_NUMBER)
-            fail(where, ": n is ", in_quotes(words[0]), "; expected a whole number from 0 to ", MAX_SAMPLE_NUMBER);
-        if (!parent || *parent < -1 || *parent > MAX_SAMPLE_NUMBER)
-            fail(where, ": parent is ", in_quotes(words[6]), "; expected -1 or the number of a sample");
-        const uint32_t node =
-            reader.add_node(where, {{reader.coordinate(where, "x", words[2]), reader.coordinate(where, "y", words[3]),
-                                     reader.coordinate(where, "z", words[4])},
-                                    reader.radius(where, words[5]),
-                                    reader.group(where, words[1])});
-        if (!nodes.emplace(*sample, node).second)
-            fail(where, ": sample ", *sample, " is defined twice; expected each number once");
-        samples.push_back({number, node, *parent == -1 ? std::nullopt : parent});
+        reader.leave_out_if_odd([&] { samples.push_back(sample_of(reader, where, number, line, nodes)); });
     }
     for (const Sample& sample : samples) {
         if (!sample.parent) continue;
         const std::string where = sentence(reader.file(), ":", sample.line);
         const auto parent = nodes.find(*sample.parent);
-        if (parent == nodes.end()) fail(where, ": parent is ", *sample.parent, "; expected -1 or a sample of the file");
-        reader.add_internode(where, {parent->second, sample.node, reader.trace.node(sample.node).group});
+        if (parent == nodes.end())
+            reader.read_past(
+                Error(sentence(where, ": parent is ", *sample.parent, "; expected -1 or a sample of the file")),
+                "the sample is taken as a root");
+        else
+            reader.leave_out_if_odd([&] {
+                reader.add_internode(where, {parent->second, sample.node, reader.trace.node(sample.node).group});
+            });
     }
     // Every sample has at most one parent, so a loop is a sample that is its own ancestor.
     std::vector<std::string> notes;

@@ -123,7 +123,7 @@ bool is_there(const fs::path& path)
     return !path.empty() && fs::exists(path, ignored);
 }
 
-void load(Part part, const WorkFiles& files, Document& into)
+std::vector<std::string> load(Part part, const WorkFiles& files, Document& into)
 {
     const TraceSpace space = space_of(files.volume);
     switch (part) {
@@ -132,11 +132,16 @@ void load(Part part, const WorkFiles& files, Document& into)
             const std::vector<MaskBrickChange> changes = import_mask(files.mask, space);
             check_mask_image(files.mask, files.volume_hash);
             for (const MaskBrickChange& change : changes) into.mask.apply(change, Direction::forwards);
-            return;
+            return {};
         }
-        case Part::trace: into.trace = load_trace(files.trace, space).trace; return;
-        case Part::offsets: into.density = import_offsets(files.density, space, into.density.type()); return;
+        case Part::trace: {
+            TraceFile file = load_trace(files.trace, space);
+            into.trace = std::move(file.trace);
+            return std::move(file.warnings);
+        }
+        case Part::offsets: into.density = import_offsets(files.density, space, into.density.type()); return {};
     }
+    return {};
 }
 
 std::vector<Change> changes_between(Part part, const Document& from, const Document& to)

@@ -47,9 +47,9 @@ bool holds_any(const Document& document, Part part);
 
 bool is_there(const std::filesystem::path& path);
 
-/// Reads the file of a part into a document whose part is empty. Fails if the file is malformed, or of another volume
-/// or image.
-void load(Part part, const WorkFiles& files, Document& into);
+/// Reads the file of a part into a document whose part is empty; returns what it read past, a sentence each. Fails if
+/// the file is malformed, or of another volume or image.
+std::vector<std::string> load(Part part, const WorkFiles& files, Document& into);
 
 /// The changes that turn a part of one document into that of the other, both of one volume; none if they are equal. The
 /// selection is ignored.

@@ -225,7 +225,13 @@ std::vector<Notice> Work::open_from_files(const std::string& damage)
         note_file(part);
         // A mask may be a label image in an archive; the files next to it by default cannot be.
         const fs::path& file = file_of(files_, part);
-        if (is_there(file) || (part == Part::mask && is_in_archive(file))) load(part, files_, document_);
+        if (is_there(file) || (part == Part::mask && is_in_archive(file)))
+            for (const std::string& warning : load(part, files_, document_)) {
+                // The file holds more than what is kept of it.
+                seen_[size_t(part)].is_foreign = true;
+                notices.push_back(
+                    {sentence(warning, "; the next save keeps this file as ", old_of(file).string()), true});
+            }
         digest_of(known_, part) = seen_[size_t(part)].digest;
     }
     return notices;
@@ -375,7 +381,7 @@ void Work::look_at_file(Part part, std::vector<Notice>& notices)
     }
     Document found = empty_document();
     try {
-        load(part, files_, found);
+        for (const std::string& warning : load(part, files_, found)) notices.push_back({warning, true});
     } catch (const Error& error) {
         return keep_unreadable(error);
     }

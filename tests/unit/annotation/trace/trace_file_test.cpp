@@ -360,7 +360,9 @@ TEST_CASE("a trace of another volume is refused with both named")
                        ": is of a volume of 40 30 20 voxels; expected 40 31 20, the size of this one"));
         CHECK(contains(with([](TraceSpace& s) { s.spacing.z = 1.6; }),
                        ": is of a volume with voxels of 0.5 0.25 1.5; expected 0.5 0.25 1.6, the spacing of this one"));
-        CHECK(contains(with([](TraceSpace& s) { s.unit = "mm"; }), ": is in the unit \"um\"; expected \"mm\""));
+        CHECK(contains(with([](TraceSpace& s) { s.unit = "mm"; }),
+                       ": is of a volume with voxels of"));
+        CHECK(contains(with([](TraceSpace& s) { s.unit = "furlong"; }), ": is in the unit \"um\"; expected"));
         CHECK(with([](TraceSpace& s) { s.spacing.z *= 1.0 + 1e-9; }).empty());
     }
 }
@@ -383,15 +385,136 @@ TEST_CASE("hostile text is refused in one sentence")
     CHECK(refusal("a.doc", node) == "a.doc: has the extension \".doc\"; expected .graphml, .txt, .swc or .rsml");
 }
 
+TEST_CASE("odd lines of SWC are read past and named, a kind each")
+{
+    const auto read = [](const std::string& text, size_t nodes, size_t internodes,
+                         std::optional<TraceSpace> space = {}) {
+        const TemporaryFolder folder;
+        const auto path = folder.write("a.swc", text);
+        const TraceFile file = load_trace(path, space);
+        CHECK(file.trace.nodes().size() == nodes);
+        CHECK(file.trace.internodes().size() == internodes);
+        std::string all;
+        for (const std::string& warning : file.warnings)
+            all += (all.empty() ? "" : "|") + warning.substr(path.parent_path().string().size() + 1);
+        return all;
+    };
+    const std::string two = "1 1 0 0 0 1 -1\n2 1 1 0 0 1 1\n";
+    CHECK(read(two, 2, 1).empty());
+    CHECK(read("\xef\xbb\xbf" + two, 2, 1).empty());  // a byte order mark
+    CHECK(read(two + "2 1 5 0 0 1 1\n", 2, 1) ==
+          "a.swc:3: sample 2 is defined twice; expected each number once; it is left out");
+    CHECK(read(two + "3 1 5 0 0 1 9\n4 1 6 0 0 1 8\n", 4, 1) ==
+          "a.swc:3: parent is 9; expected -1 or a sample of the file; the sample is taken as a root, and so on in 1 "
+          "more places");
+    CHECK(read("1 1 0 0 0 1 0\n2 1 1 0 0 1 1\n", 2, 1) ==
+          "a.swc:1: parent is 0; expected -1 or a sample of the file; the sample is taken as a root");
+    CHECK(read(two + "3 274 5 0 0 1 2\n", 3, 2) ==
+          "a.swc:3: group is \"274\"; expected a whole number from 0 to 255; group 1 is taken");
+    CHECK(read("1.0 1.0 0 0 0 1 -1.0\n2.0 3.0 1 0 0 1 1.0\n", 2, 1) ==
+          "a.swc:1: n is \"1.0\"; expected a number without a fraction; it is taken as one, and so on in 3 more places"
+          "|a.swc:1: group is \"1.0\"; expected a whole number from 0 to 255; it is taken as one, and so on in 1 more "
+          "places");
+    CHECK(read(two + "3 1 nan 0 0 1 2\n4 1 5\n", 2, 1) ==
+          "a.swc:3: x is \"nan\"; expected a number from -1e15 to 1e15; it is left out"
+          "|a.swc:4: is \"4 1 5\"; expected n type x y z radius parent; it is left out");
+    CHECK(read("1 1 0 0 0 1 1\n", 1, 0) ==
+          "a.swc:1: joins node 0 with itself; expected two different nodes; it is left out");
+    TraceSpace in_mm = SPACE;
+    in_mm.unit = "mm";
+    CHECK(
+        contains(read(two, 2, 1, in_mm), "a.swc: states no unit; its lengths are taken in mm, the unit of the volume"));
+    CHECK(read(two, 2, 1, SPACE).empty());
+}
+
+TEST_CASE("a trace in another unit of length is converted")
+{
+    const TemporaryFolder folder;
+    const auto path = folder.write("a.swc", "# unit um\n1 1 1000 500 0 20 -1\n");
+    TraceSpace in_mm = SPACE;
+    in_mm.unit = "mm";
+    const TraceFile file = load_trace(path, in_mm);
+    CHECK(file.trace.node(0).position == glm::dvec3(1.0, 0.5, 0.0));
+    CHECK(file.trace.node(0).radius == 0.02);
+    REQUIRE(file.warnings.size() == 1);
+    CHECK(contains(file.warnings[0], "lengths were converted from um to mm, the unit of the volume"));
+}
+
+TEST_CASE("odd elements of GraphML are read past, and its defaults taken")
+{
+    const TemporaryFolder folder;
+    const auto data = [](const char* key, const char* value) {
+        return sentence("<data key=\"", key, "\">", value, "</data>");
+    };
+    const std::string at = data("x", "1") + data("y", "2") + data("z", "3");
+    const auto path = folder.write(
+        "a.graphml",
+        "<graphml><key id=\"x\" for=\"node\"/><key id=\"y\"/><key id=\"z\"/>"
+        "<key id=\"r\" for=\"node\" attr.name=\"radius\"><default>2.5</default></key>"
+        "<key id=\"g\" for=\"all\" attr.name=\"group\"><default>5.0</default></key><graph>"
+        "<node id=\"a\">" +
+            at + "</node><node id=\"b\">" + at + data("r", "1") + data("g", "300") + "</node><node id=\"b\">" + at +
+            "</node><node id=\"c\"/><hyperedge/>"
+            "<edge source=\"a\" target=\"b\"/><edge source=\"b\" target=\"a\"/>"
+            "<edge source=\"a\" target=\"a\"/><edge source=\"a\" target=\"c\"/></graph></graphml>");
+    const TraceFile file = load_trace(path, {});
+    REQUIRE(file.trace.nodes().size() == 2);
+    CHECK(file.trace.node(0).radius == 2.5);
+    CHECK(file.trace.node(0).group == 5);
+    CHECK(file.trace.node(1).radius == 1.0);
+    CHECK(file.trace.node(1).group == 1);
+    REQUIRE(file.trace.internodes().size() == 1);
+    CHECK(file.trace.internode(0).group == 5);
+    const std::string parts[] = {"holds a hyperedge",
+                                 "group is \"300\"; expected a whole number from 0 to 255; group 1",
+                                 "node \"b\": is defined twice",
+                                 "node \"c\": has no data \"x\"",
+                                 "a second time; expected each link once; it is left out",
+                                 "with itself; expected two different nodes; it is left out",
+                                 "node \"c\" does not exist"};
+    REQUIRE(file.warnings.size() == std::size(parts));
+    for (size_t i = 0; i < std::size(parts); ++i) CHECK(contains(file.warnings[i], parts[i]));
+}
+
+TEST_CASE("functions of RSML over the length and uniform ones give the points their radius")
+{
+    const TemporaryFolder folder;
+    const auto radii = [&](const std::string& function) {
+        const auto path = folder.write(
+            "a.rsml",
+            "<rsml><metadata><unit>um</unit><resolution>2</resolution></metadata><scene><plant><root ID='1'>"
+            "<geometry><polyline><point x='10' y='20'/><point x='10' y='25'/><point x='10' y='40'/>"
+            "</polyline></geometry><functions>" +
+                function + "</functions></root></plant></scene></rsml>");
+        const TraceFile file = load_trace(path, SPACE);
+        std::vector<double> found;
+        for (const auto& [number, node] : file.trace.nodes()) found.push_back(node.radius);
+        for (const std::string& warning : file.warnings) CHECK(contains(warning, "function \"diameter\" has"));
+        CHECK(file.warnings.size() == (contains(function, "odd") ? 1 : 0));
+        return found;
+    };
+    const auto function = [](const char* domain, const char* samples) {
+        return sentence("<function name='diameter' domain='", domain, "'>", samples, "</function>");
+    };
+    using Radii = std::vector<double>;
+    const char* const two = "<sample position='0' value='4'/><sample position='20' value='2'/>";
+    CHECK(radii(function("length", two)) == Radii{1.0, 0.875, 0.5});
+    CHECK(radii(function("uniform", two)) == Radii{1.0, 0.875, 0.5});
+    CHECK(radii(function("uniform", "<sample value='4'/><sample value='4'/><sample>2</sample>")) ==
+          Radii{1.0, 1.0, 0.5});
+    CHECK(radii(function("length", "<sample position='5' value='4'/>")) == Radii{1.0, 1.0, 1.0});
+    CHECK(radii(function("length", "<sample value='4' odd='1'/>")) == Radii{0.5, 0.5, 0.5});
+    CHECK(radii(function("polyline", "<sample value='4' odd='1'/>")) == Radii{0.5, 0.5, 0.5});
+}
+
 TEST_CASE("hostile SWC is refused in one sentence")
 {
-    CHECK(refusal("a.swc", "1 1 0 0 0 1") == "a.swc:1: is \"1 1 0 0 0 1\"; expected n type x y z radius parent");
-    CHECK(refusal("a.swc", "-1 1 0 0 0 1 -1") == "a.swc:1: n is \"-1\"; expected a whole number from 0 to 2147483647");
-    CHECK(refusal("a.swc", "1 1 0 0 0 1 -2") == "a.swc:1: parent is \"-2\"; expected -1 or the number of a sample");
-    CHECK(refusal("a.swc", "1 1 0 0 0 1 7") == "a.swc:1: parent is 7; expected -1 or a sample of the file");
-    CHECK(refusal("a.swc", "1 1 0 0 0 1 -1\n1 1 0 0 0 1 -1") ==
-          "a.swc:2: sample 1 is defined twice; expected each number once");
-    CHECK(refusal("a.swc", "1 1 0 0 0 1 1") == "a.swc:1: joins node 0 with itself; expected two different nodes");
+    CHECK(refusal("a.swc", "1 1 0 0 0 1") ==
+          "a.swc:1: is \"1 1 0 0 0 1\"; expected n type x y z radius parent; it is left out; no node is left");
+    CHECK(contains(refusal("a.swc", "-1 1 0 0 0 1 -1"),
+                   "a.swc:1: n is \"-1\"; expected a whole number from 0 to 2147483647"));
+    CHECK(contains(refusal("a.swc", "1 1 0 0 0 1 -2"),
+                   "a.swc:1: parent is \"-2\"; expected -1 or the number of a sample"));
     CHECK(contains(refusal("a.swc", "1 1 0 0 0 1 3\n2 1 1 0 0 1 1\n3 1 1 1 0 1 2"), "a.swc: the trace has 1 loops"));
     CHECK(refusal("a.swc", "# SCALE 2 2 1\n") ==
           "a.swc:1: SCALE is \"2 2 1\"; expected 1 1 1: positions in the volume's unit");
@@ -418,17 +541,12 @@ TEST_CASE("hostile GraphML is refused in one sentence")
     CHECK(contains(refusal("a.graphml", "<svg/>"), "it has no element graphml"));
     CHECK(refusal("a.graphml", "<graphml/>") == "a.graphml: has no element graph; expected one");
     CHECK(refusal("a.graphml", graph("<node id=\"n0\"/>")) ==
-          "a.graphml: node \"n0\": has no data \"x\"; expected x, y and z");
-    CHECK(refusal("a.graphml", graph(node("n0", "inf"))) ==
-          "a.graphml: node \"n0\": x is \"inf\"; expected a number from -1e15 to 1e15");
-    CHECK(refusal("a.graphml", graph(node("n3") + node("n3"))) ==
-          "a.graphml: node \"n3\": node 3 is defined twice; expected each node once");
-    CHECK(refusal("a.graphml", graph(node("a") + node("a"))) ==
-          "a.graphml: node \"a\": is defined twice; expected each id once");
-    CHECK(refusal("a.graphml", graph("<edge id=\"e\" source=\"n0\" target=\"n1\"/>")) ==
-          "a.graphml: edge \"e\" from \"n0\" to \"n1\": node \"n0\" does not exist; expected the id of a node of the "
-          "file");
-    CHECK(contains(refusal("a.graphml", graph(node("n0") + "<edge source=\"n0\" target=\"n0\"/>")), "with itself"));
+          "a.graphml: node \"n0\": has no data \"x\"; expected x, y and z; it is left out; no node is left");
+    CHECK(contains(refusal("a.graphml", graph(node("n0", "inf"))),
+                   "a.graphml: node \"n0\": x is \"inf\"; expected a number from -1e15 to 1e15"));
+    CHECK(contains(refusal("a.graphml", graph("<edge id=\"e\" source=\"n0\" target=\"n1\"/>")),
+                   "a.graphml: edge \"e\" from \"n0\" to \"n1\": node \"n0\" does not exist; expected the id of a "
+                   "node of the file"));
     CHECK(contains(refusal("a.graphml", graph("<hyperedge/>")), "holds a hyperedge"));
     CHECK(contains(refusal("a.graphml", graph("<data key=\"next_node\">4294967297</data>")),
                    "graph: next_node is \"4294967297\""));
