@@ -62,7 +62,7 @@ Pattern parse_pattern(const HeaderFields& fields, const char* field, std::string
 fs::path path_of(const HeaderFields& fields, const char* field, const std::string& name)
 {
     if (has_controls(name)) fields.refuse(field, "names of files");
-    return fields.path().parent_path() / name;
+    return file_stated(fields.path(), name);
 }
 
 /// The words of "a pattern with spaces%03d.raw 1 93 1 2": the pattern, and up to four numbers after it.

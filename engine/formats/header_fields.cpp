@@ -143,7 +143,17 @@ std::filesystem::path HeaderFields::data_file(const char* name) const
 {
     const std::string& stated = required(name, "the name of the file that holds the voxels");
     if (stated.empty() || has_controls(stated)) refuse(name, "the name of a file");
-    return path_.parent_path() / stated;
+    return file_stated(path_, stated);
+}
+
+std::filesystem::path file_stated(const std::filesystem::path& header, const std::string& stated)
+{
+    std::filesystem::path file = header.parent_path() / stated;
+    std::error_code ignored;
+    const size_t separator = stated.find_last_of("/\\");
+    if (separator == std::string::npos || std::filesystem::exists(file, ignored)) return file;
+    const std::filesystem::path beside = header.parent_path() / stated.substr(separator + 1);
+    return std::filesystem::is_regular_file(beside, ignored) ? beside : file;
 }
 
 void apply_spacing(VolumeInfo& info, const std::optional<glm::dvec3>& spacing, const std::optional<std::string>& unit,

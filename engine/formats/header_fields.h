@@ -42,13 +42,18 @@ public:
     bool flag(const char* name, bool fallback) const;
     glm::dvec3 spacing(const char* name) const;  ///< three numbers, finite and above 0
 
-    /// The voxel file that the header names: relative to the header's folder, or absolute.
+    /// The voxel file that the header names (`file_stated`).
     std::filesystem::path data_file(const char* name) const;
 
 private:
     std::filesystem::path path_;
     std::map<std::string, std::string> values_;
 };
+
+/// Returns the file that a header names: relative to the header's folder, or absolute. Headers are moved together with their
+/// data, also between systems: if there is no such file, but one of that name beside the header, it is that one.
+/// `stated` may be a path of Windows.
+std::filesystem::path file_stated(const std::filesystem::path& header, const std::string& stated);
 
 /// Puts spacing and unit into `info`, with a warning for each that the file does not state. A spacing without a unit is
 /// taken as in `usual_unit`, unless it is 1 1 1, which means voxels.

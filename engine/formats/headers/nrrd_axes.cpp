@@ -1,6 +1,7 @@
 #include "engine/formats/headers/nrrd_axes.h"
 
 #include <cmath>
+#include <limits>
 
 #include "engine/base/error.h"
 #include "engine/formats/orientation.h"
@@ -91,6 +92,21 @@ bool first_is_not_space(const HeaderFields& fields)
     fields.refuse("dimension", EXPECTED);
 }
 
+/// Whether the first of three axes is that of colours or components, and the others are spatial.
+bool is_picture(std::string_view kinds)
+{
+    const std::vector<std::string_view> words = words_of(kinds);
+    if (words.size() != 3) return false;
+    const auto is_space = [&](size_t i) {
+        const std::string kind = lower_case(words[i]);
+        return kind == "domain" || kind == "space";
+    };
+    const std::string first = lower_case(words[0]);
+    const bool is_of_components = first.ends_with("-color") || first.ends_with("vector") || first == "complex" ||
+                                  first == "point" || first == "normal" || first == "list";
+    return is_of_components && is_space(1) && is_space(2);
+}
+
 std::optional<std::string> unit_of(const HeaderFields& fields, const NrrdAxes& axes)
 {
     const bool of_space = fields.has("space units");
@@ -98,7 +114,9 @@ std::optional<std::string> unit_of(const HeaderFields& fields, const NrrdAxes& a
     const std::string* value = fields.find(name);
     if (value == nullptr) return {};
     std::vector<std::string> texts = texts_of(*value);
-    if (!of_space && axes.dimension == 4 && texts.size() == 4) texts.erase(texts.begin() + (axes.first == 1 ? 0 : 3));
+    if (!of_space && texts.size() == axes.dimension && axes.dimension > size_t(axes.spatial()))
+        texts.erase(axes.first == 1 ? texts.begin() : texts.end() - 1);
+    std::erase(texts, "");
     if (texts.empty()) return {};
     for (const std::string& text : texts) {
         if (plain_unit(text) != plain_unit(texts[0])) fields.refuse(name, "one unit for all axes");
@@ -111,7 +129,7 @@ glm::dmat3 space_directions(const HeaderFields& fields, const NrrdAxes& axes)
 {
     const auto directions = axis_directions(fields, axes.dimension);
     glm::dmat3 steps(0.0);
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < axes.spatial(); ++axis) {
         const std::optional<glm::dvec3>& direction = directions[axes.first + size_t(axis)];
         if (!direction) fields.refuse(DIRECTIONS, DIRECTIONS_EXPECTED);
         steps[axis] = *direction;
@@ -119,6 +137,8 @@ glm::dmat3 space_directions(const HeaderFields& fields, const NrrdAxes& axes)
             fields.refuse(DIRECTIONS, "vectors of finite length greater than 0");
         }
     }
+    // A picture is as thick as a pixel is wide.
+    if (axes.is_picture) steps[2] = glm::cross(steps[0], steps[1]) / glm::length(steps[1]);
     return steps;
 }
 
@@ -158,19 +178,76 @@ Space space_of(const HeaderFields& fields, VolumeInfo& info)
     return {};
 }
 
-/// In files without a space, a negative spacing means that the axis runs backwards.
-std::optional<glm::dmat3> steps_of_spacings(const HeaderFields& fields, const NrrdAxes& axes)
+/// Where the samples of an axis lie in its cells: at their ends, or in their middles.
+bool is_node_centered(const HeaderFields& fields, const NrrdAxes& axes, size_t axis, bool& is_stated)
 {
-    constexpr const char* NAME = "spacings";
-    std::vector<double> numbers = fields.numbers(NAME, axes.dimension);
+    const char* const name = fields.has("centers") ? "centers" : "centerings";
+    const std::vector<std::string_view> words = fields.has(name) ? words_of(*fields.find(name)) : words_of("");
+    if (words.size() == axes.dimension) {
+        const std::string word = lower_case(words[axis]);
+        if (word == "node" || word == "cell") return word == "node";
+        if (word != "???" && word != "none") fields.refuse(name, "node, cell, ??? or none for each axis");
+    } else if (!words.empty()) {
+        fields.refuse(name, sentence(axes.dimension, " words"));
+    }
+    is_stated = false;
+    return false;
+}
+
+/// The steps that "axis mins" and "axis maxs" state, NaN where they do not; null if the header lacks them.
+std::optional<std::vector<double>> steps_of_ends(const HeaderFields& fields, const NrrdAxes& axes, VolumeInfo& info)
+{
+    const char* const mins_name = fields.has("axismins") ? "axismins" : "axis mins";
+    const char* const maxs_name = fields.has("axismaxs") ? "axismaxs" : "axis maxs";
+    if (!fields.has(mins_name) || !fields.has(maxs_name)) return {};
+    const std::vector<double> mins = fields.numbers(mins_name, axes.dimension);
+    const std::vector<double> maxs = fields.numbers(maxs_name, axes.dimension);
+    std::vector<double> steps(axes.dimension, std::numeric_limits<double>::quiet_NaN());
+    bool is_stated = true, begins_elsewhere = false;
+    for (int axis = 0; axis < axes.spatial(); ++axis) {
+        const size_t at = axes.first + size_t(axis);
+        const bool is_node = is_node_centered(fields, axes, at, is_stated);
+        const int64_t cells = info.size[axis] - (is_node ? 1 : 0);
+        if (cells > 0) steps[at] = (maxs[at] - mins[at]) / double(cells);
+        begins_elsewhere |= std::isfinite(mins[at]) && mins[at] != 0.0;
+    }
+    if (!is_stated)
+        info.warnings.emplace_back("axis mins and axis maxs are stated without centerings; cells are assumed");
+    if (begins_elsewhere)
+        info.warnings.push_back(sentence(mins_name, " is ", in_quotes(*fields.find(mins_name)),
+                                         "; without a space only the spacing is taken from it"));
+    return steps;
+}
+
+/// In files without a space, a negative spacing means that the axis runs backwards.
+std::optional<glm::dmat3> steps_of_spacings(const HeaderFields& fields, const NrrdAxes& axes, VolumeInfo& info)
+{
+    const char* const NAME = fields.has("spacings") ? "spacings" : "axis maxs";
+    std::vector<double> numbers(axes.dimension, std::numeric_limits<double>::quiet_NaN());
+    if (fields.has("spacings")) numbers = fields.numbers("spacings", axes.dimension);
+    if (const std::optional<std::vector<double>> ends = steps_of_ends(fields, axes, info)) {
+        bool contradicts = false;
+        for (size_t axis = 0; axis < axes.dimension; ++axis) {
+            contradicts |= std::abs(numbers[axis] - (*ends)[axis]) > 1e-6 * std::abs((*ends)[axis]);
+            if (std::isnan(numbers[axis])) numbers[axis] = (*ends)[axis];
+        }
+        if (contradicts)
+            info.warnings.push_back(sentence("spacings is ", in_quotes(*fields.find("spacings")),
+                                             ", which axis mins and axis maxs contradict; they are left out"));
+    }
     glm::dmat3 steps(0.0);
     int unknown = 0;
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < axes.spatial(); ++axis) {
         const double number = numbers[axes.first + size_t(axis)];
         unknown += std::isnan(number) ? 1 : 0;  // NRRD's value for "unknown"
         steps[axis][axis] = number;
     }
-    if (unknown == 3) return {};
+    if (unknown == axes.spatial()) return {};
+    if (axes.is_picture) steps[2][2] = std::abs(steps[0][0]);
+    // One slice has no step between nodes.
+    for (int axis = 0; axis < 3; ++axis)
+        if (std::isnan(steps[axis][axis]) && info.size[axis] == 1 && !fields.has("spacings"))
+            steps[axis][axis] = std::abs(steps[axis == 0 ? 1 : 0][axis == 0 ? 1 : 0]);
     for (int axis = 0; axis < 3; ++axis) {
         // The square of anything below 1e-162 is 0.
         if (!std::isfinite(glm::length(steps[axis])) || glm::length(steps[axis]) == 0.0) {
@@ -187,10 +264,18 @@ NrrdAxes read_nrrd_axes(const HeaderFields& fields)
     fields.required("dimension", "3");
     NrrdAxes axes{.dimension = size_t(fields.whole("dimension", 3, 3, 4))};
     const std::vector<int64_t> sides = fields.sizes("sizes", axes.dimension);
+    const std::string* kinds = fields.find("kinds");
+    if (axes.dimension == 3 && kinds != nullptr && is_picture(*kinds)) {
+        axes.is_picture = true;
+        axes.first = 1;
+        axes.channels = sides[0];
+        axes.channels_are_colors = lower_case(*kinds).starts_with("rgb");
+        axes.size = {sides[1], sides[2], 1};
+        return axes;
+    }
     if (axes.dimension == 4) {
         axes.first = first_is_not_space(fields) ? 1 : 0;
         (axes.first == 1 ? axes.channels : axes.frames) = sides[axes.first == 1 ? 0 : 3];
-        const std::string* kinds = fields.find("kinds");
         axes.channels_are_colors = kinds != nullptr && lower_case(*kinds).starts_with("rgb");
     }
     axes.size = {sides[axes.first], sides[axes.first + 1], sides[axes.first + 2]};
@@ -210,8 +295,8 @@ void read_nrrd_space(const HeaderFields& fields, const NrrdAxes& axes, VolumeInf
             origin *= mirrored;
         }
         spacing = place(info, steps, origin, space.frame);
-    } else if (fields.has("spacings")) {
-        if (const auto steps = steps_of_spacings(fields, axes)) spacing = place(info, *steps, glm::dvec3(0.0), "");
+    } else if (const auto steps = steps_of_spacings(fields, axes, info)) {
+        spacing = place(info, *steps, glm::dvec3(0.0), "");
     }
     apply_spacing(info, spacing, unit_of(fields, axes), "mm");
 }

@@ -8,7 +8,8 @@
 
 namespace shvr {
 
-/// Three spatial axes, and at most one more: before them (values of a voxel) or after them (time points).
+/// Three spatial axes, and at most one more: before them (values of a voxel) or after them (time points). A picture has
+/// two spatial axes after its channels, and one slice.
 struct NrrdAxes {
     size_t dimension = 3;
     size_t first = 0;  ///< index of the first spatial axis
@@ -16,6 +17,9 @@ struct NrrdAxes {
     int64_t channels = 1;
     int64_t frames = 1;
     bool channels_are_colors = false;
+    bool is_picture = false;
+
+    int spatial() const { return is_picture ? 2 : 3; }
 };
 
 NrrdAxes read_nrrd_axes(const HeaderFields& fields);

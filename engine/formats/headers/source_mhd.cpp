@@ -10,6 +10,7 @@
 #include "engine/formats/orientation.h"
 #include "engine/formats/raw/source_raw.h"
 #include "engine/formats/readers.h"
+#include "engine/formats/rescaled.h"
 
 namespace shvr {
 namespace {
@@ -124,6 +125,20 @@ RawVoxels place_voxels(const MhdHeader& header, const VolumeInfo& info)
     return voxels;
 }
 
+/// What the numbers of the file mean.
+Rescale read_intensities(const HeaderFields& fields)
+{
+    const char* const slope = "ElementToIntensityFunctionSlope";
+    const char* const offset =
+        first_of(fields, {"ElementToIntensityFunctionOffset", "ElementToIntensityFunctionIntercept"});
+    Rescale rescale;
+    if (fields.has(slope)) rescale.slope = fields.numbers(slope, 1)[0];
+    if (fields.has(offset)) rescale.intercept = fields.numbers(offset, 1)[0];
+    if (!std::isfinite(rescale.slope) || rescale.slope == 0.0) fields.refuse(slope, "a finite number other than 0");
+    if (!std::isfinite(rescale.intercept)) fields.refuse(offset, "a finite number");
+    return rescale;
+}
+
 }  // namespace
 
 std::unique_ptr<VolumeSource> open_mhd(const std::filesystem::path& path, const OpenOptions& options)
@@ -145,7 +160,8 @@ std::unique_ptr<VolumeSource> open_mhd(const std::filesystem::path& path, const 
     RawVoxels voxels = place_voxels(header, info);
     voxels.channels = fields.whole("ElementNumberOfChannels", 1, 1, 65536);
     voxels.channel = chosen_channel(path.string(), options, voxels.channels, color_names(voxels.channels));
-    return right_handed(open_raw_voxels(std::move(info), voxels));
+    const Rescale rescale = read_intensities(fields);
+    return rescaled(right_handed(open_raw_voxels(std::move(info), voxels)), rescale);
 }
 
 }  // namespace shvr

@@ -236,6 +236,77 @@ TEST_CASE("spacing, unit and orientation of an NRRD survive, and what changes is
     CHECK(folder.nrrd("spacings:", "spacings: 1 -2 -3")->info().warnings.empty());  // a rotation by 180 degrees
 }
 
+TEST_CASE("axis mins and maxs of an NRRD give the spacing, node-centred or cell-centred")
+{
+    const Folder folder;
+    const auto spacing_of = [&](const std::string& lines, const std::vector<std::string>& warnings) {
+        const auto source = folder.nrrd("spacings", lines);
+        CHECK(source->info().unit == "um");
+        CHECK(source->info().warnings == warnings);
+        return source->info().spacing;
+    };
+    const std::string mins = "axis mins: 0 0 0\n", maxs = "axis maxs: 8 9 8\n";
+    CHECK(spacing_of(mins + maxs + "centerings: node node node", {}) == glm::dvec3(2, 3, 4));
+    CHECK(spacing_of("axismins: 0 0 0\naxismaxs: 10 12 12\ncenters: cell cell cell", {}) == glm::dvec3(2, 3, 4));
+    CHECK(spacing_of("axis mins: 5 0 0\naxis maxs: 15 12 12\ncenterings: cell cell cell",
+                     {"axis mins is \"5 0 0\"; without a space only the spacing is taken from it"}) ==
+          glm::dvec3(2, 3, 4));
+    CHECK(spacing_of(mins + "axis maxs: 10 12 12",
+                     {"axis mins and axis maxs are stated without centerings; cells are assumed"}) ==
+          glm::dvec3(2, 3, 4));
+    CHECK(spacing_of("spacings: 1 2 3\n" + mins + maxs + "centerings: node node node",
+                     {"spacings is \"1 2 3\", which axis mins and axis maxs contradict; they are left out"}) ==
+          glm::dvec3(1, 2, 3));
+    // An axis whose maximum comes first runs backwards.
+    CHECK(folder.nrrd("spacings", mins + "axis maxs: 8 9 -8\ncenterings: node node node")->info().spacing ==
+          glm::dvec3(2, 3, 4));
+    CHECK(contains(folder.nrrd_refusal("spacings", mins + "axis maxs: 8 9 x"), "axis maxs is \"8 9 x\""));
+    CHECK(contains(folder.nrrd_refusal("spacings", mins + maxs + "centerings: node node edge"), "centerings is"));
+}
+
+TEST_CASE("a colour picture in an NRRD is one slice with channels, and no grey volume")
+{
+    const Folder folder;
+    folder.write("p.nhdr",
+                 "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 3 5 4\nkinds: RGB-color domain domain\n"
+                 "spacings: NaN 0.5 0.25\nunits: \"\" \"mm\" \"mm\"\nencoding: raw\ndata file: a.voxels\n");
+    CHECK(contains(error_of([&] { open_volume(folder.path / "p.nhdr"); }), "channel"));
+    const auto green = open_volume(folder.path / "p.nhdr", {.channel = "green"});
+    CHECK(green->info().size == Size3(5, 4, 1));
+    CHECK(green->info().spacing == glm::dvec3(0.5, 0.25, 0.5));
+    CHECK(green->info().unit == "mm");
+}
+
+TEST_CASE("intensity functions of a MetaImage are applied")
+{
+    const Folder folder;
+    const auto of = [&](const std::string& lines) {
+        return folder.mhd("ElementSpacing", "ElementSpacing = 1 2 3\n" + lines);
+    };
+    const std::string slope = "ElementToIntensityFunctionSlope = 2\n",
+                      offset = "ElementToIntensityFunctionOffset = -1000";
+    const auto whole = of(slope + offset);
+    CHECK(measure(*whole).maximum == 2.0 * 'v' - 1000.0);
+    CHECK_FALSE(is_float(whole->info().type));
+    CHECK(measure(*of("ElementToIntensityFunctionSlope = 0.5")).maximum == 0.5 * 'v');
+    CHECK(of("ElementToIntensityFunctionSlope = 1\nElementToIntensityFunctionOffset = 0")->info().type ==
+          VoxelType::uint8);
+    CHECK(contains(folder.mhd_refusal("ElementSpacing", "ElementToIntensityFunctionSlope = 0"),
+                   "ElementToIntensityFunctionSlope is \"0\"; expected a finite number other than 0"));
+}
+
+TEST_CASE("a header from Windows finds the voxels that lie beside it")
+{
+    const Folder folder;
+    for (const char* name :
+         {"C:\\scans\\leaf\\a.voxels", "\\\\server\\share\\a.voxels", "/nowhere/else/a.voxels", "sub\\a.voxels"}) {
+        CAPTURE(name);
+        CHECK(folder.mhd("ElementDataFile", sentence("ElementDataFile = ", name))->info().size == Size3(5, 4, 3));
+        CHECK(folder.nrrd("data file", sentence("data file: ", name))->info().size == Size3(5, 4, 3));
+    }
+    CHECK(contains(folder.mhd_refusal("ElementDataFile", "ElementDataFile = C:\\scans\\none.voxels"), "none.voxels"));
+}
+
 TEST_CASE("axes that run the other way are turned round, and the first voxel stays where it is")
 {
     for (const char* name : {"flipped_y.nrrd", "left_handed.nrrd", "flipped_z.mha"}) {
