@@ -262,7 +262,7 @@ TEST_CASE("shares tell where the clip range and the target lie, also where the v
                 const glm::dvec3 at = glm::mix(ray.near_point, ray.far_point, share);
                 return glm::dot(at - camera.eye, glm::normalize(camera.target - camera.eye));
             };
-            const double hair = projection == Camera::Projection::perspective ? 1e-3 : 0.0;
+            const double hair = projection == Camera::Projection::perspective ? 1e-6 : 0.0;
             CHECK(depth(planes.begin) == doctest::Approx(std::max(near, hair)).epsilon(1e-9));
             CHECK(depth(planes.end) == doctest::Approx(near + 7.0).epsilon(1e-9));
             CHECK((planes.middle >= 0.0 && planes.middle <= 1.0));
