@@ -18,6 +18,14 @@ std::string digits(double value)
     return text;
 }
 
+/// Integers with all of their digits.
+std::string intensity_in_words(double value)
+{
+    constexpr double MAX_EXACT = 9007199254740992.0;  // 2^53
+    if (value != std::floor(value) || std::abs(value) > MAX_EXACT) return digits(value);
+    return std::to_string(int64_t(value));
+}
+
 std::string spelled(const std::string& unit)
 {
     return unit == "um" ? "\u00b5m" : unit;
@@ -69,9 +77,9 @@ std::string place_in_words(const glm::dvec3& voxel, const VolumeInfo& volume)
 std::string value_in_words(const Reading& reading)
 {
     if (!reading.is_inside) return "outside";
-    std::string text = reading.intensity ? "value " + digits(*reading.intensity) : std::string("value ...");
+    std::string text = reading.intensity ? "value " + intensity_in_words(*reading.intensity) : std::string("value ...");
     if (reading.offset != 0.0)
-        text += std::string(reading.offset > 0.0 ? " + " : " - ") + digits(std::abs(reading.offset));
+        text += std::string(reading.offset > 0.0 ? " + " : " - ") + intensity_in_words(std::abs(reading.offset));
     return text;
 }
 

@@ -42,6 +42,15 @@ TEST_CASE("A reading is the place, the value and the group, in one line")
     reading.offset = -20.0;
     reading.group = 0;
     CHECK(in_words(reading, info, "") == "voxel 120, 80, 33 (60.45, 40.1, 67 mm): value 1234 - 20");
+    reading.intensity = 12083.0;
+    reading.offset = 65535.0;
+    CHECK(value_in_words(reading) == "value 12083 + 65535");
+    reading.intensity = -2147483648.0;
+    reading.offset = 0.0;
+    CHECK(value_in_words(reading) == "value -2147483648");
+    reading.intensity = 0.123456;
+    CHECK(value_in_words(reading) == "value 0.1235");
+    reading.offset = -20.0;
     reading.intensity.reset();
     CHECK(value_in_words(reading) == "value ... - 20");
     reading.is_inside = false;

@@ -90,11 +90,13 @@ SpacingDialog correcting;
 
 bool spacing_fields(glm::dvec3& spacing, std::string& unit)
 {
-    float sides[3] = {float(spacing.x), float(spacing.y), float(spacing.z)};
-    bool is_changed = ImGui::InputFloat3("size of a voxel: x, y, z", sides, "%g");
+    // In double, so that 0.1 is stored as it was typed.
+    glm::dvec3 sides = spacing;
+    bool is_changed =
+        ImGui::InputScalarN("size of a voxel: x, y, z", ImGuiDataType_Double, &sides.x, 3, nullptr, nullptr, "%.15g");
     if (is_changed)
         for (int axis = 0; axis < 3; ++axis)
-            if (sides[axis] != float(spacing[axis])) spacing[axis] = std::max(double(sides[axis]), 1e-12);
+            if (sides[axis] != spacing[axis]) spacing[axis] = std::max(sides[axis], 1e-12);
     is_changed |= ImGui::InputText("unit", &unit);
     hint("um, mm, ...; empty: unchanged");
     return is_changed;

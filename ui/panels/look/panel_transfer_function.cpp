@@ -298,7 +298,7 @@ void curve(const Model& model, WidgetState& state, Actions& actions)
 std::string digits(double value)
 {
     char text[32];
-    std::snprintf(text, sizeof text, "%.4g", value);
+    std::snprintf(text, sizeof text, value == std::floor(value) && std::abs(value) < 1e9 ? "%.0f" : "%.4g", value);
     return text;
 }
 
