@@ -14,6 +14,13 @@ def node(x, y, z, radius=2, group=1):
     return {"op": "node", "at": [x, y, z], "radius": radius, "group": group}
 
 
+class Help(CliTest):
+    def test_the_origin_of_each_space_is_said(self):
+        text = " ".join(self.check("export", "--help").stdout.split())
+        self.assertIn("the origin at the centre of voxel 0", text)
+        self.assertIn("the outer corner of voxel 0", text)
+
+
 class Export(CliTest):
     SIZE = [24, 20, 40]
     SPACING = [0.5, 1.0, 2.0]

@@ -109,7 +109,9 @@ void add_export(CLI::App& program)
     command->add_option("--mesh", options->mesh, "The trace as tubes (.obj, .ply)");
     command
         ->add_option("--space", options->space,
-                     "Of trace and mesh: physical, where other programs show the volume; or volume, voxel * spacing")
+                     "Of trace and mesh: physical, where other programs show the volume, with the origin at the centre "
+                     "of voxel 0 unless the file states another place; or volume, voxel * spacing, with the origin at "
+                     "the outer corner of voxel 0")
         ->check(CLI::IsMember({"physical", "volume"}));
     command->add_option("--metrics", options->metrics, "Counts, lengths, angles, radii, topology (.csv)");
     add_belief_option(*command, options->common);
