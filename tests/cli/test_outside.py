@@ -81,7 +81,7 @@ class Outside(CliTest):
         (self.project / "inner.mask").symlink_to("sub/there.mask")
         for mask in ("a.mask", "sub/../b.mask", "sub/c.mask", str(self.project / "d.mask"), "inner.mask"):
             self.check("annotate", self.session(mask=mask), "--script", self.script, "--fresh")
-        self.check("import", Volume.noise((8, 8, 8), seed=1).write(self.folder), self.folder / "made")
+        self.check("import", Volume.noise((24, 24, 24), seed=1).write(self.folder), self.folder / "made")
         self.check("annotate", self.folder / "made", "--script", self.script)
 
 

@@ -94,7 +94,7 @@ class Writers(Seen):
         session = self.write_ball(annotation={"mask": "../mine.mask"})
         session = session.rename(inside / session.name)
         self.open_project(session)
-        self.see("Read only: this session writes files outside its folder: annotation.mask, which is ")
+        self.see("Read only: this session writes files outside its folder")
         self.do("key", "ctrl+s", pause_s=0)
         self.see("Error: ", "Status")
         self.assertFalse(outside.exists())

@@ -68,7 +68,7 @@ TEST_CASE("temporary files are collected by owner and age; a writer's own name s
                                      "shvr-" + dead + "-1" + host,
                                      "a.mask"};
     for (const std::string& name : stay) make(name, NEW);
-    for (const std::string name : {".shvr-notes.tmp", ".shvr-" + dead + ".tmp"}) make(name, OLD);
+    for (const std::string& name : {std::string(".shvr-notes.tmp"), ".shvr-" + dead + ".tmp"}) make(name, OLD);
     make(".shvr-" + dead + "-3" + host, NEW);
     make(".shvr-" + dead + "-3-another.tmp", OLD);
     make(".shvr-" + dead + "-3.tmp", OLD);  // as earlier versions name them
