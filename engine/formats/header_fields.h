@@ -50,8 +50,8 @@ private:
     std::map<std::string, std::string> values_;
 };
 
-/// Returns the file that a header names: relative to the header's folder, or absolute. Headers are moved together with their
-/// data, also between systems: if there is no such file, but one of that name beside the header, it is that one.
+/// Returns the file that a header names: relative to the header's folder, or absolute. Headers are moved together with
+/// their data, also between systems: if there is no such file, but one of that name in its folder, that is taken.
 /// `stated` may be a path of Windows.
 std::filesystem::path file_stated(const std::filesystem::path& header, const std::string& stated);
 

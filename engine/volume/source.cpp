@@ -298,7 +298,7 @@ VolumeStatistics measure(const VolumeSource& source, const MeasureOptions& optio
 
 namespace {
 
-/// Whether outliers have the codes of the nearer end (window_for). What looks like integers is taken for such.
+/// Returns whether outliers have the codes of the nearer end (window_for). Whole extremes are taken for integers.
 bool are_clamped(const VolumeStatistics& statistics)
 {
     const auto [lower, upper] = statistics.range();

@@ -60,15 +60,15 @@ struct TraceComparison {
     /// Segments that stand for none of the truth and follow a part of it that another one follows, too: for longer than
     /// the surroundings of their ends or, if both join the same two nodes, for half of what one of them follows.
     int64_t doubled = 0;
-    /// Ends of the trace that lie near a traced branch of the truth, on the way to one with nothing traced in between, or
-    /// at one that another segment passes, and are not joined there.
+    /// Ends of the trace that lie near a traced branch of the truth, on the way to one with nothing traced in between,
+    /// or at one that another segment passes, and are not joined there.
     int64_t gaps = 0;
     /// Places along a segment of the truth between two parts that are traced and not joined to each other. A ring that
     /// is traced in part has one more.
     int64_t breaks = 0;
     /// Side branches with a loose end that are none of the above, and alone follow less than half of their length.
     int64_t spurs = 0;
-    /// Such segments without a loose end, or with two: small loops, rungs, pieces beside the trace.
+    /// Such segments without a loose end, or with two: small loops, rungs, pieces that are joined to nothing.
     int64_t superfluous = 0;
     int64_t topological_errors() const { return wrong + doubled + gaps + breaks + spurs + superfluous; }
     /// Distance from positions along the trace to the nearest position of the truth; null if either has no internodes.

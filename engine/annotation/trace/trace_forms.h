@@ -67,8 +67,8 @@ public:
     /// file does not state it.
     void to_volume_space(const std::optional<TraceSpace>& expected);
 
-    /// Records an oddity that was read past, and what was done about it ("left out"). Of each kind, which is what was
-    /// expected, the first is kept, with the number of all.
+    /// Records an oddity that was read past, and what was done about it ("left out"). Oddities of one kind expected the
+    /// same; the first of a kind is kept, with the number of all.
     void read_past(const Error& odd, const std::string& done);
     /// Runs `read`, and leaves out what it refuses.
     template <class Read>

@@ -170,7 +170,7 @@ private:
         return {};
     }
 
-    /// Empty if a sample is no number, or its position is none.
+    /// Returns nothing if a sample or its position cannot be read as a number.
     static std::vector<std::string> values_along(const std::vector<pugi::xml_node>& samples, bool is_uniform,
                                                  bool is_linear, const std::vector<double>& along)
     {
@@ -200,7 +200,7 @@ private:
         return values;
     }
 
-    /// How far along the polyline its points lie, in the file's numbers. Points that are no numbers are refused later.
+    /// Returns how far along the polyline its points lie, in the file's numbers. Malformed points are refused later.
     static std::vector<double> distances_along(const std::vector<pugi::xml_node>& points)
     {
         std::vector<double> along;

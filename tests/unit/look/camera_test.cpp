@@ -216,7 +216,7 @@ TEST_CASE("an eye inside the volume sees from just before itself")
     camera.target = camera.eye + glm::dvec3(0, 1, 0);
     const RayPlanes planes = ray_planes(camera, {64, 64}, volume);
     const Ray ray = ray_at(planes, 32, 32);
-    CHECK(ray.near_point.y - 5.0 == doctest::Approx(0.5e-3).epsilon(1e-9));
+    CHECK(ray.near_point.y - 5.0 == doctest::Approx(0.5e-6).epsilon(1e-6));
     camera.projection = Camera::Projection::orthographic;
     const Ray parallel = ray_at(ray_planes(camera, {64, 64}, volume), 32, 32);
     CHECK(parallel.near_point.y == 5.0);

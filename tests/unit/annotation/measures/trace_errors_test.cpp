@@ -153,7 +153,7 @@ TEST_CASE("a trace that is a little longer or shorter than the truth has no spur
     }
 }
 
-TEST_CASE("small loops, rungs and pieces beside the trace are superfluous, and short cuts double it")
+TEST_CASE("small loops, rungs and loose pieces are superfluous, and short cuts double it")
 {
     Drawing short_cut = tube(), loop = tube(), beside = tube(), rung;
     short_cut.link(short_cut.at({20, 0, 0}), short_cut.at({24, 0, 0}));
