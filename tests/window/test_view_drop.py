@@ -100,7 +100,7 @@ class Drop(Seen):
         self.told("mask.nrrd is taken")
         self.drop(mask)
         self.see("Open as another scan", "Scan or annotation?")
-        self.press("Escape")
+        self.click_on("Cancel", "Scan or annotation?")
         self.see_no_more("Open as another scan")
         self.wait_for_window("sphere.* - SHVR")
         report = self.finish()
