@@ -159,7 +159,7 @@ ImportResult run(const ImportTask& task, ProgressReporter& reporter)
     if (hold && !hold->doubtful().empty())
         throw JournalTaken(sentence(hold->journal().string(), ": is open for writing in ",
                                     in_words(hold->doubtful().front()),
-                                    "; expected nobody else to be writing a project that is to be replaced"));
+                                    "; expected no writer of a project that is to be replaced"));
     if (task.overwrite) refuse_own_source(task);
     const Clock::time_point begin = Clock::now();
     const std::unique_ptr<VolumeSource> source = open_as_told(task);

@@ -24,7 +24,7 @@ class Writers(CliTest):
         self.lock = self.folder / "session.journal.lock"
 
     def is_marked_by(self, program):
-        marks = self.folder.glob(f"session.journal.*.{program.pid}.*.lock")
+        marks = self.lock.parent.glob(f"session.journal.*.{program.pid}.*.lock")
         return any(f"process: {program.pid}\n" in mark.read_text() for mark in marks)
 
     def begin(self, *arguments, **environment):

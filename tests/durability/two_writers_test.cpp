@@ -1,5 +1,5 @@
-// Two processes on one project, in every order of opening, working, saving, closing and being killed, the one that is not
-// at its turn stopped: one writes at a time, the other is refused at opening, all acknowledged work is there in the end,
+// Two processes on one project, in every order of opening, working, saving, closing and being killed, the other one
+// stopped meanwhile: one writes at a time, the other is refused at opening, all acknowledged work is there in the end,
 // both can always be closed, and nothing is left. The same whatever locks of the system do.
 
 #include <cstdlib>

@@ -14,8 +14,8 @@ namespace shvr::test {
 
 /// Orders to a process.
 constexpr char OPEN = 'o', WORK = 'w', SAVE = 's', CLOSE = 'c', KILL = 'k';
-/// Its answers. TOLD: done, and told of what was not as expected. PAUSED: before a call that changes files; it continues
-/// when told GO.
+/// Its answers. TOLD: done, with a notice of what was not as expected. PAUSED: before a call that changes files; it
+/// continues at the order GO.
 constexpr char DONE = 'd', TOLD = 'n', TAKEN = 't', FAILED = 'f', PAUSED = 'p', GO = 'g';
 
 class WriterProcess {

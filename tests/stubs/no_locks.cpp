@@ -1,6 +1,6 @@
-// A file system whose locks do not work, loaded before the C library (LD_PRELOAD). SHVR_LOCKS, read at each call: ENOSYS,
-// ENOLCK or ENOTSUP is the reason for which every lock is refused; with "hollow" every lock is granted, also a second
-// one. SHVR_HOST is the name of the computer.
+// A file system whose locks do not work, loaded before the C library (LD_PRELOAD). SHVR_LOCKS, read at each call:
+// ENOSYS, ENOLCK or ENOTSUP is the reason for which every lock is refused; with "hollow" every lock is granted, also a
+// second one. SHVR_HOST is the name of the computer.
 
 #include <array>
 #include <cerrno>

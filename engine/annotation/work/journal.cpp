@@ -117,7 +117,7 @@ Journal::Journal(const fs::path& path, JournalScan before, std::shared_ptr<const
     records_ = std::move(before.records);
     last_ = records_.size();
     try {
-        // Only now: whoever claims the journal later finds this file, and leaves it to this process.
+        // Only now: a process that claims the journal later finds this file, and leaves it to this process.
         if (hold_ && !hold_->is_kept()) refuse_changed(path, before);
         if (end_ == 0 || end_ < before.file_bytes || !before.head.empty()) begin(free_rest(path), before.head);
     } catch (...) {

@@ -7,8 +7,8 @@
 //
 // While writing fails, nothing is lost and no caller waits: records stay in memory, `failure` states the reason, and
 // writing is retried every second. Only one process writes a journal: the one that holds it (hold.h), which also locks
-// the file itself, for older programs. A file that is there is written only by whoever held the journal before it was
-// opened and after; a new one is created exclusively.
+// the file itself, for older programs. An existing file is written only by the process that held the journal before and
+// after it opened the file; a new one is created exclusively.
 //
 // One thread appends; any thread may query.
 

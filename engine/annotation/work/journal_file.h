@@ -91,7 +91,7 @@ constexpr size_t MAGIC_BYTES = 8, VERSION_BYTES = 4, RECORD_HEADER_BYTES = 40;
 /// The record at the beginning of `bytes`, with `content_at` relative to it; null if it is cut or damaged.
 struct ParsedRecord {
     JournalRecord record;
-    size_t bytes = 0;  ///< of the whole record
+    size_t bytes = 0;  ///< size of the whole record
 };
 std::optional<ParsedRecord> parse_record(std::span<const std::byte> bytes, uint64_t checksum_before);
 

@@ -77,8 +77,8 @@ Bytes sound_repetition(Bytes begin)
     return *at == front.size() + RECORD_HEADER_BYTES ? front : Bytes{};
 }
 
-/// Journals that state another version, in undamaged bytes, are from newer programs. Their numbers must differ from 1 in
-/// two bits at least.
+/// Journals that state another version, in undamaged bytes, are from newer programs. Their numbers must differ from
+/// 1 in two bits at least.
 bool is_newer(Bytes begin)
 {
     const std::vector<std::byte> header = journal_header();

@@ -31,7 +31,7 @@ constexpr size_t MAX_HEAD_BYTES = 65536;
 /// The content of the record `head`, for a journal whose first record has this content.
 std::vector<std::byte> repeated_head(std::span<const std::byte> subject);
 
-/// `begin`: the file's first bytes, at most MAX_HEAD_BYTES. Returns the bytes that should be at the beginning if some of
+/// `begin`: the file's first bytes, at most MAX_HEAD_BYTES. Returns the bytes that should stand there if some of
 /// them are damaged; nothing if none is, or if nothing is known about them. Fails with JournalDamaged.
 std::vector<std::byte> repaired_head(std::span<const std::byte> begin, const std::filesystem::path& path);
 

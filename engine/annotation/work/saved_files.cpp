@@ -195,8 +195,11 @@ std::optional<fs::path> put_in_place(const fs::path& file, const fs::path& path)
 {
     std::optional<fs::path> old;
     std::error_code ignored;
-    if (fs::exists(fs::symlink_status(path, ignored))) old = set_aside(path);
-    while (!rename_to_free(file, path)) old = set_aside(path);
+    while (!rename_to_free(file, path)) try {
+            old = set_aside(path);
+        } catch (const Error&) {  // another process may have renamed it just now
+            if (fs::exists(fs::symlink_status(path, ignored))) throw;
+        }
     sync_folder(path);
     return old;
 }

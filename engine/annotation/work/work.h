@@ -94,7 +94,7 @@ public:
     /// on this work only looks; `claimed` says why, and where its journal is kept.
     bool look_for_claim();
     const std::string& claimed() const { return claimed_; }
-    const std::string& claimed_by() const { return claimed_by_; }  ///< as in `in_words`; empty: nobody
+    const std::string& claimed_by() const { return claimed_by_; }  ///< as in `in_words`; empty: no process
     /// Null if there is none.
     std::shared_ptr<Hold> hold() const { return hold_; }
 

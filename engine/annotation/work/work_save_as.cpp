@@ -81,7 +81,7 @@ void Work::SavingAs::write(const std::function<void()>& save_session, const Prog
     if (before_ && !hold) fail(files_.journal.string(), ": cannot be written: ", reason_of(error));
     if (hold && !hold->doubtful().empty())
         throw JournalTaken(sentence(files_.journal.string(), ": is open for writing in ",
-                                    in_words(hold->doubtful().front()), "; expected nobody else to use this name"));
+                                    in_words(hold->doubtful().front()), "; expected this name to be free"));
     expect_free(files_, session_);  // checked again
     Made made;
     double done = 0.0;

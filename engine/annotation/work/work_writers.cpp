@@ -1,4 +1,4 @@
-// The work beside other writers: their claims, their journals, and this one's place.
+// Other writers of the work's journal: their claims, their files, and the place of this one.
 
 #include <sys/stat.h>
 
@@ -56,13 +56,13 @@ void Work::tell_doubtful(std::vector<Notice>& notices) const
     for (const Holder& holder : hold_->doubtful())
         notices.push_back(
             {sentence(files_.journal.string(), ": is open for writing in ", in_words(holder),
-                      "; expected nobody else to be writing it; the first change here continues in a copy",
+                      "; expected no other writer; the first change here continues in a copy",
                       is_there(files_.journal) ? " and leaves this file to it, as " + old_of(files_.journal).string()
                                                : std::string()),
              true});
 }
 
-/// Where nobody can tell whether others have ended, their file is never written again by this process: it continues in a
+/// Where it is unknown whether others have ended, their file is never written again by this process: it continues in a
 /// copy, which it alone created.
 void Work::leave_journal_to_others()
 {

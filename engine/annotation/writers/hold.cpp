@@ -250,7 +250,7 @@ std::shared_ptr<Hold> Hold::take(const fs::path& journal, std::string_view progr
     }
 }
 
-/// Returns false if another process is just looking itself, unless this is the last try; fails if one holds the journal.
+/// Returns false if another process is looking, too, unless this is the last try; fails if one holds the journal.
 bool Hold::looks_alone(bool is_last_try)
 {
     std::optional<std::vector<WriterMark>> marks = marks_of(journal_, mark_);

@@ -1,9 +1,9 @@
 #pragma once
 // The single writer of a journal: from opening for writing until closing, one process holds it. Two means tell others:
 //
-// - A mark of its own beside the journal (writer_mark.h), which no other process can create or mistake. It alone decides
-//   who may write: a process that finds the mark of a running one is refused. Where nobody can tell whether the owner
-//   has ended, the journal's file is never written by anybody else: who comes later continues in a copy (`claim`).
+// - Its own mark in the journal's folder (writer_mark.h), which no other process can create or mistake. Marks alone
+//   decide which process may write: one that finds the mark of a running process is refused. If it is unknown whether
+//   the owner has ended, the journal's file is never written by another one: a later one continues in a copy (`claim`).
 // - A lock of the system on JOURNAL.lock (open file description), where the file system has locks: it ends with the
 //   process, other computers see it, and older programs know it.
 //
@@ -33,7 +33,7 @@ struct Holder {
     std::string process;  ///< process id
     std::string host, user;
     std::string since;            ///< local time, "2026-11-22 13:20:05"
-    bool may_have_ended = false;  ///< nobody here can tell
+    bool may_have_ended = false;  ///< not known on this computer
 };
 /// "shvr annotate, process 4711 on lab3 of user ada, since 2026-11-22 13:20:05"
 std::string in_words(const Holder& holder);
@@ -55,7 +55,7 @@ public:
     bool is_kept() const;
     /// Another process that writes the journal now. Null if none does.
     std::optional<Holder> successor() const;
-    /// The name of a file beside the journal that no other process uses.
+    /// The name of a file in the journal's folder that no other process uses.
     std::filesystem::path own_name() const;
     /// Releases the lock only, so that this process can take another hold after it has lost this one.
     void unlock() { lock_.reset(); }

@@ -18,7 +18,7 @@ std::string boot_name();
 uint64_t process_space();
 
 /// When a process began, in the kernel's ticks since boot: with the number, it identifies the process. Null if it has
-/// ended (also if nobody has waited for it yet); 0 if that cannot be determined.
+/// ended (also if its parent has not waited for it yet); 0 if that cannot be determined.
 std::optional<uint64_t> start_of(pid_t process);
 
 /// Whether a folder is on a disk of one computer, so that every process that can reach it runs on that computer's

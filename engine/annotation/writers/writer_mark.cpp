@@ -30,7 +30,7 @@ fs::path folder_of(const fs::path& journal)
     return journal.has_parent_path() ? journal.parent_path() : fs::path(".");
 }
 
-/// The beginning of the names of a journal's marks. Of a long name, a part and a checksum (FNV-1a) of all.
+/// The beginning of the names of a journal's marks. A long name is cut, and followed by its checksum (FNV-1a).
 std::string beginning_of(const fs::path& journal)
 {
     const std::string name = journal.filename().string();

@@ -1,10 +1,10 @@
 #pragma once
-// Marks of the processes that may write a journal: files beside it, each created exclusively by one process and named
-// after it, so that no two processes ever mean the same file by a name, and a name is never used again:
+// Marks of the processes that may write a journal: files in its folder, each created exclusively by one process and
+// named after it, so that no two processes ever mean the same file by a name, and a name is never used again:
 //
 //     JOURNAL.HOST.PROCESS.KERNEL.START.FOLDER.COUNT.lock
 //
-// A process makes its mark, then looks for others. Of two processes at least the later one sees the other, without any
+// A process makes its mark, then looks for others. At least the later one of two processes sees the other, without any
 // lock of the system. Whether the owner of a mark has ended follows from its name; across computers it often does not.
 //
 // Any thread may call these.

@@ -1,4 +1,4 @@
-// Work beside writers of which nobody can tell whether they have ended: both journals are kept, and both are told.
+// Another writer of which it is unknown whether it has ended: both journals are kept, and both report.
 
 #include <unistd.h>
 
