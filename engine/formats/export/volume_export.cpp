@@ -76,8 +76,10 @@ std::string nrrd_header(const std::filesystem::path& path, const VolumeInfo& inf
         value_of(kept, "dimension") == "3" && words_of(value_of(kept, "sizes")) == words_of(digits_of(info.size));
     for (const NrrdPair& field : kept.fields)
         if (is_kept(field.key, has_same_axes, states_place(info))) header += field.key + ": " + field.value + "\n";
-    std::erase_if(kept.pairs, [](const NrrdPair& pair) { return pair.key == NRRD_CONTENT_KEY; });
-    if (info.format == "mask" || info.format == "offsets") set_pair(kept.pairs, NRRD_CONTENT_KEY, info.format);
+    if (info.format == "mask" || info.format == "offsets")
+        set_pair(kept.pairs, NRRD_CONTENT_KEY, info.format);
+    else
+        std::erase_if(kept.pairs, [](const NrrdPair& pair) { return pair.key == NRRD_CONTENT_KEY; });
     for (const NrrdPair& pair : pairs) set_pair(kept.pairs, pair.key, pair.value);
     for (const NrrdPair& pair : kept.pairs) header += spelled(pair) + "\n";
     return header + "\n";
