@@ -1,11 +1,22 @@
 # Test programs, the libraries they load, and an entry of ctest for each file of tests.
 
+# Mesa keeps the kernels that it compiled beside the objects of the compiler cache, so that a fresh clone finds both: to
+# compile all kernels of the tests again takes minutes. Without a home they stay in the build folder.
+set(mesa_cache ${CMAKE_BINARY_DIR}/cache)
+if(DEFINED ENV{XDG_CACHE_HOME})
+    set(mesa_cache $ENV{XDG_CACHE_HOME}/shvr-tests)
+elseif(DEFINED ENV{HOME})
+    set(mesa_cache $ENV{HOME}/.cache/shvr-tests)
+endif()
+file(MAKE_DIRECTORY ${mesa_cache})
+
 set(test_environment
     LC_ALL=C PYTHONDONTWRITEBYTECODE=1
     # Caches of the program and of the driver, apart from the user's own. Tests of the program take new folders for
-    # the first (tests/cli/harness.py); compiled shaders are shared by the whole run.
+    # the first (tests/cli/harness.py); compiled kernels are shared by all runs.
     XDG_CACHE_HOME=${CMAKE_BINARY_DIR}/cache
-    MESA_SHADER_CACHE_DIR=${CMAKE_BINARY_DIR}/cache
+    MESA_SHADER_CACHE_DIR=${mesa_cache}
+    MESA_SHADER_CACHE_MAX_SIZE=512M
     # lavapipe's fast 8-bit sampling is less exact than the references allow.
     GALLIVM_PERF=no_aos_sampling
     # Hazards between submissions too, of which there is one for each tile and each frame.
