@@ -2,6 +2,7 @@
 
 #include "engine/projects/import_sparse.h"
 
+#include <algorithm>
 #include <map>
 #include <random>
 #include <set>
@@ -29,9 +30,17 @@ public:
     void read(const VoxelBox& box, std::span<std::byte> voxels) const override
     {
         T* to = reinterpret_cast<T*>(voxels.data());
+        const int64_t width = stored_.block.x;
         for (int64_t z = box.lower.z; z < box.upper.z; ++z)
             for (int64_t y = box.lower.y; y < box.upper.y; ++y)
-                for (int64_t x = box.lower.x; x < box.upper.x; ++x) *to++ = at({x, y, z});
+                for (int64_t x = box.lower.x; x < box.upper.x;) {
+                    const int64_t end = std::min(box.upper.x, (x / width + 1) * width);
+                    if (!is_stored_.contains(index_of(Size3(x, y, z) / stored_.block)))
+                        to = std::fill_n(to, end - x, T(0));
+                    else
+                        for (int64_t i = x; i < end; ++i) *to++ = label_at({i, y, z});
+                    x = end;
+                }
     }
     std::optional<StoredBlocks> stored_blocks(int level, int64_t) const override
     {
@@ -47,9 +56,8 @@ private:
         return info;
     }
     static int64_t index_of(const Size3& block) { return block.x + 4096 * (block.y + 4096 * block.z); }
-    T at(const Size3& voxel) const
+    T label_at(const Size3& voxel) const
     {
-        if (!is_stored_.contains(index_of(voxel / stored_.block))) return 0;
         const auto number = uint32_t(voxel.x / 3 + 31 * (voxel.y / 2) + 977 * voxel.z) * 2654435761U;
         return static_cast<T>(number >> 20) % static_cast<T>(labels_);
     }
