@@ -97,7 +97,7 @@ struct SlowlyRead {
         session.render.sampling = Sampling::exact;
         session.render.detail = 0.0;
         session.render.paging = Paging::always;
-        session.light.occlusion = {.strength = 0.8, .radius = 6.0, .rays = 8};
+        session.light.occlusion = {.strength = 0.8, .radius = 4.0, .rays = 2};
         renderer.load(tubes, {.minimum = 0.0, .maximum = 255.0}, session.render);
         expected = renderer.render(session, camera).image;
         gated->let(ALL);
@@ -150,7 +150,7 @@ TEST_CASE("a picture in parts has the bits of one drawn whole, resident and with
     session.render.size = {101, 77};
     session.render.sampling = Sampling::exact;
     session.render.detail = 0.0;
-    session.light.occlusion = {.strength = 0.8, .radius = 6.0, .rays = 8};
+    session.light.occlusion = {.strength = 0.8, .radius = 4.0, .rays = 2};
     session.blend = {.size = 0.5};
     const ProbeLook probe{.center = {60.0, 66.0, 70.0},
                           .radius = 25.0,
@@ -210,13 +210,13 @@ TEST_CASE("rays that wait for bricks wait for no disk where a step must not, who
     Session session;
     session.transfer_function =
         TransferFunction({{50.0, glm::dvec3(0.9, 0.2, 0.1), 1e-4}, {170.0, glm::dvec3(0.3, 0.4, 1.0), 5e-4}});
-    session.render.size = {4, 3};
+    session.render.size = {2, 2};
     session.render.sampling = Sampling::exact;
     const Camera camera = camera_along({.size = {7424, 34, 20}}, {1.0, 0.001, 0.0005}, 16.0);
     ImageF unlit;
     for (const bool is_lit : {false, true}) {
         CAPTURE(is_lit);
-        if (is_lit) session.light.occlusion = {.strength = 1.0, .radius = 24.0, .rays = 4, .curve = 50.0};
+        if (is_lit) session.light.occlusion = {.strength = 1.0, .radius = 24.0, .rays = 1, .curve = 50.0};
         Renderer large({.device = {.validation = true}, .threads = 2});
         large.load(fog, {.minimum = 0.0, .maximum = 255.0}, session.render, is_lit);
         const ImageF expected = large.render(session, camera).image;

@@ -7,6 +7,7 @@
 
 #include "engine/base/image_metrics.h"
 #include "tests/support/gpu.h"
+#include "tests/support/nap.h"
 
 using namespace shvr;
 using namespace shvr::test;
@@ -16,6 +17,7 @@ namespace {
 void settle(Screen& screen)
 {
     for (int i = 0; !screen.complete(); ++i) {
+        nap(i);
         REQUIRE(i < 10'000'000);
         screen.advance();
     }

@@ -11,6 +11,7 @@
 #include "engine/live/view.h"
 #include "engine/passes/encode.h"
 #include "tests/support/gpu.h"
+#include "tests/support/nap.h"
 
 using namespace shvr;
 using namespace shvr::test;
@@ -33,6 +34,7 @@ public:
     static void settle(View& view)
     {
         for (int i = 0; !view.complete(); ++i) {
+            nap(i);
             REQUIRE(i < 10'000'000);
             view.advance();
         }
@@ -168,6 +170,7 @@ TEST_CASE_FIXTURE(Seen,
         view.look(session, camera({1, 2, 3}), pixels());
         std::set<size_t> seen;
         for (int i = 0; !view.complete(); ++i) {
+            nap(i);
             REQUIRE(i < 10'000'000);
             view.advance();
             seen.insert(view.layers().size() > 1 ? sharp_pixels(view) - pixels().x * pixels().y : 0);

@@ -14,6 +14,7 @@
 #include "engine/session/session_keys.h"
 #include "engine/session/session_patch.h"
 #include "engine/volume/content_hash.h"
+#include "tests/support/nap.h"
 
 namespace shvr::test {
 
@@ -131,10 +132,8 @@ void settle(ui::Workbench& bench)
     constexpr int TURNS_OF_OPEN_STROKE = 100;  // which is work as long as it is open
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(120);
     for (int turn = 0; bench.has_work() || turn < 3; ++turn) {
-        if (turn % 1024 == 1023) {  // a job takes its time
-            if (std::chrono::steady_clock::now() > end) FAIL("the work does not end");
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        }
+        if (turn % 1024 == 1023 && std::chrono::steady_clock::now() > end) FAIL("the work does not end");
+        nap(turn);
         if (turn > TURNS_OF_OPEN_STROKE && bench.is_open() && bench.document().annotator.stroke_is_open()) return;
         bench.advance();
     }

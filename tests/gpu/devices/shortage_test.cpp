@@ -13,6 +13,7 @@
 #include "engine/base/image_metrics.h"
 #include "engine/live/view.h"
 #include "tests/support/gpu.h"
+#include "tests/support/nap.h"
 #include "tests/support/slow.h"
 #include "tests/support/stored_volume.h"
 
@@ -52,6 +53,7 @@ struct Shown {
 void settle(View& view)
 {
     for (int i = 0; !view.complete(); ++i) {
+        nap(i);
         REQUIRE(i < 10'000'000);
         view.advance();
     }
@@ -254,7 +256,7 @@ TEST_CASE("whichever submission of a view fails, it comes to rest on the same pi
         Renderer renderer({.device = {.validation = true}, .budget = {256 * MIB, 0}, .threads = 1});
         Shown shown({96, 64});
         shown.session.render.paging = paging;
-        shown.session.light.occlusion = {.strength = 0.8, .radius = 6.0, .rays = 8, .automatic = true};
+        shown.session.light.occlusion = {.strength = 0.8, .radius = 4.0, .rays = 2, .automatic = true};
         shown.session.surfaces = {{{10, 10, 10}, {60, 50, 55}, 2.0, 6.0, glm::dvec3(0.1, 0.9, 0.3)}};
         shown.paint(3);
         const auto load = [&] {
@@ -281,6 +283,7 @@ TEST_CASE("whichever submission of a view fails, it comes to rest on the same pi
             let_fail(number > 0 ? sentence("vkQueueSubmit2:", number, ":out_of_host_memory") : std::string());
             int failures = 0;
             for (int i = 0; !view.complete(); ++i) {
+                nap(i);
                 REQUIRE(i < 10'000'000);
                 try {
                     view.advance();

@@ -30,7 +30,7 @@ struct Stacked {
     Stacked(const Size3& size, std::vector<glm::dvec3> path)
         : source(stored_volume("tubes", size, 5)),
           camera(camera_looking("right", source->info())),
-          op{.brush = Brush::fill, .group = 3, .threshold = 60.0, .radius_voxels = 30.0, .path = std::move(path)}
+          op{.brush = Brush::fill, .group = 3, .threshold = 60.0, .radius_voxels = 12.0, .path = std::move(path)}
     {
         session.light.shaded = true;
         session.render.detail = 0.0;
@@ -60,7 +60,7 @@ struct Stacked {
         CHECK(std::ranges::count(has_bricks, true) == ptrdiff_t(images));
         if (lights) {
             Session lit = session;
-            lit.light.occlusion = {.strength = 0.9, .radius = 6.0, .rays = 8};
+            lit.light.occlusion = {.strength = 0.9, .radius = 4.0, .rays = 2};
             const Picture picture = renderer.render(lit, camera);
             for (const std::string& warning : picture.warnings) MESSAGE(warning);
             if (picture.warnings.empty()) made.lit = picture.image;

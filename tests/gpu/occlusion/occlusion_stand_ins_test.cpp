@@ -7,6 +7,7 @@
 #include "engine/live/view.h"
 #include "engine/volume/procedural/source_procedural.h"
 #include "tests/support/gpu.h"
+#include "tests/support/nap.h"
 
 using namespace shvr;
 using namespace shvr::test;
@@ -27,6 +28,7 @@ Shown view_at_rest(const std::shared_ptr<const VolumeSource>& source, const Sess
     View view(renderer);
     view.look(session, camera, session.render.size);
     for (int i = 0; !view.complete(); ++i) {
+        nap(i);
         REQUIRE(i < 100'000'000);
         view.advance();
     }

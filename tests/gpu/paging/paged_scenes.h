@@ -12,6 +12,7 @@
 
 #include "engine/live/view.h"
 #include "tests/support/gpu.h"
+#include "tests/support/nap.h"
 #include "tests/support/stored_volume.h"
 
 namespace shvr::test {
@@ -125,6 +126,7 @@ inline Camera turned(const VolumeInfo& info, double degrees)
 inline void settle(View& view)
 {
     for (int i = 0; !view.complete(); ++i) {
+        nap(i);
         REQUIRE(i < 10'000'000);
         view.advance();
     }

@@ -7,6 +7,7 @@
 
 #include "engine/base/file.h"
 #include "tests/support/gpu.h"
+#include "tests/support/nap.h"
 #include "tests/support/volume_files.h"
 #include "tests/support/workbench_state.h"
 
@@ -229,7 +230,10 @@ struct Bench {
         bench->perform(action_of(line));
         settle(*bench);
         // Until the device has answered for what the open stroke covers.
-        while (bench->model().is_painting && bench->model().undoable == steps) bench->advance();
+        for (int turn = 0; bench->model().is_painting && bench->model().undoable == steps; ++turn) {
+            nap(turn);
+            bench->advance();
+        }
     }
     /// FOLDER in the line stands for the scan's.
     Action action_of(std::string line) const
