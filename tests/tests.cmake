@@ -1,6 +1,6 @@
 # Test programs, the libraries they load, and an entry of ctest for each file of tests.
 
-# Mesa keeps the kernels that it compiled beside the objects of the compiler cache, so that a fresh clone finds both: to
+# Mesa keeps the kernels that it compiled next to the objects of the compiler cache, so that a fresh clone finds both: to
 # compile all kernels of the tests again takes minutes. Without a home they stay in the build folder.
 set(mesa_cache ${CMAKE_BINARY_DIR}/cache)
 if(DEFINED ENV{XDG_CACHE_HOME})
