@@ -385,9 +385,9 @@ void Scene::renew_density()
 
 void Scene::show_surfaces(std::vector<SurfaceLook> surfaces, const TraceGraph& trace, const Groups& groups)
 {
-    std::vector<KeyedSurface> all = keyed(surfaces);
-    const std::vector<KeyedSurface> of_trace = surfaces_of(trace, groups, info().spacing);
-    all.insert(all.end(), of_trace.begin(), of_trace.end());
+    std::vector<KeyedSurface> all = surfaces_of(trace, groups, info().spacing);
+    const std::vector<KeyedSurface> of_session = keyed(surfaces);
+    all.insert(all.begin(), of_session.begin(), of_session.end());
     if (!surfaces_.restyle(all, info())) surfaces_.set(SurfaceForest(std::move(all), info()));
     trace_look_ = TraceLook{std::move(surfaces), groups};
 }

@@ -1,8 +1,10 @@
 """shvr annotate: nodes and internodes by script; saved, continued, undone."""
+import os
+import subprocess
 import unittest
 import xml.etree.ElementTree as ElementTree
 
-from harness import CliTest
+from harness import ENVIRONMENT, IS_SLOW, SHVR, CliTest
 
 NAMESPACE = "{http://graphml.graphdrawing.org/xmlns}"
 
@@ -164,6 +166,25 @@ class Trace(CliTest):
                            says=["far.jsonl:2: the node at -30 12 12 is 30 voxel widths outside the volume of 24 x 24 x 24"])
         script = self.write_script("moved.jsonl", [{"op": "select", "node": 0}, {"op": "move", "to": [5, 5, 1e6]}])
         self.check_refused("annotate", self.session, "--script", script, "--quiet", says=["moved.jsonl:2", "outside the volume"])
+
+    def peak_memory(self, nodes):
+        """Of tracing and saving a zigzag of nodes, in bytes."""
+        script = self.write_script("long.jsonl", [node(1 + i % 22, 1 + i // 22 % 22, 1 + i // 484 % 22)
+                                                  for i in range(nodes)] + [{"op": "save"}])
+        for old in self.folder.glob("long.journal*"):
+            old.unlink()
+        session = self.write_session("long.json", volume={"procedural": "constant", "size": [24, 24, 24]},
+                                     annotation={"mask": "long.mask"})
+        with subprocess.Popen([SHVR, "annotate", session, "--script", script, "--fresh", "--json"], env=ENVIRONMENT,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+        self.assertEqual(process.returncode, 0)
+        return 1024 * usage.ru_maxrss
+
+    def test_memory_of_a_long_trace_is_bounded(self):
+        nodes, most_mib = (100_000, 300) if IS_SLOW else (8_000, 40)
+        self.assertLess(self.peak_memory(nodes) - self.peak_memory(1), most_mib << 20)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,7 @@
 // shvr: one binary with a sub-command for each task.
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -103,10 +105,18 @@ int report(const char* message, Exit status)
     return status;
 }
 
+/// Large blocks go back to the system when they are freed. By default glibc raises the size from which it maps blocks
+/// up to 32 MiB, and lists that grow (the surfaces of a trace) leave holes that nothing fits: 115 MB at 40,000 nodes.
+void keep_heap_compact()
+{
+    static_cast<void>(::mallopt(M_MMAP_THRESHOLD, 1 << 20));
+}
+
 }  // namespace
 
 int main(int argc, char** argv)
 {
+    keep_heap_compact();
     shvr::cli::open_standard_streams();
     shvr::cli::end_in_words();
     try {

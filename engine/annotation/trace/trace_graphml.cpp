@@ -251,10 +251,30 @@ void add_statements(pugi::xml_node& graph, const TraceWriting& writing)
     add_data(graph, "next_internode", std::to_string(trace.next_internode()));
 }
 
-void add_nodes(pugi::xml_node& graph, const TraceWriting& writing)
+/// Writes elements of the graph one at a time: a whole document takes 1.6 KB a node.
+class ElementWriter {
+public:
+    explicit ElementWriter(std::string& text) { writer_.text.swap(text); }
+    pugi::xml_node begin(const char* name) { return document_.append_child(name); }
+    void end()
+    {
+        document_.first_child().print(writer_, INDENT, pugi::format_default, pugi::encoding_auto, DEPTH);
+        document_.remove_children();
+    }
+    std::string take() { return std::move(writer_.text); }
+
+    static constexpr const char* INDENT = " ";
+
+private:
+    static constexpr unsigned DEPTH = 2;  ///< depth of elements inside graphml and graph
+    pugi::xml_document document_;
+    StringWriter writer_;
+};
+
+void write_nodes(ElementWriter& writer, const TraceWriting& writing)
 {
     for (const auto& [number, node] : writing.trace.nodes()) {
-        pugi::xml_node element = graph.append_child("node");
+        pugi::xml_node element = writer.begin("node");
         element.append_attribute("id") = ("n" + std::to_string(number)).c_str();
         add_data(element, "x", digits_of(node.position.x));
         add_data(element, "y", digits_of(node.position.y));
@@ -262,20 +282,24 @@ void add_nodes(pugi::xml_node& graph, const TraceWriting& writing)
         add_data(element, "radius", digits_of(node.radius));
         add_data(element, "group", std::to_string(node.group));
         // Positions computed from the values above would lack the last bits.
-        if (!writing.exact) continue;
-        const glm::dvec3& exact = writing.exact->node(number).position;
-        if (position_of(writing.space, node.position) != exact) add_data(element, "volume_position", digits_of(exact));
+        if (writing.exact) {
+            const glm::dvec3& exact = writing.exact->node(number).position;
+            if (position_of(writing.space, node.position) != exact)
+                add_data(element, "volume_position", digits_of(exact));
+        }
+        writer.end();
     }
 }
 
-void add_edges(pugi::xml_node& graph, const TraceGraph& trace)
+void write_edges(ElementWriter& writer, const TraceGraph& trace)
 {
     for (const auto& [number, internode] : trace.internodes()) {
-        pugi::xml_node element = graph.append_child("edge");
+        pugi::xml_node element = writer.begin("edge");
         element.append_attribute("id") = ("e" + std::to_string(number)).c_str();
         element.append_attribute("source") = ("n" + std::to_string(internode.a)).c_str();
         element.append_attribute("target") = ("n" + std::to_string(internode.b)).c_str();
         add_data(element, "group", std::to_string(internode.group));
+        writer.end();
     }
 }
 
@@ -294,11 +318,15 @@ std::string write_trace_graphml(const TraceWriting& writing)
     graph.append_attribute("id") = "trace";
     graph.append_attribute("edgedefault") = "undirected";
     add_statements(graph, writing);
-    add_nodes(graph, writing);
-    add_edges(graph, writing.trace);
-    StringWriter writer;
-    document.save(writer, " ");
-    return std::move(writer.text);
+    StringWriter frame;
+    document.save(frame, ElementWriter::INDENT);
+    const size_t end = frame.text.rfind(" </graph>");
+    const std::string closing = frame.text.substr(end);
+    frame.text.resize(end);
+    ElementWriter writer(frame.text);
+    write_nodes(writer, writing);
+    write_edges(writer, writing.trace);
+    return writer.take() + closing;
 }
 
 void read_trace_graphml(TraceReader& reader, std::string_view text)
