@@ -1,0 +1,19 @@
+"""tools/cost_growth: work on sparse volumes of constant content does not grow with their side."""
+import subprocess
+import unittest
+
+from harness import ENVIRONMENT, SHVR, TIMEOUT_S, CliTest
+
+
+class CostGrowth(CliTest):
+    def test_exponents_are_within_their_bounds(self):
+        result = subprocess.run(["tools/cost_growth", "--check", "--shvr", SHVR], capture_output=True, text=True,
+                                timeout=TIMEOUT_S, env=ENVIRONMENT)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        rows = {line.split(" | ")[0][2:]: line.split(" | ")[5] for line in result.stdout.splitlines()[2:]}
+        bounded = [name for name, bound in rows.items() if bound != "none"]
+        self.assertEqual(bounded, ["info", "render", "label", "label to .zarr"])
+
+
+if __name__ == "__main__":
+    unittest.main()
