@@ -27,7 +27,7 @@ struct AppOptions {
     gpu::Budget budget;
     int threads = 0;
     bool validation = false;
-    const std::atomic<bool>* stop = nullptr;  ///< once true, the window is asked to close, as by its button
+    const std::atomic<bool>* stop = nullptr;  ///< once true, the window is asked to close, as if by its button
     bool saves_outside = false;               ///< sessions may write outside their folders without a question
     bool allow_force = false;                 ///< lets a haptic device with a verified profile push the hand
     std::filesystem::path preferences{};      ///< the file (preferences_file.h); empty: none are read or kept

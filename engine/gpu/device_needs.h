@@ -37,7 +37,7 @@ struct DeviceRow {
     VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
     bool has_1_3 = true;
     bool computes = true;
-    bool presents = true;  ///< can present to the window, if there is one
+    bool presents = true;  ///< whether it can present to the window, if there is one
     std::string lacks{};   ///< why it cannot run the kernels; empty: it can, or is not known to be unable
 };
 /// Returns the index of the device to use: among those that meet all requirements, hardware before software, discrete

@@ -25,7 +25,7 @@ struct WhatItIs {
     /// A volume of the open volume's size that does not state whether it is another scan, a mask or offsets; `content`
     /// is empty then, and the user is asked.
     bool may_be_annotation = false;
-    std::string why_not{};  ///< if it is none of these: a sentence with the path
+    std::string why_not{};  ///< if the content is none of these: a sentence with the path
 };
 /// `open`: the currently open volume, whose size identifies masks and offsets; null: none.
 WhatItIs what_is(const std::filesystem::path& path, const VolumeInfo* open);

@@ -90,7 +90,7 @@ private:
 };
 
 std::string last_what;
-std::unique_ptr<Shown> shown;  ///< the live LongWork's; null if it is quiet
+std::unique_ptr<Shown> shown;  ///< instance of the running LongWork; null if it is quiet
 
 }  // namespace
 

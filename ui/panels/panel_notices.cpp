@@ -103,7 +103,7 @@ void question_of_use(const Model& model, Actions& actions)
     button("Load as the mask", FileUse::mask);
     button("Load as density offsets", FileUse::offsets);
     if (file.may_be_scan) button("Open as another scan", FileUse::scan);
-    if (ImGui::Button("Cancel") || ImGui::IsKeyPressed(ImGuiKey_Escape)) chosen = DismissUnclearFile{};
+    if (ImGui::Button("Cancel")) chosen = DismissUnclearFile{};
     if (chosen) {
         actions.push_back(*chosen);
         ImGui::CloseCurrentPopup();

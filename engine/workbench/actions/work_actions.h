@@ -40,7 +40,7 @@ struct Screenshot {
 /// Runs in the background: the open document stays until the next one is loaded.
 struct Open {
     std::filesystem::path path;
-    std::string settings{};      ///< for this opening, as --set takes them: "volume.channel=red", one per line
+    std::string settings{};      ///< settings for this opening, as --set takes them: "volume.channel=red", one per line
     bool saves_outside = false;  ///< the user agrees that the session writes files outside its folder
 };
 
@@ -76,10 +76,10 @@ struct LoadAnnotation {
     FileUse what = FileUse::by_contents;
 };
 
-/// Leaves the file alone of which the user is asked what it is.
+/// Withdraws the question about a dropped file, which is left alone.
 struct DismissUnclearFile {};
 
-/// Corrects the volume's spacing: saves the work, and opens it with this one. Positions stay at their voxels.
+/// Corrects the volume's spacing: saves the work, and reopens it with the new spacing. Positions stay at their voxels.
 struct CorrectSpacing {
     glm::dvec3 spacing{1.0};
     std::string unit;
