@@ -159,6 +159,11 @@ TEST_CASE_FIXTURE(OnDevice, "what is dropped is taken by its contents, whatever 
     CHECK(desk.bench.model().undoable == 3);
     for (int steps = 0; steps < 3; ++steps) desk.bench.perform(UndoOp{1});
     CHECK(desk.bench.model().voxels_by_group[3] == 0);
+    desk.folder.write("odd.swc", "1 1 3 4 5 1 -1\n2 1 6 4 5 1 1\n2 1 9 4 5 1 1\n");
+    drop("odd.swc");
+    CHECK(desk.bench.model().trace.nodes().size() == 2);
+    CHECK(desk.said("odd.swc:3: sample 2 is defined twice"));  // as a warning, since the line is left out
+    desk.bench.perform(UndoOp{1});
     desk.folder.write("notes.json", R"({"a": 1})");
     drop("notes.json");
     CHECK(desk.said("notes.json: is none of what can be taken; expected a volume"));
