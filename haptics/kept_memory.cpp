@@ -22,7 +22,7 @@ Pages pages_of(void* begin, size_t bytes)
     return {reinterpret_cast<std::byte*>(first), end - first};
 }
 
-/// `how`: the expected use. Locking would load the pages as well, but not if it is refused.
+/// Loads the pages by the advice `how`, and locks them. Locking would load them too, but not if the system refuses it.
 bool keep(const Pages& pages, int how) noexcept
 {
     static_cast<void>(::madvise(pages.begin, pages.bytes, how));

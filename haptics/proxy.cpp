@@ -56,8 +56,8 @@ RowRange rows_within(double centre, double reach, int32_t count)
     return {int32_t(begin), int32_t(end)};
 }
 
-/// Lines per row of voxels along y, and the same along z. Their positions are fixed relative to the voxels, not to the
-/// ball: only then are the sums of the potential law exact gradients.
+/// Places and weights of the integration lines across a row of voxels, the same along y and along z. Places are fixed
+/// relative to the voxels, not to the ball: only then are the sums of the potential law exact gradients.
 struct RowRule {
     std::array<double, 3> places{};   ///< voxels from the row's lower side
     std::array<double, 3> weights{};  ///< with a sum of 1

@@ -7,8 +7,8 @@
 
 SHARED_BEGIN
 
-/// Size of a block in pixels. Blocks begin at multiples of it in the whole picture, whatever part of it is drawn: eight
-/// pixels, which are one vector on CPUs.
+/// Size of a block in pixels: 4 x 2, i.e. eight pixels, one vector on CPUs. Blocks begin at multiples of this size in
+/// the whole picture, whichever part of it is drawn.
 SHARED_CONST uint ADAPTIVE_BLOCK_X = 4u;
 SHARED_CONST uint ADAPTIVE_BLOCK_Y = 2u;
 /// Blocks per workgroup of the refining kernels.

@@ -38,8 +38,8 @@ function(shvr_compile_together target)
     set(together ${together} PARENT_SCOPE)
 endfunction()
 
-# The same for tests, whose helpers may have equal names: batches of eight files that end in _test.cpp, each in a
-# namespace of its own, after all that they include. Other sources are compiled alone.
+# The same for tests, except that their helpers may share names: batches of eight files named *_test.cpp. A batch first
+# includes all headers of its files, then each file in a namespace of its own. Other sources are compiled alone.
 function(shvr_tests_together target)
     set(together ${ARGN})
     if(SHVR_UNITY)

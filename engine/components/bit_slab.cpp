@@ -134,7 +134,7 @@ std::optional<BitLayout::Columns> BitSlab::columns_above(const VoxelBox& part) c
                               std::min(end, begin + words_of_row(upper * BRICK_SIDE - begin) * WORD)};
 }
 
-/// `first_word`: word of the part's first row in each slice. `words_of_rows`: distance from one row to the next.
+/// `first_word`: index of the part's first word within each slice; `words_of_rows`: words from one row to the next.
 void BitSlab::read_part(const VoxelBox& part, int64_t first_word, int64_t words_of_rows)
 {
     const std::optional<BitLayout::Columns> columns = columns_above(part);

@@ -50,9 +50,9 @@ private:
     std::map<std::string, std::string> values_;
 };
 
-/// Returns the file that a header names: relative to the header's folder, or absolute. Headers are moved together with
-/// their data, also between systems: if there is no such file, but one of that name in its folder, that is taken.
-/// `stated` may be a path of Windows.
+/// Returns the file that a header names, either absolutely or relative to the header's folder. Headers are often moved
+/// together with their data, even between operating systems: if the named file does not exist, a file of the same name
+/// in the header's folder is used instead. `stated` may be a Windows path.
 std::filesystem::path file_stated(const std::filesystem::path& header, const std::string& stated);
 
 /// Puts spacing and unit into `info`, with a warning for each that the file does not state. A spacing without a unit is

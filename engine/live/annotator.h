@@ -41,7 +41,7 @@ public:
 
     /// The volume must be loaded; the mask starts unpainted.
     explicit Annotator(Renderer& renderer);
-    /// Continues work that is already open, perhaps on another thread until now. The caller makes the scene show it.
+    /// Continues open work, which another thread may have used before. The caller must make the scene show it.
     Annotator(Renderer& renderer, std::unique_ptr<Work> work);
 
     /// For saving, file names and the trace's selection. To change annotations, use the functions below, which show the

@@ -216,7 +216,7 @@ void add_trace(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, con
     for (const OverlayScene::Ball& ball : scene.balls) add_ball(strokes, pane, pixels, ball);
 }
 
-/// The edges of a box, in the colours of their axes: solid where its faces look at the viewer, stippled behind them.
+/// The edges of a box, in the colours of their axes: solid if an adjacent face faces the viewer, stippled if not.
 void add_box(Strokes& strokes, const Camera& camera, const glm::uvec2& pixels, const OverlayScene::Box& box)
 {
     const CameraAxes axes = axes_of(camera);

@@ -2,20 +2,20 @@
 // The passes that draw a part of a picture, in the order in which they are added to a graph. Passes in brackets are
 // added only if there is work for them.
 //
-//   volume     [brick_leap, upload page directory] clear reached, of paged bricks      | which bricks, how far rays go
-//              [leap_occupancy -> leap_distance x, y, z; or leap_bound, leap_occupancy] | of a resident volume
+//   volume     [brick_leap, upload page directory] clear reached       (paged volume: which bricks, how far rays go)
+//              [leap_occupancy -> leap_distance x, y, z; or leap_bound, leap_occupancy] [sample_bits] (resident volume)
 //   occlusion  [start occlusion -> reset occlusion values, clear occlusion cells]
-//   tables     [upload transfer function] [upload groups]
-//   surfaces   [upload surface nodes, upload surface list] [surface_tiles] [surfaces]  (a trace, the probe's ball)
-//   preview    [preview]                                                               (what a brush would change)
+//   tables     [upload transfer function] [upload groups] [upload surface nodes, upload surface list]
 //   adaptive   [surfaces, preview and raycast of a coarse picture, clear blocks, clear groups, adaptive]
+//   surfaces   [surface_tiles] [surfaces]                              (a trace, the probe's ball)
+//   preview    [preview]                                               (what a brush would change)
 //   rays       raycast, one thread per pixel, or only the blocks that adaptive has listed
 //   preview    [preview_over]
-//   ball       [the last four without the probe's ball, then mix]                      (a translucent one)
+//   ball       [adaptive to preview_over again, without the probe's ball, then mix]     (a translucent one)
 //   colours    [saturation]
-//   anaglyph   the last five for each eye, then anaglyph
+//   anaglyph   [adaptive to colours once per eye, then anaglyph]
 //
-// Outside of pictures: next_preparation and next_refinement (the leap grid's stages, one at a time) and next_occlusion
+// Not part of a picture: next_preparation and next_refinement (the leap grid's stages, one at a time), next_occlusion
 // (occlusion_cells, occlusion_gather, occlusion_bake). One thread, the one that owns the device.
 
 #include <optional>

@@ -15,7 +15,7 @@ namespace shvr {
 /// The unreadable parts of one volume. Each block counts once, however often it is tried. Any thread.
 class Gaps {
 public:
-    /// `refused_with`: advice for the user about a gap, which then ends the work; empty: work continues.
+    /// `refused_with`: advice for the user, added to the error with which a gap ends the work; empty: work continues.
     explicit Gaps(std::string refused_with = {}) : refused_with_(std::move(refused_with)) {}
 
     /// Throws an `Error` with the reason if gaps are refused.

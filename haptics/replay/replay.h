@@ -19,8 +19,8 @@ struct ReplayOptions {
     uint32_t relevance_every = 0;  ///< ticks between updates of relevance; 0: when the ball leaves the last patch
 };
 
-/// Fills `patch` with the relevant voxels around `point` for a ball of `radius` (physical) at or above `threshold`. The
-/// caller chooses place and level freely; sequence, time and settings are set afterwards.
+/// Fills `patch` with the relevant voxels around `point` for a ball of `radius` (physical), at or above `threshold`. It
+/// may choose the patch's position and level freely; the replay sets sequence, time and settings afterwards.
 using MakeRelevance =
     std::function<void(const glm::dvec3& point, double radius, double threshold, RelevancePatch& patch)>;
 

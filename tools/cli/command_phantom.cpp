@@ -1,4 +1,4 @@
-// shvr phantom: writes a synthetic volume, and its truth if it is known, as files. Needs no Vulkan device.
+// shvr phantom: writes files of a synthetic volume and, if known, of its ground truth. Needs no Vulkan device.
 
 #include <algorithm>
 #include <bit>

@@ -431,7 +431,7 @@ std::vector<Document> Work::documents_at_saves() const
     return documents;
 }
 
-/// Whether a file with unexpected bytes comes from an interrupted save, or has the same content nevertheless.
+/// Whether a file with unexpected bytes has content that a save, perhaps an interrupted one, may have written.
 bool Work::is_as_written(Part part, const Document& found) const
 {
     const auto is_equal = [&](const Document& document) {

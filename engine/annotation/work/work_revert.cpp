@@ -35,7 +35,7 @@ Work::LastSave Work::last_save(const JournalScan& scan) const
     return last;
 }
 
-/// Changes from the present settings to those of the session's file or, if unknown, to those set at that time.
+/// Changes that turn the present settings into those of the session's file or, if these are unknown, of `saved`.
 std::vector<Change> Work::settings_since_save(const Document& saved) const
 {
     SettingValues then = known_.settings.value_or(saved.settings.values());

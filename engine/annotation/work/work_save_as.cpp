@@ -134,7 +134,7 @@ Work::Saved Work::end_save_as(SavingAs& saving)
     SHVR_CHECK(is_saving_as_, "no save under another name has begun");
     is_saving_ = is_saving_as_ = false;
     const bool has_history = saving.before_ != nullptr;
-    saving.before_.reset();  // it may be opened again before the save object is destroyed
+    saving.before_.reset();  // the previous journal may be reopened before the save object is destroyed
     if (!saving.is_written_) {
         if (journal_) write_kept();
         return saving.saved_;

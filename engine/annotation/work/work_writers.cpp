@@ -90,8 +90,8 @@ void Work::leave_journal_to_others()
     hold_->end_claim();
 }
 
-/// If the file was removed or replaced, data written to it would be lost with this process: the journal is restored,
-/// and the other file is kept under another name.
+/// If the journal's file was removed or replaced, anything written to it would be lost when this process ends. So the
+/// journal is restored to its path; a file that has replaced it is kept under another name.
 void Work::keep_journal_in_place()
 {
     if (journal_->is_in_place()) return;

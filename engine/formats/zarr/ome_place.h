@@ -2,10 +2,10 @@
 // The position of an image in the attributes of an OME-Zarr. Any thread may call these.
 //
 // OME-Zarr 0.4 supports scales and translations, but no directions. So the translation is along the image's own axes:
-// the centre of voxel 0 in a frame rotated like the volume (for an unrotated volume: its origin). An image that was
-// cropped or downscaled from another one therefore overlays it, whatever the axes' directions. The full placement is in
-// the attribute "shvr_placement": {"frame": "LPS", "directions": [[x of x, y of x, z of x], ...], "origin": [x, y, z]},
-// in the unit of the axes; it is present only if the volume's file stated one.
+// the centre of voxel 0 in a frame rotated like the volume (for an unrotated volume: its origin). An image cropped or
+// downscaled from another therefore overlays the original, whatever the axes' directions. The full placement is in the
+// attribute "shvr_placement": {"frame": "LPS", "directions": [[x, y, z of the x axis], ...], "origin": [x, y, z]}, in
+// the unit of the axes. The attribute is present only if the volume's file stated a placement.
 
 #include "engine/base/json.h"
 #include "engine/volume/volume.h"

@@ -45,7 +45,7 @@ struct OmeImage {
 /// The node's `ome()` has a "multiscales". Fails if it violates the specification, has no z axis, or is of another
 /// version.
 OmeImage read_ome_image(const ZarrNode& node);
-/// Fails if a node of Zarr version 3 has attributes of OME-Zarr of another version than 0.5, or none where they belong.
+/// Fails if a Zarr version 3 node has an "ome" object whose version is not 0.5, or "multiscales" without that object.
 void check_ome_version(const ZarrNode& node);
 
 /// Reads the path of a group or an array relative to the node with these attributes. Fails if the path leaves that

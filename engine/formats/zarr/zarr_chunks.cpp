@@ -123,7 +123,7 @@ bool ZarrChunks::is_missing(std::span<const int64_t> chunk) const
     }
 }
 
-/// The indices of the chunk or shard with this key; empty if the key is not one.
+/// Returns the indices of the chunk or shard with this key; empty if it is not the key of a chunk or shard.
 std::vector<int64_t> ZarrChunks::numbers_of(std::string_view key) const
 {
     const std::vector<int64_t>& side = metadata_.sharding ? metadata_.sharding->shape : metadata_.chunks;

@@ -71,7 +71,7 @@ std::span<const ColorRole> surface_roles();
 
 /// Returns (L1 + 0.05) / (L2 + 0.05) of the relative luminances, 1 ... 21.
 double contrast(const Shade& a, const Shade& b);
-/// Mixes `share` of `over` with the rest of `below`, as the device blends them.
+/// Blends `over` onto `below` with weight `share` (and 1 - share for `below`), as the device does.
 Shade blended(const Shade& over, const Shade& below, float share);
 
 }  // namespace shvr::ui

@@ -30,7 +30,7 @@ const std::vector<SessionKey>& keys_of_settings()
     return KEYS;
 }
 
-/// An entry for a typed action; if it is none, or unavailable, with the reason.
+/// An entry for a typed action, with the reason if the text is no valid action or the action is unavailable now.
 template <class Make>
 PaletteEntry typed(const Model& model, std::string_view text, const char* group, const Make& make)
 {

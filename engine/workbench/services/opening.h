@@ -18,7 +18,7 @@ struct Opener::Opening {
     Jobs::Number number = 0;                       ///< number of the reading job, afterwards of the opening
     std::shared_ptr<Document::Read> read{};        ///< null: still being read
     std::shared_ptr<std::exception_ptr> thrown{};  ///< exception from the job
-    uint64_t journal_bytes = 0;         ///< size of the open document's journal when reading began, if it is the same
+    uint64_t journal_bytes = 0;  ///< size of the open document's journal when reading began; used if `read` has it, too
     std::optional<Session> pictured{};  ///< look of a picture, if a picture is opened
     std::unique_ptr<Scene> scene{};     ///< scene being loaded
 };

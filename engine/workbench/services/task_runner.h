@@ -28,7 +28,7 @@ public:
     /// Handles jobs that have ended.
     void advance() override;
     bool advances_without_document() const override { return true; }
-    /// Returns whether a job writes requested files: leaving waits for it.
+    /// Returns whether a job is writing files that the user requested; quitting and opening another file wait for it.
     bool is_writing() const { return !writers_.empty(); }
     JobModel model() const;
 

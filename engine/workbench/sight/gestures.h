@@ -14,9 +14,9 @@ inline constexpr double CLICK_PIXELS = 4.0;
 /// pen that comes down elsewhere, a remote pointer, a pointer that was over a panel.
 bool is_jump(const glm::dvec2& way_pixels, const glm::uvec2& pane_pixels);
 
-/// Returns black and white of slices after a drag, in heights of the pane: sideways scales their distance about the
-/// middle, by a factor of 4 for half a height; down makes the picture darker, by their distance for a whole height.
-/// `range`: the volume's; a thousandth of it is the minimum distance.
+/// Returns black and white of the slices after a drag by `heights` (of the pane). Dragging sideways scales the distance
+/// between them about their middle, by a factor of 4 per half height; dragging down darkens the picture, shifting both
+/// by that distance per height. `range`: the volume's value range; the distance is at least a thousandth of it.
 ValueRange dragged_contrast(const ValueRange& contrast, const ValueRange& range, const glm::dvec2& heights);
 
 /// Returns the paint threshold for a picked value: half-way to the lowest visible value, since the wall lies between

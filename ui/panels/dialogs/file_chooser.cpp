@@ -172,7 +172,7 @@ void FileChooser::settle(std::chrono::milliseconds patience)
         field_wants_keys_ = true;
         return;
     }
-    // Asked again, it shows the folder that a typed path led to.
+    // Enters the folder of a typed path, so that the dialog shows that folder if it is opened again.
     if (judged_.parent_path() != list_.folder()) {
         enter(judged_.parent_path());
         wanted_name_ = judged_.filename().string();

@@ -114,7 +114,7 @@ void open_dialog(const Model& model, Actions& actions)
 {
     static bool was_asked = false;
     if (model.asks_what_to_open && !std::exchange(was_asked, true)) {
-        // The first time next to the file opened last; later in the folder used last.
+        // The first time, the dialog begins in the folder of the last opened file; later, in the folder used last.
         static bool was_shown = false;
         const auto& recent = model.preferences.recent;
         const std::filesystem::path begin =
