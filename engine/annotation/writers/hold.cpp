@@ -236,7 +236,10 @@ std::shared_ptr<Hold> Hold::take(const fs::path& journal, std::string_view progr
     constexpr std::chrono::milliseconds TURN(5);
     for (int i = 1;; ++i) {
         const std::optional<fs::path> mark = make_mark(journal, error);
-        if (!mark) return nullptr;
+        if (!mark) {
+            if (lock && is_at(*lock, lock_path(journal))) ::unlink(lock_path(journal).c_str());
+            return nullptr;
+        }
         const std::shared_ptr<Hold> hold(new Hold(journal, *mark));
         if (hold->looks_alone(i == TRIES)) {
             const Holder holder = this_process(program);
