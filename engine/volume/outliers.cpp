@@ -140,8 +140,9 @@ std::optional<OutlierFinder::Bulk> OutlierFinder::bulk()
     End upper{largest_}, lower{smallest_};
     // Few different values are labels, or two materials: each is interesting.
     const bool is_continuous = !largest_distinct_.overlap(smallest_distinct_);
+    const bool has_exact_codes = integers_ && half_distance(largest_.front(), smallest_.front()) <= 0.5 * 65535.0;
     for (const Rule& rule : {FAR, NEAR}) {
-        if (!is_continuous && (integers_ || rule.gap == NEAR.gap)) continue;
+        if (!is_continuous && (has_exact_codes || rule.gap == NEAR.gap)) continue;
         const int64_t limit = rule.limit(count_);
         const double upper_end = upper.innermost(limit), lower_end = lower.innermost(limit);
         // If nearly all voxels are equal, the few others are the interesting ones.
