@@ -181,7 +181,7 @@ def numbers_in(text):
 def read_nrrd(path):
     """Voxels, size and place of a raw NRRD that is one file."""
     head, data = path.read_bytes().split(b"\n\n", 1)
-    fields = dict(line.split(": ", 1) for line in head.decode().splitlines()[1:])
+    fields = dict(line.split(": ", 1) for line in head.decode().splitlines()[1:] if ":=" not in line)
     size = [int(n) for n in fields["sizes"].split()]
     kind = {"uint8": "B", "int8": "b", "uint16": "H", "uint32": "I", "int32": "i", "float": "f"}[fields["type"]]
     values = struct.unpack(f"<{size[0] * size[1] * size[2]}{kind}", data)

@@ -447,7 +447,8 @@ class EndingEarly(CliTest):
         _, said = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 1)
         self.assertRegex(said.splitlines()[-1], r"^shvr: .*/project.part/0/.*: cannot be written: File too large; "
-                                                r"what is done is kept, and the same command goes on from there$")
+                                                r"what is done is kept in .*/project.part, and the same command goes on from "
+                                                r"there; rm -r removes it$")
         self.check_finished()
 
     def test_a_full_disk_is_one_sentence(self):

@@ -169,7 +169,7 @@ class Writers(Seen):
         before = self.files()
         x, y = self.middle()
         self.stroke((x, y + 10), (x + 20, y + 10), pause_s=0)
-        self.see("was taken over by another process", "Status")
+        self.see("Read only: open for writing in shvr annotate")
         self.see("Work on a copy")
         said = "\n".join(self.finish()["messages"])
         self.assertIn("what was done here is kept in " + str(self.folder / "session.journal.old"), said)

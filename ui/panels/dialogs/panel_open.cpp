@@ -29,8 +29,8 @@ FileChooser saving({.title = "Continue under another name",
                     .wanted = FileChooser::Wanted::new_file});
 FileChooser taking({.title = "Load annotation or a curve",
                     .verb = "Load",
-                    .note = "Mask (also NRRD, TIFF or OME-Zarr of the scan's size), offsets, trace or transfer "
-                            "function. It replaces the present one; undo restores that.",
+                    .note = "Mask of the scan's size, offsets, trace or transfer function. It replaces the present "
+                            "one; undo restores that.",
                     .wanted = FileChooser::Wanted::file});
 
 std::vector<Place> places_of(const Model& model)
