@@ -45,6 +45,9 @@ int sync(int file)
 
 [[noreturn]] void refuse_changed(const fs::path& path, const JournalScan& before)
 {
+    std::error_code ignored;
+    const bool is_dangling = fs::is_symlink(path, ignored) && !fs::exists(path, ignored);
+    if (is_dangling) fail(path.string(), ": cannot be written: ", reason_of(ENOENT));
     throw JournalTaken(sentence(path.string(), ": another process has written it since it was read; expected ",
                                 before.file_bytes, " bytes: open it again"));
 }
