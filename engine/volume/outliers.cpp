@@ -153,8 +153,10 @@ std::optional<OutlierFinder::Bulk> OutlierFinder::bulk()
     if (count_ >= MIN_VOXELS_OF_TAIL && is_continuous) {
         const int64_t limit = NEAR.limit(count_);
         const double range = 2.0 * half_distance(upper.innermost(limit), lower.innermost(limit));
-        upper.exclude_isolated(largest_distinct_.values(), 1.0, limit, range);
-        lower.exclude_isolated(smallest_distinct_.values(), -1.0, limit, range);
+        if (range > 0.0) {
+            upper.exclude_isolated(largest_distinct_.values(), 1.0, limit, range);
+            lower.exclude_isolated(smallest_distinct_.values(), -1.0, limit, range);
+        }
     }
     if (upper.outliers + lower.outliers == 0) return std::nullopt;
     return Bulk{{lower.innermost(0), upper.innermost(0)}, upper.outliers + lower.outliers};
