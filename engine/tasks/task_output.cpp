@@ -76,7 +76,7 @@ void check_output_place(const std::filesystem::path& path)
 fs::path written_path(const fs::path& path)
 {
     std::error_code ignored;
-    fs::path target = fs::is_symlink(path, ignored) ? link_target(path) : path;
+    fs::path target = fs::is_symlink(path, ignored) && !fs::is_directory(path, ignored) ? link_target(path) : path;
     collect_temporary_files(target.parent_path());
     return target;
 }
