@@ -186,7 +186,9 @@ Work::Saved Work::end_save(Saving& saving)
 {
     SHVR_CHECK(is_saving_, "no save has begun");
     is_saving_ = false;
-    saving.journal_.reset();  // it may be opened again before the save object is destroyed
+    // The journal may be opened again before the save object is destroyed.
+    saving.journal_.reset();
+    saving.hold_.reset();
     seen_ = saving.seen_;
     for (const Part part : PARTS) digest_of(known_, part) = digest_of(saving.known_, part);
     if (!saving.is_written_) return saving.saved_;
