@@ -46,9 +46,10 @@ std::vector<double> settings_of(const VolumeStatistics& statistics)
     std::vector<double> all{automatic_threshold(ramp, statistics), automatic_contrast(statistics).lower,
                             automatic_contrast(statistics).upper, statistics.range().lower, statistics.range().upper};
     for (const ControlPoint& point : ramp.points()) all.push_back(point.intensity);
-    for (const TransferPreset& preset : transfer_presets())
-        for (const ControlPoint& point : transfer_function_of(preset, statistics).points())
-            all.push_back(point.intensity);
+    for (const TransferPreset& preset : transfer_presets()) {
+        const TransferFunction function = transfer_function_of(preset, statistics);
+        for (const ControlPoint& point : function.points()) all.push_back(point.intensity);
+    }
     return all;
 }
 

@@ -94,6 +94,7 @@ std::vector<Action> samples()
             LookAtFile{"/tmp/a b.nrrd", "volume.frame=2"},
             TakeFile{"/tmp/a b.swc"},
             LoadAnnotation{"/tmp/a b.tif", FileUse::offsets},
+            DismissUnclearFile{},
             CorrectSpacing{{0.5, 0.5, 2.0}, "um"},
             DismissNotices{},
             ForgetRecent{"/tmp/gone.nrrd"},
