@@ -65,7 +65,7 @@ class Open(Seen):
         self.until(lambda: any("broken.nrrd: " in seen["text"] for seen in self.seen()), "reason")
         # Open again, it shows the same folder and the same name, and the one above it opens.
         self.press_and_see("Ctrl+O", "broken.nrrd")
-        self.press("Up")
+        self.press_and_see("Up", f"{self.folder}/scans/deep/ball.json")
         self.press("Enter")
         self.wait_for_window("sphere.* - SHVR")
         messages = self.finish()["messages"]
