@@ -90,10 +90,11 @@ void App::write_screen_texts() const
 {
     const ImDrawData* const drawn = ImGui::GetDrawData();
     if (!drawn) return;
-    const bool is_sharp = bench_->is_open() && bench_->document().screen.complete();
+    const FrameState frame{.number = window_.frames_presented(),
+                           .is_sharp = bench_->is_open() && bench_->document().screen.complete(),
+                           .is_kept = bench_->is_open() && !bench_->has_view_to_keep()};
     const std::filesystem::path written = options_.screen_texts.string() + ".new";
-    std::ofstream(written) << json_of(screen_texts(*drawn, *ImGui::GetIO().Fonts->Fonts[0]), window_.frames_presented(),
-                                      is_sharp);
+    std::ofstream(written) << json_of(screen_texts(*drawn, *ImGui::GetIO().Fonts->Fonts[0]), frame);
     std::filesystem::rename(written, options_.screen_texts);
 }
 

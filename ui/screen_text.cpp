@@ -180,9 +180,10 @@ std::vector<ScreenText> screen_texts(const ImDrawData& drawn, const ImFont& font
     return texts;
 }
 
-std::string json_of(const std::vector<ScreenText>& texts, uint64_t frame, bool is_sharp)
+std::string json_of(const std::vector<ScreenText>& texts, const FrameState& frame)
 {
-    std::string json = sentence("{\"frame\":", frame, ",\"sharp\":", is_sharp ? "true" : "false", ",\"texts\":[");
+    std::string json = sentence("{\"frame\":", frame.number, ",\"sharp\":", frame.is_sharp ? "true" : "false",
+                                ",\"kept\":", frame.is_kept ? "true" : "false", ",\"texts\":[");
     for (const ScreenText& text : texts)
         json += sentence(&text == texts.data() ? "" : ",", "\n{\"text\":", quoted(text.text),
                          ",\"window\":", quoted(text.window), ",\"box\":[", text.begin.x, ',', text.begin.y, ',',

@@ -24,7 +24,15 @@ struct ScreenText {
 
 /// Returns texts in the order of drawing: later ones lie over earlier ones. Omits invisible characters.
 std::vector<ScreenText> screen_texts(const ImDrawData& drawn, const ImFont& font);
-/// Returns {"frame": 7, "sharp": true, "texts": [{"text", "window", "box": [x0, y0, x1, y1], "cut", "scrolled"}]}
-std::string json_of(const std::vector<ScreenText>& texts, uint64_t frame, bool is_sharp);
+/// State of a frame, for tests that wait for it.
+struct FrameState {
+    uint64_t number = 0;
+    bool is_sharp = false;  ///< nothing is left to be refined
+    bool is_kept = false;   ///< the journal holds the view, the probe and all settings
+};
+
+/// Returns {"frame": 7, "sharp": true, "kept": true,
+///          "texts": [{"text", "window", "box": [x0, y0, x1, y1], "cut", "scrolled"}]}
+std::string json_of(const std::vector<ScreenText>& texts, const FrameState& frame);
 
 }  // namespace shvr::ui

@@ -83,6 +83,8 @@ public:
     void flush() { desk_.document->annotator.work().flush(); }
     /// Returns whether another step would find work at once.
     bool has_work() const;
+    /// Returns whether the journal lacks changes of the view, the probe or the like.
+    bool has_view_to_keep() const { return services_.settings.has_view_to_keep(); }
     /// Returns whether a picture exists that does not yet show the last changes.
     bool is_stirring() const { return services_.viewer.is_stirring(); }
     /// Returns whether the open document may be closed: call it once a frame. Saves all work as Save does; if the user

@@ -189,6 +189,15 @@ class Seen(Window):
         self.see_frames()
         self.until(lambda: self.frame()["sharp"], "sharp picture")
 
+    def see_kept(self):
+        """Waits for the picture that was led to, and until the journal holds the view: the window writes no more."""
+        self.see_picture()
+
+        def is_kept():
+            self.drawn_number()
+            return self.frame()["sharp"] and self.frame()["kept"]
+        self.until(is_kept, "view in the journal")
+
     def probe_rests(self):
         """Waits until the probe has come to where the pointer leads it: its label stands still over three frames, of
         those that begin from now on."""

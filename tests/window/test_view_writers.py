@@ -147,6 +147,7 @@ class Writers(Seen):
         self.annotate(session, [DAB])
         session.with_suffix(".journal.lock").mkdir()
         self.open_project(session)
+        self.see_kept()
         before = self.files()
         said = self.annotate(session, [{**DAB, "group": 5}, {"op": "save"}], status=1)
         self.assertIn(f"is open for writing in shvr view, process {self.program.pid} ", said)
@@ -163,8 +164,7 @@ class Writers(Seen):
         before = len(journal.read_bytes())
         self.paint()
         self.until(lambda: len(journal.read_bytes()) > before, "step in the journal")
-        self.see_picture()
-        self.until(self.rests, "window at rest")   # a record written while the other program opens would refuse it
+        self.see_kept()   # a record written while the other program opens would refuse it
         script = self.write_script("other.jsonl", [{**DAB, "group": 5, "path": [[20, 20, 20]]}, {"op": "save"}])
         other = run("annotate", session, "--script", script, environment=self.elsewhere("node2"))
         self.assertEqual(other.returncode, 0, other.stderr)

@@ -39,6 +39,8 @@ public:
     /// Makes a step of pending changes, so that undo reverts them before later steps.
     void record_settings();
     bool has_settings_to_record() const { return settings_to_record_; }
+    /// Returns whether the view, the probe or the like changed since the journal last received them.
+    bool has_view_to_keep() const { return to_keep_since_s_.has_value(); }
     /// While the hand is changing a setting, no step of the history is made: one drag is one step.
     void set_hand_down(bool is_down) { is_hand_down_ = is_down; }
     /// Records whether the stroke that just ended changed nothing: the next undo then takes back that stroke.

@@ -85,7 +85,7 @@ TEST_CASE("words that lie side by side on one line stay two, and two lines stay 
 TEST_CASE("as JSON")
 {
     const std::vector<ScreenText> texts{{"a \"b\"", "here", {1, 2}, {3, 4}, true, false}};
-    CHECK(json_of(texts, 7, true) ==
-          "{\"frame\":7,\"sharp\":true,\"texts\":[\n{\"text\":\"a \\\"b\\\"\",\"window\":\"here\",\"box\":[1,2,3,4],"
-          "\"cut\":true,\"scrolled\":false}]}\n");
+    CHECK(json_of(texts, {.number = 7, .is_sharp = true, .is_kept = false}) ==
+          "{\"frame\":7,\"sharp\":true,\"kept\":false,\"texts\":[\n{\"text\":\"a \\\"b\\\"\",\"window\":\"here\","
+          "\"box\":[1,2,3,4],\"cut\":true,\"scrolled\":false}]}\n");
 }
