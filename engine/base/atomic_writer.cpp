@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <array>
@@ -126,6 +127,22 @@ void collect_temporary_files(const fs::path& folder)
         const std::optional<Owner> owner = owner_of(entry->path().filename().string());
         if (owner && is_left(*owner, *entry)) ::unlink(entry->path().c_str());
     }
+}
+
+std::optional<int64_t> multiplied(int64_t a, int64_t b)
+{
+    int64_t product = 0;
+    return __builtin_mul_overflow(a, b, &product) ? std::nullopt : std::optional(product);
+}
+
+void expect_space(const std::filesystem::path& path, std::optional<int64_t> bytes, const char* remedy)
+{
+    struct statvfs status {};
+    if (::statvfs(std::filesystem::absolute(path).parent_path().c_str(), &status) != 0) return;
+    const auto free = multiplied(int64_t(status.f_bavail), int64_t(status.f_frsize));
+    if (!free || (bytes && *bytes <= *free)) return;
+    fail(path.string(), ": would take ", bytes ? std::to_string(*bytes) : std::string("more than 2^63 - 1"),
+         " bytes; expected at most ", *free, ", the free space of its disk: ", remedy);
 }
 
 void remove_temporary_files()

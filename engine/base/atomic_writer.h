@@ -27,6 +27,12 @@ std::filesystem::path link_target(const std::filesystem::path& path);
 /// those of other hosts that are older than a day. Never fails.
 void collect_temporary_files(const std::filesystem::path& folder);
 
+/// The product, or null if it exceeds 2^63 - 1.
+std::optional<int64_t> multiplied(int64_t a, int64_t b);
+/// Fails, stating both sizes, if the disk of a file to be written has less free space than `bytes`; null: more than
+/// 2^63 - 1. Does nothing if the file system does not state it. `remedy` ends the message: "free some of it".
+void expect_space(const std::filesystem::path& path, std::optional<int64_t> bytes, const char* remedy);
+
 /// Removes the temporary files of all writers that have not committed. For signal handlers: calls only
 /// async-signal-safe functions. The program must terminate afterwards.
 void remove_temporary_files();

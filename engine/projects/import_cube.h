@@ -72,14 +72,18 @@ void halve_ranges(const ImportCube<T>& fine, const HalvingRows<T>& rows, T* lowe
     }
 }
 
-/// The next level, with its ranges.
+enum class CubeRanges { none, halved };
+
+/// The next level, with its ranges if they are wanted.
 template <class T>
-void halve_cube(const ImportCube<T>& fine, ImportCube<T>& coarse, Halving how)
+void halve_cube(const ImportCube<T>& fine, ImportCube<T>& coarse, Halving how, CubeRanges ranges = CubeRanges::halved)
 {
     coarse.extent = size_of_level(fine.extent, 1);
-    coarse.has_ranges = true;
-    coarse.lower.resize(coarse.values.size());
-    coarse.upper.resize(coarse.values.size());
+    coarse.has_ranges = ranges == CubeRanges::halved;
+    if (coarse.has_ranges) {
+        coarse.lower.resize(coarse.values.size());
+        coarse.upper.resize(coarse.values.size());
+    }
     for (int64_t z = 0; z < coarse.extent.z; ++z) {
         for (int64_t y = 0; y < coarse.extent.y; ++y) {
             HalvingRows<T> rows;
@@ -89,7 +93,7 @@ void halve_cube(const ImportCube<T>& fine, ImportCube<T>& coarse, Halving how)
                 }
             }
             const size_t to = coarse.row(y, z);
-            halve_ranges(fine, rows, coarse.lower.data() + to, coarse.upper.data() + to);
+            if (coarse.has_ranges) halve_ranges(fine, rows, coarse.lower.data() + to, coarse.upper.data() + to);
             halve_rows(rows, fine.extent.x, coarse.values.data() + to, how);
         }
     }

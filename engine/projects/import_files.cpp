@@ -13,6 +13,7 @@
 #include "engine/formats/zarr/project.h"
 #include "engine/formats/zarr/store/zarr_json.h"
 #include "engine/projects/import_pyramid.h"
+#include "engine/projects/part_folder.h"
 
 namespace shvr {
 namespace {
@@ -143,7 +144,7 @@ std::vector<std::pair<std::string, std::string>> group_files(OmeZarrVersion vers
 }
 
 std::string import_attributes(OmeZarrVersion version, const std::string& name, const VolumeInfo& info, int levels,
-                              Halving how, const LabelImage* labels)
+                              Halving how, const LabelImage* labels, const std::string& folder)
 {
     const bool has_own_versions = version == OmeZarrVersion::v0_4;  // OME-Zarr 0.5 and later state one version for all
     Json datasets = Json::array();
@@ -151,7 +152,7 @@ std::string import_attributes(OmeZarrVersion version, const std::string& name, c
         const double factor = double(int64_t{1} << level);
         // The centre of voxel 0, which is the middle of the voxels it covers.
         const glm::dvec3 translation = ome_translation(info) + 0.5 * (factor - 1.0) * info.spacing;
-        datasets.push_back({{"path", std::to_string(level)},
+        datasets.push_back({{"path", folder + std::to_string(level)},
                             {"coordinateTransformations",
                              {{{"type", "scale"}, {"scale", zyx(factor * info.spacing)}},
                               {{"type", "translation"}, {"translation", zyx(translation)}}}}});
@@ -183,10 +184,33 @@ std::string import_attributes(OmeZarrVersion version, const std::string& name, c
     return text_of(attributes, 2);
 }
 
+std::string number_attributes(const std::string& name, const VolumeInfo& info, const std::string& kind,
+                              const std::string& folder)
+{
+    Json attributes =
+        Json::parse(import_attributes(OmeZarrVersion::v0_4, name, info, 1, Halving::mean, nullptr, folder));
+    attributes["shvr"] = {{"shvr_" + kind, 1}};
+    return text_of(attributes, 2);
+}
+
+fs::path number_image_target(const fs::path& folder, const std::string& kind)
+{
+    fs::path target = plain_path(folder);
+    std::error_code ignored;
+    if (!fs::exists(fs::symlink_status(target, ignored)) ||
+        (fs::is_directory(target, ignored) && fs::is_empty(target, ignored)))
+        return target;
+    const std::optional<ZarrNode> node = read_zarr_node(target);
+    const bool is_replaceable = node && node->attributes()["shvr"]["shvr_" + kind].exists();
+    if (!is_replaceable)
+        fail(target.string(), ": already exists and is no image of ", kind, "; expected a new name, or ", kind,
+             " to replace");
+    return target;
+}
+
 fs::path label_image_target(const fs::path& folder)
 {
-    fs::path target = fs::absolute(folder).lexically_normal();
-    if (!target.has_filename()) target = target.parent_path();
+    const fs::path target = plain_path(folder);
     std::error_code error;
     if (fs::exists(target, error) && !(fs::is_directory(target, error) && fs::is_empty(target, error))) {
         const std::optional<ZarrNode> node = read_zarr_node(target);
@@ -242,7 +266,10 @@ void list_label_image(const fs::path& target, OmeZarrVersion version)
 
 std::string import_session()
 {
-    const Json document = {{"shvr_session", 1}, {"volume", {{"path", ".."}}}, {"annotation", {{"mask", "paint.mask"}}}};
+    const Json document = {
+        {"shvr_session", 1},
+        {"volume", {{"path", ".."}}},
+        {"annotation", {{"mask", "../labels/paint"}, {"trace", "paint.graphml"}, {"density", "paint.offsets.zarr"}}}};
     return document.dump(2) + "\n";
 }
 

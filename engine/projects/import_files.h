@@ -14,9 +14,12 @@ ZarrVolume import_level(const std::filesystem::path& project, const VolumeInfo& 
                         const ZarrCompressor& compressor, bool has_shards);
 
 /// The attributes of the image, as JSON: the content of .zattrs, or "attributes" of zarr.json. `labels`: additional
-/// attributes of a label image, or null.
+/// attributes of a label image, or null. `folder`: that of the levels within the image, empty or ending with a slash.
 std::string import_attributes(OmeZarrVersion version, const std::string& name, const VolumeInfo& info, int levels,
-                              Halving how, const LabelImage* labels);
+                              Halving how, const LabelImage* labels, const std::string& folder = {});
+/// The attributes of an image of numbers that belong to a volume: those of a project, and "shvr": {"shvr_KIND": 1}.
+std::string number_attributes(const std::string& name, const VolumeInfo& info, const std::string& kind,
+                              const std::string& folder);
 /// The files of a group with these attributes, name and content: .zgroup and .zattrs, or zarr.json.
 std::vector<std::pair<std::string, std::string>> group_files(OmeZarrVersion version, const std::string& attributes);
 /// PROJECT/shvr/session.json.
@@ -25,6 +28,8 @@ std::string import_session();
 /// `folder` without dots. Fails if it exists and is not a replaceable label image, or if it belongs to an image's
 /// labels and that image's list of labels cannot be read. Creates the parent folder.
 std::filesystem::path label_image_target(const std::filesystem::path& folder);
+/// `folder` without dots. Fails if it exists and is no image of numbers of that kind (`number_attributes`).
+std::filesystem::path number_image_target(const std::filesystem::path& folder, const std::string& kind);
 /// Whether it is IMAGE/labels/NAME of an OME-Zarr image.
 bool belongs_to_image(const std::filesystem::path& target);
 /// The version of the image that `target` belongs to, which must be the same in a hierarchy; else `wanted`; else that

@@ -1,10 +1,12 @@
 #include "engine/projects/import_sparse.h"
 
 #include <algorithm>
+#include <chrono>
 #include <span>
 
 #include "engine/base/error.h"
 #include "engine/formats/zarr/zarr_codec.h"
+#include "engine/projects/atomic_folder.h"
 #include "engine/projects/import_cube.h"
 #include "engine/projects/import_files.h"
 #include "engine/projects/part_folder.h"
@@ -13,6 +15,9 @@
 
 namespace shvr {
 namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
 
 /// With more than an eighth of all chunks stored, a dense import with all threads takes no longer than a sparse one.
 constexpr int64_t MIN_GAIN = 8;
@@ -37,23 +42,30 @@ Size3 ancestor(const Size3& chunk, int levels)
     return {chunk.x >> levels, chunk.y >> levels, chunk.z >> levels};
 }
 
+struct SparseLevelFiles {
+    int levels = 1;
+    int64_t chunks = 0;  ///< number in all levels
+    int64_t stored = 0;  ///< that have a file
+    int64_t bytes = 0;   ///< total size of these files
+};
+
 /// Makes the non-empty chunks of a level and of all levels below: depth first, so that one chunk of each level is in
 /// memory.
 template <class T>
 class Levels {
 public:
-    Levels(const VolumeSource& source, const VolumeInfo& info, const std::filesystem::path& folder,
+    Levels(const VolumeSource& source, const VolumeInfo& info, int levels, const fs::path& folder,
            OmeZarrVersion version, const ZarrCompressor& compressor, const Progress& progress)
         : source_(source), info_(info), compressor_(compressor), progress_(progress), half_(IMPORT_CHUNK / 2)
     {
-        written_.levels = level_count(info.size);
+        written_.levels = levels;
         for (int level = 0; level < written_.levels; ++level) {
             volumes_.push_back(import_level(folder, info, level, version, compressor, false));
             cubes_.emplace_back(IMPORT_CHUNK);
             const Size3 counts = chunk_counts(size_of_level(info.size, level));
             written_.chunks += counts.x * counts.y * counts.z;
             const std::string metadata = to_text(volumes_.back().metadata());
-            const std::filesystem::path file = folder / std::to_string(level) / volumes_.back().metadata().key();
+            const fs::path file = folder / std::to_string(level) / volumes_.back().metadata().key();
             write_part_file(file, std::as_bytes(std::span(metadata)));
             written_.bytes += int64_t(metadata.size());
         }
@@ -113,7 +125,7 @@ private:
 
     void put_half(const ImportCube<T>& fine, const Size3& octant, ImportCube<T>& cube)
     {
-        halve_cube(fine, half_, Halving::label);
+        halve_cube(fine, half_, Halving::label, CubeRanges::none);
         const Size3 to = octant * (IMPORT_CHUNK / 2);
         for (int64_t z = 0; z < half_.extent.z; ++z)
             for (int64_t y = 0; y < half_.extent.y; ++y)
@@ -144,13 +156,84 @@ private:
     double all_ = 1.0;
 };
 
+/// Creates the files of all levels in a folder.
+SparseLevelFiles write_levels(const VolumeSource& source, const VolumeInfo& info, int levels,
+                              const std::vector<Size3>& chunks, const fs::path& folder, OmeZarrVersion version,
+                              const ZarrCompressor& compressor, const Progress& progress)
+{
+    return with_voxel_type(info.type, [&]<class T>(T) {
+        return Levels<T>(source, info, levels, folder, version, compressor, progress).write(chunks);
+    });
+}
+
+/// Writes a small file, and returns its size.
+int64_t write_text(const fs::path& path, const std::string& text)
+{
+    write_part_file(path, std::as_bytes(std::span(text)));
+    return int64_t(text.size());
+}
+
+/// An image as a whole. `attributes(folder)` are those of an image whose levels are in that folder.
+ImportReport write_image(const VolumeSource& source, const VolumeInfo& info, int levels, const fs::path& target,
+                         const std::vector<Size3>& chunks, const ImportOptions& options,
+                         const std::function<std::string(const std::string& folder)>& attributes,
+                         const Progress& progress)
+{
+    if (const fs::path foreign = entry_foreign_to_zarr(target); !foreign.empty())
+        fail(foreign.string(), ": is no part of the image in ", target.string(),
+             "; expected nothing else there, since the folder is replaced as a whole: move it");
+    const OmeZarrVersion version = options.version.value_or(OmeZarrVersion::v0_4);
+    AtomicFolder folder(target);
+    const std::string inner = folder.inner().empty() ? std::string() : folder.inner() + "/";
+    const SparseLevelFiles written =
+        write_levels(source, info, levels, chunks, folder.path() / inner, version, options.compressor, progress);
+    ImportReport report{.project = target,
+                        .info = info,
+                        .levels = written.levels,
+                        .bricks = written.chunks,
+                        .bricks_stored = written.stored,
+                        .bytes = written.bytes,
+                        .warnings = source.info().warnings};
+    const auto files = group_files(version, attributes(inner));
+    for (const auto& [name, text] : files) report.bytes += write_text(folder.path() / name, text);
+    if (!inner.empty())
+        for (const auto& [name, text] : group_files(version, "{}")) write_text(folder.path() / inner / name, text);
+    folder.commit(files.back().first);
+    return report;
+}
+
+/// Calls `progress` of the options at most every 100 ms; throws where they say that it is cancelled.
+class ToldImport {
+public:
+    ToldImport(const fs::path& target, const VolumeInfo& info, const ImportOptions& options)
+        : target_(target), voxels_(double(voxel_count(info))), options_(options)
+    {}
+
+    void operator()(double fraction)
+    {
+        if (options_.cancel != nullptr && *options_.cancel)
+            throw ImportStopped(target_.string() + ": stopped; no file is left half written");
+        const Clock::time_point now = Clock::now();
+        if (!options_.progress || now - told_ < std::chrono::milliseconds(100) || !(fraction > 0.0)) return;
+        told_ = now;
+        const double seconds = std::chrono::duration<double>(now - begin_).count();
+        options_.progress({.fraction = fraction,
+                           .voxels_per_second = fraction * voxels_ / seconds,
+                           .seconds_left = (1.0 - fraction) / fraction * seconds});
+    }
+
+private:
+    const fs::path& target_;
+    double voxels_;
+    const ImportOptions& options_;
+    Clock::time_point begin_ = Clock::now(), told_{};
+};
+
 }  // namespace
 
-std::optional<std::vector<Size3>> sparse_chunks(const VolumeSource& source)
+std::optional<std::vector<Size3>> stored_chunks(const VolumeSource& source)
 {
     const Size3& size = source.info().size;
-    const Size3 counts = chunk_counts(size);
-    const int64_t most = counts.x * counts.y * counts.z / MIN_GAIN;
     const std::optional<StoredBlocks> stored = source.stored_blocks(0, MAX_STORED_BLOCKS);
     if (!stored || stored->fill != 0.0) return std::nullopt;
     std::vector<Size3> chunks;
@@ -169,17 +252,56 @@ std::optional<std::vector<Size3>> sparse_chunks(const VolumeSource& source)
     std::ranges::sort(chunks, {}, interleaved);
     const auto repeated = std::ranges::unique(chunks);
     chunks.erase(repeated.begin(), repeated.end());
-    if (int64_t(chunks.size()) > most) return std::nullopt;
     return chunks;
 }
 
-SparseLevelFiles write_sparse_levels(const VolumeSource& source, const VolumeInfo& info,
-                                     const std::vector<Size3>& chunks, const std::filesystem::path& folder,
-                                     OmeZarrVersion version, const ZarrCompressor& compressor, const Progress& progress)
+bool are_few(const std::vector<Size3>& chunks, const Size3& size)
 {
-    return with_voxel_type(info.type, [&]<class T>(T) {
-        return Levels<T>(source, info, folder, version, compressor, progress).write(chunks);
-    });
+    const Size3 counts = chunk_counts(size);
+    return int64_t(chunks.size()) <= counts.x * counts.y * counts.z / MIN_GAIN;
+}
+
+ImportReport write_label_image(const VolumeSource& labels, const fs::path& target, const std::vector<Size3>& chunks,
+                               const ImportOptions& options)
+{
+    const VolumeInfo info = make_preparation(labels, {})->info();
+    const int levels = level_count(info.size);
+    ToldImport told(target, info, options);
+    const auto attributes = [&](const std::string& folder) {
+        return import_attributes(options.version.value_or(OmeZarrVersion::v0_4), target.filename().string(), info,
+                                 levels, Halving::label, &*options.label_image, folder);
+    };
+    return write_image(labels, info, levels, target, chunks, options, attributes, std::ref(told));
+}
+
+ImportReport save_label_image(const VolumeSource& labels, const fs::path& folder, const LabelImage& image,
+                              const ImportOptions& options)
+{
+    const fs::path target = label_image_target(folder);
+    const bool belongs = belongs_to_image(target);
+    ImportOptions wanted = options;
+    wanted.label_image = image;
+    if (belongs) wanted.label_image->source = "../../";
+    wanted.version = label_image_version(target, options.version);
+    const std::optional<std::vector<Size3>> chunks = stored_chunks(labels);
+    SHVR_CHECK(chunks, "the source does not know what it stores");
+    const ImportReport report = write_label_image(labels, target, *chunks, wanted);
+    if (belongs) list_label_image(target, *wanted.version);
+    return report;
+}
+
+ImportReport save_number_image(const VolumeSource& numbers, const fs::path& folder, const std::string& kind,
+                               const Progress& progress)
+{
+    const fs::path target = number_image_target(folder, kind);
+    const std::optional<std::vector<Size3>> chunks = stored_chunks(numbers);
+    SHVR_CHECK(chunks, "the source does not know what it stores");
+    const VolumeInfo& info = numbers.info();
+    const auto attributes = [&](const std::string& inner) {
+        return number_attributes(target.filename().string(), info, kind, inner);
+    };
+    const ImportOptions options;
+    return write_image(numbers, info, 1, target, *chunks, options, attributes, progress);
 }
 
 }  // namespace shvr

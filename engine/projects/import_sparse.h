@@ -1,34 +1,34 @@
 #pragma once
-// Makes the levels of a label image only where something is stored: for 2^20
-// voxels a side and one stored chunk, it writes 16 chunks. The files equal
-// those of a dense import, byte for byte. For import_volume.cpp. One thread.
+// OME-Zarr images of what a source stores, with levels only where something is stored: for 2^20 voxels a side and one
+// stored chunk, 16 chunks are written. The files equal those of a dense import, byte for byte. The image replaces an
+// old one as a whole (atomic_folder.h). Any thread may call these.
 
 #include <filesystem>
 #include <optional>
 #include <vector>
 
-#include "engine/formats/zarr/metadata/zarr_metadata.h"
-#include "engine/formats/zarr/ome_zarr.h"
-#include "engine/volume/source.h"
+#include "engine/projects/import_volume.h"
 
 namespace shvr {
 
 /// The chunks of IMPORT_CHUNK^3 voxels that stored blocks touch, in an order in which those below one chunk of a
-/// coarser level are adjacent. Null if the source does not know what it stores, if the fill value is not 0, or if a
-/// dense import is cheaper: if they are more than an eighth of all.
-std::optional<std::vector<Size3>> sparse_chunks(const VolumeSource& source);
+/// coarser level are adjacent. Null if the source does not know what it stores, or if the fill value is not 0.
+std::optional<std::vector<Size3>> stored_chunks(const VolumeSource& source);
+/// Whether writing these chunks alone takes less time than a dense import with all threads: up to an eighth of all.
+bool are_few(const std::vector<Size3>& chunks, const Size3& size);
 
-struct SparseLevelFiles {
-    int levels = 1;
-    int64_t chunks = 0;  ///< number in all levels
-    int64_t stored = 0;  ///< that have a file
-    int64_t bytes = 0;   ///< total size of these files
-};
-/// Writes chunks and metadata of all levels into a folder; a voxel of a coarser level is the most frequent label of
-/// those below it. `info`: as stated in the files; `progress` reports the completed fraction of `chunks`.
-SparseLevelFiles write_sparse_levels(const VolumeSource& source, const VolumeInfo& info,
-                                     const std::vector<Size3>& chunks, const std::filesystem::path& folder,
-                                     OmeZarrVersion version, const ZarrCompressor& compressor,
-                                     const Progress& progress);
+/// Writes a label image of these chunks; a voxel of a coarser level is the most frequent label of those below it.
+/// `target` and `options` are those of `export_label_image`, checked and completed.
+ImportReport write_label_image(const VolumeSource& labels, const std::filesystem::path& target,
+                               const std::vector<Size3>& chunks, const ImportOptions& options);
+
+/// Like `export_label_image`, for a source that knows what it stores, always at a cost of only that, on one thread.
+ImportReport save_label_image(const VolumeSource& labels, const std::filesystem::path& folder, const LabelImage& image,
+                              const ImportOptions& options = {});
+
+/// Saves numbers, from a source that knows what it stores, as an OME-Zarr 0.4 of level 0 alone, whose attribute "shvr"
+/// is {"shvr_KIND": 1}. Replaces an image of that kind; anything else at that path is refused.
+ImportReport save_number_image(const VolumeSource& numbers, const std::filesystem::path& folder,
+                               const std::string& kind, const Progress& progress = {});
 
 }  // namespace shvr

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/formats/readers.h"
 #include "engine/formats/zarr/project.h"
 #include "engine/projects/import_box.h"
@@ -426,58 +427,6 @@ ImportReport import_all(const VolumeSource& labels, const fs::path& target, cons
     }
 }
 
-/// The same for only the stored chunks.
-ImportReport import_sparse(const VolumeSource& labels, const fs::path& target, const std::vector<Size3>& chunks,
-                           const ImportOptions& options)
-{
-    const Clock::time_point begin = Clock::now();
-    Clock::time_point told{};
-    const VolumeInfo info = make_preparation(labels, {})->info();
-    const OmeZarrVersion version = options.version.value_or(OmeZarrVersion::v0_4);
-    PartFolder folder(target, true);
-    folder.clear();
-    StateWriter().write(folder.state());  // marks remains of a killed process as left by this program
-    const auto progress = [&](double fraction) {
-        if (options.cancel != nullptr && *options.cancel)
-            throw ImportStopped(target.string() + ": stopped; no file is left half written");
-        if (!options.progress || seconds_since(told) < 0.1 || !(fraction > 0.0)) return;
-        told = Clock::now();
-        const double seconds = seconds_since(begin);
-        options.progress({.fraction = fraction,
-                          .voxels_per_second = fraction * double(voxel_count(info)) / seconds,
-                          .seconds_left = (1.0 - fraction) / fraction * seconds});
-    };
-    try {
-        const SparseLevelFiles written =
-            write_sparse_levels(labels, info, chunks, folder.path(), version, options.compressor, progress);
-        ImportReport report{.info = info,
-                            .levels = written.levels,
-                            .bricks = written.chunks,
-                            .bricks_stored = written.stored,
-                            .bytes = written.bytes,
-                            .warnings = labels.info().warnings};
-        const std::string attributes =
-            import_attributes(version, folder.name(), info, written.levels, options.halving, &*options.label_image);
-        for (const auto& [name, text] : group_files(version, attributes)) {
-            write_part_file(folder.path() / name, std::as_bytes(std::span(text)));
-            report.bytes += int64_t(text.size());
-        }
-        folder.finish();
-        report.project = folder.path();
-        return report;
-    } catch (const Error& error) {
-        const bool is_stopped = dynamic_cast<const ImportStopped*>(&error) != nullptr;
-        folder.abandon();
-        const std::string remains = remains_of(folder.path());
-        if (remains.empty()) throw;
-        if (is_stopped) throw ImportStopped(error.what() + remains);
-        fail(error.what(), remains);
-    } catch (...) {
-        folder.abandon();
-        throw;
-    }
-}
-
 }  // namespace
 
 ImportReport import_volume(const VolumeSource& source, const fs::path& origin, const fs::path& project,
@@ -497,6 +446,13 @@ ImportReport import_volume(const VolumeSource& source, const fs::path& origin, c
     }
 }
 
+bool is_label_image(const fs::path& path)
+{
+    const fs::path plain = path.has_filename() ? path : path.parent_path();
+    const std::string form = lower_case(plain.extension().string());
+    return form == ".zarr" || (form.empty() && plain.parent_path().filename() == "labels");
+}
+
 ImportReport export_label_image(const VolumeSource& labels, const fs::path& folder, const LabelImage& image,
                                 const ImportOptions& options)
 {
@@ -514,9 +470,10 @@ ImportReport export_label_image(const VolumeSource& labels, const fs::path& fold
                          .version = version,
                          .progress = options.progress,
                          .cancel = options.cancel};
-    const std::optional<std::vector<Size3>> chunks = sparse_chunks(labels);
+    const std::optional<std::vector<Size3>> chunks = stored_chunks(labels);
+    const bool is_sparse = chunks && are_few(*chunks, labels.info().size);
     const ImportReport report =
-        chunks ? import_sparse(labels, target, *chunks, wanted) : import_all(labels, target, wanted);
+        is_sparse ? write_label_image(labels, target, *chunks, wanted) : import_all(labels, target, wanted);
     if (belongs) list_label_image(target, version);
     return report;
 }

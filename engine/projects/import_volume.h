@@ -89,6 +89,9 @@ struct ImportReport {
 ImportReport import_volume(const VolumeSource& source, const std::filesystem::path& origin,
                            const std::filesystem::path& project, const ImportOptions& options);
 
+/// Whether labels at this path are a label image, by its name: NAME.zarr, or IMAGE/labels/NAME.
+bool is_label_image(const std::filesystem::path& path);
+
 /// Exports labels (whole numbers) as an OME-Zarr label image with its levels and nothing else: no folder shvr/. It
 /// appears complete and replaces an existing label image; anything else at that path is refused. If the path is
 /// IMAGE/labels/NAME, it is added to the list in IMAGE/labels, and the label image refers to IMAGE, whose version it

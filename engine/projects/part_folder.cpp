@@ -16,13 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The path without a trailing slash, with which it would be its own parent.
-fs::path plain(const fs::path& path)
-{
-    const fs::path whole = fs::absolute(path).lexically_normal();
-    return whole.has_filename() ? whole : whole.parent_path();
-}
-
 fs::path with_suffix(const fs::path& path, const char* suffix)
 {
     fs::path result = path;
@@ -91,7 +84,7 @@ void remove_content(const fs::path& folder)
 }  // namespace
 
 PartFolder::PartFolder(const fs::path& target, bool overwrites)
-    : target_(plain(target)), part_(with_suffix(target_, ".part")), overwrites_(overwrites)
+    : target_(plain_path(target)), part_(with_suffix(target_, ".part")), overwrites_(overwrites)
 {
     refuse_target();
     if (!is_there(part_)) make_folder(part_);
@@ -119,12 +112,10 @@ void PartFolder::refuse_target() const
     if (!is_zarr(target_))
         fail(target_.string(),
              ": is not a project; expected one, since --overwrite replaces nothing else: choose a new name");
-    std::error_code error;
-    for (const fs::directory_entry& entry : fs::directory_iterator(target_, error))
-        if (!belongs_to_zarr(entry.path()))
-            fail(entry.path().string(),
-                 ": is no part of a project; expected nothing else there, since --overwrite removes the whole folder: "
-                 "move it, or choose a new name");
+    if (const fs::path foreign = entry_foreign_to_zarr(target_); !foreign.empty())
+        fail(foreign.string(),
+             ": is no part of a project; expected nothing else there, since --overwrite removes the whole folder: "
+             "move it, or choose a new name");
 }
 
 void PartFolder::clear() const
@@ -178,6 +169,20 @@ void PartFolder::abandon()
     if (part_ == target_) return;
     std::error_code ignored;
     fs::remove_all(part_, ignored);
+}
+
+fs::path plain_path(const fs::path& path)
+{
+    const fs::path whole = fs::absolute(path).lexically_normal();
+    return whole.has_filename() ? whole : whole.parent_path();
+}
+
+fs::path entry_foreign_to_zarr(const fs::path& folder)
+{
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
+        if (!belongs_to_zarr(entry.path())) return entry.path();
+    return {};
 }
 
 void write_part_file(const fs::path& path, std::span<const std::byte> content)

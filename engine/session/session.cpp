@@ -48,7 +48,13 @@ JsonDocument document_for_project(const fs::path& session_file, std::vector<std:
     losses.push_back(sentence(session_file.string(),
                               ": is missing; expected the project's session with its looks; a new project's is taken, "
                               "which finds volume and annotation, and saving in the window writes it"));
-    return session_document(import_session(), session_file.string());
+    JsonDocument document = session_document(import_session(), session_file.string());
+    // Projects of earlier versions, unless they were upgraded.
+    const fs::path folder = session_file.parent_path();
+    std::error_code ignored;
+    if (fs::exists(folder / "paint.mask", ignored) && !fs::exists(folder.parent_path() / "labels" / "paint", ignored))
+        document.value()["annotation"] = {{"mask", "paint.mask"}};
+    return document;
 }
 
 }  // namespace

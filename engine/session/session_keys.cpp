@@ -2,6 +2,7 @@
 // (session_keys_camera.cpp).
 
 #include "engine/session/session_keys.h"
+#include "engine/session/annotation_names.h"
 
 #include <algorithm>
 #include <charconv>
@@ -233,27 +234,28 @@ void density_fields(Fields& f, DensityBrush& density)
 
 void annotation_fields(Fields& f, Session& session)
 {
-    f.path(
-        "mask", session.mask_path,
-        {.meaning = "file of the mask, created when first saved: raw bytes (`.mask`), `.nrrd`, `.tif`, or an OME-Zarr "
-                    "label image (`.zarr`), which also names and colours groups that `groups` does not list",
-         .allowed = "path",
-         .standard = "none"});
+    f.path("mask", session.mask_path,
+           {.meaning = "label image of the mask, created when first saved: OME-Zarr (`NAME.zarr`, or `labels/NAME` in "
+                       "a project), which holds only what is painted, and also names and colours groups that `groups` "
+                       "does not list; or a file of every voxel: `.nrrd`, `.tif`, or raw bytes (`.mask`)",
+            .allowed = "path",
+            .standard = "none"});
     f.path("trace", session.trace_path,
            {.meaning = "file of the trace, created when first saved: `.graphml`, which keeps everything, `.txt`, "
                        "`.swc` or `.rsml`",
             .allowed = "path",
-            .standard = "next to the mask, with its name and `.graphml`"});
-    if (session.trace_path.empty() && !session.mask_path.empty())
-        session.trace_path = std::filesystem::path(session.mask_path).replace_extension(".graphml");
+            .standard = "next to the mask, with its name and `.graphml`; in `shvr` for `labels/NAME`"});
+    if (session.trace_path.empty() && !session.mask_path.empty()) session.trace_path = trace_beside(session.mask_path);
     f.check("trace", session.trace_path.empty() || is_trace_file(session.trace_path),
             "a path that ends in .graphml, .txt, .swc or .rsml");
-    f.path("density", session.density_path,
-           {.meaning = "file of density offsets, created when first saved: raw numbers (`.offset`), `.nrrd` or `.tif`",
-            .allowed = "path",
-            .standard = "next to the mask, with its name and `.offset`"});
+    f.path(
+        "density", session.density_path,
+        {.meaning = "density offsets, created when first saved: an OME-Zarr image (`.zarr`), which holds only what is "
+                    "painted, or a file of every voxel: `.nrrd`, `.tif`, or raw numbers (`.offset`)",
+         .allowed = "path",
+         .standard = "the same with `.offsets.zarr`; with `.offset` where that exists, and for masks of every voxel"});
     if (session.density_path.empty() && !session.mask_path.empty())
-        session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
+        session.density_path = offsets_beside(session.mask_path);
 }
 
 /// Group numbers, each once; empty: everything can be felt.

@@ -61,7 +61,7 @@ void fields(Fields& f, ExportTask& task)
     f.path("mask", task.mask, {.meaning = "the painted voxels: .mask, .nrrd, .tif, .zarr", .standard = "none"});
     f.flag("labels", task.labels, {"the painted voxels as OME-Zarr labels in the project, labels/mask"});
     version_field(f, task.version, "version of OME-Zarr; automatic: as the project or the labels there are, or 0.4");
-    f.path("offset", task.offset, {.meaning = "the density offsets: .offset, .nrrd, .tif", .standard = "none"});
+    f.path("offset", task.offset, {.meaning = "the density offsets: .offset, .nrrd, .tif, .zarr", .standard = "none"});
     f.path("trace", task.trace, {.meaning = "nodes and internodes: .graphml, .txt, .swc, .rsml", .standard = "none"});
     f.flag("break_loops", task.break_loops,
            {"each loop is opened where its last internode closed it, for .swc and .rsml, which hold trees"});
@@ -118,7 +118,10 @@ void check(const ExportTask& task)
             if (&path != &same && !path.empty() && !same.empty() && plain(path) == plain(same))
                 throw UsageError(
                     sentence(name(key), " and ", name(other), " are both '", path.string(), "'; expected two names"));
-    check_output(name("offset"), task.offset, {".offset", ".nrrd", ".tif", ".tiff"});
+    if (lower_case(task.offset.extension().string()) == ".zarr")
+        check_output_folder(task.offset);
+    else
+        check_output(name("offset"), task.offset, {".offset", ".nrrd", ".tif", ".tiff", ".zarr"});
     check_output(name("trace"), task.trace, {".txt", ".swc", ".graphml", ".rsml"});
     check_output(name("mesh"), task.mesh, {".obj", ".ply"});
     check_output(name("metrics"), task.metrics, {".csv"});

@@ -109,6 +109,12 @@ class CliTest(unittest.TestCase):
     def assert_keys(self, value, keys):
         self.assertEqual([key for key in keys if key not in value], [])
 
+    def mask_of(self, project):
+        """The groups of a project as bytes, x fastest."""
+        path = self.folder / "exported.mask"
+        self.check("export", project, "--mask", path, "--quiet")
+        return path.read_bytes()
+
     def write_json(self, name, value):
         path = self.folder / name
         path.write_text(json.dumps(value))

@@ -166,7 +166,7 @@ class Writers(CliTest):
                            says=["is open for writing in shvr annotate", str(first.pid)])
         self.finish(first, [self.dab(1), {"op": "save"}])
         self.check("import", volume, project, "--overwrite")
-        self.assertFalse((project / "shvr" / "paint.mask").exists())
+        self.assertFalse((project / "labels").exists())
 
 
 if __name__ == "__main__":

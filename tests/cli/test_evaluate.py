@@ -163,7 +163,7 @@ class Projects(CliTest):
         script = self.write_script("s.jsonl", [{"op": "paint", "brush": "fill", "region": "box", "group": 2,
                                                 "threshold": 1, "radius": 9, "path": [[1, 1, 1]]}, {"op": "save"}])
         self.check("annotate", project, "--script", script)
-        mask = project / "shvr" / "paint.mask"
+        mask = project / "labels" / "paint"
         self.check_refused(*evaluate, says=["project: is a project", f"expected its mask, {mask}"])
         self.assertEqual(self.check_json("evaluate", "--truth-mask", volume, "--mask", mask)["dice"], 1)
 

@@ -219,7 +219,7 @@ class Import(CliTest):
                                                 "threshold": 0, "radius": 3, "path": [[20, 20, 20]]}, {"op": "save"}])
         painted = self.check_json("annotate", self.project(), "--script", script)
         self.assertGreater(painted["voxels_changed"], 50)
-        self.assertTrue((self.project() / "shvr/paint.mask").exists())
+        self.assertTrue((self.project() / "labels/paint/0/0/0/0").exists())
         # Without its session the OME-Zarr still opens.
         (self.project() / "shvr/session.json").unlink()
         self.check("render", self.project(), "-o", self.folder / "c.png", *arguments)

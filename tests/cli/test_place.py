@@ -150,7 +150,8 @@ class PlaceTest(CliTest):
         (project / "shvr/paint.offset").write_bytes(struct.pack(f"<{len(values)}{kind}", *(5 * value for value in values)))
         node = ", ".join(repr((i + 0.5) * s) for i, s in zip(index, report["spacing"]))
         (project / "shvr/paint.txt").write_text(f"-v {node}, 1, 0.5\n")
-        settings = ["--set", "annotation.trace=paint.txt", "--set", "annotation.density=paint.offset", "--quiet"]
+        settings = ["--set", "annotation.mask=paint.mask", "--set", "annotation.trace=paint.txt", "--set",
+                    "annotation.density=paint.offset", "--quiet"]
         out = {key: self.folder / key for key in ("m.nrrd", "m.tif", "m.zarr", "o.nrrd", "o.tif", "t.swc", "t.graphml",
                                                   "t.rsml", "t.txt", "b.obj", "b.ply")}
         for mask, offset, trace, mesh in (("m.nrrd", "o.nrrd", "t.swc", "b.obj"), ("m.tif", "o.tif", "t.graphml", "b.ply"),

@@ -108,7 +108,7 @@ class Written(CliTest):
                 self.assertEqual(first["chunk_grid"]["configuration"]["chunk_shape"], [64, 64, 64])
                 self.assertEqual(first["chunk_key_encoding"], {"name": "default", "configuration": {"separator": "/"}})
                 self.assertEqual([codec["name"] for codec in first["codecs"]], ["bytes", "blosc"])
-                self.assertEqual(list(project.rglob(".z*")), [])
+                self.assertEqual([path for path in project.rglob(".z*") if "shvr" not in path.parts], [])
 
     def test_0_4_is_the_default_and_only_the_dialect_differs(self):
         header = Volume.noise((70, 66, 65), seed=1, voxel_type="uint16", high=900).write(self.folder)
@@ -181,7 +181,6 @@ class Projects(CliTest):
             for key in ("seconds", "label_seconds", "megavoxels_per_second", "output", "peak_bytes"):
                 parts.pop(key)
             made[version] = [(out / f"a.{form}").read_bytes() for form in ("png", "mask", "swc", "csv")] + [parts]
-            made[version].append((project / "shvr" / "paint.mask").read_bytes())
         self.assertEqual(made["0.4"], made["0.5"])
 
     def test_labels_are_of_the_version_of_their_image_and_are_known_again(self):
@@ -191,8 +190,11 @@ class Projects(CliTest):
         self.check("label", project, "--threshold", 250, "-o", project / "labels" / "parts")
         group = json.loads((project / "labels" / "zarr.json").read_text())
         self.assertEqual(group, {"zarr_format": 3, "node_type": "group",
-                                 "attributes": {"ome": {"version": "0.5", "labels": ["mask", "parts"]}}})
-        found = read(self, project / "labels" / "mask", project / "shvr" / "paint.mask")
+                                 "attributes": {"ome": {"version": "0.5", "labels": ["paint", "mask", "parts"]}}})
+        painted = self.folder / "painted.mask"
+        self.check("export", project, "--mask", painted)
+        read(self, project / "labels" / "paint", painted)
+        found = read(self, project / "labels" / "mask", painted)
         label = found["ome"]["image-label"]
         self.assertEqual(label["version"], "0.5")
         self.assertEqual(label["source"], {"image": "../../"})
@@ -203,7 +205,7 @@ class Projects(CliTest):
         # Read back by its own volume; a mask of another volume is refused.
         labels = project / "labels" / "mask"
         self.check("export", project, "--set", f'annotation.mask="{labels}"', "--mask", self.folder / "again.mask")
-        self.assertEqual((self.folder / "again.mask").read_bytes(), (project / "shvr" / "paint.mask").read_bytes())
+        self.assertEqual((self.folder / "again.mask").read_bytes(), painted.read_bytes())
         other = Volume.noise((40, 36, 34), seed=8, spacing=(0.5, 1, 2)).write(self.folder, "other")
         self.check("import", other, self.folder / "third", "--unit", "mm")
         self.check_refused("export", self.folder / "third", "--set", f'annotation.mask="{labels}"',
@@ -218,7 +220,8 @@ class Projects(CliTest):
         project, alone = self.projects["0.4"], self.folder / "alone.zarr"
         self.check("annotate", project, "--script", self.script)
         self.check("export", project, "--mask", alone, "--ome-zarr", "0.5")
-        read(self, alone, project / "shvr" / "paint.mask")
+        self.check("export", project, "--mask", self.folder / "painted.mask")
+        read(self, alone, self.folder / "painted.mask")
         # Painted and saved there.
         more = self.write_script("more.jsonl", [
             {"op": "paint", "brush": "fill", "region": "box", "group": 7, "threshold": 0, "radius": 2,

@@ -41,10 +41,10 @@ int64_t now_ns()
     return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
 }
 
-[[noreturn]] void work_until_killed(const fs::path& folder, uint32_t seed, Told& told)
+[[noreturn]] void work_until_killed(const WorkFiles& files, uint32_t seed, Told& told)
 {
     std::string said;
-    const auto work = open_work(files_in(folder), said);
+    const auto work = open_work(files, said);
     std::mt19937 random(seed);
     for (size_t step = 0; step < MAX_STEPS;) {
         if (!random_step(*work, random)) continue;
@@ -111,12 +111,9 @@ private:
     std::map<size_t, Document> saves;  ///< by the number of steps before them
 };
 
-}  // namespace
-
-TEST_CASE("kills lose at most what was done in the last moments, and never half of a step")
+/// Kills the program that many times in one folder.
+void kill_again_and_again(const fs::path& folder, const WorkFiles& files, uint32_t rounds)
 {
-    const TemporaryFolder folder;
-    const WorkFiles files = files_in(folder.path);
     auto* const told =
         static_cast<Told*>(::mmap(nullptr, sizeof(Told), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
     REQUIRE(told != MAP_FAILED);
@@ -124,12 +121,11 @@ TEST_CASE("kills lose at most what was done in the last moments, and never half 
     Model model;
     size_t lost = 0, steps = 0, wrong = 0, wrong_views = 0, reverts = 0, kept_before = 0, opened_with_loss = 0;
     int64_t longest_lost_ns = 0, longest_opening_ns = 0;
-    const uint32_t rounds = repeats(40, 200);
     for (uint32_t round = 0; round < rounds; ++round) {
         told->steps = 0;
         const pid_t child = ::fork();
         REQUIRE(child >= 0);
-        if (child == 0) work_until_killed(folder.path, round, *told);
+        if (child == 0) work_until_killed(files, round, *told);
         // Waits for as many steps on every machine, mostly with a save or two; then kills within the next ones.
         const size_t until = 1 + random() % (3 * SAVE_EVERY);
         while (told->steps < until) std::this_thread::sleep_for(std::chrono::microseconds(100));
@@ -179,6 +175,25 @@ TEST_CASE("kills lose at most what was done in the last moments, and never half 
     // The guarantee is 250 ms; the rest is slack for a stalled machine, and only a slow run, which has the machine to
     // itself, judges by a clock.
     if (is_slow()) CHECK(longest_lost_ns < 2'000'000'000);
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder.path))
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
         CHECK_FALSE(contains(entry.path().filename().string(), ".old"));
+}
+
+}  // namespace
+
+TEST_CASE("kills lose at most what was done in the last moments, and never half of a step")
+{
+    const TemporaryFolder folder;
+    kill_again_and_again(folder.path, files_in(folder.path), repeats(30, 200));
+}
+
+TEST_CASE("the same where mask and offsets are OME-Zarr; the next save clears what kills left")
+{
+    const TemporaryFolder folder;
+    const WorkFiles files = sparse_files_in(folder.path);
+    kill_again_and_again(folder.path, files, repeats(15, 1000));
+    std::string said;
+    save(*open_work(files, said));
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder.path))
+        CHECK_FALSE(contains(entry.path().filename().string(), ".shvr-part"));
 }

@@ -40,13 +40,46 @@ void apply_some(std::string& content, const FileCall& call, std::mt19937& random
     }
 }
 
+/// Takes out all files in a folder; their names are within it.
+Folder taken_from(Folder& files, const std::string& folder)
+{
+    Folder taken;
+    const std::string prefix = folder + "/";
+    for (auto file = files.lower_bound(prefix); file != files.end() && file->first.starts_with(prefix);) {
+        taken[file->first.substr(prefix.size())] = file->second;
+        file = files.erase(file);
+    }
+    return taken;
+}
+
+void put_into(Folder& files, const std::string& folder, const Folder& taken)
+{
+    for (const auto& [name, file] : taken) files[folder + "/" + name] = file;
+}
+
 void apply_entry(Folder& folder, const FileCall& call, const std::shared_ptr<File>& created)
 {
-    if (call.kind == FileCall::Kind::create) folder[call.path] = created;
-    if (call.kind == FileCall::Kind::unlink) folder.erase(call.path);
-    if (call.kind != FileCall::Kind::rename || !folder.contains(call.path)) return;
-    folder[call.to] = folder[call.path];
-    folder.erase(call.path);
+    switch (call.kind) {
+        case FileCall::Kind::create: folder[call.path] = created; return;
+        case FileCall::Kind::unlink: folder.erase(call.path); return;
+        case FileCall::Kind::make_folder:  // a folder of that name was removed before
+            static_cast<void>(taken_from(folder, call.path));
+            return;
+        case FileCall::Kind::rename:
+            if (folder.contains(call.path)) {
+                folder[call.to] = folder[call.path];
+                folder.erase(call.path);
+            } else
+                put_into(folder, call.to, taken_from(folder, call.path));
+            return;
+        case FileCall::Kind::exchange: {
+            const Folder one = taken_from(folder, call.path), other = taken_from(folder, call.to);
+            put_into(folder, call.path, other);
+            put_into(folder, call.to, one);
+            return;
+        }
+        default: return;
+    }
 }
 
 }  // namespace
@@ -63,6 +96,8 @@ Disk disk_after(std::span<const FileCall> calls, const PowerCut& cut, std::mt199
         switch (call.kind) {
             case FileCall::Kind::create:
             case FileCall::Kind::rename:
+            case FileCall::Kind::exchange:
+            case FileCall::Kind::make_folder:
             case FileCall::Kind::unlink:
                 later.push_back({&call, call.kind == FileCall::Kind::create ? std::make_shared<File>() : nullptr});
                 apply_entry(now, call, later.back().created);
@@ -74,6 +109,13 @@ Disk disk_after(std::span<const FileCall> calls, const PowerCut& cut, std::mt199
                 for (const FileCall* change : now.at(call.path)->later) apply_call(now.at(call.path)->synced, *change);
                 now.at(call.path)->later.clear();
                 break;
+            case FileCall::Kind::sync_all:
+                if (!cut.syncs_count) break;
+                for (const auto& [path, file] : now) {
+                    for (const FileCall* change : file->later) apply_call(file->synced, *change);
+                    file->later.clear();
+                }
+                [[fallthrough]];
             case FileCall::Kind::sync_folder:
                 if (!cut.syncs_count) break;
                 synced = now;

@@ -21,6 +21,8 @@ namespace fs = std::filesystem;
 
 /// The calls made, and the states in between.
 struct Record {
+    fs::path folder;
+    WorkFiles (*files_of)(const fs::path& folder) = nullptr;
     std::vector<FileCall> calls;
     struct State {
         size_t steps = 0;
@@ -32,10 +34,14 @@ struct Record {
     std::set<uint64_t> masks, traces, fields;  ///< saved ones, and the empty one
 };
 
+using FilesOf = WorkFiles (*)(const fs::path& folder);
+
 /// Notes among the calls hold the number of the last state that is acknowledged.
-Record work_of_a_day(const fs::path& folder)
+Record work_of_a_day(const fs::path& folder, FilesOf files_of)
 {
     Record record;
+    record.folder = folder;
+    record.files_of = files_of;
     std::mt19937 random(5);
     record.states.push_back({0, hash_of(unannotated()), {}});
     record.masks.insert(hash_of(Mask(ANNOTATED_SIZE)));
@@ -44,7 +50,7 @@ Record work_of_a_day(const fs::path& folder)
     watch(folder);
     std::string said;
     for (int day = 0; day < 3; ++day) {
-        auto work = open_work(files_in(folder), said);
+        auto work = open_work(files_of(folder), said);
         for (int i = 0; i < 110; ++i) {
             const Record::State before = record.states.back();
             const size_t steps = before.steps + size_t(random_step(*work, random));
@@ -75,10 +81,12 @@ std::string fault_of(const fs::path& folder, const Disk& disk, const Record& rec
     fs::remove_all(folder);
     fs::create_directories(folder);
     for (const auto& [path, content] : disk) {
-        std::ofstream file(folder / fs::path(path).filename(), std::ios::binary);
+        const fs::path copy = folder / fs::path(path).lexically_relative(record.folder);
+        fs::create_directories(copy.parent_path());
+        std::ofstream file(copy, std::ios::binary);
         file.write(content.data(), std::streamsize(content.size()));
     }
-    WorkFiles files = files_in(folder);
+    WorkFiles files = record.files_of(folder);
     std::string said;
     try {
         const auto work = open_work(files, said);
@@ -132,7 +140,7 @@ TEST_CASE("power cuts at any moment leave what was acknowledged, and nothing mix
 {
     const TemporaryFolder folder;
     fs::create_directory(folder.path / "desk");
-    const Record record = work_of_a_day(folder.path / "desk");
+    const Record record = work_of_a_day(folder.path / "desk", files_in);
     REQUIRE(record.states.size() > 100);
     REQUIRE(record.masks.size() > 4);
     const Faults faults = faults_of(record, folder.path / "cut", repeats(300, 2000), true);
@@ -144,4 +152,17 @@ TEST_CASE("power cuts at any moment leave what was acknowledged, and nothing mix
     const Faults without_syncs = faults_of(record, folder.path / "cut", cuts, false);
     CHECK(without_syncs.count > cuts / 3);
     MESSAGE("without syncs: ", without_syncs.count, " of ", cuts, ", the first ", without_syncs.first);
+}
+
+TEST_CASE("power cuts while mask and offsets are OME-Zarr: each is that of one save, as a whole")
+{
+    const TemporaryFolder folder;
+    fs::create_directory(folder.path / "desk");
+    const Record record = work_of_a_day(folder.path / "desk", sparse_files_in);
+    REQUIRE(record.masks.size() > 4);
+    const Faults faults = faults_of(record, folder.path / "cut", repeats(100, 2000), true);
+    CAPTURE(faults.first);
+    CHECK(faults.count == 0);
+    const size_t cuts = repeats(30, 300);
+    CHECK(faults_of(record, folder.path / "cut", cuts, false).count > cuts / 3);
 }

@@ -1,6 +1,7 @@
 #include "tests/durability/watched_calls.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <sys/types.h>
 #include <unistd.h>
 
@@ -17,6 +18,7 @@ ssize_t __real_pwrite(int file, const void* bytes, size_t count, off_t at);
 int __real_ftruncate(int file, off_t size);
 int __real_rename(const char* from, const char* to);
 int __real_renameat2(int from_folder, const char* from, int to_folder, const char* to, unsigned flags);
+int __real_mkdir(const char* path, mode_t mode);
 int __real_unlink(const char* path);
 }
 
@@ -172,8 +174,24 @@ int __wrap_rename(const char* from, const char* to)
 /// Relative to no folder, which is all that the program uses.
 int __wrap_renameat2(int from_folder, const char* from, int to_folder, const char* to, unsigned flags)
 {
-    return made({FileCall::Kind::rename, absolute(from), absolute(to), 0, {}},
+    return made({(flags & RENAME_EXCHANGE) != 0 ? FileCall::Kind::exchange : FileCall::Kind::rename,
+                 absolute(from),
+                 absolute(to),
+                 0,
+                 {}},
                 [&](int) { return __real_renameat2(from_folder, from, to_folder, to, flags); });
+}
+
+int __wrap_mkdir(const char* path, mode_t mode)
+{
+    return made({FileCall::Kind::make_folder, absolute(path), {}, 0, {}},
+                [&](int) { return __real_mkdir(path, mode); });
+}
+
+/// Of the whole file system, not really made, as `sync_call`.
+int __wrap_syncfs(int file)
+{
+    return made({FileCall::Kind::sync_all, path_of(file), {}, 0, {}}, [](int) { return 0; });
 }
 
 int __wrap_unlink(const char* path)

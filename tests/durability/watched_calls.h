@@ -14,9 +14,21 @@
 namespace shvr::test {
 
 struct FileCall {
-    enum class Kind { create, write, truncate, sync, sync_folder, rename, unlink, note };
+    enum class Kind {
+        create,
+        write,
+        truncate,
+        sync,
+        sync_folder,
+        sync_all,
+        make_folder,
+        rename,
+        exchange,
+        unlink,
+        note
+    };
     Kind kind = Kind::note;
-    std::string path, to;          ///< absolute; `to` for rename only
+    std::string path, to;          ///< absolute; `to` for rename and exchange only
     uint64_t at = 0;               ///< write: the offset; truncate: the new size; note: its number
     std::vector<std::byte> bytes;  ///< for write
 };

@@ -59,6 +59,14 @@ WorkFiles files_in(const std::filesystem::path& folder)
             .volume = annotated_volume()};
 }
 
+WorkFiles sparse_files_in(const std::filesystem::path& folder)
+{
+    WorkFiles files = files_in(folder);
+    files.mask = folder / "a.zarr";
+    files.density = folder / "a.offsets.zarr";
+    return files;
+}
+
 uint64_t hash_of(const Mask& mask)
 {
     return hash_of_bricks(mask, 1);

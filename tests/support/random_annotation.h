@@ -18,6 +18,8 @@ VolumeInfo annotated_volume();
 Document unannotated();
 /// The files of work on it, in `folder`.
 WorkFiles files_in(const std::filesystem::path& folder);
+/// The same with mask and offsets as OME-Zarr.
+WorkFiles sparse_files_in(const std::filesystem::path& folder);
 
 /// Differs (except for one chance in 2^64) if any group, offset, node, internode or size differs, or which of them
 /// exist.

@@ -6,6 +6,7 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/formats/export/volume_export.h"
+#include "engine/projects/import_sparse.h"
 
 namespace shvr {
 
@@ -20,13 +21,6 @@ bool is_nrrd(const std::filesystem::path& path)
 
 }  // namespace
 
-bool is_label_image(const std::filesystem::path& path)
-{
-    const std::filesystem::path plain = path.has_filename() ? path : path.parent_path();
-    const std::string form = lower_case(plain.extension().string());
-    return form == ".zarr" || (form.empty() && plain.parent_path().filename() == "labels");
-}
-
 bool is_mask_export(const std::filesystem::path& path)
 {
     return is_label_image(path) || is_volume_export(path) || lower_case(path.extension().string()) == ".mask";
@@ -40,7 +34,7 @@ void export_mask(const std::filesystem::path& path, const Mask& mask, const Volu
              "; expected .mask, .nrrd, .tif or .zarr");
     const MaskSource groups(mask, volume);
     if (is_label_image(path))
-        static_cast<void>(export_label_image(
+        static_cast<void>(save_label_image(
             groups, path, image,
             {.version = version, .progress = [&](const ImportProgress& done) { tell(progress, done.fraction); }}));
     else if (is_volume_export(path))

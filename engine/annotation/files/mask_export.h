@@ -13,8 +13,6 @@
 
 namespace shvr {
 
-/// Whether the output at this path is a folder that holds a label image.
-bool is_label_image(const std::filesystem::path& path);
 bool is_mask_export(const std::filesystem::path& path);
 
 /// Replaces an old file (or label image) atomically. `volume`, of the mask's size, gives the voxels' positions; `image`

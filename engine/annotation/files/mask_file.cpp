@@ -1,6 +1,7 @@
 #include "engine/annotation/files/mask_file.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "engine/annotation/files/voxel_strips.h"
@@ -12,6 +13,7 @@ namespace shvr {
 void save_mask(const std::filesystem::path& path, const Mask& mask, const Progress& progress)
 {
     const glm::i64vec3 counts = mask.brick_counts();
+    expect_space(path, bytes_of_voxels(mask.size(), 1), MORE_SPACE);
     AtomicWriter writer(path);
     std::vector<uint8_t> bytes;
     for_each_strip(mask.size(), [&](const VoxelStrip& strip) {
@@ -35,7 +37,7 @@ std::vector<MaskBrickChange> load_mask(const std::filesystem::path& path, const 
     const FileDescriptor file = open_voxels(path, size, 1, ".mask");
     const glm::i64vec3 counts = (size + Size3(BRICK_SIDE - 1)) / Size3(BRICK_SIDE);
     std::vector<MaskBrickChange> changes;
-    std::vector<std::vector<MaskRun>> layer(size_t(counts.x * counts.y));  // the runs of each brick so far
+    std::map<int64_t, std::vector<MaskRun>> layer;  // the runs of each painted brick so far
     std::vector<uint8_t> bytes;
     for_each_strip(size, [&](const VoxelStrip& strip) {
         bytes.resize(strip.voxels());
@@ -43,15 +45,16 @@ std::vector<MaskBrickChange> load_mask(const std::filesystem::path& path, const 
         const bool is_painted = std::any_of(bytes.begin(), bytes.end(), [](uint8_t group) { return group != 0; });
         for (int64_t x = 0; is_painted && x < counts.x; ++x)
             for_each_row(strip, x, [&](size_t in_strip, size_t in_brick, size_t width) {
-                append_painted_runs(layer[size_t(x + counts.x * strip.brick_y)],
-                                    std::span(bytes).subspan(in_strip, width), in_brick);
+                const auto row = std::span(bytes).subspan(in_strip, width);
+                if (std::ranges::any_of(row, [](uint8_t group) { return group != 0; }))
+                    append_painted_runs(layer[x + counts.x * strip.brick_y], row, in_brick);
             });
         if (!strip.ends_layer()) return;
-        for (size_t i = 0; i < layer.size(); ++i) {
-            if (layer[i].empty()) continue;
-            layer[i].shrink_to_fit();
-            changes.push_back({int64_t(i) + counts.x * counts.y * (strip.z / BRICK_SIDE), std::exchange(layer[i], {})});
+        for (auto& [brick, runs] : layer) {
+            runs.shrink_to_fit();
+            changes.push_back({brick + counts.x * counts.y * (strip.z / BRICK_SIDE), std::move(runs)});
         }
+        layer.clear();
     });
     return changes;
 }

@@ -2,24 +2,19 @@
 // Presents a mask as a volume of groups, and converts such a volume to a mask, for export and import of masks. Any
 // thread may call these.
 
+#include "engine/annotation/files/sparse_source.h"
 #include "engine/annotation/mask.h"
-#include "engine/volume/source.h"
 
 namespace shvr {
 
-class MaskSource final : public VolumeSource {
+class MaskSource final : public SparseSource<uint8_t> {
 public:
     /// `volume`, of the mask's size, gives the voxels' positions. The mask must outlive this object, unchanged.
     MaskSource(const Mask& mask, const VolumeInfo& volume);
-
-    void read(const VoxelBox& box, std::span<std::byte> voxels) const override;
-
-private:
-    const Mask& mask_;
 };
 
-/// The records that turn an unpainted mask of the volume's size into the volume. Fails, naming `file`, if its voxels
-/// are not uint8.
+/// The records that turn an unpainted mask of the volume's size into the volume, ascending; at a cost of what the
+/// source stores. Fails, naming `file`, if its voxels are not uint8.
 std::vector<MaskBrickChange> mask_changes(const VolumeSource& groups, const std::string& file);
 
 }  // namespace shvr

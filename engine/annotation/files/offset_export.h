@@ -4,6 +4,8 @@
 //   .offset      the thesis's raw numbers (offset_file.h)
 //   .nrrd .tif   engine/formats/export/volume_export.h: 32-bit floats, which hold every offset of 8-bit, 16-bit and
 //                float volumes exactly; 32-bit integers for volumes of 32-bit integers
+//   .zarr        an OME-Zarr image that holds what was painted alone, of level 0: 32-bit integers for integer volumes,
+//                32-bit floats for float volumes
 
 #include <filesystem>
 

@@ -57,6 +57,7 @@ void save_offsets(const std::filesystem::path& path, const DensityField& field, 
 {
     const glm::i64vec3 counts = field.brick_counts();
     const int64_t bytes = file_bytes_of(field.type());
+    expect_space(path, bytes_of_voxels(field.size(), bytes), MORE_SPACE);
     AtomicWriter writer(path);
     std::vector<std::byte> content;
     for_each_strip(field.size(), [&](const VoxelStrip& strip) {

@@ -2,7 +2,7 @@
 // Density offsets in any supported format. Formats that state their size must match the volume; for raw numbers only
 // their count is checked. Any thread may call these.
 //
-//   .nrrd .tif and the others    volumes of one offset per voxel, of any type, as read by engine/formats
+//   .zarr .nrrd .tif and others  volumes of one offset per voxel, of any type, as read by engine/formats
 //   anything else                the thesis's raw numbers (offset_file.h)
 
 #include "engine/annotation/files/offset_export.h"

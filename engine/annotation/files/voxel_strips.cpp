@@ -6,9 +6,16 @@
 
 #include <cerrno>
 
+#include "engine/base/atomic_writer.h"
 #include "engine/base/error.h"
 
 namespace shvr {
+
+std::optional<int64_t> bytes_of_voxels(const Size3& size, int64_t bytes_per_voxel)
+{
+    const std::optional<int64_t> voxels = multiplied(size.x * size.y, size.z);
+    return voxels ? multiplied(*voxels, bytes_per_voxel) : std::nullopt;
+}
 
 FileDescriptor open_voxels(const std::filesystem::path& path, const Size3& size, int64_t bytes_per_voxel,
                            const char* kind)
@@ -20,14 +27,12 @@ FileDescriptor open_voxels(const std::filesystem::path& path, const Size3& size,
     if (::fstat(file.number(), &status) != 0) fail(path.string(), ": cannot be examined: ", reason_of(errno));
     if (!S_ISREG(status.st_mode))
         fail(path.string(), ": is a folder, device, pipe or socket; expected a ", kind, " file");
-    int64_t bytes = 0;
-    const bool is_too_large = __builtin_mul_overflow(size.x * size.y, size.z, &bytes) ||
-                              __builtin_mul_overflow(bytes, bytes_per_voxel, &bytes);
+    const std::optional<int64_t> bytes = bytes_of_voxels(size, bytes_per_voxel);
     const std::string count = bytes_per_voxel == 1 ? "one" : std::to_string(bytes_per_voxel);
-    if (is_too_large || status.st_size != bytes)
+    if (status.st_size != bytes)
         fail(path.string(), ": holds ", status.st_size, " bytes; expected ",
-             is_too_large ? std::string("more than 2^63 - 1") : std::to_string(bytes), ", ", count,
-             " for each voxel of ", size.x, " x ", size.y, " x ", size.z);
+             bytes ? std::to_string(*bytes) : std::string("more than 2^63 - 1"), ", ", count, " for each voxel of ",
+             size.x, " x ", size.y, " x ", size.z);
     return file;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 
 #include "engine/base/file.h"
@@ -14,8 +15,10 @@
 
 namespace shvr {
 
-/// Layers of bricks up to this size are read at once, larger ones brick by brick.
-inline constexpr int64_t LAYER_BYTES = int64_t{64} << 20;
+/// How to go on where a file of all voxels does not fit on its disk (expect_space).
+inline constexpr const char* MORE_SPACE = "free some of it, or choose .zarr, which holds what is painted alone";
+/// Bytes of a file of all voxels; null: more than 2^63 - 1.
+std::optional<int64_t> bytes_of_voxels(const Size3& size, int64_t bytes_per_voxel);
 
 struct VoxelStrip {
     Size3 size;  ///< size of the volume

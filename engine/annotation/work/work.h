@@ -332,8 +332,10 @@ class Work::Saving {
 public:
     Saving(const Saving&) = delete;
     /// Writes the files and their digests, as `Work::save` does, on any thread; only once. An exception from `progress`
-    /// ends it: then some files may be new and the rest old, as after a failure.
-    void write(const std::function<void()>& save_session = {}, const Progress& progress = {});
+    /// ends it: then some files may be new and the rest old, as after a failure. `save_names` is for new names of files
+    /// where no session is saved: it writes them into the session's file, and no settings.
+    void write(const std::function<void()>& save_session = {}, const Progress& progress = {},
+               const std::function<void()>& save_names = {});
 
 private:
     friend class Work;

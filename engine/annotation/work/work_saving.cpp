@@ -159,7 +159,8 @@ void Work::Saving::write(Part part)
     saved_.files.push_back(file);
 }
 
-void Work::Saving::write(const std::function<void()>& save_session, const Progress& progress)
+void Work::Saving::write(const std::function<void()>& save_session, const Progress& progress,
+                         const std::function<void()>& save_names)
 {
     SHVR_CHECK(!is_written_, "a save is written once");
     if (journal_) journal_->flush();
@@ -174,6 +175,7 @@ void Work::Saving::write(const std::function<void()>& save_session, const Progre
         known_.settings = document_.settings.values();
         known_kept_ = last_kept_;
     }
+    if (save_names) save_names();
     has_session_ = bool(save_session);
     if (journal_) {
         journal_->append(RecordKind::saved, {}, bytes_of(known_), known_kept_);

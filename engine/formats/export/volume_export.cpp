@@ -14,6 +14,9 @@ namespace shvr {
 namespace {
 
 constexpr int64_t STRIP_BYTES = int64_t{1} << 18;
+/// The largest ratio of deflate, which TIFFs are compressed with: a length of 258 in 2 bits.
+constexpr int64_t MAX_DEFLATION = 1032;
+constexpr const char* LESS_SPACE = "free some of it, or choose .zarr, which holds what is painted alone";
 
 std::string form_of(const std::filesystem::path& path)
 {
@@ -125,7 +128,12 @@ void export_volume(const std::filesystem::path& path, const VolumeSource& source
     if (!is_volume_export(path))
         fail(path.string(), ": has the extension ", in_quotes(path.extension().string()), "; expected .nrrd or .tif");
     const ToldSource told(source, progress);
-    if (form_of(path) == ".nrrd") return export_nrrd(path, told, pairs);
+    const std::optional<int64_t> bytes = multiplied(voxel_count(source.info()), int64_t(bytes_of(source.info().type)));
+    if (form_of(path) == ".nrrd") {
+        expect_space(path, bytes, LESS_SPACE);
+        return export_nrrd(path, told, pairs);
+    }
+    expect_space(path, bytes.value_or(INT64_MAX) / MAX_DEFLATION, LESS_SPACE);
     export_tiff(path, told);
 }
 

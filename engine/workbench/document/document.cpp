@@ -8,6 +8,7 @@
 #include "engine/base/file.h"
 #include "engine/live/densities.h"
 #include "engine/live/trace_marks.h"
+#include "engine/session/annotation_names.h"
 #include "engine/session/kept_settings.h"
 #include "engine/session/label_looks.h"
 #include "engine/session/lasting_settings.h"
@@ -42,7 +43,7 @@ Document::Read Document::read(OpenedSession opened, const std::filesystem::path&
     Session& session = opened.session;
     const VolumeInfo& volume = opened.source->info();
     const std::filesystem::path path = session_path_of(input);
-    if (session.mask_path.empty()) session.mask_path = std::filesystem::path(path).replace_extension(".mask");
+    if (session.mask_path.empty()) session.mask_path = mask_beside(path);
     if (session.journal_path.empty()) session.journal_path = journal_beside(path);
     shvr::choose_thresholds(session, volume, opened.statistics);
     Read read{.opened = {}, .session_path = path, .overridden = overridden, .work = nullptr};

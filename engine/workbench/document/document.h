@@ -17,6 +17,7 @@
 #include "engine/live/probe_meter.h"
 #include "engine/live/screen.h"
 #include "engine/picture/picture_job.h"
+#include "engine/session/annotation_names.h"
 #include "engine/session/session.h"
 #include "engine/workbench/actions/action.h"
 #include "engine/workbench/document/touch.h"
@@ -161,6 +162,7 @@ private:
     void take_kept_settings();
     void begin_with_turning();
     void name_trace();
+    void name_sparse_files(Parts parts, Saving& saving);
     bool edits_are_saved() const;
     Session edits() const;
     void note_saved();
@@ -190,12 +192,15 @@ private:
     friend struct Document;
     Saving() = default;
     void write_session();
+    void write_names();
 
     std::unique_ptr<Work::Saving> work_;  ///< null: the session alone is saved, or
     std::unique_ptr<Work::SavingAs> as_;  ///< the save is under another name
     std::filesystem::path session_path_;
     std::string text_;                       ///< contents of the session file to write
     std::optional<std::string> text_there_;  ///< existing contents, as this process last read or wrote them
+    std::optional<AnnotationNames> names_;   ///< written into the session file, which is not saved otherwise
+    std::filesystem::path names_path_;
     Session edits_;
     Place place_;
     std::optional<Notice> notice_;

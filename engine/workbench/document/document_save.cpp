@@ -1,10 +1,10 @@
 // Saving a document: in place, in the background, or under other names.
 
-#include <array>
 #include <utility>
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/file.h"
+#include "engine/session/annotation_names.h"
 #include "engine/session/label_looks.h"
 #include "engine/workbench/document/document.h"
 
@@ -20,10 +20,7 @@ std::filesystem::path beside(const std::filesystem::path& session_file, const ch
 /// The session under another name, with files named after it.
 Session renamed(Session session, const std::filesystem::path& path)
 {
-    session.mask_path = beside(path, ".mask");
-    session.trace_path = beside(path, ".graphml");
-    session.density_path = beside(path, ".offset");
-    session.journal_path = journal_beside(path);
+    name_annotation(session, path);
     return session;
 }
 
@@ -31,7 +28,7 @@ Session renamed(Session session, const std::filesystem::path& path)
 std::filesystem::path new_session_path(const std::filesystem::path& path)
 {
     if (path.extension() != ".json") fail(path.string(), ": is no name for a session; expected one that ends in .json");
-    for (const char* extension : {".json", ".mask", ".graphml", ".offset", ".journal"})
+    for (const char* extension : SESSION_EXTENSIONS)
         if (is_there(beside(path, extension)))
             fail(beside(path, extension).string(), ": exists already; expected a name that is free");
     return std::filesystem::absolute(path).lexically_normal();
@@ -43,8 +40,7 @@ std::filesystem::path free_copy_path(const std::filesystem::path& session_file)
     for (int number = 1;; ++number) {
         const std::filesystem::path path = number == 1 ? stem + ".json" : sentence(stem, number, ".json");
         const auto is_taken = [&](const char* extension) { return is_there(beside(path, extension)); };
-        if (std::ranges::none_of(std::array{".json", ".mask", ".graphml", ".offset", ".journal"}, is_taken))
-            return path;
+        if (std::ranges::none_of(SESSION_EXTENSIONS, is_taken)) return path;
     }
 }
 
@@ -57,13 +53,14 @@ std::shared_ptr<Document::Saving> Document::begin_save(Parts parts)
                                     outside.empty() ? "; expected it to be closed there, or a copy to work on"
                                                     : "; expected a choice: there, or a copy to work on"));
     std::shared_ptr<Saving> saving(new Saving);
+    if (parts != Parts::session) name_sparse_files(parts, *saving);
     if (parts == Parts::work) {
         saving->work_ = annotator.work().begin_save(label_looks(session.groups, annotator.document().mask));
         return saving;
     }
     if (parts == Parts::all) {
         if (session.density_path.empty() && annotator.document().density.voxels() > 0)
-            session.density_path = std::filesystem::path(session.mask_path).replace_extension(".offset");
+            session.density_path = offsets_beside(session.mask_path);
         name_trace();
         annotator.work().name_files(session.mask_path, session.trace_path, session.density_path);
         keep_settings();
@@ -75,6 +72,32 @@ std::shared_ptr<Document::Saving> Document::begin_save(Parts parts)
     saving->edits_ = edits();
     saving->place_ = place();
     return saving;
+}
+
+/// Projects of earlier versions keep a byte for every voxel; from their next save on they keep what is painted. The old
+/// files stay.
+void Document::name_sparse_files(Parts parts, Saving& saving)
+{
+    const bool is_named_here =
+        std::ranges::any_of(overridden_, [](const std::string& setting) { return setting.starts_with("annotation."); });
+    if (is_named_here || !session_text_ || !annotator.work().disputes().empty()) return;
+    const std::optional<AnnotationNames> names = sparse_names(session, session_path);
+    if (!names) return;
+    session.mask_path = names->mask;
+    session.density_path = names->density;
+    if (parts == Parts::all) return;
+    annotator.work().name_files(session.mask_path, session.trace_path, session.density_path);
+    saving.names_ = names;
+    saving.names_path_ = session_path;
+}
+
+/// Keeps the rest of the file as it is now, even if another program has written it meanwhile.
+void Document::Saving::write_names()
+{
+    const std::optional<std::string> there = text_of_session(names_path_);
+    if (!there) return;  // then names by default are those of a new project
+    text_ = with_names(*there, *names_, names_path_);
+    write_file_atomically(names_path_, std::as_bytes(std::span(text_)));
 }
 
 /// Keeps contents that another program has written there since; the notice names the new place.
@@ -97,6 +120,8 @@ void Document::Saving::write(ProgressReporter& reporter)
         reporter.begin(session_path_.empty() ? "saving" : "saving " + session_path_.filename().string());
     if (as_)
         as_->write([this] { write_session(); }, progress);
+    else if (work_ && names_)
+        work_->write({}, progress, [this] { write_names(); });
     else if (work_)
         work_->write(
             session_path_.empty() ? std::function<void()>() : [this] { write_session(); }, progress);
@@ -116,7 +141,7 @@ Work::Saved Document::end_save(Saving& saving)
         overridden_.clear();  // settings made for this run only are in the new file, too
     }
     if (saving.notice_) saved.notices.push_back(*saving.notice_);
-    if (saving.has_session_) session_text_ = saving.text_;
+    if (saving.has_session_ || (saving.names_ && !saving.text_.empty())) session_text_ = saving.text_;
     if (!saving.is_written_ || saving.session_path_.empty()) return saved;
     saved_edits_ = saving.edits_;
     edits_are_saved_.reset();

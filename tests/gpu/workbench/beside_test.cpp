@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/base/file.h"
+#include "engine/formats/open_volume.h"
 #include "tests/gpu/workbench/slow_disk.h"
 #include "tests/support/gpu.h"
 #include "tests/support/volume_files.h"
@@ -17,6 +18,16 @@ using namespace shvr::test;
 using namespace shvr::ui;
 
 namespace {
+
+/// The voxels of a label image, as a `.mask` holds them.
+std::string groups_in(const std::string& labels)
+{
+    const std::unique_ptr<VolumeSource> source = open_volume(labels);
+    const Size3 size = source->info().size;
+    std::string groups(size_t(size.x * size.y * size.z), '?');
+    source->read({Size3(0), size}, std::as_writable_bytes(std::span(groups)));
+    return groups;
+}
 
 struct Desk {
     TemporaryFolder folder;
@@ -226,7 +237,7 @@ TEST_CASE_FIXTURE(OnDevice, "while Save as waits for the disk all but commands g
     const auto bytes_of = [&](const char* name) { return read_text(desk.path(name), int64_t{1} << 24); };
     const std::string mask = bytes_of("scan.mask"), session = bytes_of("scan.json");
     SlowDisk disk;
-    disk.stop_at("other.mask");
+    disk.stop_at("other.labels.zarr");
     desk.bench.perform(SaveAs{desk.path("other.json")});
     desk.turn_until([&] { return disk.is_waited_for(); });
     const char* const WHY = "the work is being saved under another name";
@@ -253,7 +264,7 @@ TEST_CASE_FIXTURE(OnDevice, "while Save as waits for the disk all but commands g
     CHECK(steps_of(desk.path("other.journal")) == 2);
     CHECK(bytes_of("scan.mask") == mask);
     CHECK(bytes_of("scan.json") == session);
-    CHECK(bytes_of("other.mask") == mask);
+    CHECK(groups_in(desk.path("other.labels.zarr")) == mask);
 }
 
 TEST_CASE_FIXTURE(OnDevice,
@@ -265,9 +276,9 @@ TEST_CASE_FIXTURE(OnDevice,
         CAPTURE(is_cancelled);
         SlowDisk disk;
         if (is_cancelled)
-            disk.stop_at("other.mask");
+            disk.stop_at("other.labels.zarr");
         else
-            disk.refuse_at("other.mask", ENOSPC);
+            disk.refuse_at("other.labels.zarr", ENOSPC);
         desk.bench.perform(SaveAs{desk.path("other.json")});
         if (is_cancelled) {
             desk.turn_until([&] { return disk.is_waited_for(); });
@@ -293,7 +304,7 @@ TEST_CASE_FIXTURE(OnDevice, "a copy is of what was there when it was asked for, 
     Desk desk(renderer());
     desk.stroke(3);
     SlowDisk disk;
-    disk.stop_at("copy.mask");
+    disk.stop_at("copy.labels.zarr");
     desk.bench.perform(CopySession{desk.path("copy.json")});
     desk.turn_until([&] { return disk.is_waited_for(); });
     CHECK(desk.bench.shows_jobs());
@@ -303,7 +314,7 @@ TEST_CASE_FIXTURE(OnDevice, "a copy is of what was there when it was asked for, 
     CHECK(disk.calls_of_this_thread() == 0);
     CHECK(desk.said("Copied to " + desk.path("copy.json")));
     CHECK_FALSE(desk.bench.shows_jobs());
-    const std::string mask = read_text(desk.path("copy.mask"), int64_t{1} << 20);
+    const std::string mask = groups_in(desk.path("copy.labels.zarr"));
     CHECK(mask.find(char(3)) != std::string::npos);
     CHECK(mask.find(char(5)) == std::string::npos);
     CHECK(desk.bench.model().session_path == desk.path("scan.json"));

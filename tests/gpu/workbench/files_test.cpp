@@ -346,10 +346,10 @@ TEST_CASE_FIXTURE(OnDevice, "what was recovered at opening stays to be seen unti
     desk.bench.perform(SaveOp{});
     settle(desk.bench);
     CHECK(desk.bench.why_not(DismissNotices{}) == "there is nothing to be dismissed");
-    std::filesystem::remove(desk.path("scan.session.mask"));
+    std::filesystem::remove_all(desk.path("scan.session.labels.zarr"));
     desk.open("scan.session.json");
     REQUIRE(desk.bench.model().recovered.size() == 1);
-    CHECK(desk.bench.model().recovered[0].find("scan.session.mask: is missing") != std::string::npos);
+    CHECK(desk.bench.model().recovered[0].find("scan.session.labels.zarr: is missing") != std::string::npos);
     desk.bench.perform(NodeOp{.at = {12, 12, 14}, .radius_voxels = 2.0, .group = uint8_t{2}});
     settle(desk.bench);
     CHECK(desk.bench.model().recovered.size() == 1);

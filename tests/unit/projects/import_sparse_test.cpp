@@ -80,8 +80,8 @@ template <class T>
 void compare(const Size3& size, VoxelType type, const StoredBlocks& stored, OmeZarrVersion version)
 {
     const SparseLabels<T> told(size, type, stored, 100, false), hidden(size, type, stored, 100, true);
-    REQUIRE(sparse_chunks(told));
-    REQUIRE(!sparse_chunks(hidden));
+    REQUIRE(stored_chunks(told));
+    REQUIRE(!stored_chunks(hidden));
     const TemporaryFolder folder;
     const std::filesystem::path a = folder.path / "a" / "labels.zarr", b = folder.path / "b" / "labels.zarr";
     double fraction = 0.0;
@@ -141,7 +141,7 @@ TEST_CASE("of 2^20 voxels a side a chunk of each level is written, and a chunk a
     for (int corner = 0; corner < 8; ++corner)
         stored.blocks.emplace_back(corner & 1 ? LAST : 0, corner & 2 ? LAST : 0, corner & 4 ? LAST : 0);
     const SparseLabels<uint8_t> eight(Size3(SIDE), VoxelType::uint8, stored, 2, false);
-    CHECK(sparse_chunks(eight)->size() == 8);
+    CHECK(stored_chunks(eight)->size() == 8);
     CHECK(export_label_image(eight, folder.path / "eight.zarr", {}).bricks_stored >= 8 * 6);
 }
 

@@ -1,0 +1,46 @@
+#pragma once
+// The boxes in which volumes of annotation are read from other files: whole bricks, each voxel once, and only what the
+// file stores.
+
+#include <cstdint>
+#include <functional>
+
+#include "engine/volume/grid.h"
+#include "engine/volume/source.h"
+
+namespace shvr {
+
+/// Calls `visit` for boxes that consist of whole bricks (clipped to the volume) and have at most 64 MiB, or one brick.
+/// Boxes that touch no stored block are left out, if the source knows what it stores and the rest is 0; then
+/// the cost does not depend on the volume's size. Fails as `stored_blocks` does.
+void for_each_brick_box(const VolumeSource& source, const std::function<void(const VoxelBox& box)>& visit);
+
+struct BrickOfBox {
+    int64_t index;  ///< among the volume's bricks
+    Size3 corner;   ///< its first voxel, in the volume
+    Size3 extent;   ///< its voxels in the volume
+    int64_t voxel;  ///< index of its first voxel in the box
+    Size3 box;      ///< voxels of the box
+    /// Index in the box of the first voxel of a row of the brick.
+    int64_t row(int64_t y, int64_t z) const { return voxel + box.x * (y + box.y * z); }
+};
+
+/// The bricks of such a box of a volume of `size` voxels.
+template <class Visit>
+void for_each_brick(const VoxelBox& box, const Size3& size, const Visit& visit)
+{
+    const Size3 first = box.lower / BRICK_SIDE, end = brick_grid(box.upper);
+    Size3 at;
+    for (at.z = first.z; at.z < end.z; ++at.z)
+        for (at.y = first.y; at.y < end.y; ++at.y)
+            for (at.x = first.x; at.x < end.x; ++at.x) {
+                const Size3 corner = BRICK_SIDE * at;
+                visit(BrickOfBox{.index = index_of(at, brick_grid(size)),
+                                 .corner = corner,
+                                 .extent = glm::min(Size3(BRICK_SIDE), size - corner),
+                                 .voxel = index_of(corner - box.lower, box.size()),
+                                 .box = box.size()});
+            }
+}
+
+}  // namespace shvr

@@ -1,0 +1,149 @@
+#include "engine/projects/atomic_folder.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+
+#include "engine/base/atomic_file.h"
+#include "engine/base/atomic_writer.h"
+#include "engine/base/error.h"
+#include "engine/projects/part_folder.h"
+
+namespace shvr {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Entry files are metadata.
+constexpr int64_t MAX_ENTRY_BYTES = int64_t{16} << 20;
+
+bool is_occupied(const fs::path& path)
+{
+    std::error_code ignored;
+    return fs::exists(fs::symlink_status(path, ignored));
+}
+
+[[noreturn]] void refuse_folder(const fs::path& target, int error_number)
+{
+    fail(target.string(), ": cannot be written: ", reason_of(error_number));
+}
+
+void make_folder(const fs::path& folder, const fs::path& target)
+{
+    if (::mkdir(folder.c_str(), 0777) != 0 && errno != EEXIST) refuse_folder(target, errno);
+}
+
+FileDescriptor locked(const fs::path& folder, const fs::path& target)
+{
+    FileDescriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (!descriptor) refuse_folder(target, errno);
+    // Some network file systems do not support locks.
+    if (::flock(descriptor.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+        fail(target.string(), ": another process is writing it; expected no other: wait until it ends");
+    return descriptor;
+}
+
+/// Removes everything in the folder.
+void clear_folder(const fs::path& folder, const fs::path& target)
+{
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+        fs::remove_all(entry.path(), error);
+        if (error) break;
+    }
+    if (error) fail(target.string(), ": cannot be written: ", folder.string(), ": ", error.message());
+}
+
+int exchange_names(const fs::path& one, const fs::path& other)
+{
+    return ::renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE);
+}
+
+/// Tries it with two empty folders.
+bool exchanges_names(const fs::path& container, const fs::path& target)
+{
+    const fs::path one = container / "one", other = container / "other";
+    make_folder(one, target);
+    make_folder(other, target);
+    const bool is_able = exchange_names(one, other) == 0;
+    ::rmdir(one.c_str());
+    ::rmdir(other.c_str());
+    return is_able;
+}
+
+std::string free_name(const fs::path& folder)
+{
+    for (int number = 1;; ++number) {
+        std::string name = sentence("v", number);
+        if (!is_occupied(folder / name)) return name;
+    }
+}
+
+}  // namespace
+
+AtomicFolder::AtomicFolder(const fs::path& target)
+    : target_(plain_path(target)),
+      container_(target_.parent_path() / sentence(".", target_.filename().string(), ".shvr-part"))
+{
+    std::error_code error;
+    fs::create_directories(target_.parent_path(), error);
+    if (error) fail(target_.parent_path().string(), ": cannot be created: ", error.message());
+    make_folder(container_, target_);
+    lock_.emplace(locked(container_, target_));
+    clear_folder(container_, target_);
+    const bool is_new = !is_occupied(target_);
+    if (!is_new && !exchanges_names(container_, target_)) inner_ = free_name(target_);
+    path_ = container_ / "new";
+    make_folder(path_, target_);
+}
+
+AtomicFolder::~AtomicFolder()
+{
+    remove_remains();
+}
+
+void AtomicFolder::commit(const std::string& entry)
+{
+    if (::syncfs(lock_->number()) != 0) refuse_folder(target_, errno);
+    if (inner_.empty())
+        exchange();
+    else
+        enter(entry);
+    remove_remains();
+}
+
+void AtomicFolder::exchange()
+{
+    const int result =
+        is_occupied(target_) ? exchange_names(path_, target_) : std::rename(path_.c_str(), target_.c_str());
+    if (result != 0) refuse_folder(target_, errno);
+    sync_folder(target_);
+}
+
+/// The entry file decides; content without one that names it is never read.
+void AtomicFolder::enter(const std::string& entry)
+{
+    const std::vector<std::byte> content = read_file(path_ / entry, MAX_ENTRY_BYTES);
+    const fs::path moved = target_ / inner_;
+    if (std::rename((path_ / inner_).c_str(), moved.c_str()) != 0) refuse_folder(target_, errno);
+    sync_folder(moved);
+    write_file_atomically(target_ / entry, content);
+    std::error_code ignored;  // the next version removes what stays
+    for (const fs::directory_entry& old : fs::directory_iterator(target_, ignored))
+        if (old.is_directory(ignored) && old.path() != moved) fs::remove_all(old.path(), ignored);
+}
+
+/// What cannot be removed is harmless, and is cleared by the next writer.
+void AtomicFolder::remove_remains()
+{
+    std::error_code ignored;
+    if (lock_) fs::remove_all(container_, ignored);
+    lock_.reset();
+}
+
+}  // namespace shvr

@@ -1,0 +1,51 @@
+#pragma once
+// Writes a folder all or nothing: its content is built in a hidden folder next to the target, and takes the target's
+// place at the end, in one exchange of names. A reader finds the old folder or the new one at every moment, whenever
+// the program is killed. Without `commit` the target stays as it was.
+//
+// The hidden folder `.NAME.shvr-part` has no content of its own that readers of Zarr would list. It is locked while
+// a process works on it; what a killed process left there is cleared by the next one.
+//
+// Some network file systems cannot exchange names. There a folder that exists keeps its place: new content comes into
+// a folder inside it, under a free name (`inner`), and counts from the moment that one file, which names it, is
+// replaced.
+//
+// Every failure is one sentence with the target's path and the system's reason. One thread at a time.
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "engine/base/file.h"
+
+namespace shvr {
+
+class AtomicFolder {
+public:
+    /// Creates the target's parent folders. Fails if another process is writing the same folder.
+    explicit AtomicFolder(const std::filesystem::path& target);
+    ~AtomicFolder();
+    AtomicFolder(const AtomicFolder&) = delete;
+    AtomicFolder& operator=(const AtomicFolder&) = delete;
+
+    /// The new content's folder, empty at first.
+    const std::filesystem::path& path() const { return path_; }
+    /// Empty if `commit` exchanges names. Otherwise "v1" or the like: everything but the entry file and the files
+    /// that are equal in every version belongs into this folder inside `path`.
+    const std::string& inner() const { return inner_; }
+    /// Syncs the content, and puts it into the target's place; deletes the old content. `entry`: the file, directly in
+    /// the folder, that leads readers to all other content.
+    void commit(const std::string& entry);
+
+private:
+    void exchange();
+    void enter(const std::string& entry);
+    void remove_remains();
+
+    std::filesystem::path target_, container_, path_;
+    std::string inner_;
+    std::optional<FileDescriptor> lock_;
+};
+
+}  // namespace shvr

@@ -1,0 +1,124 @@
+#include "engine/session/annotation_names.h"
+
+#include <nlohmann/json.hpp>
+
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+#include "engine/formats/zarr/project.h"
+#include "engine/projects/import_volume.h"
+
+namespace shvr {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_there(const fs::path& path)
+{
+    std::error_code ignored;
+    return fs::exists(fs::symlink_status(path, ignored));
+}
+
+bool ends_with(const fs::path& path, const char* extension)
+{
+    return lower_case(path.extension().string()) == extension;
+}
+
+/// "scan" for scan.labels.zarr, scan.zarr and scan.mask.
+fs::path stem_of(const fs::path& mask)
+{
+    fs::path stem = mask.has_filename() ? mask : mask.parent_path();
+    if (!ends_with(stem, ".zarr")) return stem.replace_extension();
+    stem.replace_extension();
+    return ends_with(stem, ".labels") ? stem.replace_extension() : stem;
+}
+
+fs::path with_suffix(fs::path stem, const char* suffix)
+{
+    return stem += suffix;
+}
+
+/// A file next to a mask; in the folder shvr for IMAGE/labels, which holds label images alone.
+fs::path beside(const fs::path& mask, const char* suffix)
+{
+    const fs::path stem = stem_of(mask), folder = stem.parent_path();
+    const bool is_among_labels = folder.filename() == "labels" && !mask.has_extension();
+    return with_suffix(is_among_labels ? folder.parent_path() / "shvr" / stem.filename() : stem, suffix);
+}
+
+/// "paint", "paint-2" and so on: the first that is free with this suffix.
+fs::path free_name(const fs::path& stem, const char* suffix)
+{
+    fs::path name = with_suffix(stem, suffix);
+    for (int number = 2; is_there(name); ++number) name = with_suffix(stem, sentence("-", number, suffix).c_str());
+    return name;
+}
+
+bool is_within(const fs::path& path, const fs::path& folder)
+{
+    const fs::path inside = path.lexically_normal().lexically_relative(folder.lexically_normal());
+    return !inside.empty() && *inside.begin() != "..";
+}
+
+}  // namespace
+
+fs::path mask_beside(const fs::path& session_file)
+{
+    const fs::path stem = fs::path(session_file).replace_extension();
+    const fs::path sparse = with_suffix(stem, ".labels.zarr"), dense = with_suffix(stem, ".mask");
+    return is_there(dense) && !is_there(sparse) ? dense : sparse;
+}
+
+fs::path offsets_beside(const fs::path& mask)
+{
+    const fs::path dense = fs::path(mask).replace_extension(".offset");
+    return !is_label_image(mask) || is_there(dense) ? dense : beside(mask, ".offsets.zarr");
+}
+
+fs::path trace_beside(const fs::path& mask)
+{
+    const fs::path plain = fs::path(mask).replace_extension(".graphml");
+    return !is_label_image(mask) || is_there(plain) ? plain : beside(mask, ".graphml");
+}
+
+void name_annotation(Session& session, const fs::path& session_file)
+{
+    const fs::path stem = fs::path(session_file).replace_extension();
+    session.mask_path = with_suffix(stem, ".labels.zarr");
+    session.trace_path = with_suffix(stem, ".graphml");
+    session.density_path = with_suffix(stem, ".offsets.zarr");
+    session.journal_path = journal_beside(session_file);
+}
+
+std::optional<AnnotationNames> sparse_names(const Session& session, const fs::path& session_file)
+{
+    const fs::path file = fs::absolute(session_file).lexically_normal();
+    const fs::path project = file.parent_path().parent_path();
+    if (file != project / PROJECT_SESSION) return std::nullopt;
+    const auto is_dense = [&](const fs::path& path, const char* extension) {
+        return ends_with(path, extension) && is_within(fs::absolute(path), project);
+    };
+    AnnotationNames names{session.mask_path, session.trace_path, session.density_path};
+    if (is_dense(names.mask, ".mask")) {
+        const bool is_image = is_there(project / ".zattrs") || is_there(project / "zarr.json");
+        const fs::path stem = stem_of(names.mask);
+        names.mask = is_image ? free_name(project / "labels" / stem.filename(), "") : free_name(stem, ".zarr");
+    }
+    if (is_dense(names.density, ".offset")) names.density = free_name(stem_of(names.density), ".offsets.zarr");
+    if (names.mask == session.mask_path && names.density == session.density_path) return std::nullopt;
+    return names;
+}
+
+std::string with_names(const std::string& text, const AnnotationNames& names, const fs::path& session_file)
+{
+    const fs::path folder = fs::absolute(session_file).parent_path();
+    auto document = nlohmann::ordered_json::parse(text);
+    nlohmann::ordered_json& annotation = document["annotation"];
+    const std::pair<const char*, const fs::path&> keys[] = {
+        {"mask", names.mask}, {"trace", names.trace}, {"density", names.density}};
+    for (const auto& [key, path] : keys)
+        if (!path.empty()) annotation[key] = path.lexically_proximate(folder).generic_string();
+    return document.dump(4) + "\n";
+}
+
+}  // namespace shvr
