@@ -141,7 +141,7 @@ TEST_CASE("a volume is imported, described and labelled")
     const DescribeResult described = run(DescribeTask{.input = project, .exact = true}, listener);
     CHECK(described.statistics.minimum == -99);
     CHECK(described.statistics.maximum == 135);
-    CHECK(described.mask.filename() == "paint.mask");
+    CHECK(described.mask.filename() == "paint");
     CHECK(listener.stretches.back() == "measuring " + project.string());
 
     const LabelTask label{.threshold = 100.0, .output = folder.path / "l.mask"};

@@ -149,6 +149,6 @@ TEST_CASE("files that are no offsets, or cannot be written, are refused in one s
     for (const char* name : {"huge.nrrd", "none.tif"})
         CHECK(contains(error_of([&] { import_offsets(folder.path / name, space_of(volume), volume.type); }), name));
     CHECK(contains(error_of([&] { save_offsets_as(folder.path / "a.mhd", field, volume); }),
-                   "has a format in which offsets are only read; expected .offset, .nrrd or .tif"));
+                   "has a format in which offsets are only read; expected .offset, .nrrd, .tif or .zarr"));
     CHECK(!std::filesystem::exists(folder.path / "a.mhd"));
 }
