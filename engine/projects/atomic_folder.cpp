@@ -133,6 +133,7 @@ void AtomicFolder::enter(const std::string& entry)
     if (std::rename((path_ / inner_).c_str(), moved.c_str()) != 0) refuse_folder(target_, errno);
     sync_folder(moved);
     write_file_atomically(target_ / entry, content);
+    collect_temporary_files(target_);
     std::error_code ignored;  // the next version removes what stays
     for (const fs::directory_entry& old : fs::directory_iterator(target_, ignored))
         if (old.is_directory(ignored) && old.path() != moved) fs::remove_all(old.path(), ignored);

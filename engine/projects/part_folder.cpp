@@ -71,6 +71,12 @@ bool belongs_to_zarr(const fs::path& path)
            name == "OME" || is_zarr(path);
 }
 
+/// Whether it is left by a process that died while writing (engine/base/atomic_writer.h).
+bool is_temporary(const fs::path& path)
+{
+    return path.filename().string().starts_with(".shvr-");
+}
+
 /// Removes everything in the folder.
 void remove_content(const fs::path& folder)
 {
@@ -181,7 +187,7 @@ fs::path entry_foreign_to_zarr(const fs::path& folder)
 {
     std::error_code ignored;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
-        if (!belongs_to_zarr(entry.path())) return entry.path();
+        if (!belongs_to_zarr(entry.path()) && !is_temporary(entry.path())) return entry.path();
     return {};
 }
 

@@ -2,7 +2,7 @@
 // (session_keys_camera.cpp).
 
 #include "engine/session/session_keys.h"
-#include "engine/session/annotation_names.h"
+#include "engine/session/annotation_files.h"
 
 #include <algorithm>
 #include <charconv>

@@ -74,7 +74,7 @@ class SparseSaves(CliTest):
                 self.assertEqual(self.session()["annotation"], {
                     "mask": "../labels/paint", "trace": "paint.graphml", "density": "paint.offsets.zarr"})
                 raised = {"op": "density", "brush": "fill", "threshold": 0, "radius": 2, "offset": 5,
-                          "path": [[20, 20, 20]]}
+                          "path": [[20.5, 20.5, 20.5]]}
                 self.annotate(self.project, [self.dab([20, 20, 20], 2), raised, {"op": "save"}])
                 labels, offsets = self.project / "labels" / "paint", self.project / "shvr" / "paint.offsets.zarr"
                 painted = self.groups(self.project)
@@ -127,7 +127,7 @@ class SparseSaves(CliTest):
         shvr = self.project / "shvr"
         old = {name: (shvr / name).read_bytes() for name in ("paint.mask", "paint.mask.json", "paint.offset")}
         session = self.session()
-        said = self.annotate(self.project, [{"op": "save"}]).stdout
+        said = self.annotate(self.project, [{"op": "save"}]).stderr
         labels, offsets = self.project / "labels" / "paint", shvr / "paint.offsets.zarr"
         self.assertIn(f"saved {labels}", said)
         self.assertEqual({name: (shvr / name).read_bytes() for name in old}, old)

@@ -9,7 +9,7 @@
 #include "engine/live/previewer.h"
 #include "engine/session/kept_settings.h"
 #include "engine/session/lasting_settings.h"
-#include "engine/session/outside_files.h"
+#include "engine/session/annotation_files.h"
 #include "engine/tasks/task_options.h"
 #include "engine/volume/unit.h"
 #include "tools/golden/blessing.h"

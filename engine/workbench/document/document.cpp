@@ -8,11 +8,10 @@
 #include "engine/base/file.h"
 #include "engine/live/densities.h"
 #include "engine/live/trace_marks.h"
-#include "engine/session/annotation_names.h"
+#include "engine/session/annotation_files.h"
 #include "engine/session/kept_settings.h"
 #include "engine/session/label_looks.h"
 #include "engine/session/lasting_settings.h"
-#include "engine/session/outside_files.h"
 
 namespace shvr::ui {
 

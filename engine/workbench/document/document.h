@@ -17,7 +17,7 @@
 #include "engine/live/probe_meter.h"
 #include "engine/live/screen.h"
 #include "engine/picture/picture_job.h"
-#include "engine/session/annotation_names.h"
+#include "engine/session/annotation_files.h"
 #include "engine/session/session.h"
 #include "engine/workbench/actions/action.h"
 #include "engine/workbench/document/touch.h"
@@ -62,7 +62,7 @@ struct Document {
     std::vector<Notice> messages;       ///< notes from opening the work
     std::string holder;                 ///< another process that writes the work, in words; empty: none
     std::string outside;                ///< files that the session would write outside its folder, which the user has
-                                        ///< not agreed to (outside_files.h); empty: none
+                                        ///< not agreed to (annotation_files.h); empty: none
     bool drags_node = false;            ///< the selected node follows the probe
 
     // State of the open document that is no part of the work

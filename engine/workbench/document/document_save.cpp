@@ -4,7 +4,7 @@
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/file.h"
-#include "engine/session/annotation_names.h"
+#include "engine/session/annotation_files.h"
 #include "engine/session/label_looks.h"
 #include "engine/workbench/document/document.h"
 

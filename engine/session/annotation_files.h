@@ -1,13 +1,23 @@
 #pragma once
-// Names of the files in which a session keeps its annotation: sparse ones (OME-Zarr) for new sessions. Any thread.
+// The files in which a session keeps its annotation: their names, sparse ones (OME-Zarr) for new sessions, and which of
+// them lie outside its folder. A session says where its annotation is saved. A session from a stranger could name any file of the user's, directly,
+// through ".." or through a symbolic link; outside its own folder nothing is written before the user agrees. Any
+// thread.
 
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/session/session.h"
 
 namespace shvr {
+
+/// The files that annotating and saving would write outside the folder of the session file (for a project: outside the
+/// project), in words: "annotation.mask, which is /home/me/notes.mask". Files that `settings` ("key=value") name are
+/// the user's own choice. Empty: none.
+std::string files_outside(const Session& session, const std::filesystem::path& session_file,
+                          const std::vector<std::string>& settings);
 
 /// The mask of a new session file NAME.json: NAME.labels.zarr; NAME.mask if that exists and the other does not.
 std::filesystem::path mask_beside(const std::filesystem::path& session_file);

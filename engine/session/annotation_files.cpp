@@ -1,7 +1,10 @@
-#include "engine/session/annotation_names.h"
+#include "engine/session/annotation_files.h"
+
+#include <algorithm>
 
 #include <nlohmann/json.hpp>
 
+#include "engine/base/atomic_writer.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/formats/zarr/project.h"
@@ -9,9 +12,9 @@
 
 namespace shvr {
 
-namespace {
-
 namespace fs = std::filesystem;
+
+namespace {
 
 bool is_there(const fs::path& path)
 {
@@ -56,11 +59,51 @@ fs::path free_name(const fs::path& stem, const char* suffix)
 
 bool is_within(const fs::path& path, const fs::path& folder)
 {
-    const fs::path inside = path.lexically_normal().lexically_relative(folder.lexically_normal());
-    return !inside.empty() && *inside.begin() != "..";
+    const fs::path relative = path.lexically_relative(folder);
+    return !relative.empty() && *relative.begin() != "..";
+}
+
+/// The folder that a session owns.
+fs::path folder_of_session(const fs::path& session_file)
+{
+    const fs::path folder = fs::absolute(session_file).lexically_normal().parent_path();
+    const bool is_project = folder / session_file.filename() == folder.parent_path() / PROJECT_SESSION;
+    return fs::weakly_canonical(is_project ? folder.parent_path() : folder);
+}
+
+/// Whether the command line sets a key of the section "annotation", alone or with the whole section.
+bool is_set(const std::vector<std::string>& settings, const std::string& key)
+{
+    return std::ranges::any_of(settings, [&](const std::string& setting) {
+        return setting.starts_with("annotation." + key + "=") || setting.starts_with("annotation=");
+    });
 }
 
 }  // namespace
+
+std::string files_outside(const Session& session, const fs::path& session_file,
+                          const std::vector<std::string>& settings)
+{
+    const fs::path folder = folder_of_session(session_file);
+    std::string words;
+    const auto note = [&](const std::string& what, const fs::path& path) {
+        if (path.empty()) return;
+        const fs::path target = link_target(path);
+        if (!is_within(target, folder)) words += (words.empty() ? "" : ", ") + what + ", which is " + target.string();
+    };
+    // Unnamed files lie next to the mask.
+    const bool is_mask_set = is_set(settings, "mask");
+    const auto goes_with_mask = [&](const fs::path& path) {
+        return is_mask_set && (path == trace_beside(session.mask_path) || path == offsets_beside(session.mask_path));
+    };
+    if (!is_mask_set) note("annotation.mask", session.mask_path);
+    if (!is_set(settings, "trace") && !goes_with_mask(session.trace_path)) note("annotation.trace", session.trace_path);
+    if (!is_set(settings, "density") && !goes_with_mask(session.density_path))
+        note("annotation.density", session.density_path);
+    note("the journal", session.journal_path);
+    note("the session's file", session_file);
+    return words;
+}
 
 fs::path mask_beside(const fs::path& session_file)
 {
@@ -96,7 +139,7 @@ std::optional<AnnotationNames> sparse_names(const Session& session, const fs::pa
     const fs::path project = file.parent_path().parent_path();
     if (file != project / PROJECT_SESSION) return std::nullopt;
     const auto is_dense = [&](const fs::path& path, const char* extension) {
-        return ends_with(path, extension) && is_within(fs::absolute(path), project);
+        return ends_with(path, extension) && is_within(fs::absolute(path).lexically_normal(), project);
     };
     AnnotationNames names{session.mask_path, session.trace_path, session.density_path};
     if (is_dense(names.mask, ".mask")) {

@@ -1,6 +1,6 @@
 // Names of annotation files: sparse ones for new sessions and upgraded projects, and what exists.
 
-#include "engine/session/annotation_names.h"
+#include "engine/session/annotation_files.h"
 
 #include <doctest/doctest.h>
 
