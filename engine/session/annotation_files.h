@@ -1,8 +1,8 @@
 #pragma once
 // The files in which a session keeps its annotation: their names, sparse ones (OME-Zarr) for new sessions, and which of
-// them lie outside its folder. A session says where its annotation is saved. A session from a stranger could name any file of the user's, directly,
-// through ".." or through a symbolic link; outside its own folder nothing is written before the user agrees. Any
-// thread.
+// them lie outside its folder. A session says where its annotation is saved; one from a stranger could name any file of
+// the user's, directly, through ".." or through a symbolic link. Outside its own folder nothing is written before the
+// user agrees. Any thread.
 
 #include <filesystem>
 #include <optional>

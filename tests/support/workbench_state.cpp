@@ -31,6 +31,18 @@ std::string bits_of(const Camera& camera)
                     camera.near_distance, ' ', camera.far_distance);
 }
 
+/// Names and contents of all files below a folder.
+std::string content_of(const std::filesystem::path& folder)
+{
+    std::set<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+        if (entry.is_regular_file()) files.insert(entry.path());
+    std::string text;
+    for (const std::filesystem::path& file : files)
+        text += sentence(file.lexically_relative(folder).string(), ':', read_text(file, int64_t{1} << 30), ';');
+    return text;
+}
+
 std::string text_of(const TraceSelection& selection)
 {
     std::string text;
@@ -73,6 +85,8 @@ State state_of(const ui::Workbench& bench, const std::filesystem::path& folder)
     for (const auto& entry : std::filesystem::directory_iterator(folder))
         if (entry.is_regular_file() && entry.path().extension() != ".journal" && entry.path().extension() != ".lock")
             state["file " + entry.path().filename().string()] = read_text(entry.path(), int64_t{1} << 30);
+        else if (entry.is_directory() && entry.path().extension() == ".zarr")
+            state["file " + entry.path().filename().string()] = content_of(entry.path());
     if (!model.is_open) return state;
     state["hand"] =
         sentence(model.hand->is_let_go, ' ', model.hand->is_grabbing, ' ', model.hand->recorded_s.has_value());
