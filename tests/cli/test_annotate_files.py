@@ -2,7 +2,8 @@
 
 Each file is tried in every state beside each journal, and all files together in states such that every pair occurs,
 through the program. What is found is compared with the table in engine/annotation/work/README.md, which `believed`
-below states once more. SHVR_SLOW=1 answers questions that are not asked, too, and tries more states together.
+below states once more. Both for a project, whose mask and offsets are folders, and for a session with a `.mask`.
+SHVR_SLOW=1 answers questions that are not asked, too, and tries more states together.
 """
 import itertools
 import json
@@ -16,7 +17,6 @@ from harness import IS_SLOW, CliTest, Volume, covering, run
 
 SIZE = (6, 5, 4)
 VOXELS = SIZE[0] * SIZE[1] * SIZE[2]
-PARTS = {"mask": "paint.mask", "trace": "paint.graphml", "offsets": "paint.offset"}
 STATES = ["as saved", "missing", "older", "newer", "cut", "another's"]
 
 
@@ -30,30 +30,39 @@ def paint(number):
              "offset": number}]
 
 
+def contents(folder):
+    """All files, by their paths in it."""
+    return {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob("*") if file.is_file()}
+
+
+def part_of(files, name):
+    """A file, or those in a folder, by their paths in it."""
+    return {path[len(name):]: content for path, content in files.items() if path == name or path.startswith(name + "/")}
+
+
 class Project:
     """States of one project: 1 is the first save, 2 the last, 3 has steps beyond it, 4 was saved later elsewhere."""
 
-    def __init__(self, folder, seed):
-        self.path = folder / f"project{seed}"
-        volume = Volume.noise(SIZE, seed).write(folder, f"volume{seed}")
-        assert run("import", volume, self.path, "--quiet").returncode == 0
-        self.states = {}
+    def __init__(self, path, opened):
+        self.path, self.opened, self.states = path, opened, {}
 
     def go_on(self, name, operations):
         script = self.path.parent / "script.jsonl"
         script.write_text("".join(json.dumps(operation) + "\n" for operation in operations))
-        result = run("annotate", self.path, "--script", script, "--quiet")
+        result = run("annotate", self.opened, "--script", script, "--quiet")
         assert result.returncode == 0 and result.stderr == "", result.stderr
-        self.states[name] = {file.name: file.read_bytes() for file in (self.path / "shvr").iterdir()}
+        self.states[name] = contents(self.path)
 
 
-class Files(CliTest):
+class Files:
+    """Tests of one layout: the names in PARTS, JOURNAL_FILE and SESSION, within a folder."""
+
     @classmethod
     def setUpClass(cls):
         temporary = tempfile.TemporaryDirectory(prefix="shvr-cli-")
         cls.addClassCleanup(temporary.cleanup)
-        cls.root = Path(temporary.name)
-        project, other = Project(cls.root, 1), Project(cls.root, 2)
+        root = Path(temporary.name)
+        project, other = cls.begin(root, 1), cls.begin(root, 2)
         save = [{"op": "save"}]
         project.go_on(1, paint(1) + save)
         project.go_on(2, paint(2) + save)
@@ -62,7 +71,7 @@ class Files(CliTest):
         other.go_on(5, paint(5) + save)
         cls.states = {**project.states, **other.states}
         cls.pristine = project.path
-        journal, saved = (cls.states[number]["session.journal"] for number in (3, 2))
+        journal, saved = (cls.states[number][cls.JOURNAL_FILE] for number in (3, 2))
         assert journal.startswith(saved)
         cls.cut_journal = journal[:len(saved) + 30]  # in the midst of the first record after the save
 
@@ -92,47 +101,60 @@ class Files(CliTest):
     def expected(self, states, belief):
         if states["journal"] == "another's":
             return "refused"
-        parts = {part: self.believed(states["journal"], part, states[part], states["image"], belief) for part in PARTS}
+        image = self.image_in(states)
+        parts = {part: self.believed(states["journal"], part, states[part], image, belief) for part in self.PARTS}
         for word in ("refused", "asked"):
             if word in parts.values():
                 return word
         losses = sum(told for _, told in parts.values())
         losses += states["journal"] in ("cut", "stub")
-        # MASK.json names the journal that is missing, unless it says nothing.
-        losses += states["journal"] == "missing" and states["image"] not in ("missing", "cut")
+        # The mask names the journal that is missing, unless it says nothing.
+        losses += states["journal"] == "missing" and image not in ("missing", "cut")
         return {part: taken for part, (taken, _) in parts.items()}, losses
 
     # ---- The project in that state ----
 
-    def content(self, name, state):
+    def files_of(self, name, state):
+        """Those of a part in that state, by their paths in the project."""
         if state == "missing":
-            return None
+            return {}
+        number = {"older": 1, "newer": 4, "another's": 5}.get(state, 2)
+        files = {name + path: content for path, content in part_of(self.states[number], name).items()}
         if state == "cut":
-            return self.states[2][name][:-7]
-        return self.states[{"as saved": 2, "older": 1, "newer": 4, "another's": 5}[state]][name]
+            longest = self.cut_in(name)
+            files[longest] = files[longest][:-7]
+        return files
+
+    @staticmethod
+    def cut_in(name):
+        """The file of a part that is cut."""
+        return name
 
     def prepare(self, states):
         project = self.folder / "project"
         if not project.exists():
             shutil.copytree(self.pristine, project)
-        folder = project / "shvr"
-        for file in folder.iterdir():
-            if file.name.startswith(("paint", "session.journal")):
-                file.unlink()
-        contents = {PARTS[part]: self.content(PARTS[part], states[part]) for part in PARTS}
-        contents["paint.mask.json"] = self.content("paint.mask.json", states["image"])
-        contents["session.journal"] = {"as saved": self.states[3]["session.journal"], "cut": self.cut_journal,
-                                       "stub": b"SHVRJRNL\1"}.get(states["journal"]) or \
-            self.content("session.journal", states["journal"])
-        for name, content in contents.items():
-            if content is not None:
-                (folder / name).write_bytes(content)
+        for path in [path for path in project.rglob("*") if path.name.startswith(("paint", "session.journal"))]:
+            if path.is_dir():
+                shutil.rmtree(path)
+            else:
+                path.unlink(missing_ok=True)  # in a folder that is removed
+        files = {}
+        for part, name in self.PARTS.items():
+            files.update(self.files_of(name, states[part]))
+        files.update(self.files_of(self.IMAGE, states["image"]) if self.IMAGE else {})
+        journal = {"cut": self.cut_journal, "stub": b"SHVRJRNL\1",
+                   "as saved": self.states[3][self.JOURNAL_FILE]}.get(states["journal"])
+        files.update({self.JOURNAL_FILE: journal} if journal else self.files_of(self.JOURNAL_FILE, states["journal"]))
+        for name, content in files.items():
+            (project / name).parent.mkdir(parents=True, exist_ok=True)
+            (project / name).write_bytes(content)
         return project
 
     def annotation_of(self, project, arguments):
         """What `shvr export` takes; refusals and questions as words."""
         offsets = self.folder / "out.offset"
-        result = run("export", project, "--offset", offsets, "--json", "--quiet", *arguments)
+        result = run("export", self.opened(project), "--offset", offsets, "--json", "--quiet", *arguments)
         lines = result.stderr.splitlines()
         losses = [line for line in lines if line.startswith("warning: ")]
         if result.returncode != 0:
@@ -153,7 +175,7 @@ class Files(CliTest):
 
     def check_belief(self, states, belief=None):
         project = self.prepare(states)
-        before = {file.name: file.read_bytes() for file in (project / "shvr").iterdir()}
+        before = contents(project)
         found, lines = self.annotation_of(project, ["--believe", belief] if belief else [])
         expected = self.expected(states, belief)
         if isinstance(expected, str):
@@ -166,13 +188,13 @@ class Files(CliTest):
             self.assertIn(str(project), line)
             self.assertIn("expected", line)
         # Looking changes nothing.
-        self.assertEqual({file.name: file.read_bytes() for file in (project / "shvr").iterdir()}, before)
+        self.assertEqual(contents(project), before)
 
     JOURNALS = STATES + ["stub"]
 
     def test_each_file_in_each_state_beside_each_journal(self):
         tried = set()
-        for journal, part, state in itertools.product(self.JOURNALS, [*PARTS, "image"], STATES):
+        for journal, part, state in itertools.product(self.JOURNALS, self.KINDS, STATES):
             states = {"journal": journal, "mask": "as saved", "trace": "as saved", "offsets": "as saved",
                       "image": "as saved", part: state}
             is_asked = self.expected(states, None) == "asked"
@@ -184,15 +206,15 @@ class Files(CliTest):
                         self.check_belief(states, belief)
 
     def test_all_files_in_all_states_at_once(self):
-        keys = ["journal", "mask", "trace", "offsets", "image"]
-        factors = [self.JOURNALS, STATES, STATES, STATES, STATES]
+        keys = ["journal", *self.KINDS]
+        factors = [self.JOURNALS] + [STATES] * len(self.KINDS)
         beliefs = [None, "files", "journal"]
         rows = covering(*factors, beliefs)
         if IS_SLOW:
             combinations = list(itertools.product(*factors))[::29]  # coprime to all numbers of states
             rows += [(*combination, beliefs[number % 3]) for number, combination in enumerate(combinations)]
         for *values, belief in rows:
-            states = dict(zip(keys, values))
+            states = {"image": "as saved", **dict(zip(keys, values))}
             with self.subTest(**states, belief=belief):
                 self.check_belief(states, belief)
 
@@ -200,10 +222,11 @@ class Files(CliTest):
 
     def work(self, project, operations, *arguments, status=0):
         script = self.write_script("script.jsonl", operations)
-        return self.check("annotate", project, "--script", script, "--quiet", *arguments, status=status)
+        return self.check("annotate", self.opened(project), "--script", script, "--quiet", *arguments, status=status)
 
-    def contents(self, project):
-        return {file.name: file.read_bytes() for file in (project / "shvr").iterdir()}
+    def assert_kept(self, project, name, number):
+        """The part is kept as NAME.old, as it was in that state."""
+        self.assertEqual(part_of(contents(project), f"{name}.old"), part_of(self.states[number], name))
 
     def left(self, **states):
         return self.prepare({"journal": "as saved", "mask": "as saved", "trace": "as saved", "offsets": "as saved",
@@ -216,26 +239,26 @@ class Files(CliTest):
         self.assertEqual(said.count("is missing; expected the "), 3, said)
         found, lines = self.annotation_of(project, [])
         self.assertEqual((found["mask"], lines), ([1, 2, 3], []))
-        for name in PARTS.values():
-            self.assertTrue((project / "shvr" / name).exists())
-            self.assertFalse((project / "shvr" / (name + ".old")).exists())
+        for name in self.PARTS.values():
+            self.assertTrue((project / name).exists())
+            self.assertFalse((project / (name + ".old")).exists())
 
     def test_a_changed_mask_is_a_question_and_nothing_is_done_before_it_is_answered(self):
         for state in ("older", "newer"):
             project = self.left(mask=state)
-            before = self.contents(project)
+            before = contents(project)
             said = self.work(project, paint(4) + [{"op": "save"}], status=1).stderr
-            self.assertIn("paint.mask: ", said)
+            self.assertIn(f"{self.PARTS['mask']}: ", said)
             self.assertIn("--believe files", said)
             self.assertEqual(said.count("\n"), 1)
-            self.assertEqual(self.contents(project), before)
+            self.assertEqual(contents(project), before)
 
     def test_the_file_is_taken_as_a_step_and_the_journal_keeps_its_own(self):
         project = self.left(mask="older", trace="newer")
         self.work(project, [{"op": "expect", "voxels_in_group": {"1": 1, "2": 0, "3": 0}, "nodes": 4},
                             {"op": "undo"}, {"op": "expect", "voxels_in_group": {"1": 1, "2": 1, "3": 1}, "nodes": 3},
                             {"op": "redo"}, {"op": "save"}], "--believe", "files")
-        self.assertEqual([name for name in self.contents(project) if ".old" in name], [])
+        self.assertEqual([name for name in contents(project) if ".old" in name], [])
         found, lines = self.annotation_of(project, [])
         self.assertEqual((found["mask"], found["trace"], lines), ([1], 4, []))
         # The choice is remembered, with the history.
@@ -246,17 +269,17 @@ class Files(CliTest):
         said = self.work(project, [{"op": "expect", "voxels_in_group": {"4": 0, "3": 1}, "voxels_with_offset": 3},
                                    {"op": "save"}], "--believe", "journal").stderr
         self.assertIn("is kept as", said)  # even with --quiet
-        kept = self.contents(project)
-        self.assertEqual(kept["paint.mask.old"], self.states[4]["paint.mask"])
-        self.assertEqual(kept["paint.offset.old"], self.states[5]["paint.offset"])
+        self.assert_kept(project, self.PARTS["mask"], 4)
+        self.assert_kept(project, self.PARTS["offsets"], 5)
         self.work(project, [{"op": "expect", "voxels_in_group": {"3": 1}}])
 
     def test_a_cut_file_is_kept_and_written_anew(self):
         project = self.left(mask="cut", trace="cut", offsets="cut", image="cut")
         said = self.work(project, [{"op": "save"}]).stderr
-        for name in PARTS.values():
+        for name in self.PARTS.values():
             self.assertIn(f"{name}.old", said)
-            self.assertEqual(self.contents(project)[f"{name}.old"], self.states[2][name][:-7])
+            kept = part_of(contents(project), f"{name}.old")
+            self.assertEqual({name + path: content for path, content in kept.items()}, self.files_of(name, "cut"))
         found, lines = self.annotation_of(project, [])
         self.assertEqual((found["mask"], found["trace"], lines), ([1, 2, 3], 3, []))
 
@@ -264,27 +287,70 @@ class Files(CliTest):
         """As the first trial did: the mask goes, a script saves, and the journal is put back."""
         project = self.left(journal="missing", mask="missing", trace="missing", offsets="missing", image="missing")
         self.work(project, paint(4) + [{"op": "save"}])
-        (project / "shvr" / "session.journal").write_bytes(self.states[3]["session.journal"])
+        (project / self.JOURNAL_FILE).write_bytes(self.states[3][self.JOURNAL_FILE])
         self.work(project, [{"op": "save"}], status=1)
         self.work(project, [{"op": "expect", "voxels_in_group": {"1": 1, "2": 1, "3": 1, "4": 0}}, {"op": "save"}],
                   "--believe", "journal")
-        self.assertIn("paint.mask.old", self.contents(project))
+        self.assertTrue((project / f"{self.PARTS['mask']}.old").exists())
 
     def test_a_fresh_start_overwrites_nothing_that_the_journal_does_not_hold(self):
         project = self.left(mask="newer")
         for number in (1, 2):
             self.work(project, paint(5) + [{"op": "save"}], "--fresh")
-        kept = self.contents(project)
-        self.assertEqual(kept["session.journal.old"], self.states[3]["session.journal"])
-        self.assertEqual(kept["paint.mask.old"], self.states[4]["paint.mask"])
-        self.assertIn("session.journal.old2", kept)
-        self.assertNotIn("paint.mask.old2", kept)
+        self.assert_kept(project, self.JOURNAL_FILE, 3)
+        self.assert_kept(project, self.PARTS["mask"], 4)
+        self.assertTrue((project / f"{self.JOURNAL_FILE}.old2").exists())
+        self.assertFalse((project / f"{self.PARTS['mask']}.old2").exists())
 
     # ---- The session ----
 
+    def test_a_session_that_is_cut_is_refused_and_another_one_brings_its_looks_alone(self):
+        project = self.left()
+        session = project / self.SESSION
+        text = session.read_text()
+        session.write_text(text[:-7])
+        for arguments in (["export"], ["info"], ["label", "--threshold", "300"]):
+            self.check_refused(arguments[0], self.opened(project), *arguments[1:], says=[str(session)])
+        self.assertIn(str(session), self.work(project, [], status=1).stderr)
+        session.write_bytes(self.states[5][self.SESSION])
+        self.work(project, [{"op": "expect", "nodes": 3, "voxels_in_group": {"3": 1}}])
+        # One that names other files finds the annotation in the journal.
+        document = json.loads(text)
+        document["annotation"] = {"mask": self.OTHER}
+        session.write_text(json.dumps(document))
+        said = self.work(project, [{"op": "expect", "nodes": 3, "voxels_in_group": {"3": 1}}, {"op": "save"}]).stderr
+        self.assertIn(f"{self.OTHER}: is missing", said)
+        self.assertTrue((session.parent / self.OTHER).exists())
+
+
+class OfProject(Files, CliTest):
+    """Mask and offsets are OME-Zarr; the mask states its image and its journal."""
+
+    PARTS = {"mask": "labels/paint", "trace": "shvr/paint.graphml", "offsets": "shvr/paint.offsets.zarr"}
+    KINDS, IMAGE, OTHER = [*PARTS], None, "other.zarr"
+    JOURNAL_FILE, SESSION = "shvr/session.journal", "shvr/session.json"
+
+    @staticmethod
+    def begin(root, seed):
+        path = root / f"project{seed}"
+        assert run("import", Volume.noise(SIZE, seed).write(root, f"volume{seed}"), path, "--quiet").returncode == 0
+        return Project(path, path)
+
+    @staticmethod
+    def opened(project):
+        return project
+
+    @staticmethod
+    def image_in(states):
+        return states["mask"]
+
+    @staticmethod
+    def cut_in(name):
+        return name if name.endswith((".graphml", ".journal")) else name + "/0/0/0/0"
+
     def test_a_project_without_its_session_has_its_annotation(self):
         project = self.left()
-        session = project / "shvr" / "session.json"
+        session = project / self.SESSION
         session.unlink()
         for command in (["export", project, "--mask", self.folder / "a.mask"], ["info", project],
                         ["label", project, "--threshold", "300"],
@@ -294,23 +360,32 @@ class Files(CliTest):
         self.assertEqual(sorted(set((self.folder / "a.mask").read_bytes())), [0, 1, 2, 3])
         self.assertIn("is missing", self.work(project, [{"op": "expect", "nodes": 3}, {"op": "save"}]).stderr)
 
-    def test_a_session_that_is_cut_is_refused_and_another_one_brings_its_looks_alone(self):
-        project = self.left()
-        session = project / "shvr" / "session.json"
-        text = session.read_text()
-        session.write_text(text[:-7])
-        for command in (["export", project, "--mask", self.folder / "a.mask"], ["info", project]):
-            self.check_refused(*command, says=[str(session)])
-        self.assertIn(str(session), self.work(project, [], status=1).stderr)
-        session.write_bytes(self.states[5]["session.json"])
-        self.work(project, [{"op": "expect", "nodes": 3, "voxels_in_group": {"3": 1}}])
-        # One that names other files finds the annotation in the journal.
-        document = json.loads(text)
-        document["annotation"] = {"mask": "other.mask"}
-        session.write_text(json.dumps(document))
-        said = self.work(project, [{"op": "expect", "nodes": 3, "voxels_in_group": {"3": 1}}, {"op": "save"}]).stderr
-        self.assertIn("other.mask: is missing", said)
-        self.assertTrue((project / "shvr" / "other.mask").exists())
+
+class OfSession(Files, CliTest):
+    """Mask and offsets are files of every voxel; image and journal are stated by MASK.json."""
+
+    PARTS = {"mask": "paint.mask", "trace": "paint.graphml", "offsets": "paint.offset"}
+    IMAGE, OTHER = "paint.mask.json", "other.mask"
+    KINDS = [*PARTS, "image"]
+    JOURNAL_FILE, SESSION = "session.journal", "session.json"
+
+    @staticmethod
+    def begin(root, seed):
+        path = root / f"work{seed}"
+        path.mkdir()
+        volume = Volume.noise(SIZE, seed).write(path)
+        session = path / "session.json"
+        session.write_text(json.dumps({"shvr_session": 1, "volume": {"path": volume.name},
+                                       "annotation": {"mask": "paint.mask"}}))
+        return Project(path, session)
+
+    @staticmethod
+    def opened(project):
+        return project / "session.json"
+
+    @staticmethod
+    def image_in(states):
+        return states["image"]
 
     def test_without_journal_and_side_file_the_files_are_taken_in_silence(self):
         project = self.left(journal="missing", image="missing")

@@ -115,7 +115,7 @@ class Script(CliTest):
             script = self.folder / "strokes.jsonl"
             script.write_text("\n".join(chosen) + "\n")
             self.check("annotate", project, "--script", script)
-            self.assertEqual((project / "shvr" / "paint.offset").exists(), number == 1)
+            self.assertEqual((project / "shvr" / "paint.offsets.zarr").exists(), number == 1)
 
 
 def catches(program, number):

@@ -12,7 +12,7 @@ class CostGrowth(CliTest):
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         rows = {line.split(" | ")[0][2:]: line.split(" | ")[5] for line in result.stdout.splitlines()[2:]}
         bounded = [name for name, bound in rows.items() if bound != "none"]
-        self.assertEqual(bounded, ["info", "render", "label", "label to .zarr"])
+        self.assertEqual(bounded, ["info", "render", "label", "label to .zarr", "stroke and save", "open", "metrics"])
 
 
 if __name__ == "__main__":
