@@ -135,10 +135,11 @@ std::optional<int64_t> multiplied(int64_t a, int64_t b)
     return __builtin_mul_overflow(a, b, &product) ? std::nullopt : std::optional(product);
 }
 
-void expect_space(const std::filesystem::path& path, std::optional<int64_t> bytes, const char* remedy)
+void expect_space(const fs::path& path, std::optional<int64_t> bytes, const char* remedy)
 {
     struct statvfs status {};
-    if (::statvfs(std::filesystem::absolute(path).parent_path().c_str(), &status) != 0) return;
+    const fs::path folder = fs::absolute(link_target(path)).parent_path();
+    if (::statvfs(folder.c_str(), &status) != 0 || status.f_blocks == 0) return;
     const auto free = multiplied(int64_t(status.f_bavail), int64_t(status.f_frsize));
     if (!free || (bytes && *bytes <= *free)) return;
     fail(path.string(), ": would take ", bytes ? std::to_string(*bytes) : std::string("more than 2^63 - 1"),
