@@ -180,7 +180,8 @@ void run_annotate(const AnnotateCommandOptions& options)
     bench.take({.opened = {.session = opened.session, .source = opened.source, .statistics = opened.statistics},
                 .session_path = session,
                 .overridden = options.common.settings,
-                .work = opened.annotator->take_work()});
+                .work = opened.annotator->take_work(),
+                .session_text = ui::text_of_session(session)});
     opened.annotator.reset();
     Replay replay{bench, options};
     static_cast<void>(work.begin("replaying " + name));
