@@ -87,7 +87,7 @@ std::string free_name(const fs::path& folder)
 }  // namespace
 
 AtomicFolder::AtomicFolder(const fs::path& target)
-    : target_(plain_path(target)),
+    : target_(link_target(plain_path(target))),
       container_(target_.parent_path() / sentence(".", target_.filename().string(), ".shvr-part"))
 {
     std::error_code error;

@@ -10,7 +10,8 @@
 // a folder inside it, under a free name (`inner`), and counts from the moment that one file, which names it, is
 // replaced.
 //
-// Every failure is one sentence with the target's path and the system's reason. One thread at a time.
+// Symbolic links are followed, and stay. Every failure is one sentence with the target's path and the system's reason.
+// One thread at a time.
 
 #include <filesystem>
 #include <optional>

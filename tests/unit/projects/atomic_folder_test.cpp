@@ -69,6 +69,20 @@ TEST_CASE("a folder that is not committed changes nothing; what a killed process
     CHECK(names_in(target) == "one");
 }
 
+TEST_CASE("a link to a folder stays, and the folder that it leads to is replaced")
+{
+    const TemporaryFolder folder;
+    const fs::path target = folder.path / "elsewhere" / "a.zarr", link = folder.path / "b.zarr";
+    AtomicFolder(target).commit("");
+    fs::create_directory_symlink(target, link);
+    AtomicFolder second(link);
+    write(second, "one", "1");
+    second.commit("one");
+    CHECK(fs::read_symlink(link) == target);
+    CHECK(names_in(target) == "one");
+    CHECK(names_in(target.parent_path()) == "a.zarr");
+}
+
 TEST_CASE("two writers of one folder: the second is refused, and the first goes on")
 {
     const TemporaryFolder folder;
