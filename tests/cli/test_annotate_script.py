@@ -99,9 +99,12 @@ class Script(CliTest):
     def test_a_save_that_fails_ends_the_replay_at_its_line(self):
         session = self.write_session("small.json", volume={"procedural": "tubes", "size": [16] * 3})
         self.write_json("taken", {})
-        script = self.write_script("saves.jsonl", [{"op": "save"}, {"op": "save_as", "path": "taken/copy.json"},
-                                                   {"op": "save"}])
-        self.check_refused("annotate", session, "--actions", script, "--quiet", says=["saves.jsonl:2: ", "taken"])
+        for folder in ("taken", "missing"):
+            script = self.write_script("saves.jsonl", [
+                {"op": "save"}, {"op": "save_as", "path": str(self.folder / folder / "copy.json")}, {"op": "save"}])
+            self.check_refused("annotate", session, "--actions", script, "--quiet",
+                               says=["saves.jsonl:2: ", f"{folder} is no folder; expected one that exists"])
+        self.assertFalse((self.folder / "missing").exists())
 
     def test_the_example_of_the_help_runs_with_and_without_its_undo(self):
         example = self.check("annotate", "--help").stdout.split("Example:\n")[1].splitlines()

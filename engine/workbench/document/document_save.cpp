@@ -28,6 +28,10 @@ Session renamed(Session session, const std::filesystem::path& path)
 std::filesystem::path new_session_path(const std::filesystem::path& path)
 {
     if (path.extension() != ".json") fail(path.string(), ": is no name for a session; expected one that ends in .json");
+    const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(folder, ignored))
+        fail(path.string(), ": cannot be created, since ", folder.string(), " is no folder; expected one that exists");
     for (const char* extension : SESSION_EXTENSIONS)
         if (is_there(beside(path, extension)))
             fail(beside(path, extension).string(), ": exists already; expected a name that is free");
