@@ -145,10 +145,13 @@ void volume_fields(Fields& f, Session& session)
                        "name in the file, or a number from 1",
             .allowed = "text",
             .standard = "none: such a file is refused"});
-    f.text("frame", session.open_options.frame,
-           {.meaning = "time point to read from a file with several: a number from 1",
-            .allowed = "text",
-            .standard = "none: such a file is refused"});
+    f.text(
+        "frame", session.open_options.frame,
+        {.meaning = "time point to read from a file with several: a number from 1. Of DICOM slices also what a refusal "
+                    "lists, as `\"stack A\"`, `\"first\"` or `\"last\"` of repeated ones; `\"z\"` stacks those of one "
+                    "position",
+         .allowed = "text",
+         .standard = "none: such a file is refused"});
     std::optional<int64_t> level = session.open_options.level;
     if (level == 0) level.reset();
     f.any_whole(

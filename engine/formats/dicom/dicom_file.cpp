@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "engine/base/text.h"
 #include "engine/formats/dicom/dicom_jpeg.h"
 #include "engine/formats/dicom/dicom_rle.h"
+#include "engine/formats/dicom/dicom_text.h"
 #include "engine/formats/dicom/gdcm_turn.h"
 
 namespace shvr {
@@ -28,18 +30,18 @@ constexpr int64_t MAX_EXPANSION = 1000;
 
 // ---- Values ---------------------------------------------------------------------------------------------------------
 
-/// A data set; in a file with many frames, also the data sets of all frames and of one frame, which hold the rest.
+/// A data set; in a file with many frames, also the data sets of one frame and of all frames, which come first.
 class Values {
 public:
     explicit Values(std::vector<const DataSet*> sets) : sets_(std::move(sets)) {}
 
-    /// The text up to a NUL, without padding spaces.
+    /// The text up to a NUL, without padding spaces, in UTF-8.
     std::string text(const Tag& tag) const
     {
         const gdcm::ByteValue* value = find(tag);
         if (value == nullptr) return {};
         const std::string_view bytes(value->GetPointer(), value->GetLength());
-        return std::string(trimmed(bytes.substr(0, bytes.find('\0'))));
+        return dicom_text(trimmed(bytes.substr(0, bytes.find('\0'))), character_set());
     }
     /// Decimal strings, separated by backslashes; empty if one of them is not a number.
     std::vector<double> decimals(const Tag& tag) const
@@ -69,8 +71,22 @@ public:
         std::memcpy(&number, value->GetPointer(), sizeof(number));
         return number;
     }
+    /// A value of type UL.
+    int64_t long_number(const Tag& tag, int64_t fallback) const
+    {
+        const gdcm::ByteValue* value = find(tag);
+        uint32_t number = 0;
+        if (value == nullptr || value->GetLength() < sizeof(number)) return fallback;
+        std::memcpy(&number, value->GetPointer(), sizeof(number));
+        return number;
+    }
 
 private:
+    std::string_view character_set() const
+    {
+        const gdcm::ByteValue* value = find(Tag(0x0008, 0x0005));
+        return value == nullptr ? std::string_view() : std::string_view(value->GetPointer(), value->GetLength());
+    }
     const gdcm::ByteValue* find(const Tag& tag) const
     {
         for (const DataSet* set : sets_) {
@@ -92,8 +108,8 @@ Sequence sequence_of(const DataSet& set, const Tag& tag)
     return set.FindDataElement(tag) ? set.GetDataElement(tag).GetValueAsSQ() : Sequence();
 }
 
-/// The places where values of one frame may be: in the file itself, or in the functional groups (PS3.3, C.7.6.16) of
-/// the frame or of all frames.
+/// The places where values of one frame may be: in the functional groups (PS3.3, C.7.6.16) of the frame or of all
+/// frames, or in the file itself, which may state those of one frame, too.
 class FrameValues {
 public:
     explicit FrameValues(const DataSet& file)
@@ -104,9 +120,10 @@ public:
     Values of(size_t frame)
     {
         groups_.clear();
-        std::vector<const DataSet*> sets{&file_};
+        std::vector<const DataSet*> sets;
         add_groups(of_each_, frame, sets);
         add_groups(of_all_, 0, sets);
+        sets.push_back(&file_);
         return Values(std::move(sets));
     }
 
@@ -115,7 +132,8 @@ private:
     {
         if (items == nullptr || items->GetNumberOfItems() <= index) return;
         const DataSet& item = items->GetItem(index + 1).GetNestedDataSet();
-        for (const Tag& tag : {Tag(0x0020, 0x9113), Tag(0x0020, 0x9116), Tag(0x0028, 0x9110), Tag(0x0028, 0x9145)}) {
+        for (const Tag& tag : {Tag(0x0020, 0x9111), Tag(0x0020, 0x9113), Tag(0x0020, 0x9116), Tag(0x0028, 0x9110),
+                               Tag(0x0028, 0x9145)}) {
             const Sequence group = sequence_of(item, tag);
             if (group == nullptr || group->GetNumberOfItems() == 0) continue;
             groups_.push_back(group);  // keeps its data set alive
@@ -135,14 +153,30 @@ private:
     fail(file.path.string(), ": ", field, " is ", found, "; expected ", expected);
 }
 
+/// Float Pixel Data and Double Float Pixel Data (PS3.3, C.7.6.24 and C.7.6.25).
+VoxelType read_float_type(DicomFile& file, int64_t allocated, std::optional<ValueRange>& stored)
+{
+    const bool is_double = file.stored.layout.numbers == DicomLayout::Numbers::float64;
+    if (allocated != (is_double ? 64 : 32))
+        refuse(file, "Bits Allocated", std::to_string(allocated), is_double ? "64" : "32");
+    constexpr double MOST = std::numeric_limits<float>::max();
+    stored = ValueRange{-MOST, MOST};
+    file.stored.bits = int(allocated);
+    file.stored.high_bit = int(allocated) - 1;
+    file.stored.is_signed = true;
+    return is_double ? VoxelType::float64 : VoxelType::float32;
+}
+
 VoxelType read_type(DicomFile& file, const Values& values, std::optional<ValueRange>& stored)
 {
     const int64_t allocated = values.short_number(Tag(0x0028, 0x0100), 0);
     const int64_t bits = values.short_number(Tag(0x0028, 0x0101), allocated);
     const bool is_signed = values.short_number(Tag(0x0028, 0x0103), 0) == 1;
-    if (allocated != 8 && allocated != 16 && allocated != 32) {
+    if (allocated != 8 && allocated != 16 && allocated != 32 &&
+        file.stored.layout.numbers == DicomLayout::Numbers::whole) {
         refuse(file, "Bits Allocated", std::to_string(allocated), "8, 16 or 32");
     }
+    if (file.stored.layout.numbers != DicomLayout::Numbers::whole) return read_float_type(file, allocated, stored);
     if (bits < 1 || bits > allocated) refuse(file, "Bits Stored", std::to_string(bits), "1 to Bits Allocated");
     const int64_t high = values.short_number(Tag(0x0028, 0x0102), bits - 1);
     if (high < bits - 1 || high >= allocated)
@@ -171,6 +205,15 @@ Rescale read_rescale(const DicomFile& file, const Values& values, const ValueRan
     return rescale;
 }
 
+/// Spacing Between Slices, which some files state as 0, or else Slice Thickness.
+std::optional<double> read_distance(const Values& values)
+{
+    const std::optional<double> spacing = values.decimal(Tag(0x0018, 0x0088));
+    if (spacing && *spacing != 0.0) return spacing;
+    const std::optional<double> thickness = values.decimal(Tag(0x0018, 0x0050));
+    return thickness && *thickness > 0.0 ? thickness : std::nullopt;
+}
+
 DicomFrame read_frame(const Values& values, DicomFile& file, const ValueRange& stored)
 {
     DicomFrame frame;
@@ -192,6 +235,9 @@ DicomFrame read_frame(const Values& values, DicomFile& file, const ValueRange& s
     }
     // The first number is the distance from row to row, along y.
     if (spacing.size() == 2 && spacing[0] > 0.0 && spacing[1] > 0.0) frame.spacing = glm::dvec2(spacing[1], spacing[0]);
+    frame.distance = read_distance(values);
+    frame.time_number = values.long_number(Tag(0x0020, 0x9128), 0);
+    frame.stack = values.text(Tag(0x0020, 0x9056));
     frame.rescale = read_rescale(file, values, stored);
     return frame;
 }
@@ -239,9 +285,6 @@ void read_values(const DataSet& set, const DicomLayout& layout, DicomFile& file)
     }
     file.is_inverted = colors == "MONOCHROME1";
     file.tilt_degrees = values.decimal(Tag(0x0018, 0x1120)).value_or(0.0);
-    file.distance = values.decimal(Tag(0x0018, 0x0088));
-    if (!file.distance) file.distance = values.decimal(Tag(0x0018, 0x0050));
-    if (file.distance && !(*file.distance > 0.0)) file.distance.reset();
     std::optional<ValueRange> stored;
     file.type = read_type(file, values, stored);
     const int64_t frames = read_number_of_frames(file, values);
@@ -262,7 +305,7 @@ std::optional<DicomFile> read_dicom_file(const std::filesystem::path& path)
     const GdcmTurn turn;
     gdcm::Reader reader;
     reader.SetFileName(path.c_str());
-    const Tag pixels(0x7fe0, 0x0010);
+    const Tag pixels(0x7fe0, layout->pixel_element());
     DicomFile file{.path = path, .stored = {.layout = *layout}};
     try {
         if (!reader.ReadUpToTag(pixels, {pixels})) fail(path.string(), ": GDCM cannot read it; expected a DICOM file");

@@ -19,6 +19,10 @@ struct DicomFrame {
     glm::dvec3 along_y{0.0, 1.0, 0.0};     ///< from row to row
     std::optional<glm::dvec2> spacing{};   ///< mm from column to column, from row to row
     bool has_orientation = false;
+    /// mm between slices, as stated; slice thickness if nothing else is. Negative: against the normal.
+    std::optional<double> distance{};
+    int64_t time_number = 0;  ///< temporal position
+    std::string stack{};      ///< identifies the stack of slices it belongs to, in a file of several
     Rescale rescale{};
 };
 
@@ -34,7 +38,7 @@ struct DicomFile {
     std::filesystem::path path{};
     DicomStored stored{};
     std::string series_uid{};
-    std::string series_description{};
+    std::string series_description{};  ///< UTF-8
     int64_t series_number = 0;
     std::string instance_uid{};
     int64_t instance_number = 0;
@@ -44,7 +48,6 @@ struct DicomFile {
     VoxelType type = VoxelType::uint16;
     bool is_inverted = false;             ///< MONOCHROME1: low values are bright
     bool spacing_is_at_detector = false;  ///< the spacing is not corrected for the distance to the source
-    std::optional<double> distance{};     ///< mm between slices, as stated; slice thickness if nothing else is
     double tilt_degrees = 0.0;            ///< tilt of the gantry
     std::vector<DicomFrame> frames{};
 };

@@ -18,6 +18,7 @@ constexpr int DEEPEST = 16;  ///< maximum depth of nested sequences; real files 
 
 constexpr uint32_t TRANSFER_SYNTAX = 0x00020010;
 constexpr uint32_t PIXEL_DATA = 0x7fe00010;
+constexpr uint32_t FLOAT_PIXELS = 0x7fe00008, DOUBLE_PIXELS = 0x7fe00009;
 constexpr uint32_t ITEM = 0xfffee000;
 constexpr uint32_t END_OF_ITEM = 0xfffee00d;
 constexpr uint32_t END_OF_SEQUENCE = 0xfffee0dd;
@@ -45,10 +46,11 @@ class Walk {
 public:
     explicit Walk(const InputFile& file) : file_(file) {}
 
-    DicomLayout run()
+    /// `at`: where the elements begin. `states_types`: how they begin where no file meta group says it.
+    DicomLayout run(int64_t at, bool states_types)
     {
         constexpr Encoding META{true, false};
-        int64_t at = PREAMBLE;
+        if (group_at(at) != 2) layout_.transfer_syntax = states_types ? "1.2.840.10008.1.2.1" : "1.2.840.10008.1.2";
         // Walks the file meta group; the first element after it may use another encoding.
         while (group_at(at) == 2) {
             const Element element = read_element(at, file_.bytes, META);
@@ -174,7 +176,13 @@ private:
 
     int64_t walk_value(const Element& element, int64_t end, const Encoding& encoding, int depth)
     {
-        const bool is_pixels = element.tag == PIXEL_DATA && depth == 0;
+        const bool is_float = element.tag == FLOAT_PIXELS || element.tag == DOUBLE_PIXELS;
+        const bool is_pixels = (element.tag == PIXEL_DATA || is_float) && depth == 0;
+        if (is_pixels && is_float) {
+            layout_.numbers =
+                element.tag == FLOAT_PIXELS ? DicomLayout::Numbers::float32 : DicomLayout::Numbers::float64;
+            if (element.length == UNDEFINED) refuse(element, "a length, since floats are not compressed");
+        }
         const bool is_unknown = std::string_view(element.type.data(), 2) == "UN";
         // Values unknown to the writing program use the older encoding (PS3.5, 6.2.2).
         const Encoding inside = is_unknown ? Encoding{false, false} : encoding;
@@ -236,12 +244,53 @@ private:
 
 }  // namespace
 
-std::optional<DicomLayout> check_dicom_layout(const InputFile& file)
+bool has_preamble(const InputFile& file)
 {
     std::array<std::byte, 4> magic{};
-    if (file.read_some(PREAMBLE - 4, magic) < 4) return {};
-    if (magic != std::array{std::byte{'D'}, std::byte{'I'}, std::byte{'C'}, std::byte{'M'}}) return {};
-    return Walk(file).run();
+    return file.read_some(PREAMBLE - 4, magic) == magic.size() &&
+           magic == std::array{std::byte{'D'}, std::byte{'I'}, std::byte{'C'}, std::byte{'M'}};
+}
+
+namespace {
+
+enum class Bare { no, with_types, without_types };
+
+/// Old files have no preamble and no file meta group: they begin with the first elements of group 8, or of the file
+/// meta group, in little-endian order.
+Bare begins_bare(const InputFile& file)
+{
+    std::array<std::byte, 8> head{};
+    if (file.read_some(0, head) < head.size()) return Bare::no;
+    const auto byte = [&](size_t i) { return std::to_integer<uint32_t>(head[i]); };
+    const uint32_t group = byte(0) | byte(1) << 8, element = byte(2) | byte(3) << 8;
+    const bool is_first = group == 2 ? element <= 2 : group == 8 && element <= 0x20;
+    if (!is_first) return Bare::no;
+    const std::array<char, 2> type{char(byte(4)), char(byte(5))};
+    const bool are_letters = type[0] >= 'A' && type[0] <= 'Z' && type[1] >= 'A' && type[1] <= 'Z';
+    if (are_letters && is_one_of({type.data(), 2}, SHORT_TYPES)) return Bare::with_types;
+    constexpr uint32_t LONGEST = 256;  // of the values of these elements
+    const uint32_t length = byte(4) | byte(5) << 8 | byte(6) << 16 | byte(7) << 24;
+    return group == 8 && length > 0 && length <= LONGEST && length % 2 == 0 ? Bare::without_types : Bare::no;
+}
+
+}  // namespace
+
+bool begins_as_dicom(const InputFile& file)
+{
+    return has_preamble(file) || begins_bare(file) != Bare::no;
+}
+
+std::optional<DicomLayout> check_dicom_layout(const InputFile& file)
+{
+    if (has_preamble(file)) return Walk(file).run(PREAMBLE, true);
+    const Bare bare = begins_bare(file);
+    if (bare == Bare::no) return {};
+    try {
+        DicomLayout layout = Walk(file).run(0, bare == Bare::with_types);
+        if (layout.pixel_bytes > 0) return layout;
+    } catch (const Error&) {  // the first bytes of other files may look like those of an element
+    }
+    return {};
 }
 
 }  // namespace shvr

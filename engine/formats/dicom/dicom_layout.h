@@ -19,11 +19,22 @@ struct DicomLayout {
     bool is_big_endian = false;
     bool pixels_are_words = false;  ///< of type OW: 16-bit words in the file's byte order, even if a pixel is one byte
     bool is_encapsulated = false;
+    enum class Numbers { whole, float32, float64 };
+    Numbers numbers = Numbers::whole;  ///< Pixel Data, Float Pixel Data or Double Float Pixel Data
+    /// The number of that element in group 7fe0.
+    uint16_t pixel_element() const
+    {
+        return numbers == Numbers::whole ? 0x10 : numbers == Numbers::float32 ? 0x8 : 0x9;
+    }
     struct Fragment {
         int64_t at = 0, bytes = 0;
     };
     std::vector<Fragment> fragments;  ///< fragments of encapsulated Pixel Data, without the offset table
 };
+
+bool has_preamble(const InputFile& file);
+/// Whether it begins like a DICOM file: with the preamble, or without it with the first elements of an image.
+bool begins_as_dicom(const InputFile& file);
 
 /// Null if `file` is not a DICOM file. Fails if lengths contradict each other or the size of the file.
 std::optional<DicomLayout> check_dicom_layout(const InputFile& file);

@@ -151,7 +151,7 @@ std::vector<std::byte> read_dicom_pixels(const DicomFile& file, size_t frame, si
         decode(file, frame, pixels);
     else
         read_plain(file, frame, pixels);
-    take_bits(file, pixels);
+    if (!is_float(file.type)) take_bits(file, pixels);
     return pixels;
 }
 

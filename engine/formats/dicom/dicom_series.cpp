@@ -5,6 +5,7 @@
 #include <iomanip>
 #include <map>
 #include <set>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -35,36 +36,79 @@ std::string with_digits(double number)
     return sentence(std::setprecision(6), number);
 }
 
-/// Size, type and direction of a slice: slices with equal ones can be stacked.
-using Kind = std::tuple<int64_t, int64_t, int, std::array<int64_t, 6>>;
+/// Cosines may differ by this much: files state them with few digits, and scanners compute them for each slice.
+constexpr double SAME_DIRECTION = 2e-3;
 
-Kind kind_of(const DicomFile& file, const DicomFrame& frame)
+/// Whether slices can be stacked: equal size and type, and directions that differ by rounding alone.
+bool are_of_one_kind(const Placed& a, const Placed& b)
 {
-    std::array<int64_t, 6> direction{};
-    for (int i = 0; i < 3; ++i) {
-        direction[size_t(i)] = std::llround(frame.along_x[i] * 1000.0);
-        direction[size_t(i) + 3] = std::llround(frame.along_y[i] * 1000.0);
-    }
-    return {file.columns, file.rows, int(file.type), direction};
+    const auto are_near = [](const glm::dvec3& one, const glm::dvec3& other) {
+        return glm::all(glm::lessThan(glm::abs(one - other), glm::dvec3(SAME_DIRECTION)));
+    };
+    return a.file->columns == b.file->columns && a.file->rows == b.file->rows && a.file->type == b.file->type &&
+           are_near(a.frame->along_x, b.frame->along_x) && are_near(a.frame->along_y, b.frame->along_y);
 }
 
 /// The slices of the most frequent kind; leaves out, for example, a scout image next to an axial series.
-std::vector<Placed> slices_of_one_kind(const std::vector<DicomFile>& files, VolumeInfo& info)
+std::vector<Placed> slices_of_one_kind(const std::vector<Placed>& all, VolumeInfo& info)
 {
-    std::map<Kind, std::vector<Placed>> kinds;
-    size_t count = 0;
-    for (size_t i = 0; i < files.size(); ++i) {
-        for (size_t j = 0; j < files[i].frames.size(); ++j, ++count) {
-            const DicomFrame& frame = files[i].frames[j];
-            kinds[kind_of(files[i], frame)].push_back({{i, j}, 0.0, &files[i], &frame});
-        }
+    std::vector<std::vector<Placed>> kinds;
+    for (const Placed& slice : all) {
+        const auto kind = std::find_if(kinds.begin(), kinds.end(),
+                                       [&](const auto& each) { return are_of_one_kind(each.front(), slice); });
+        if (kind == kinds.end())
+            kinds.push_back({slice});
+        else
+            kind->push_back(slice);
     }
-    const auto most = std::max_element(kinds.begin(), kinds.end(),
-                                       [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
-    if (const size_t others = count - most->second.size(); others > 0) {
+    const auto most =
+        std::max_element(kinds.begin(), kinds.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
+    if (const size_t others = all.size() - most->size(); others > 0) {
         info.warnings.push_back(sentence(counted(others, "slice"), " of another size, type or direction ignored"));
     }
-    return std::move(most->second);
+    return std::move(*most);
+}
+
+constexpr std::string_view STACK = "stack ";
+
+/// The slices of the only stack, or of the one that the options choose: a file of many frames may hold several.
+std::vector<Placed> choose_stack(const std::string& where, const std::vector<DicomFile>& files, OpenOptions& options)
+{
+    std::vector<Placed> all;
+    std::map<std::string, size_t> stacks;
+    for (size_t i = 0; i < files.size(); ++i)
+        for (size_t j = 0; j < files[i].frames.size(); ++j) {
+            all.push_back({{i, j}, 0.0, &files[i], &files[i].frames[j]});
+            if (!files[i].frames[j].stack.empty()) ++stacks[files[i].frames[j].stack];
+        }
+    const bool are_single =
+        std::all_of(stacks.begin(), stacks.end(), [](const auto& each) { return each.second == 1; });
+    if (stacks.size() < 2 || are_single) return all;
+    Choice choice{"frame", {}};
+    std::string choices;
+    for (const auto& [name, slices] : stacks) {
+        choice.values.push_back(std::string(STACK) + name);
+        choice.titles.push_back(sentence(STACK, name, " (", slices, " slices)"));
+        choices += (choices.empty() ? "" : ", ") + choice.titles.back();
+    }
+    const auto chosen = std::find(choice.values.begin(), choice.values.end(), options.frame);
+    if (chosen == choice.values.end())
+        throw ChoiceNeeded(sentence(where, ": ",
+                                    options.frame.empty() ? sentence("holds ", stacks.size(), " stacks of slices")
+                                                          : sentence("frame is ", in_quotes(options.frame)),
+                                    "; expected a frame, one of: ", choices),
+                           {std::move(choice)});
+    const std::string name = chosen->substr(STACK.size());
+    options.frame.clear();
+    std::erase_if(all, [&](const Placed& slice) { return slice.frame->stack != name; });
+    return all;
+}
+
+/// By which slices at one place are ordered.
+auto number_of(const Placed& slice)
+{
+    return std::tuple(slice.frame->time_number, slice.file->time_number, slice.file->instance_number, slice.slice.file,
+                      slice.slice.frame);
 }
 
 /// Sorts along the normal, or by slice numbers if files do not state positions. Returns whether they do.
@@ -77,11 +121,8 @@ bool sort_slices(std::vector<Placed>& slices, VolumeInfo& info)
     for (Placed& slice : slices) {
         if (are_placed) slice.along = glm::dot(*slice.frame->position, normal);
     }
-    const auto number = [](const Placed& slice) {
-        return std::tuple(slice.file->time_number, slice.file->instance_number, slice.slice.file, slice.slice.frame);
-    };
     std::sort(slices.begin(), slices.end(), [&](const Placed& a, const Placed& b) {
-        return a.along != b.along ? a.along < b.along : number(a) < number(b);
+        return a.along != b.along ? a.along < b.along : number_of(a) < number_of(b);
     });
     if (!are_placed && slices.size() > 1) {
         info.warnings.emplace_back("slices do not state their positions; they are sorted by instance number");
@@ -102,32 +143,77 @@ void leave_out_copies(std::vector<Placed>& slices, VolumeInfo& info)
     }
 }
 
-/// If there are several slices at each position, keeps those of one time point.
-void choose_time(const std::string& where, const OpenOptions& options, std::vector<Placed>& slices)
+/// Consecutive slices at equal positions.
+std::vector<std::vector<Placed>> by_position(const std::vector<Placed>& slices)
 {
-    std::vector<size_t> begins;  // of positions
-    for (size_t i = 0; i < slices.size(); ++i) {
-        if (i == 0 || slices[i].along - slices[begins.back()].along > SAME_PLACE_MM) begins.push_back(i);
+    std::vector<std::vector<Placed>> positions;
+    for (const Placed& slice : slices) {
+        if (positions.empty() || slice.along - positions.back().front().along > SAME_PLACE_MM) positions.emplace_back();
+        positions.back().push_back(slice);
     }
-    const size_t times = slices.size() / begins.size();
-    for (size_t i = 0; i < begins.size(); ++i) {
-        if (begins[i] == i * times && slices.size() == begins.size() * times) continue;
-        fail(where, ": holds ", slices.size(), " slices at ", begins.size(),
-             " positions, but more or fewer than usual at ", with_digits(slices[begins[i]].along),
-             " mm; expected equally many at each position");
+    for (std::vector<Placed>& here : positions)
+        std::sort(here.begin(), here.end(),
+                  [](const Placed& a, const Placed& b) { return number_of(a) < number_of(b); });
+    return positions;
+}
+
+/// The number of slices at most positions.
+size_t usual_count(const std::vector<std::vector<Placed>>& positions)
+{
+    std::map<size_t, size_t> counts;
+    for (const std::vector<Placed>& here : positions) ++counts[here.size()];
+    return std::max_element(counts.begin(), counts.end(),
+                            [](const auto& a, const auto& b) { return a.second < b.second; })
+        ->first;
+}
+
+/// Positions with more or fewer slices than usual: a slice was scanned again, or is missing.
+void choose_repeated(const std::string& where, const OpenOptions& options, VolumeInfo& info,
+                     const std::vector<std::vector<Placed>>& positions, std::vector<Placed>& slices)
+{
+    const size_t usual = usual_count(positions);
+    const auto odd = std::find_if(positions.begin(), positions.end(),
+                                  [&](const std::vector<Placed>& here) { return here.size() != usual; });
+    const std::string found =
+        sentence("holds ", counted(odd->size(), "slice"), " at ", with_digits(odd->front().along), " mm (",
+                 odd->back().file->path.filename().string(), "), but ", usual, " at most other positions");
+    if (options.frame != "first" && options.frame != "last") {
+        Choice choice{"frame", {"first", "last"}, {"first at each position", "last at each position"}};
+        throw ChoiceNeeded(sentence(where, ": ", found, "; expected frame \"first\" or \"last\", to take one at each"),
+                           {std::move(choice)});
+    }
+    std::vector<Placed> chosen;
+    for (const std::vector<Placed>& here : positions)
+        chosen.push_back(options.frame == "first" ? here.front() : here.back());
+    info.warnings.push_back(sentence(found, "; the ", options.frame, " slice at each position is read"));
+    slices = std::move(chosen);
+}
+
+/// If there are several slices at each position, keeps those of one time point. Returns false if all slices state one
+/// position and no times: these are no time points, and the position is that of the first slice.
+bool choose_time(const std::string& where, const OpenOptions& options, VolumeInfo& info, std::vector<Placed>& slices)
+{
+    const std::vector<std::vector<Placed>> positions = by_position(slices);
+    const auto time_of = [](const Placed& slice) {
+        return std::pair(slice.frame->time_number, slice.file->time_number);
+    };
+    const bool has_times = std::any_of(slices.begin(), slices.end(),
+                                       [&](const Placed& slice) { return time_of(slice) != time_of(slices.front()); });
+    if (positions.size() == 1 && slices.size() > 1 && (!has_times || options.frame == "z")) {
+        slices = positions.front();
+        info.warnings.push_back(
+            sentence("all ", slices.size(), " slices state one position; they are stacked in order"));
+        return false;
+    }
+    const size_t times = positions.front().size();
+    if (!std::all_of(positions.begin(), positions.end(), [&](const auto& here) { return here.size() == times; })) {
+        choose_repeated(where, options, info, positions, slices);
+        return true;
     }
     const auto chosen = size_t(chosen_frame(where, options, int64_t(times)));
-    std::vector<Placed> of_time;
-    for (const size_t begin : begins) {
-        std::vector<Placed> here(slices.begin() + std::ptrdiff_t(begin),
-                                 slices.begin() + std::ptrdiff_t(begin + times));
-        std::sort(here.begin(), here.end(), [](const Placed& a, const Placed& b) {
-            return std::tuple(a.file->time_number, a.file->instance_number, a.slice.file, a.slice.frame) <
-                   std::tuple(b.file->time_number, b.file->instance_number, b.slice.file, b.slice.frame);
-        });
-        of_time.push_back(here[chosen]);
-    }
-    slices = std::move(of_time);
+    slices.clear();
+    for (const std::vector<Placed>& here : positions) slices.push_back(here[chosen]);
+    return true;
 }
 
 /// The most frequent distance between slices, with a warning about others.
@@ -167,30 +253,63 @@ glm::dvec3 step_between(const std::vector<Placed>& slices, double distance, cons
     return height > 0.0 ? way * (distance / height) : normal * distance;
 }
 
-void describe_space(const std::vector<Placed>& slices, bool are_placed, VolumeInfo& info)
+/// Slices that state other spacings within them cannot be stacked as they are; readers draw them as the first.
+void warn_of_spacings(const std::vector<Placed>& slices, VolumeInfo& info)
+{
+    constexpr double SAME_SPACING = 1e-4;
+    const glm::dvec2 usual = *slices.front().frame->spacing;
+    size_t others = 0;
+    const Placed* odd = nullptr;
+    for (const Placed& slice : slices) {
+        const glm::dvec2 own = slice.frame->spacing.value_or(usual);
+        if (glm::all(glm::lessThanEqual(glm::abs(own - usual), SAME_SPACING * usual))) continue;
+        if (others++ == 0) odd = &slice;
+    }
+    if (odd == nullptr) return;
+    const glm::dvec2 own = *odd->frame->spacing;
+    info.warnings.push_back(sentence("Pixel Spacing changes within the series: ", counted(others, "slice"),
+                                     ", the first of them ", odd->file->path.filename().string(), ", ",
+                                     others == 1 ? "states " : "state ", own.y, " x ", own.x, " mm, the first slice ",
+                                     usual.y, " x ", usual.x, " mm, and all are drawn with that"));
+}
+
+/// The step between slices that state no positions of their own; a negative distance runs against the normal.
+glm::dvec3 stated_step(const std::vector<Placed>& slices, const glm::dvec3& normal, VolumeInfo& info)
+{
+    const DicomFrame& frame = *slices[0].frame;
+    if (!frame.distance) {
+        info.warnings.push_back(
+            sentence("the distance between slices is not stated; ", frame.spacing->x, " mm is assumed, as along x"));
+        return normal * frame.spacing->x;
+    }
+    if (slices.size() > 1) {
+        info.warnings.push_back(sentence("slices are taken to be ", std::abs(*frame.distance),
+                                         " mm apart, the spacing or thickness that the file states"));
+    }
+    return normal * std::abs(*frame.distance);
+}
+
+void describe_space(std::vector<Placed>& slices, bool are_placed, VolumeInfo& info)
 {
     const DicomFile& file = *slices[0].file;
-    const DicomFrame& frame = *slices[0].frame;
-    const glm::dvec3 normal = glm::cross(frame.along_x, frame.along_y);
-    if (!frame.spacing) return apply_spacing(info, {}, {}, "mm");
+    const glm::dvec3 normal = glm::cross(slices[0].frame->along_x, slices[0].frame->along_y);
+    if (!slices[0].frame->spacing) return apply_spacing(info, {}, {}, "mm");
     if (file.spacing_is_at_detector) {
         info.warnings.emplace_back("the spacing within slices is that at the detector; in the object it is smaller");
     }
-    glm::dvec3 step = normal * frame.spacing->x;
+    warn_of_spacings(slices, info);
+    glm::dvec3 step{0.0}, origin = slices[0].frame->position.value_or(glm::dvec3(0.0));
     if (are_placed && slices.size() > 1) {
         step = step_between(slices, find_distance(slices, info), normal);
-    } else if (file.distance) {
-        step = normal * *file.distance;
-        if (slices.size() > 1) {
-            info.warnings.push_back(sentence("slices are taken to be ", *file.distance,
-                                             " mm apart, the spacing or thickness that the file states"));
-        }
     } else {
-        info.warnings.push_back(
-            sentence("the distance between slices is not stated; ", frame.spacing->x, " mm is assumed, as along x"));
+        step = stated_step(slices, normal, info);
+        if (slices[0].frame->distance.value_or(0.0) < 0.0) {
+            origin -= step * double(slices.size() - 1);
+            std::reverse(slices.begin(), slices.end());
+        }
     }
+    const DicomFrame& frame = *slices[0].frame;
     const glm::dmat3 steps(frame.along_x * frame.spacing->x, frame.along_y * frame.spacing->y, step);
-    const glm::dvec3 origin = frame.position.value_or(glm::dvec3(0.0));
     apply_spacing(info, place(info, steps, origin, frame.has_orientation ? "LPS" : ""), "mm", "mm");
     if (file.tilt_degrees != 0.0) {
         info.warnings.push_back(sentence("the gantry was tilted by ", with_digits(file.tilt_degrees), " degrees"));
@@ -238,10 +357,11 @@ std::vector<DicomFile> choose_series(const std::string& where, std::vector<Dicom
 DicomVolume arrange_slices(const std::string& where, const std::vector<DicomFile>& files, const OpenOptions& options)
 {
     DicomVolume volume;
-    std::vector<Placed> slices = slices_of_one_kind(files, volume.info);
-    const bool are_placed = sort_slices(slices, volume.info);
+    OpenOptions of_time = options;
+    std::vector<Placed> slices = slices_of_one_kind(choose_stack(where, files, of_time), volume.info);
+    bool are_placed = sort_slices(slices, volume.info);
     leave_out_copies(slices, volume.info);
-    if (are_placed) choose_time(where, options, slices);
+    if (are_placed) are_placed = choose_time(where, of_time, volume.info, slices);
     volume.info.size = {slices[0].file->columns, slices[0].file->rows, int64_t(slices.size())};
     describe_space(slices, are_placed, volume.info);
     for (const Placed& slice : slices) volume.slices.push_back(slice.slice);

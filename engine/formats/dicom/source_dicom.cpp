@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/formats/dicom/dicom_layout.h"
 #include "engine/formats/dicom/dicom_series.h"
 #include "engine/formats/header_fields.h"
 #include "engine/formats/readers.h"
@@ -81,12 +82,10 @@ private:
     mutable std::vector<Kept> kept_;
 };
 
-bool begins_as_dicom(const fs::path& path)
+bool is_dicom(const fs::path& path)
 {
     std::error_code error;
-    if (!fs::is_regular_file(path, error)) return false;
-    const std::string head = read_head(path, 132);
-    return head.size() == 132 && head.ends_with("DICM");
+    return fs::is_regular_file(path, error) && begins_as_dicom(open_input_file(path));
 }
 
 std::vector<fs::path> dicom_files_in(const fs::path& folder)
@@ -94,12 +93,29 @@ std::vector<fs::path> dicom_files_in(const fs::path& folder)
     std::vector<fs::path> paths;
     std::error_code error;
     for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
-        if (!at->path().filename().string().starts_with('.') && begins_as_dicom(at->path()))
-            paths.push_back(at->path());
+        if (!at->path().filename().string().starts_with('.') && is_dicom(at->path())) paths.push_back(at->path());
         if (paths.size() > MAX_FILES)
             fail(folder.string(), ": holds more than ", MAX_FILES, " files; expected at most that many");
     }
     if (error) fail(folder.string(), ": cannot be read: ", error.message());
+    std::sort(paths.begin(), paths.end());
+    return paths;
+}
+
+/// The DICOM files in folders below: studies come as folders of patients, studies and series. Folders that cannot be
+/// read are passed over, as are links to folders.
+std::vector<fs::path> dicom_files_below(const fs::path& folder)
+{
+    constexpr int MAX_DEPTH = 8;
+    std::vector<fs::path> paths;
+    std::error_code error;
+    size_t entries = 0;
+    for (fs::recursive_directory_iterator at(folder, fs::directory_options::skip_permission_denied, error), end;
+         !error && at != end && entries < MAX_FILES; at.increment(error), ++entries) {
+        const bool is_hidden = at->path().filename().string().starts_with('.');
+        if ((is_hidden || at.depth() >= MAX_DEPTH) && at->is_directory(error)) at.disable_recursion_pending();
+        if (!is_hidden && is_dicom(at->path())) paths.push_back(at->path());
+    }
     std::sort(paths.begin(), paths.end());
     return paths;
 }
@@ -133,6 +149,51 @@ VoxelType type_of(const std::vector<DicomFile>& files, const std::vector<DicomSl
     return rescaled_type(stored, first);
 }
 
+/// The files of the volume, and how they are arranged.
+struct Opened {
+    std::vector<DicomFile> files{};
+    DicomVolume volume{};
+};
+
+/// One file stands for its whole series. A file of many frames may be a volume of its own: then it is read alone.
+Opened open_file(const fs::path& path, DicomFile&& file, const OpenOptions& options)
+{
+    const std::string where = path.string();
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    std::vector<std::string> left_out;
+    std::vector<DicomFile> files = read_all(dicom_files_in(folder), left_out);
+    std::erase_if(files, [&](const DicomFile& other) { return other.series_uid != file.series_uid; });
+    const size_t of_series = files.size();
+    if (file.frames.size() > 1 && of_series > 1) {
+        try {
+            DicomVolume volume = arrange_slices(where, files, options);
+            return {std::move(files), std::move(volume)};
+        } catch (const Error&) {
+            files.clear();
+        }
+    }
+    if (files.empty()) files.push_back(std::move(file));
+    DicomVolume volume = arrange_slices(where, files, options);
+    if (files.size() < of_series)
+        volume.info.warnings.push_back(
+            sentence("one of the ", of_series, " files of its series is read; the others do not continue it"));
+    return {std::move(files), std::move(volume)};
+}
+
+Opened open_folder(const fs::path& path, const std::vector<fs::path>& paths, const OpenOptions& options,
+                   std::vector<std::string>& left_out)
+{
+    const std::string where = path.string();
+    std::vector<DicomFile> files = read_all(paths, left_out);
+    if (files.empty()) {
+        fail(where, ": holds ", paths.size(), " DICOM files, but none with an image; expected at least one",
+             left_out.empty() ? std::string() : " (" + left_out[0] + ")");
+    }
+    files = choose_series(where, std::move(files), options);
+    DicomVolume volume = arrange_slices(where, files, options);
+    return {std::move(files), std::move(volume)};
+}
+
 }  // namespace
 
 std::unique_ptr<VolumeSource> open_dicom(const fs::path& path, const OpenOptions& options)
@@ -140,32 +201,26 @@ std::unique_ptr<VolumeSource> open_dicom(const fs::path& path, const OpenOptions
     std::error_code ignored;
     const bool is_folder = fs::is_directory(path, ignored);
     const std::string where = path.string();
-    if (!is_folder && !begins_as_dicom(path)) return nullptr;
-    std::vector<DicomFile> files;
+    Opened opened;
     std::vector<std::string> left_out;
     if (!is_folder) {
+        if (!is_dicom(path)) return nullptr;
         std::optional<DicomFile> file = read_dicom_file(path);
-        if (!file) fail(where, ": is a DICOM file without Pixel Data; expected an image");
-        // A single slice stands for its whole series.
-        if (file->frames.size() == 1) {
-            const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-            files = read_all(dicom_files_in(folder), left_out);
-            std::erase_if(files, [&](const DicomFile& other) { return other.series_uid != file->series_uid; });
-            left_out.clear();
-        }
-        if (files.empty()) files.push_back(std::move(*file));
+        if (!file && !has_preamble(open_input_file(path))) return nullptr;
+        if (!file)
+            fail(where, ": is a DICOM file without Pixel Data; expected an image, or the folder that holds the images");
+        opened = open_file(path, std::move(*file), options);
     } else {
-        const std::vector<fs::path> paths = dicom_files_in(path);
+        std::vector<fs::path> paths = dicom_files_in(path);
+        const bool are_images = std::any_of(paths.begin(), paths.end(), [](const fs::path& each) {
+            return each.filename() != "DICOMDIR";  // a directory of the files below
+        });
+        if (!are_images) paths = dicom_files_below(path);
         if (paths.empty()) return nullptr;
-        files = read_all(paths, left_out);
-        if (files.empty()) {
-            fail(where, ": holds ", paths.size(), " DICOM files, but none with an image; expected at least one",
-                 left_out.empty() ? std::string() : " (" + left_out[0] + ")");
-        }
+        opened = open_folder(path, paths, options, left_out);
     }
-    const OpenOptions series{.channel = is_folder ? options.channel : std::string()};
-    files = choose_series(where, std::move(files), series);
-    DicomVolume volume = arrange_slices(where, files, options);
+    std::vector<DicomFile>& files = opened.files;
+    DicomVolume& volume = opened.volume;
     VolumeInfo& info = volume.info;
     info.name = (is_folder && !path.has_filename() ? path.parent_path() : path).filename().string();
     info.format = "dicom";
