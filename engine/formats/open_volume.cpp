@@ -20,6 +20,7 @@ struct Reader {
     bool reads_folders = false;                 ///< others are not tried on folders
     bool states_size = true;                    ///< otherwise a side-car does, or the person
     std::array<std::string_view, 4> endings{};  ///< of names, in lower case
+    std::array<std::string_view, 4> headers{};  ///< endings of headers that state the size for such files
 };
 
 /// In this order: headers are tried before the raw voxels that they may describe.
@@ -30,15 +31,26 @@ constexpr Reader READERS[] = {
     {"MetaImage", open_mhd, false, true, {".mhd", ".mha"}},
     {"NIfTI", open_nifti, false, true, {".nii", ".nii.gz", ".hdr", ".hdr.gz"}},
     {"DICOM", open_dicom, true, true, {".dcm", ".ima"}},
-    {"RAW with a side-car", open_raw_with_side_car, false, false, {".raw", ".vol", ".bin", ".dat"}},
+    {"RAW with a side-car",
+     open_raw_with_side_car,
+     false,
+     false,
+     {".raw", ".vol", ".bin", ".dat"},
+     {".vgi", ".xtekct", ".vol.info", ".raw.info"}},
 };
+
+bool ends_with_one(std::string_view name, std::span<const std::string_view> endings)
+{
+    const std::string lower = lower_case(name);
+    return std::ranges::any_of(endings, [&](std::string_view ending) {
+        return !ending.empty() && lower.size() > ending.size() && lower.ends_with(ending);
+    });
+}
 
 const Reader* reader_of_name(std::string_view name)
 {
-    const std::string lower = lower_case(name);
     for (const Reader& reader : READERS)
-        for (const std::string_view ending : reader.endings)
-            if (!ending.empty() && lower.size() > ending.size() && lower.ends_with(ending)) return &reader;
+        if (ends_with_one(name, reader.endings) || ends_with_one(name, reader.headers)) return &reader;
     return nullptr;
 }
 
@@ -130,7 +142,7 @@ bool name_states_size(std::string_view name)
 {
     const Reader* reader = reader_of_name(name);
     if (!reader && lower_case(name).ends_with(".gz")) reader = reader_of_name(name.substr(0, name.size() - 3));
-    return reader && reader->states_size;
+    return reader && (reader->states_size || ends_with_one(name, reader->headers));
 }
 
 std::string format_names(std::string_view conjunction)

@@ -23,6 +23,13 @@ SideCar read_json_side_car(const JsonDocument& document, const std::filesystem::
 /// names its voxel file. Null if the file is something else.
 std::optional<SideCar> read_dat_side_car(const std::filesystem::path& path, std::filesystem::path raw);
 
+/// Whether the name is that of a header that CT scanners write: .vgi (VGStudio), .xtekct (Nikon), .vol.info (PyHST).
+bool is_scanner_header(const std::filesystem::path& path);
+/// Reads such a header. `raw` is empty if the header itself was opened. Fails if it is broken.
+SideCar read_scanner_header(const std::filesystem::path& path, std::filesystem::path raw);
+/// The header next to these voxels; null if there is none.
+std::optional<SideCar> find_scanner_header(const std::filesystem::path& raw);
+
 /// Parses "scan_512x512x300_16bit.raw". Null if the name contains no size.
 std::optional<SideCar> read_file_name(const std::filesystem::path& raw);
 

@@ -3,8 +3,9 @@
 //                              "spacing": [x,y,z], "unit": "um"}; size and type are required
 //   scan.nhdr, scan.mhd        if they name this file
 //   scan.dat, scan.raw.dat     NSI's and Inviwo's text ("Resolution: ...") or Dragonfly's XML, as the scanner wrote it
+//   scan.vol.info, scan.vgi, scan.xtekct   headers of CT scanners: PyHST, VGStudio, Nikon
 //   scan_512x512x300_16bit.raw the file's own name; the type may be missing if the file's size determines it
-// Opening a .json or .dat itself opens its voxels.
+// Opening a .json, a .dat or a scanner's header itself opens its voxels.
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
@@ -83,6 +84,7 @@ Source open_bare(const fs::path& raw)
         if (path == raw || !is_file(path)) continue;
         if (auto side_car = read_dat_side_car(path, raw)) return open_side_car(std::move(*side_car));
     }
+    if (auto side_car = find_scanner_header(raw)) return open_side_car(std::move(*side_car));
     if (auto side_car = read_file_name(raw)) return open_side_car(std::move(*side_car));
     return nullptr;
 }
@@ -99,6 +101,7 @@ Source open_raw_with_side_car(const fs::path& path, const OpenOptions& /*options
         const fs::path raw = named.has_extension() && is_file(named) ? named : with_extension(path, ".raw");
         return open_side_car(read_json_side_car(*document, raw));
     }
+    if (is_scanner_header(path)) return open_side_car(read_scanner_header(path, {}));
     if (extension == ".dat") {
         if (auto side_car = read_dat_side_car(path, {})) return open_side_car(std::move(*side_car));
     }
