@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/device/look_table.h"
+#include "engine/passes/occlusion_stretch.h"
 #include "engine/volume/grid.h"
 
 namespace shvr {
@@ -469,7 +470,7 @@ void Occlusion::add_cells(FrameGraph& graph, const VolumeBinding& volume, Occlus
     }
     for (const auto& [level, list] : jobs) {
         counts_.cells += list.size();
-        const std::array<double, 2> stretches = occlusion_taps(radius_of(level)).stretches;
+        const std::array<double, 2> stretches = occlusion_taps_of(volume_->info().spacing, radius_of(level)).stretches;
         OcclusionCellsInput input = cells_input(level, std::ldexp(stretches[0], level), mask);
         input.params.far_exponent = float(0.25 * stretches[1] / stretches[0]);
         occlusion_cells(graph, volume, images, input, list);
@@ -482,12 +483,12 @@ void Occlusion::add_values(FrameGraph& graph, const VolumeBinding& volume, Occlu
     const int level = keys.front().level;
     const glm::dvec3& spacing = volume_->info().spacing;
     OcclusionInput input{.params = {},
-                         .taps = occlusion_taps(radius_of(level), is_paged_),
+                         .taps = occlusion_taps_of(spacing, radius_of(level), is_paged_),
                          .visible_intervals = look_->visibility.visible_intervals,
                          .near = {}};
     for (int above = 0; above < volume_->levels() - level; ++above)
         for (size_t size = 0; size < gpu::OCCLUSION_SIZES; ++size) {
-            const double of_above = occlusion_taps(radius_of(level + above)).stretches[size];
+            const double of_above = occlusion_taps_of(spacing, radius_of(level + above)).stretches[size];
             input.exponents[size * gpu::OCCLUSION_LEVELS + size_t(above)] =
                 float(std::ldexp(input.taps.stretches[size] / of_above, -above));
         }

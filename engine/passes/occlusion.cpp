@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/passes/occlusion_stretch.h"
 #include "engine/passes/pixel_groups.h"
 
 namespace shvr {
@@ -18,7 +19,7 @@ constexpr double MAX_OFFSET = double(gpu::OCCLUSION_FURTHEST) + double(gpu::OCCL
 constexpr double NEAR_STRETCH = 1.035;
 constexpr double NEAR_STRETCHES[] = {NEAR_STRETCH, NEAR_STRETCH, 2.0 * NEAR_STRETCH};
 constexpr double NEAR_TOTAL = 4.0 * NEAR_STRETCH;
-constexpr uint32_t FAR_SIZES[] = {0, 0, 0, 1, 1};
+constexpr uint32_t FAR_SIZES[] = {0, 0, 0, 1, 1}, ALL_OF_2[std::size(FAR_SIZES)] = {};
 constexpr double STRETCHES_OF_SIZES[] = {2.077, 2.815};
 constexpr double MAX_STRETCH_2 = 8.6;  ///< beyond this, only the stretches of cells of four grow
 constexpr uint32_t MAX_APRON = 14;     ///< width in cells of any size, for the largest radius
@@ -56,7 +57,9 @@ ResourceDesc occlusion_around_desc(uint32_t size, uint32_t jobs)
     return image_desc(Format::r32_uint, side * scratch_places(jobs));
 }
 
-OcclusionTaps occlusion_taps(double radius, bool is_paged)
+namespace {
+
+OcclusionTaps taps_in(std::span<const uint32_t> far_sizes, double radius, bool is_paged)
 {
     const double max_offset = MAX_OFFSET + (is_paged ? gpu::BRICK_APRON : 0);
     OcclusionTaps result{.radius = radius, .first = radius < 1.0 ? radius : 0.0};
@@ -73,15 +76,15 @@ OcclusionTaps occlusion_taps(double radius, bool is_paged)
     const double rest = radius - begin;
     double covered = 0.0;
     size_t count = 0;
-    while (rest > 1e-6 && count < std::size(FAR_SIZES) && rest > MAX_STRETCHED * covered)
-        covered += STRETCHES_OF_SIZES[FAR_SIZES[count++]];
+    while (rest > 1e-6 && count < far_sizes.size() && rest > MAX_STRETCHED * covered)
+        covered += STRETCHES_OF_SIZES[far_sizes[count++]];
     const double grown = count > 0 ? rest / covered : 1.0;
-    const size_t of_2 = std::min<size_t>(count, gpu::OCCLUSION_TAPS_2), of_4 = count - of_2;
+    const size_t of_4 = size_t(std::ranges::count(far_sizes.first(count), 1u)), of_2 = count - of_4;
     result.stretches = {grown * STRETCHES_OF_SIZES[0], grown * STRETCHES_OF_SIZES[1]};
     if (of_4 > 0 && result.stretches[0] > MAX_STRETCH_2)
         result.stretches = {MAX_STRETCH_2, (rest - double(of_2) * MAX_STRETCH_2) / double(of_4)};
     for (size_t i = 0; i < count; ++i) {
-        const uint32_t size = FAR_SIZES[i];
+        const uint32_t size = far_sizes[i];
         add(result.stretches[size]);
         for (uint32_t later = size; later < gpu::OCCLUSION_SIZES; ++later) ++result.end[later + 1];
         const double cell = 2 << size;
@@ -89,6 +92,24 @@ OcclusionTaps occlusion_taps(double radius, bool is_paged)
         SHVR_CHECK(result.aprons[size] <= MAX_APRON);
     }
     return result;
+}
+
+bool are_cubes(const glm::dvec3& spacing)
+{
+    return spacing == glm::dvec3(spacing.x);
+}
+
+}  // namespace
+
+OcclusionTaps occlusion_taps(double radius, bool is_paged)
+{
+    return taps_in(FAR_SIZES, radius, is_paged);
+}
+
+OcclusionTaps occlusion_taps_of(const glm::dvec3& spacing, double radius, bool is_paged)
+{
+    const bool is_of_2 = !are_cubes(spacing) && radius <= OCCLUSION_MAX_RADIUS_OF_2;
+    return taps_in(is_of_2 ? ALL_OF_2 : FAR_SIZES, radius, is_paged);
 }
 
 uint32_t occlusion_reach(double radius)
@@ -211,8 +232,11 @@ void occlusion_bake(FrameGraph& graph, const VolumeBinding& volume, OcclusionBin
     std::ranges::fill(params.taps_4, UNUSED);
     const OcclusionTaps& taps = input.taps;
     for (uint32_t i = 0; i < taps.end[0]; ++i) params.near_taps[i] = taps.taps[i];
-    for (uint32_t i = taps.end[0]; i < taps.end[1]; ++i) params.taps_2[i - taps.end[0]] = taps.taps[i];
-    for (uint32_t i = taps.end[1]; i < taps.end[2]; ++i) params.taps_4[i - taps.end[1]] = taps.taps[i];
+    for (uint32_t i = taps.end[0]; i < taps.end[2]; ++i) {
+        const uint32_t far = i - taps.end[0];
+        (far < gpu::OCCLUSION_TAPS_2 ? params.taps_2[far] : params.taps_4[far - gpu::OCCLUSION_TAPS_2]) = taps.taps[i];
+    }
+    if (!are_cubes(glm::dvec3(params.inverse_spacing))) pass.constant("STRETCHED", taps.end[2] > taps.end[1] ? 1 : 2);
     params.far_exponent = float(taps.stretches[1] / std::max(taps.near_stretch, 1e-3));
     params.voxels = input.near.params;
     pass.block("params_block", std::span<const gpu::OcclusionBakeParams>(&params, 1));

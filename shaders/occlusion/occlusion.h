@@ -2,19 +2,19 @@
 // Ynnerman 2007). Lengths are in units of the brick's level: 2^level reference lengths.
 //
 // Definition: the light of a ray is the share of the radius along which light arrives, (1 / radius) integral of the
-// light left; a voxel's light is the mean over directions. With o(s) the opacity of one unit, s along the voxel's
-// normal, and o' the maximum of o over -1.5 < s < 0.25:
+// light left; a voxel's light is the mean over directions. With o(s) the opacity of one unit, s in voxels in the
+// direction in which densities fall fastest per voxel, and o' the maximum of o over -1.5 < s < 0.25:
 //
-//   surface   strength = g^2 / (g^2 + fade^2) for a gradient g
-//   edge      the voxel is moved along the normal to where the medium ends: by the integral over 0 < s < 1.5 of the
+//   surface   strength = g^2 / (g^2 + fade^2) for a gradient of g per voxel
+//   edge      the voxel is moved in that direction to where the medium ends: by the integral over 0 < s < 1.5 of the
 //             running minimum of e(s), minus that over -1.5 < s < 0 of 1 - the running maximum, where
-//             e = 1 - (1 - min(o / o', 1))^2. Rays begin 0.07 units in front of that; all this times the strength.
+//             e = 1 - (1 - min(o / o', 1))^2. Rays begin 0.07 voxels in front of that; all this times the strength.
 //   side      directions whose cosine with the normal is below strength - 1 are replaced by their mirror image in
 //             front of the surface, unless the full sphere is requested.
 //   itself    within its own voxel a ray meets no more than half a unit after leaving it.
 //
-// So a ray begins at the visible edge, however deep in the edge its voxel lies: on a plane all light arrives, and in a
-// hollow the wall is at its true distance. tests/reference/occlusion.h has all of it in double.
+// So a ray begins at the visible edge, however deep in the edge its voxel lies. The edge is sought in voxels, since
+// samples mix voxels that far apart; rays and the normal are in physical space. In double: tests/reference/occlusion.h.
 //
 // A "ramp" encodes in 32 bits how opaque a cube is from place to place: the plane fitted to its densities, mapped
 // through the transfer function to an opacity that rises linearly from 0 to a maximum (top). Position and width of the

@@ -1,6 +1,7 @@
 // Computes how much light reaches every potentially visible voxel of a brick, by the definition in occlusion.h. A ray
 // takes three samples in ramps of voxels, three in ramps of cells of two voxels and two in cells of four. PAGED: cells
-// are those of paged bricks.
+// are those of paged bricks. STRETCHED: voxels are no cubes; 2: and all samples in cells are in those of two voxels, as
+// cells of four are longer than what they are to resolve.
 // variants: PAGED FILTERED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -34,6 +35,7 @@ layout(binding = 8, r8ui) uniform readonly uimage3D cell_leap;
 #else
 layout(binding = 8, r32ui) uniform readonly uimage3D leap;
 #endif
+layout(constant_id = 0) const uint STRETCHED = 0u;
 layout(binding = 9, scalar) readonly buffer VisibleIntervals { uint before[]; } visible_intervals;
 
 layout(binding = 10, scalar) readonly buffer Opacities { OcclusionEntry entries[]; } opacities;   // as for gathering
@@ -56,7 +58,8 @@ const float WALL_4 = 8.2;
 // ... and its opacity is concentrated this much towards the start of the stretch.
 const float BEND_4 = 0.08;
 // Ramps are softened more with distance, since rays represent the directions around them.
-const float SOFT_NEAR[] = {1.25, 0.874, 0.734}, SOFT_2[] = {0.751, 0.59, 0.527};
+const float SOFT_NEAR[] = {1.25, 0.874, 0.734}, SOFT_2[] = {0.751, 0.59, 0.527, 0.5, 0.45};
+const float STEEPEST_OF_VOXELS = 3.3, STEEPEST_OF_CELLS = 2.6;   // occlusion_ramp.glsl
 
 #include "occlusion_listed.glsl"
 
@@ -91,13 +94,13 @@ Block block_of(const OcclusionJob of, ivec3 voxel)
                  share * params.voxels.lower - begin, share * params.voxels.upper - begin);
 }
 
-// Densities along the normal on one side of a voxel: a cubic as far as the neighbours, constant beyond.
+// Densities on one side of a voxel, along their fastest fall: a cubic as far as the neighbours, constant beyond.
 struct Course {
     vec4 factors;
     float least, most;
 };
 
-// `to`: direction of the neighbours on that side along the axes; `rise`: voxels along each axis per unit.
+// `to`: direction of the neighbours on that side along the axes; `rise`: the part of a length along each axis.
 Course course_of(ivec3 texel, ivec3 to, vec3 rise, float own)
 {
     const ivec3 x = ivec3(to.x, 0, 0), y = ivec3(0, to.y, 0), z = ivec3(0, 0, to.z);
@@ -116,7 +119,7 @@ Course course_of(ivec3 texel, ivec3 to, vec3 rise, float own)
     return course;
 }
 
-// `along` in units.
+// `along` in voxels.
 float opacity_along(const Course course, float along)
 {
     const vec4 f = course.factors;
@@ -142,7 +145,7 @@ struct Surface {
     vec3 normal;
     float strength;
     vec3 place;     // start of rays, in voxels from the block's corner
-    vec3 heights;   // units along the normal per voxel
+    vec3 heights;   // in which direction densities fall fastest, in voxels
     vec3 scale;     // the part of a cell's columns along each axis that is behind it: base - scale * height in cells
     vec3 base;
     float height;   // distance of the surface, as dot(heights, position) in cells
@@ -155,13 +158,14 @@ float saturated(float share)
     return 1.0 - rest * rest;
 }
 
+// `slope` per voxel.
 Surface surface_at(const Block block, ivec3 texel, vec3 centre, vec3 slope)
 {
     Surface s;
     const float square = dot(slope, slope), fade = params.gradient_fade * params.gradient_fade;
     s.strength = square > 0.0 ? square / (square + fade) : 0.0;
-    s.normal = square > 0.0 ? -slope * inversesqrt(square) : vec3(0.0, 0.0, 1.0);
-    const vec3 step = s.normal * params.inverse_spacing;
+    const vec3 step = square > 0.0 ? -slope * inversesqrt(square) : vec3(0.0, 0.0, 1.0);
+    s.normal = STRETCHED != 0u ? normalize(step * params.inverse_spacing) : step;
     const float apart = OCCLUSION_EDGE_REACH / float(OCCLUSION_EDGE_TAPS);
     float before[OCCLUSION_EDGE_TAPS], behind[OCCLUSION_EDGE_TAPS], most = 0.0, clear = 1.0;
     const ivec3 to = ivec3(lessThan(vec3(0.0), step)) * 2 - 1;
@@ -189,7 +193,7 @@ Surface surface_at(const Block block, ivec3 texel, vec3 centre, vec3 slope)
     }
     offset = most < 1e-6 ? 0.0 : clamp(offset, -OCCLUSION_FURTHEST, OCCLUSION_FURTHEST);
     s.place = centre + s.strength * (offset + OCCLUSION_LIFT) * step;
-    s.heights = s.normal / params.inverse_spacing;
+    s.heights = step;
     const vec3 extent = abs(s.heights), across = extent.yzx + extent.zxy;
     s.scale = 1.0 / max(across, 0.1);
     s.base = 0.5 + 0.5 * extent * s.scale;
@@ -228,33 +232,52 @@ vec2 after_cell(vec2 light, float stretch, float stopped)
     return vec2(light.x * (1.0 - stopped), light.y + light.x * stretch * (1.0 - stopped * (0.5 + BEND_4 * stopped)));
 }
 
+// A ramp that is as steep as ramps can be stands for a sharper edge, which is as wide as in cubes of the shortest side.
+float sharpened_for(vec3 slope, float softened, float steepest)
+{
+    if (STRETCHED == 0u) return softened;
+    const vec3 physical = slope * params.inverse_spacing;
+    const float square = dot(slope, slope), most = RAMP_SLOPES * steepest;
+    const float is_steepest = clamp((square / (most * most) - 0.5625) / 0.2475, 0.0, 1.0);
+    return softened * mix(1.0, sqrt(square / max(dot(physical, physical), 1e-6)), is_steepest);
+}
+
 // Light left of a ray over the stretch of a ramp, at an offset from the centre of the cube, whose side is 1. A ramp is
 // `softened` about the middle of its rise.
-float ramp_left(uint packed, vec3 from_middle, float softened)
+float ramp_left(uint packed, vec3 from_middle, float softened, float steepest)
 {
-    const float along = dot(vec3(ramp_slope(packed)), from_middle);
+    const vec3 slope = vec3(ramp_slope(packed));
+    const float along = dot(slope, from_middle), sharpened = sharpened_for(slope, softened, steepest);
     const float rise = float(ramp_height(packed)) + RAMP_HEIGHTS / RAMP_SLOPES * along;
-    const float top = float(packed & 255u), share = clamp(0.5 + softened / RAMP_HEIGHTS * rise, 0.0, 1.0);
+    const float top = float(packed & 255u), share = clamp(0.5 + sharpened / RAMP_HEIGHTS * rise, 0.0, 1.0);
     return 1.0 - top * top * (1.0 / 65025.0) * share;   // 255^2 times this is 1 in floats, too
 }
 
 float near_left(const Block block, vec3 place, float softened)
 {
     const ivec3 voxel = ivec3(place);
-    return ramp_left(imageLoad(near, voxel + block.to_near).x, place - (vec3(voxel) + 0.5), softened);
+    return ramp_left(imageLoad(near, voxel + block.to_near).x, place - (vec3(voxel) + 0.5), softened,
+                     STEEPEST_OF_VOXELS);
 }
 
 float left_of_2(const Block block, vec3 place, float softened)
 {
     const ivec3 cell = ivec3(place);
-    return ramp_left(imageLoad(around_2, cell + block.to_2).x, place - (vec3(cell) + 0.5), softened);
+    return ramp_left(imageLoad(around_2, cell + block.to_2).x, place - (vec3(cell) + 0.5), softened,
+                     STEEPEST_OF_CELLS);
+}
+
+// The weights of the opacities along a cell's axes; `step` in voxels.
+vec3 weights_of(vec3 direction, vec3 step)
+{
+    return STRETCHED != 0u ? step * step / dot(step, step) : direction * direction;
 }
 
 // Light that arrives along a ray, in units. No buffer is read and nothing is a loop, which SIMD devices would run lane
 // by lane.
 float along(const Surface s, const Block block, vec3 direction, float leaves, ivec3 in_block)
 {
-    const vec3 step = direction * params.inverse_spacing, weights = direction * direction;
+    const vec3 step = direction * params.inverse_spacing, weights = weights_of(direction, step);
     const vec3 begin = s.place + float(NEAR_AHEAD);
     const vec3 near_0 = begin + params.near_taps[0].distance * step;
     const vec3 near_1 = begin + params.near_taps[1].distance * step;
@@ -279,6 +302,12 @@ float along(const Surface s, const Block block, vec3 direction, float leaves, iv
     light = after(light, params.taps_2[1].stretch, far_1, sqrt(far_1));
     light = after(light, params.taps_2[2].stretch, far_2, sqrt(far_2));
 
+    if (STRETCHED == 2u) {
+        const float far_3 = left_of_2(block, from_2 + 0.5 * params.taps_4[0].distance * step, SOFT_2[3]);
+        const float far_4 = left_of_2(block, from_2 + 0.5 * params.taps_4[1].distance * step, SOFT_2[4]);
+        light = after(light, params.taps_4[0].stretch, far_3, sqrt(far_3));
+        return after(light, params.taps_4[1].stretch, far_4, sqrt(far_4)).y;
+    }
     const ivec3 cell_0 = ivec3(from_4 + 0.25 * params.taps_4[0].distance * step);
     const ivec3 cell_1 = ivec3(from_4 + 0.25 * params.taps_4[1].distance * step);
     const uint packed_0 = imageLoad(around_4, cell_0 + block.to_4).x;
@@ -330,10 +359,9 @@ void main()
         const ivec3 in_block = voxel & 3;
 
         const ivec3 texel = texel_of(job, voxel);
-        const vec3 slope = 0.5 * params.inverse_spacing *
-                           vec3(code_at(texel + ivec3(1, 0, 0)) - code_at(texel - ivec3(1, 0, 0)),
-                                code_at(texel + ivec3(0, 1, 0)) - code_at(texel - ivec3(0, 1, 0)),
-                                code_at(texel + ivec3(0, 0, 1)) - code_at(texel - ivec3(0, 0, 1)));
+        const vec3 slope = 0.5 * vec3(code_at(texel + ivec3(1, 0, 0)) - code_at(texel - ivec3(1, 0, 0)),
+                                      code_at(texel + ivec3(0, 1, 0)) - code_at(texel - ivec3(0, 1, 0)),
+                                      code_at(texel + ivec3(0, 0, 1)) - code_at(texel - ivec3(0, 0, 1)));
         const Surface surface = surface_at(block, texel, vec3(in_block) + 0.5, slope);
         // Two vectors orthogonal to the normal and to each other (Duff et al. 2017).
         const vec3 n = surface.normal;

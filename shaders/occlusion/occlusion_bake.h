@@ -9,13 +9,13 @@ SHARED_BEGIN
 SHARED_CONST uint OCCLUSION_NEAR_TAPS = 3u;
 SHARED_CONST uint OCCLUSION_TAPS_2 = 3u;
 SHARED_CONST uint OCCLUSION_TAPS_4 = 2u;
-/// Samples along the normal, on each side of a voxel, evenly spaced, to find where the medium ends. Nearly always two
-/// of them are in one voxel, so they share its fixed opacity.
+/// Samples on each side of a voxel, evenly spaced, to find where the medium ends; lengths are in voxels. Nearly always
+/// two of them are in one voxel, so they share its fixed opacity.
 SHARED_CONST uint OCCLUSION_EDGE_TAPS = 6u;
 SHARED_CONST float OCCLUSION_EDGE_REACH = 1.5f;
 /// Distance in front of the edge at which rays begin: it minimizes the error of so few samples.
 SHARED_CONST float OCCLUSION_LIFT = 0.13f;
-/// Maximum distance of the edge from the voxel, in units: the reach of rays is bounded.
+/// Maximum distance of the edge from the voxel: the reach of rays is bounded.
 SHARED_CONST float OCCLUSION_FURTHEST = 1.2f;
 /// A sample along a ray: one cell's opacity, applied to `stretch` units of the ray.
 struct OcclusionTap {
@@ -27,7 +27,7 @@ struct OcclusionBakeParams {
     vec3 inverse_spacing;  ///< voxels per unit
     float radius;
     float first;          ///< initial length that never blocks light, in units
-    float gradient_fade;  ///< codes per unit
+    float gradient_fade;  ///< codes per voxel
     uint full_sphere;
     uint rays;
     float turn_cos;  ///< angle between successive rays, about the normal

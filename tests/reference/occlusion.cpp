@@ -13,7 +13,7 @@ constexpr double EDGE_REACH = 1.5, LIFT = 0.07, LIFT_OF_TAPS = 0.13;
 /// shaders/occlusion/occlusion_bake.comp.
 constexpr int EDGE_TAPS = 6;
 constexpr double FURTHEST = 1.2, MARGIN_4 = 0.853, WALL_4 = 8.2, BEND_4 = 0.08;
-constexpr double SOFT[] = {1.25, 0.874, 0.734, 0.751, 0.59, 0.527};
+constexpr double SOFT[] = {1.25, 0.874, 0.734, 0.751, 0.59, 0.527, 0.5, 0.45};
 /// Of ramps: shaders/occlusion/occlusion.h.
 constexpr double HEIGHTS = 20.0, SLOPES = 10.0, UNEVEN = 230.0;
 
@@ -119,7 +119,7 @@ struct Surface {
 Surface surface_of(const EdgeOpacity& edge, const OcclusionRays& rays, const glm::dvec3& centre,
                    const OcclusionSide& side)
 {
-    const glm::dvec3 step = side.normal * rays.asked.voxels_per_unit;
+    const glm::dvec3& step = side.fall;
     const double pair = 2.0 * EDGE_REACH / EDGE_TAPS;
     const auto opacity = [&](double along) {
         const double between = std::copysign((std::floor(std::abs(along) / pair) + 0.5) * pair, along);
@@ -128,7 +128,7 @@ Surface surface_of(const EdgeOpacity& edge, const OcclusionRays& rays, const glm
     const Profile profile = profile_of(opacity, EDGE_TAPS);
     const double offset = std::clamp(edge_of(profile), -FURTHEST, FURTHEST);
     Surface surface{.place = centre + side.strength * (offset + LIFT_OF_TAPS) * step,
-                    .heights = side.normal / rays.asked.voxels_per_unit,
+                    .heights = side.fall,
                     .strength = side.strength,
                     .height = 0.0,
                     .wall = 0.0};
@@ -139,8 +139,13 @@ Surface surface_of(const EdgeOpacity& edge, const OcclusionRays& rays, const glm
     return surface;
 }
 
-double left_of(const OcclusionRamp& ramp, const glm::dvec3& place, double soft)
+/// As in shaders/occlusion/occlusion_bake.comp: ramps that cannot be steeper stand for sharper edges.
+double left_of(const OcclusionRamp& ramp, const glm::dvec3& place, double softened_by, double steepest,
+               const glm::dvec3& voxels_per_unit)
 {
+    const double steep = glm::length(ramp.slope), physical = glm::length(ramp.slope * voxels_per_unit);
+    const double share = steep / steepest, is_steepest = std::clamp((share * share - 0.5625) / 0.2475, 0.0, 1.0);
+    const double soft = softened_by * glm::mix(1.0, steep / std::max(physical, 1e-6), is_steepest);
     OcclusionRamp softened = ramp;
     softened.height *= soft, softened.slope *= soft;
     return softened.left(place - glm::floor(place) - 0.5);
@@ -169,19 +174,17 @@ std::vector<glm::dvec3> occlusion_directions(uint32_t count, const OcclusionSide
     return directions;
 }
 
-double occlusion_edge(const FieldOpacity& opacity, const OcclusionAsked& asked, const glm::dvec3& centre,
-                      const glm::dvec3& normal)
+double occlusion_edge(const FieldOpacity& opacity, const glm::dvec3& centre, const glm::dvec3& fall)
 {
-    const glm::dvec3 step = normal * asked.voxels_per_unit;
-    return edge_of(profile_of([&](double along) { return opacity(centre + along * step); }, 48));
+    return edge_of(profile_of([&](double along) { return opacity(centre + along * fall); }, 48));
 }
 
 double occlusion_defined(const FieldOpacity& opacity, const OcclusionAsked& asked, const glm::ivec3& voxel,
                          const OcclusionSide& side, uint32_t directions, int steps)
 {
     const glm::dvec3 centre = glm::dvec3(voxel) + 0.5;
-    const double offset = side.strength * (occlusion_edge(opacity, asked, centre, side.normal) + LIFT);
-    const glm::dvec3 origin = centre + offset * side.normal * asked.voxels_per_unit;
+    const double offset = side.strength * (occlusion_edge(opacity, centre, side.fall) + LIFT);
+    const glm::dvec3 origin = centre + offset * side.fall;
     const double apart = asked.radius / steps;
     double sum = 0.0;
     for (const glm::dvec3& direction : occlusion_directions(directions, side, asked.full_sphere)) {
@@ -253,7 +256,8 @@ double occlusion_by_taps(const OcclusionMedium& medium, const OcclusionRays& ray
     const Surface surface = surface_of(medium.edge, rays, glm::dvec3(voxel) + 0.5, side);
     double sum = 0.0;
     for (const glm::dvec3& direction : occlusion_directions(rays.count, side, rays.asked.full_sphere)) {
-        const glm::dvec3 step = direction * rays.asked.voxels_per_unit, weights = direction * direction;
+        const glm::dvec3& per_unit = rays.asked.voxels_per_unit;
+        const glm::dvec3 step = direction * per_unit, weights = step * step / glm::dot(step, step);
         const double wall = glm::dot(direction, side.normal) > 1e-4 ? surface.wall : 0.0;
         std::vector<double> lefts;
         std::vector<bool> leaves;
@@ -262,10 +266,12 @@ double occlusion_by_taps(const OcclusionMedium& medium, const OcclusionRays& ray
             const size_t number = lefts.size();
             leaves.push_back(glm::ivec3(glm::floor(place)) != voxel);
             if (tap.side == 1) {
-                const double left = left_of(medium.voxel(glm::ivec3(glm::floor(place))), place, SOFT[number]);
+                const OcclusionRamp ramp = medium.voxel(glm::ivec3(glm::floor(place)));
+                const double left = left_of(ramp, place, SOFT[number], STEEPEST_OF_VOXELS, per_unit);
                 lefts.push_back(std::pow(left, tap.stretch / rays.near_stretch));
             } else if (tap.side == 2) {
-                lefts.push_back(left_of(medium.cell(glm::ivec3(glm::floor(place / 2.0))), place / 2.0, SOFT[number]));
+                const OcclusionRamp ramp = medium.cell(glm::ivec3(glm::floor(place / 2.0)));
+                lefts.push_back(left_of(ramp, place / 2.0, SOFT[number], STEEPEST_OF_CELLS, per_unit));
             } else {
                 const glm::ivec3 cell(glm::floor(place / 4.0));
                 const double found = glm::dot(weights, cell_opacities(medium.opacity, cell, rays.stretch_of_4));

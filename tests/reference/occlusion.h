@@ -15,10 +15,12 @@ namespace shvr::reference {
 using FieldOpacity = std::function<double(const glm::dvec3&)>;
 /// Opacity of one unit for any voxel; 0 outside the volume.
 using VoxelOpacity = std::function<double(const glm::ivec3&)>;
-/// How much of a surface is at a voxel (0 ... 1), and its normal.
+/// How much of a surface is at a voxel (0 ... 1), its normal, and the direction, in voxels, in which densities fall
+/// fastest per voxel: the normal if voxels are cubes.
 struct OcclusionSide {
     glm::dvec3 normal{0.0, 0.0, 1.0};
     double strength = 0.0;
+    glm::dvec3 fall{0.0, 0.0, 1.0};
 };
 
 struct OcclusionAsked {
@@ -32,9 +34,8 @@ struct OcclusionAsked {
 std::vector<glm::dvec3> occlusion_directions(uint32_t count);
 std::vector<glm::dvec3> occlusion_directions(uint32_t count, const OcclusionSide& side, bool full_sphere);
 
-/// Distance of a point, along its normal, from the end of the medium.
-double occlusion_edge(const FieldOpacity& opacity, const OcclusionAsked& asked, const glm::dvec3& centre,
-                      const glm::dvec3& normal);
+/// Distance of a point from the end of the medium, in voxels along a direction in voxels.
+double occlusion_edge(const FieldOpacity& opacity, const glm::dvec3& centre, const glm::dvec3& fall);
 /// The definition: the light that arrives at a voxel.
 double occlusion_defined(const FieldOpacity& opacity, const OcclusionAsked& asked, const glm::ivec3& voxel,
                          const OcclusionSide& side, uint32_t directions, int steps);

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "engine/device/look_table.h"
-#include "engine/passes/occlusion.h"
+#include "engine/passes/occlusion_stretch.h"
 
 namespace shvr::test {
 
@@ -196,17 +196,18 @@ reference::OcclusionSide ExpectedOcclusion::side(const glm::ivec3& at) const
     for (int axis = 0; axis < 3; ++axis) {
         glm::ivec3 step(0);
         step[axis] = 1;
-        slope[axis] = 0.5 * (code(at + step) - code(at - step)) * asked().voxels_per_unit[axis];
+        slope[axis] = 0.5 * (code(at + step) - code(at - step));
     }
     const double square = glm::dot(slope, slope);
     const double fade = session_.light.gradient_fade * (volume_.maximum - volume_.minimum);
     if (square == 0.0) return {};
-    return {-slope / std::sqrt(square), square / (square + fade * fade)};
+    return {-glm::normalize(slope * asked().voxels_per_unit), square / (square + fade * fade),
+            -slope / std::sqrt(square)};
 }
 
 reference::OcclusionRays ExpectedOcclusion::rays() const
 {
-    const OcclusionTaps taps = occlusion_taps(session_.light.occlusion.radius);
+    const OcclusionTaps taps = occlusion_taps_of(volume_.spacing, session_.light.occlusion.radius);
     reference::OcclusionRays rays{.asked = asked(),
                                   .count = session_.light.occlusion.rays,
                                   .first = taps.first,
@@ -225,11 +226,11 @@ reference::OcclusionRays ExpectedOcclusion::rays() const
 double ExpectedOcclusion::by_taps(const glm::ivec3& at) const
 {
     const reference::OcclusionSide of_voxel = side(at);
-    const glm::dvec3 centre = glm::dvec3(at) + 0.5, step = glm::abs(of_voxel.normal * asked().voxels_per_unit);
+    const glm::dvec3 centre = glm::dvec3(at) + 0.5, step = glm::abs(of_voxel.fall);
     const double reach = 1.0 / std::max({step.x, step.y, step.z});
     // Beyond a voxel's neighbours the density stays as it is there.
     const auto edge = [&](const glm::dvec3& place, const glm::dvec3& between) {
-        const double along = glm::length((place - centre) / asked().voxels_per_unit);
+        const double along = glm::length(place - centre);
         const glm::dvec3 within = centre + (place - centre) * std::min(1.0, reach / along);
         return is_kept(glm::ivec3(glm::floor(between))) ? sums_at(near_, value_at(volume_, within)).x : 0.0;
     };
