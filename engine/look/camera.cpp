@@ -17,7 +17,7 @@ constexpr double FIT_MARGIN = 1.05;
 /// Sine of the smallest angle between `up` and the view at which `up` is still meaningful.
 constexpr double MIN_UP_SINE = 1e-6;
 /// In finest spacings; see `ray_planes`.
-constexpr double NEAR_HAIR = 1e-3;
+constexpr double NEAR_HAIR = 1e-6;
 
 struct Side {
     const char* name;

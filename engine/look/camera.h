@@ -68,7 +68,7 @@ struct RayPlanes {
 };
 
 /// The planes are perpendicular to the view direction and touch the volume's bounding sphere (or lie at the clip
-/// distances if those are tighter; for a perspective eye in or at the sphere, the near plane is 1/1000 of the finest
+/// distances if those are tighter; for a perspective eye in or at the sphere, the near plane is 1e-6 of the finest
 /// spacing in front of the eye). If the volume is outside the clip range the planes lie in that range, one bounding
 /// sphere apart. Fails as `check_camera` does.
 RayPlanes ray_planes(const Camera& camera, const glm::uvec2& pixels, const VolumeInfo& volume);

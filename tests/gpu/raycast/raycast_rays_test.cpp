@@ -164,6 +164,19 @@ TEST_CASE_FIXTURE(OnDevice, "an eye inside the volume, and at its borders, sees 
     }
 }
 
+TEST_CASE_FIXTURE(OnDevice, "rays of an eye inside the volume begin at the eye")
+{
+    constexpr double OPACITY = 0.17;  // of a voxel's length
+    load(constant_volume({16, 16, 16}, 40000.0));
+    Session session = plain_session(uniform_points(WHITE, OPACITY), {1, 1});
+    session.render.background = glm::dvec4(0.0);
+    for (const double ahead : {1.0, 4.0}) {
+        const Camera camera = perspective({16.0 - ahead, 8.0, 8.0}, {40.0, 8.0, 8.0}, 10.0);
+        const double expected = 1.0 - std::pow(1.0 - OPACITY, ahead);
+        check_below("opacity ahead of the eye", std::abs(pixels_of(draw(session, camera))[0].a - expected), 1e-5);
+    }
+}
+
 TEST_CASE_FIXTURE(OnDevice, "distance changes the perspective and nothing else")
 {
     load(noise_volume({33, 33, 33}, 15));

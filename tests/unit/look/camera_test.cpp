@@ -216,7 +216,7 @@ TEST_CASE("an eye inside the volume sees from just before itself")
     camera.target = camera.eye + glm::dvec3(0, 1, 0);
     const RayPlanes planes = ray_planes(camera, {64, 64}, volume);
     const Ray ray = ray_at(planes, 32, 32);
-    CHECK(ray.near_point.y - 5.0 == doctest::Approx(0.5e-3).epsilon(1e-9));
+    CHECK(ray.near_point.y - 5.0 == doctest::Approx(0.5e-6).epsilon(1e-8));
     camera.projection = Camera::Projection::orthographic;
     const Ray parallel = ray_at(ray_planes(camera, {64, 64}, volume), 32, 32);
     CHECK(parallel.near_point.y == 5.0);
@@ -262,7 +262,7 @@ TEST_CASE("shares tell where the clip range and the target lie, also where the v
                 const glm::dvec3 at = glm::mix(ray.near_point, ray.far_point, share);
                 return glm::dot(at - camera.eye, glm::normalize(camera.target - camera.eye));
             };
-            const double hair = projection == Camera::Projection::perspective ? 1e-3 : 0.0;
+            const double hair = projection == Camera::Projection::perspective ? 1e-6 : 0.0;
             CHECK(depth(planes.begin) == doctest::Approx(std::max(near, hair)).epsilon(1e-9));
             CHECK(depth(planes.end) == doctest::Approx(near + 7.0).epsilon(1e-9));
             CHECK((planes.middle >= 0.0 && planes.middle <= 1.0));
