@@ -169,7 +169,7 @@ file(GLOB_RECURSE durability_tests CONFIGURE_DEPENDS tests/durability/*.cpp)
 shvr_test_program(durability shvr_durability_tests 300 ${durability_tests})
 target_link_libraries(shvr_durability_tests PRIVATE shvr_test_support)
 # Calls that change files go through tests/durability/watched_calls.cpp.
-foreach(call open write pwrite fsync fdatasync syncfs ftruncate rename renameat2 mkdir unlink)
+foreach(call open write pwrite fsync fdatasync syncfs ftruncate rename renameat2 link mkdir unlink)
     target_link_options(shvr_durability_tests PRIVATE -Wl,--wrap=${call})
 endforeach()
 # Locks that fail, and other names of this computer.

@@ -72,6 +72,9 @@ void apply_entry(Folder& folder, const FileCall& call, const std::shared_ptr<Fil
             } else
                 put_into(folder, call.to, taken_from(folder, call.path));
             return;
+        case FileCall::Kind::link:
+            if (folder.contains(call.path)) folder[call.to] = folder[call.path];
+            return;
         case FileCall::Kind::exchange: {
             const Folder one = taken_from(folder, call.path), other = taken_from(folder, call.to);
             put_into(folder, call.path, other);
@@ -98,6 +101,7 @@ Disk disk_after(std::span<const FileCall> calls, const PowerCut& cut, std::mt199
             case FileCall::Kind::rename:
             case FileCall::Kind::exchange:
             case FileCall::Kind::make_folder:
+            case FileCall::Kind::link:
             case FileCall::Kind::unlink:
                 later.push_back({&call, call.kind == FileCall::Kind::create ? std::make_shared<File>() : nullptr});
                 apply_entry(now, call, later.back().created);

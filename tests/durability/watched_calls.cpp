@@ -19,6 +19,7 @@ int __real_ftruncate(int file, off_t size);
 int __real_rename(const char* from, const char* to);
 int __real_renameat2(int from_folder, const char* from, int to_folder, const char* to, unsigned flags);
 int __real_mkdir(const char* path, mode_t mode);
+int __real_link(const char* from, const char* to);
 int __real_unlink(const char* path);
 }
 
@@ -177,7 +178,7 @@ int __wrap_renameat2(int from_folder, const char* from, int to_folder, const cha
     return made({(flags & RENAME_EXCHANGE) != 0 ? FileCall::Kind::exchange : FileCall::Kind::rename,
                  absolute(from),
                  absolute(to),
-                 0,
+                 flags,
                  {}},
                 [&](int) { return __real_renameat2(from_folder, from, to_folder, to, flags); });
 }
@@ -192,6 +193,12 @@ int __wrap_mkdir(const char* path, mode_t mode)
 int __wrap_syncfs(int file)
 {
     return made({FileCall::Kind::sync_all, path_of(file), {}, 0, {}}, [](int) { return 0; });
+}
+
+int __wrap_link(const char* from, const char* to)
+{
+    return made({FileCall::Kind::link, absolute(from), absolute(to), 0, {}},
+                [&](int) { return __real_link(from, to); });
 }
 
 int __wrap_unlink(const char* path)

@@ -24,12 +24,13 @@ struct FileCall {
         make_folder,
         rename,
         exchange,
+        link,
         unlink,
         note
     };
     Kind kind = Kind::note;
-    std::string path, to;          ///< absolute; `to` for rename and exchange only
-    uint64_t at = 0;               ///< write: the offset; truncate: the new size; note: its number
+    std::string path, to;          ///< absolute; `to` for rename, exchange and link only
+    uint64_t at = 0;               ///< write: the offset; truncate: the new size; rename: flags; note: its number
     std::vector<std::byte> bytes;  ///< for write
 };
 

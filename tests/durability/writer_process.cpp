@@ -5,7 +5,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <memory>
 
@@ -74,7 +76,8 @@ WriterProcess::WriterProcess(const WorkFiles& files, const Options& options)
     if (!options.host.empty()) ::setenv("SHVR_HOST", options.host.c_str(), 1);
     // The pipes are no files below the folder, so these calls do not pause.
     if (options.pauses)
-        refuse_calls(files.journal.parent_path(), [this](const FileCall&) {
+        refuse_calls(files.journal.parent_path(), [this, replaces = options.renames_replace](const FileCall& call) {
+            if (replaces && call.kind == FileCall::Kind::rename && call.at == RENAME_NOREPLACE) return EINVAL;
             char go = 0;
             if (!put(answers_[1], PAUSED) || ::read(orders_[0], &go, 1) != 1) ::_exit(1);
             return 0;

@@ -22,8 +22,9 @@ class WriterProcess {
 public:
     struct Options {
         uint8_t group = 1;
-        std::string host{};   ///< empty: this computer
-        bool pauses = false;  ///< before each call that changes files
+        std::string host{};            ///< empty: this computer
+        bool pauses = false;           ///< before each call that changes files
+        bool renames_replace = false;  ///< as on NFS: there is no rename that keeps what is there
     };
     WriterProcess(const WorkFiles& files, const Options& options);
     WriterProcess(const WriterProcess&) = delete;

@@ -1,5 +1,6 @@
 // shvr annotate: replays a script of annotation commands.
 
+#include <algorithm>
 #include <concepts>
 
 #include "engine/annotation/script/script.h"
@@ -171,7 +172,10 @@ void run_annotate(const AnnotateCommandOptions& options)
     LongWork work(options.common.quiet);
     Opened opened = open(
         options.project, options.common, work,
-        {.start = options.fresh ? Work::Start::fresh : Work::Start::as_left, .hold = hold, .program = "shvr annotate"},
+        {.start = options.fresh ? Work::Start::fresh : Work::Start::as_left,
+         .takes_over = std::ranges::any_of(script, [](const ScriptLine& line) { return changes_work(line.op); }),
+         .hold = hold,
+         .program = "shvr annotate"},
         [&](const Session& session, const VolumeInfo&) { check_outside(options.project, session, options.common); });
     if (opened.project.empty()) refuse_bare_volume(options.project);
     check_radii(script, name, opened.source->info());

@@ -301,6 +301,12 @@ ScriptOp read_script_op(const JsonNode& line)
     return OPS[line["op"].choice(script_op_names())].read(line);
 }
 
+bool changes_work(const ScriptOp& op)
+{
+    const auto is_one_of = [&]<class... Op>(std::variant<Op...>) { return (std::holds_alternative<Op>(op) || ...); };
+    return !is_one_of(std::variant<SelectOp, SelectSegmentOp, DeselectOp, ExpectOp>());
+}
+
 std::string name_of_script(const std::filesystem::path& path)
 {
     return path == "-" ? "standard input" : path.string();

@@ -34,6 +34,9 @@ struct ExpectOp {
 using ScriptOp = std::variant<PaintOp, NodeOp, SelectOp, SelectSegmentOp, DeselectOp, LinkOp, MoveOp, DeleteOp, GroupOp,
                               RadiusOp, UndoOp, RedoOp, SaveOp, RevertOp, ExpectOp>;
 
+/// Whether it changes the work, or its files.
+bool changes_work(const ScriptOp& op);
+
 struct ScriptLine {
     int number = 0;  ///< from 1
     ScriptOp op;

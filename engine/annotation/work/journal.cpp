@@ -10,6 +10,8 @@
 #include <chrono>
 #include <utility>
 
+#include "engine/annotation/work/saved_files.h"
+#include "engine/annotation/writers/no_replace.h"
 #include "engine/base/atomic_writer.h"
 
 namespace shvr {
@@ -114,20 +116,65 @@ void expect_as_read(const fs::path& path, const JournalScan& before)
         refuse_changed(path, before);
 }
 
-Journal::Journal(const fs::path& path, JournalScan before, std::shared_ptr<const Hold> hold)
-    : path_(path), file_(opened(path, before)), hold_(std::move(hold)), end_(before.end), checksum_(before.checksum())
+Journal::Journal(const fs::path& path, JournalScan before, std::shared_ptr<const Hold> hold, const fs::path& own)
+    : path_(path),
+      file_(opened(own.empty() ? path : own, before)),
+      hold_(std::move(hold)),
+      end_(before.end),
+      checksum_(before.checksum())
 {
     records_ = std::move(before.records);
     last_ = records_.size();
     try {
         // Only now: a process that claims the journal later finds this file, and leaves it to this process.
-        if (hold_ && !hold_->is_kept()) refuse_changed(path, before);
+        expect_hold(before);
         if (end_ == 0 || end_ < before.file_bytes || !before.head.empty()) begin(free_rest(path), before.head);
+        if (!own.empty()) put_in_place(own, before);
     } catch (...) {
-        if (before.inode == 0 && is_in_place()) ::unlink(path.c_str());
+        if (!own.empty())
+            ::unlink(own.c_str());
+        else if (before.inode == 0)
+            remove_new();
         throw;
     }
     thread_ = std::thread([this] { write(); });
+}
+
+void Journal::expect_hold(const JournalScan& before) const
+{
+    if (hold_ && !hold_->is_kept()) refuse_changed(path_, before);
+}
+
+void Journal::put_in_place(const fs::path& own, const JournalScan& before)
+{
+    for (;;) {
+        expect_hold(before);
+        switch (put_at_free(own, path_)) {
+            case Renaming::done:
+                sync_folder(path_);
+                // As after opening: if another process has claimed the journal by now, it did not find this file.
+                return expect_hold(before);
+            case Renaming::name_taken: static_cast<void>(set_aside(path_)); break;
+            case Renaming::gone: fail(own.string(), ": is missing; expected the journal that was just written there");
+        }
+    }
+}
+
+/// Removes the file that this process created at the journal's path, in which there is no record yet. Another process
+/// may just put its own file there, so that it is moved first, and removed only if it is this one.
+void Journal::remove_new() noexcept
+{
+    try {
+        if (!is_in_place()) return;
+        const std::optional<fs::path> moved = set_aside(path_);
+        if (!moved) return;
+        if (is_named(*moved))
+            ::unlink(moved->c_str());
+        else
+            static_cast<void>(put_at_free(*moved, path_));
+    } catch (const Error&) {
+        // It stays, and is empty; another one, under its new name, is put back by its writer.
+    }
 }
 
 void Journal::begin(const fs::path& rest, std::span<const std::byte> head)
@@ -225,19 +272,21 @@ bool Journal::is_in_place() const
     return held.st_ino == named.st_ino && held.st_dev == named.st_dev;
 }
 
-fs::path Journal::present_name() const
+bool Journal::is_named(const fs::path& path) const
 {
     struct stat held {
     }, named{};
-    if (::fstat(file_.number(), &held) != 0) return {};
-    const auto is_name = [&](const fs::path& path) {
-        return ::lstat(path.c_str(), &named) == 0 && held.st_ino == named.st_ino && held.st_dev == named.st_dev;
-    };
+    return ::fstat(file_.number(), &held) == 0 && ::lstat(path.c_str(), &named) == 0 && held.st_ino == named.st_ino &&
+           held.st_dev == named.st_dev;
+}
+
+fs::path Journal::present_name() const
+{
     if (is_in_place()) return path_;
     const fs::path folder = path_.has_parent_path() ? path_.parent_path() : fs::path(".");
     std::error_code error;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-        if (is_name(entry->path())) return path_.parent_path() / entry->path().filename();
+        if (is_named(entry->path())) return path_.parent_path() / entry->path().filename();
     return {};
 }
 

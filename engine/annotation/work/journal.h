@@ -8,7 +8,7 @@
 // While writing fails, nothing is lost and no caller waits: records stay in memory, `failure` states the reason, and
 // writing is retried every second. Only one process writes a journal: the one that holds it (hold.h), which also locks
 // the file itself, for older programs. An existing file is written only by the process that held the journal before and
-// after it opened the file; a new one is created exclusively.
+// after it opened the file; a new one is created exclusively, or under a name that only this process uses.
 //
 // One thread appends; any thread may query.
 
@@ -31,8 +31,10 @@ class Journal {
 public:
     /// Continues after the valid prefix in `before`; data after it is kept as JOURNAL.rest1, .rest2 and so on, and a
     /// damaged head is repaired. Fails if the file cannot be created or written, with JournalTaken if another process
-    /// holds it. `hold`: null for a journal that no other process knows of.
-    Journal(const std::filesystem::path& path, JournalScan before, std::shared_ptr<const Hold> hold = {});
+    /// holds it. `hold`: null for a journal that no other process knows of. `own`: a name that only this process uses;
+    /// `before` is the file there, or none. It is put in the place of whatever is at `path`, which gets another name.
+    Journal(const std::filesystem::path& path, JournalScan before, std::shared_ptr<const Hold> hold = {},
+            const std::filesystem::path& own = {});
     /// Tries to write the queue first.
     ~Journal();
     Journal(const Journal&) = delete;
@@ -76,6 +78,10 @@ private:
     /// Returns the reason of a failure; empty on success.
     std::string write_from(uint64_t at, const std::deque<Waiting>& waiting, size_t first) const;
     void begin(const std::filesystem::path& rest, std::span<const std::byte> head);
+    void expect_hold(const JournalScan& before) const;
+    void put_in_place(const std::filesystem::path& own, const JournalScan& before);
+    void remove_new() noexcept;
+    bool is_named(const std::filesystem::path& path) const;
     std::string sync_beginning() const;
 
     std::filesystem::path path_;

@@ -183,25 +183,21 @@ fs::path old_of(const fs::path& path)
     }
 }
 
-fs::path set_aside(const fs::path& path)
+std::optional<fs::path> set_aside(const fs::path& path)
 {
-    fs::path old = old_of(path);
-    while (!rename_to_free(path, old)) old = old_of(path);  // another process has just taken that name
-    sync_folder(old);
-    return old;
+    return rename_to_old(path, path);
 }
 
-std::optional<fs::path> put_in_place(const fs::path& file, const fs::path& path)
+std::optional<fs::path> rename_to_old(const fs::path& file, const fs::path& path)
 {
-    std::optional<fs::path> old;
-    std::error_code ignored;
-    while (!rename_to_free(file, path)) try {
-            old = set_aside(path);
-        } catch (const Error&) {  // another process may have renamed it just now
-            if (fs::exists(fs::symlink_status(path, ignored))) throw;
+    for (;;) {
+        const fs::path old = old_of(path);
+        switch (move_to_free(file, old)) {
+            case Renaming::done: sync_folder(old); return old;
+            case Renaming::name_taken: break;  // by another process, just now
+            case Renaming::gone: return std::nullopt;
         }
-    sync_folder(path);
-    return old;
+    }
 }
 
 }  // namespace shvr

@@ -69,10 +69,11 @@ std::optional<FileStamp> stamp_of(const std::filesystem::path& path);
 
 /// "paint.mask.old", or "paint.mask.old2" and so on if that already exists.
 std::filesystem::path old_of(const std::filesystem::path& path);
-/// Renames a file or folder to its `old_of`, and returns that; fails if it cannot.
-std::filesystem::path set_aside(const std::filesystem::path& path);
-/// Renames `file`, which is synced, to `path`, and sets aside whatever is there, at whatever moment it came there.
-/// Returns the last name that this got; null if there was nothing.
-std::optional<std::filesystem::path> put_in_place(const std::filesystem::path& file, const std::filesystem::path& path);
+/// Renames a file or folder to its `old_of`, and returns that; null if another process has moved it meanwhile. Fails if
+/// it cannot.
+std::optional<std::filesystem::path> set_aside(const std::filesystem::path& path);
+/// The same for a file with another name.
+std::optional<std::filesystem::path> rename_to_old(const std::filesystem::path& file,
+                                                   const std::filesystem::path& path);
 
 }  // namespace shvr

@@ -58,10 +58,15 @@ void Work::begin_journal()
     expect_hold();
     expect_choice();  // disputed differences would no longer fit
     if (is_saving_as_) fail("the work is being saved under another name; expected that to have ended");
-    if (journal_)
-        keep_journal_in_place();
-    else
-        open_journal();
+    try {
+        if (journal_)
+            keep_journal_in_place();
+        else
+            open_journal();
+    } catch (const Error&) {
+        expect_hold();  // a claim explains all else that was not as expected
+        throw;
+    }
     record_settings_from_outside();
 }
 
@@ -71,11 +76,15 @@ void Work::open_journal()
     int error = 0;
     if (!hold_) hold_ = Hold::take(files_.journal, program_, error);
     if (!hold_) fail(files_.journal.string(), ": cannot be written: ", reason_of(error));
-    if (!hold_->doubtful().empty()) leave_journal_to_others();
-    if (is_to_set_aside_) set_journal_aside();
+    std::shared_ptr<Journal> left;
+    if (!hold_->doubtful().empty()) left = journal_left_to_others();
+    if (!left && is_to_set_aside_) set_journal_aside();
+    if (is_to_set_aside_) scan_ = {};
+    is_to_set_aside_ = false;
     const bool is_new = scan_.records.empty();
-    journal_ = std::make_shared<Journal>(files_.journal, scan_, hold_);
+    journal_ = left ? left : std::make_shared<Journal>(files_.journal, scan_, hold_);
     scanned_.reset();
+    hold_->end_claim();
     if (is_new)
         begin_records();
     else

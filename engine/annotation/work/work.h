@@ -65,7 +65,10 @@ public:
     struct Opening {
         Start start = Start::as_left;
         Belief belief = Belief::ask;
-        bool only_look = false;        ///< read-only: takes no hold, and accepts no command
+        bool only_look = false;  ///< read-only: takes no hold, and accepts no command
+        /// The work will be changed at once: a journal that others may still write is taken from them during opening,
+        /// not by the first command, and read again if they write it meanwhile.
+        bool takes_over = false;
         std::shared_ptr<Hold> hold{};  ///< existing hold of this journal; null: the hold is taken during opening
         std::string program = "shvr";  ///< description as in Holder, for a hold that is taken during opening
         Progress progress{};           ///< progress of replaying the journal; an exception from it cancels the opening
@@ -205,11 +208,13 @@ private:
     void note_claim();
     void expect_hold();
     void tell_doubtful(std::vector<Notice>& notices) const;
-    void leave_journal_to_others();
+    std::shared_ptr<Journal> journal_left_to_others();
+    void take_over(std::vector<Notice>& notices);
     void keep_journal_in_place();
     void set_journal_aside();
 
     // Opening
+    std::vector<Notice> read();
     std::vector<Notice> open_once();
     void read_journal();
     void open_fresh();

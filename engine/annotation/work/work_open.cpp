@@ -98,24 +98,28 @@ std::vector<Notice> Work::open(const WorkFiles& files, const Opening& opening)
             if (!file.empty()) folders.insert(file.parent_path());
         for (const fs::path& folder : folders) collect_temporary_files(folder);
     }
-    takes_files_ = opening.belief == Belief::files || opening.start == Start::fresh;
-    if (opening.start == Start::fresh) {
-        open_fresh();
-        opening_progress_ = {};
-        std::vector<Notice> told;
-        tell_doubtful(told);
-        return told;
-    }
-    std::vector<Notice> notices = open_once();
+    is_fresh_ = opening.start == Start::fresh;
+    takes_files_ = opening.belief == Belief::files || is_fresh_;
+    std::vector<Notice> notices = read();
     // Changes seen now may be those of a save that another process is making.
     for (int i = 0; i < TRIES && only_looks_ && !disputes_.empty() && holder_of(files.journal); ++i) {
         std::this_thread::sleep_for(TURN);
-        notices = open_once();
+        notices = read();
     }
+    std::vector<Notice> told;
+    tell_doubtful(told);
+    if (opening.takes_over && !only_looks_) take_over(notices);
     opening_progress_ = {};
-    tell_doubtful(notices);
+    notices.insert(notices.end(), told.begin(), told.end());
     for (Notice& notice : choose(opening.belief).notices) notices.push_back(std::move(notice));
     return notices;
+}
+
+std::vector<Notice> Work::read()
+{
+    if (!is_fresh_) return open_once();
+    open_fresh();
+    return {};
 }
 
 std::vector<Notice> Work::open_once()
@@ -183,7 +187,7 @@ void Work::read_journal()
 void Work::open_fresh()
 {
     read_journal();
-    is_fresh_ = true;
+    known_ = {};
     is_to_set_aside_ = scan_.file_bytes > 0;
     touched_.fill(true);
     document_.settings = Settings(files_.settings);

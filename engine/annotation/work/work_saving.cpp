@@ -141,13 +141,12 @@ void Work::Saving::write(Part part)
     if (hold_ && !hold_->is_kept())
         throw JournalTaken(sentence(file.string(), ": is not saved, since another process has taken the journal ",
                                     files_.journal.string(), " over; expected this process to be its only writer"));
-    if (is_foreign(part)) {
-        const fs::path old = set_aside(file);
-        saved_.notices.push_back(
-            {sentence(file.string(), ": was written by another program; expected the ", name_of(part),
-                      " as this one knows it; it is kept as ", old.string(), ", and what is saved is this program's"),
-             true});
-    }
+    if (is_foreign(part))
+        if (const std::optional<fs::path> old = set_aside(file))
+            saved_.notices.push_back({sentence(file.string(), ": was written by another program; expected the ",
+                                               name_of(part), " as this one knows it; it is kept as ", old->string(),
+                                               ", and what is saved is this program's"),
+                                      true});
     try {
         Work::write(part, document_, files_, looks_, journal_.get());
     } catch (const Error&) {

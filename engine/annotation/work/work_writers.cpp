@@ -1,7 +1,9 @@
 // Other writers of the work's journal: their claims, their files, and the place of this one.
 
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <utility>
 
 #include "engine/annotation/work/work.h"
@@ -24,7 +26,11 @@ void Work::note_claim()
             unwritten = sentence("; but ", error.what());
         }
         fs::path name = journal_->present_name();
-        if (name.empty()) journal_->copy_to(name = old_of(files_.journal));
+        if (name.empty()) {
+            const fs::path copy = hold_->own_name();
+            journal_->copy_to(copy);
+            name = rename_to_old(copy, files_.journal).value_or(copy);
+        }
         kept = sentence("; what was done here is kept in ", name.string(), unwritten);
     }
     claimed_ = sentence(files_.journal.string(), ": was taken over by ",
@@ -62,32 +68,43 @@ void Work::tell_doubtful(std::vector<Notice>& notices) const
              true});
 }
 
+/// Begins the journal at once if others may still write it. They keep nothing that they write after their marks are
+/// revoked; what they have written before is read again.
+void Work::take_over(std::vector<Notice>& notices)
+{
+    constexpr int TRIES = 3;
+    for (int i = 1; hold_ && !hold_->doubtful().empty() && disputes_.empty(); ++i) try {
+            return open_journal();
+        } catch (const JournalTaken&) {
+            expect_hold();
+            if (i == TRIES) throw;
+            static_cast<void>(hold_->claim());
+            notices = read();
+        }
+}
+
 /// Where it is unknown whether others have ended, their file is never written again by this process: it continues in a
-/// copy, which it alone created.
-void Work::leave_journal_to_others()
+/// copy, which it alone created. Null if all of them have closed the journal meanwhile.
+std::shared_ptr<Journal> Work::journal_left_to_others()
 {
     expect_as_read(files_.journal, scan_);
-    if (!hold_->claim()) return;
-    if (is_to_set_aside_) {
-        set_aside(files_.journal);
-        scan_ = {};
-        is_to_set_aside_ = false;
-    } else if (scan_.inode != 0) {
-        const fs::path copy = hold_->own_name();
-        {
-            AtomicWriter writer(copy);
-            copy_bytes(scanned_.value(), files_.journal, scan_.end, scan_.head, writer);
-            writer.commit();
-        }
-        put_in_place(copy, files_.journal);
+    if (!hold_->claim()) return nullptr;
+    JournalScan copied = is_to_set_aside_ ? JournalScan{} : scan_;
+    // Without a journal there is nothing to copy: one that others begin at this moment is refused.
+    if (scan_.inode == 0) return std::make_shared<Journal>(files_.journal, copied, hold_);
+    const fs::path own = hold_->own_name();
+    ::unlink(own.c_str());  // left by an attempt that failed
+    if (copied.inode != 0) {
+        AtomicWriter writer(own);
+        copy_bytes(scanned_.value(), files_.journal, scan_.end, scan_.head, writer);
+        writer.commit();
         struct stat status {};
-        if (::stat(files_.journal.c_str(), &status) != 0) fail(files_.journal.string(), ": cannot be read");
-        scan_.inode = status.st_ino;
-        scan_.file_bytes = scan_.end;
-        scan_.head.clear();
+        if (::stat(own.c_str(), &status) != 0) fail(own.string(), ": cannot be read: ", reason_of(errno));
+        copied.inode = status.st_ino;
+        copied.file_bytes = copied.end;
+        copied.head.clear();
     }
-    scanned_.reset();
-    hold_->end_claim();
+    return std::make_shared<Journal>(files_.journal, copied, hold_, own);
 }
 
 /// If the journal's file was removed or replaced, anything written to it would be lost when this process ends. So the
@@ -98,16 +115,14 @@ void Work::keep_journal_in_place()
     journal_->flush();
     const fs::path copy = hold_->own_name();
     journal_->copy_to(copy);
-    put_in_place(copy, files_.journal);
-    journal_.reset();
-    journal_ = std::make_shared<Journal>(files_.journal, scan_journal(files_.journal), hold_);
+    journal_ = std::make_shared<Journal>(files_.journal, scan_journal(copy), hold_, copy);
 }
 
 void Work::set_journal_aside()
 {
     expect_as_read(files_.journal, scan_);  // not while another process writes it
+    static_cast<void>(set_aside(files_.journal));
     scanned_.reset();
-    set_aside(files_.journal);
     scan_ = {};
     is_to_set_aside_ = false;
 }

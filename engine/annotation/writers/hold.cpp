@@ -133,6 +133,14 @@ Holder holder_in(const FileDescriptor& file)
                                 "; expected nobody else to be writing it"));
 }
 
+/// False only if there certainly is no such file.
+bool is_there(const fs::path& path)
+{
+    // Network file systems ask the server when a file is opened, but not always for its status.
+    const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW));
+    return file || errno != ENOENT;
+}
+
 FileDescriptor opened(const fs::path& path, int flags)
 {
     return FileDescriptor(::open(path.c_str(), flags | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW, 0666));
@@ -294,9 +302,7 @@ fs::path Hold::own_name() const
 
 bool Hold::is_kept() const
 {
-    // Network file systems ask the server when a file is opened, but not always for its status.
-    const FileDescriptor file(::open(mark_.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
-    return file || errno != ENOENT;
+    return is_there(mark_);
 }
 
 std::optional<Holder> Hold::successor() const
@@ -313,12 +319,12 @@ bool Hold::claim()
     std::vector<fs::path> claimed;
     for (const fs::path& mark : doubtful_marks_) {
         const fs::path name = revoked(mark);
-        const bool is_there =
-            name == mark ? ::access(mark.c_str(), F_OK) == 0 : std::rename(mark.c_str(), name.c_str()) == 0;
-        if (is_there)
-            claimed.push_back(name);
-        else if (errno != ENOENT)
+        // A mark that is missing was removed by its owner when it closed the journal, or another process has revoked it
+        // since it was listed: then its owner may still write.
+        const bool is_revoked = name != mark && std::rename(mark.c_str(), name.c_str()) == 0;
+        if (!is_revoked && name != mark && errno != ENOENT)
             fail(name.string(), ": cannot be written: ", reason_of(errno));
+        if (is_revoked || is_there(name)) claimed.push_back(name);
     }
     doubtful_marks_ = std::move(claimed);
     if (doubtful_marks_.empty()) doubtful_.clear();

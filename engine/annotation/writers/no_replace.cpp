@@ -21,50 +21,62 @@ bool lacks_call(int error)
     return error == EINVAL || error == ENOSYS || error == ENOTSUP || error == EPERM || error == EMLINK;
 }
 
-[[noreturn]] void refuse(const fs::path& from, const fs::path& to, int error)
+/// The outcome of a call that failed.
+Renaming after_failure(const fs::path& from, const fs::path& to, int error)
 {
+    struct stat status {};
+    if (error == EEXIST) return Renaming::name_taken;
+    if (error == ENOENT && ::lstat(from.c_str(), &status) != 0 && errno == ENOENT) return Renaming::gone;
     fail(to.string(), ": cannot be written, to keep ", from.filename().string(), " there: ", reason_of(error));
 }
 
-/// For file systems with neither RENAME_NOREPLACE nor links: the name is taken by an empty file, and that is replaced.
-bool rename_over_own(const fs::path& from, const fs::path& to)
+/// Takes the name by an empty file, and replaces that. To be used only if no other process moves that file meanwhile.
+Renaming rename_over_own(const fs::path& from, const fs::path& to)
 {
     const FileDescriptor own(::open(to.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-    if (!own && errno == EEXIST) return false;
-    if (!own || std::rename(from.c_str(), to.c_str()) != 0) refuse(from, to, errno);
-    return true;
+    if (!own) return after_failure(from, to, errno);
+    if (std::rename(from.c_str(), to.c_str()) == 0) return Renaming::done;
+    const int error = errno;
+    ::unlink(to.c_str());
+    return after_failure(from, to, error);
+}
+
+/// 0, or errno.
+int rename_without_replacing(const fs::path& from, const fs::path& to)
+{
+    return ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0 ? 0 : errno;
 }
 
 }  // namespace
 
-bool link_to_free(const fs::path& from, const fs::path& to, int& error)
+Renaming move_to_free(const fs::path& from, const fs::path& to)
 {
-    error = ::link(from.c_str(), to.c_str()) == 0 ? 0 : errno;
-    return error == 0;
+    const int error = rename_without_replacing(from, to);
+    if (error == 0) return Renaming::done;
+    if (!lacks_call(error)) return after_failure(from, to, error);
+    // Network file systems have no such flag. A second link and unlink(2) would not do: another process may have put
+    // another file at `from` between the two.
+    struct stat status {};
+    if (::lstat(from.c_str(), &status) != 0) return after_failure(from, to, errno);
+    if (!S_ISDIR(status.st_mode)) return rename_over_own(from, to);
+    // A folder replaces at most an empty folder.
+    if (std::rename(from.c_str(), to.c_str()) == 0) return Renaming::done;
+    if (errno == ENOTEMPTY || errno == ENOTDIR) return Renaming::name_taken;
+    return after_failure(from, to, errno);
 }
 
-bool rename_to_free(const fs::path& from, const fs::path& to)
+Renaming put_at_free(const fs::path& own, const fs::path& to)
 {
-    if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
-    if (errno == EEXIST) return false;
-    if (!lacks_call(errno)) refuse(from, to, errno);
-    // Network file systems have no such flag.
-    struct stat status {};
-    if (::lstat(from.c_str(), &status) != 0) refuse(from, to, errno);
-    if (S_ISDIR(status.st_mode)) {
-        // A folder replaces at most an empty folder.
-        if (std::rename(from.c_str(), to.c_str()) == 0) return true;
-        if (errno == ENOTEMPTY || errno == EEXIST || errno == ENOTDIR) return false;
-        refuse(from, to, errno);
+    int error = rename_without_replacing(own, to);
+    if (error == 0) return Renaming::done;
+    if (!lacks_call(error)) return after_failure(own, to, error);
+    // Not over an own empty file: another process may already have moved that, and put its own one there.
+    error = ::link(own.c_str(), to.c_str()) == 0 ? 0 : errno;
+    if (error == 0) {
+        ::unlink(own.c_str());  // no more than a second name
+        return Renaming::done;
     }
-    int error = 0;
-    if (link_to_free(from, to, error)) {
-        if (::unlink(from.c_str()) != 0) refuse(from, to, errno);
-        return true;
-    }
-    if (error == EEXIST) return false;
-    if (!lacks_call(error)) refuse(from, to, error);
-    return rename_over_own(from, to);
+    return lacks_call(error) ? rename_over_own(own, to) : after_failure(own, to, error);
 }
 
 }  // namespace shvr

@@ -1,16 +1,22 @@
 #pragma once
-// Gives a file a name that no other file has, even if another process takes that name at the same moment: a check
-// before rename(2) would leave a gap in which the other file is replaced. Any thread may call these.
+// Gives a file a name that no other file has, even if other processes move files at the same moment: a check before
+// rename(2) would leave a gap in which the other file is replaced. Any thread may call these.
 
 #include <filesystem>
 
 namespace shvr {
 
-/// Renames a file or folder. Returns false, having changed nothing, if `to` exists; fails if it cannot.
-bool rename_to_free(const std::filesystem::path& from, const std::filesystem::path& to);
+enum class Renaming {
+    done,
+    name_taken,  ///< `to` exists; nothing has changed
+    gone,        ///< there is no `from`
+};
 
-/// Gives a file a second name. Returns false, having changed nothing, if `to` exists, and EEXIST in `error`, or if the
-/// file system has no hard links.
-bool link_to_free(const std::filesystem::path& from, const std::filesystem::path& to, int& error);
+/// Renames the file or folder that has a name, which other processes may move at the same time, to a name from which
+/// nothing is moved again. Fails if it cannot for another reason than those.
+Renaming move_to_free(const std::filesystem::path& from, const std::filesystem::path& to);
+
+/// Renames a file that only this process knows to a name from which others may move it. Fails as above.
+Renaming put_at_free(const std::filesystem::path& own, const std::filesystem::path& to);
 
 }  // namespace shvr

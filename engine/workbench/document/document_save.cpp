@@ -107,13 +107,12 @@ void Document::Saving::write_names()
 /// Keeps contents that another program has written there since; the notice names the new place.
 void Document::Saving::write_session()
 {
-    if (const std::optional<std::string> there = text_of_session(session_path_); there && there != text_there_) {
-        const std::filesystem::path old = set_aside(session_path_);
-        notice_ = {
-            sentence(session_path_.string(), ": was written by another program since it was opened; it is kept as ",
-                     old.string(), ", and what is saved is this window's"),
-            true};
-    }
+    if (const std::optional<std::string> there = text_of_session(session_path_); there && there != text_there_)
+        if (const std::optional<std::filesystem::path> old = set_aside(session_path_))
+            notice_ = {
+                sentence(session_path_.string(), ": was written by another program since it was opened; it is kept as ",
+                         old->string(), ", and what is saved is this window's"),
+                true};
     write_file_atomically(session_path_, std::as_bytes(std::span(text_)));
     has_session_ = true;
 }

@@ -108,6 +108,96 @@ TEST_CASE("a writer that closes meanwhile leaves its journal to the next")
     CHECK(painted(*work) == 2);
 }
 
+TEST_CASE("a writer whose mark a third one revokes meanwhile is left its journal, too")
+{
+    const Desk desk;
+    desk.open()->perform(dab(1));
+    const std::string before = bytes_of_file(desk.journal());
+    desk.write(ELSEWHERE, "");
+    const auto work = desk.open();
+    const fs::path mark = desk.path / ELSEWHERE;
+    fs::rename(mark, fs::path(mark).replace_extension(".revoked.lock"));
+    work->perform(dab(2));
+    work->flush();
+    CHECK(bytes_of_file(desk.path / "a.journal.old") == before);
+    CHECK(painted(*work) == 2);
+}
+
+namespace {
+
+/// The journal of a writer elsewhere, which grows by a step each time the opening of another tells its progress.
+struct Growing {
+    explicit Growing(const Desk& desk)
+    {
+        const auto work = desk.open();
+        constexpr uint16_t STEPS = 70, LATER = 4;  // progress is told every 64 records
+        for (uint16_t at = 1; at <= STEPS + LATER; ++at) {
+            work->perform(dab(at));
+            work->flush();
+            if (at >= STEPS) states.push_back(bytes_of_file(desk.journal()));
+        }
+    }
+    std::vector<std::string> states;  ///< its first 70, 71, ... steps
+    size_t state = 0;
+};
+
+}  // namespace
+
+TEST_CASE("a journal that is written while it is taken over is read again")
+{
+    const Desk desk;
+    Growing growing(desk);
+    desk.write("a.journal", growing.states[0]);
+    desk.write(ELSEWHERE, "");
+    const auto grow_once = [&](double) {
+        if (growing.state == 0) desk.write("a.journal", growing.states[++growing.state]);
+    };
+    const auto work = desk.open({.takes_over = true, .progress = grow_once});
+    REQUIRE(growing.state == 1);
+    CHECK(contains(desk.said, "process 4711 on node7, since 2"));
+    CHECK(painted(*work) == 71);
+    CHECK_FALSE(fs::exists(desk.path / ELSEWHERE));
+    CHECK(bytes_of_file(desk.path / "a.journal.old") == growing.states[1]);
+    work->perform(dab(100));
+    CHECK(painted(*work) == 72);
+}
+
+TEST_CASE("work that starts afresh leaves the journal to those who may still write it")
+{
+    for (const bool takes_over : {false, true}) {
+        CAPTURE(takes_over);
+        const Desk desk;
+        desk.open()->perform(dab(1));
+        const std::string before = bytes_of_file(desk.journal());
+        desk.write(ELSEWHERE, "");
+        {
+            const auto work = desk.open({.start = Work::Start::fresh, .takes_over = takes_over});
+            CHECK(fs::exists(desk.path / ELSEWHERE) == !takes_over);
+            work->perform(dab(2));
+            work->perform(dab(3));
+        }
+        CHECK(bytes_of_file(desk.path / "a.journal.old") == before);
+        CHECK_FALSE(fs::exists(desk.path / ELSEWHERE));
+        CHECK_FALSE(fs::exists(desk.path / "a.journal.old2"));
+        CHECK(painted(*desk.open()) == 2);
+    }
+}
+
+TEST_CASE("a journal that is written whenever it is read is not taken over for ever")
+{
+    const Desk desk;
+    Growing growing(desk);
+    desk.write("a.journal", growing.states[0]);
+    desk.write(ELSEWHERE, "");
+    const auto grow = [&](double) {
+        REQUIRE(growing.state + 1 < growing.states.size());
+        desk.write("a.journal", growing.states[++growing.state]);
+    };
+    CHECK_THROWS_AS(desk.open({.takes_over = true, .progress = grow}), JournalTaken);
+    CHECK(growing.state == 3);
+    CHECK(bytes_of_file(desk.journal()) == growing.states[3]);
+}
+
 TEST_CASE("a journal that grew since it was read is claimed from nobody")
 {
     const Desk desk;
