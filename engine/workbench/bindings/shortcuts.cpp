@@ -513,8 +513,9 @@ constexpr Shortcut SHORTCUTS[] = {
     both("move_back", MOVE_KEYS, "Move back", Mode::hold, move<0, 0, -1>, "S", true),
     both("move_left", MOVE_KEYS, "Move left", Mode::hold, move<-1, 0, 0>, "A", true),
     both("move_right", MOVE_KEYS, "Move right", Mode::hold, move<1, 0, 0>, "D", true),
-    both("move_down", MOVE_KEYS, "Move down", Mode::hold, move<0, -1, 0>, "Q", true),
-    both("move_up", MOVE_KEYS, "Move up", Mode::hold, move<0, 1, 0>, "E", true),
+    // Thesis 4.2.3: Q is up and E down; programs of today have it the other way round.
+    {"move_down", MOVE_KEYS, "Move down", Mode::hold, move<0, -1, 0>, {"Q", "E"}, true},
+    {"move_up", MOVE_KEYS, "Move up", Mode::hold, move<0, 1, 0>, {"E", "Q"}, true},
 
     {"near_x_in", CUT_KEYS, "Near x cut inwards", Mode::hold, move_cut<0, Plane::lower, 1>, {"", "Y"}},
     {"near_x_out", CUT_KEYS, "Near x cut outwards", Mode::hold, move_cut<0, Plane::lower, -1>, {"", "Ctrl+Y"}},

@@ -1,4 +1,5 @@
-// The thesis's appendix C, typed from its pages, against the set of keys that is called after it.
+// The thesis's appendix C, typed from its pages, against the set of keys that is called after it. Its section 4.2.3
+// gives the directions: W, S, A, D, Q, E move forward, backward, left, right, up and down.
 
 #include <algorithm>
 #include <map>
@@ -69,8 +70,8 @@ constexpr Printed APPENDIX_C[] = {
     {"S", "Translate View", "move_back", true},
     {"A", "Translate View", "move_left", true},
     {"D", "Translate View", "move_right", true},
-    {"Q", "Translate View", "move_down", true},
-    {"E", "Translate View", "move_up", true},
+    {"Q", "Translate View", "move_up", true},
+    {"E", "Translate View", "move_down", true},
     {"R", "Increase Blend Rate", "later_blending", true},
     {"Ctrl+R", "Decrease Blend Rate", "sooner_blending", true},
     {"T", "Increase Blend Size", "more_blending", true},
