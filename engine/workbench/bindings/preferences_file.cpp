@@ -17,6 +17,23 @@ namespace {
 
 constexpr int64_t MAX_BYTES = int64_t{1} << 20;
 
+/// Takes the changes of keys that no keymap can use out of `keys`. Returns the reason for each.
+std::vector<std::string> take_out_unusable(Preferences& preferences)
+{
+    std::vector<std::string> reasons;
+    for (auto each = preferences.keys.begin(); each != preferences.keys.end();) {
+        try {
+            static_cast<void>(Keymap(preferences.key_set, {*each}));
+            ++each;
+        } catch (const Error& error) {
+            reasons.emplace_back(error.what());
+            preferences.unusable_keys.insert(*each);
+            each = preferences.keys.erase(each);
+        }
+    }
+    return reasons;
+}
+
 void key_fields(Fields& f, KeyChanges& keys)
 {
     std::vector<std::string> ids;
@@ -95,13 +112,14 @@ void fields(Fields& f, Preferences& preferences)
     });
     f.choice("puck", preferences.puck, {});
     f.whole("hints_seen", preferences.hints_seen, 0, 1000, {});
+    preferences.keys.merge(preferences.unusable_keys);  // a usable change of the same shortcut wins
+    preferences.unusable_keys.clear();
     key_fields(f, preferences.keys);
     std::vector<RecentFile> recent;
     for (const std::filesystem::path& path : preferences.recent) recent.push_back({path});
     f.list("recent", recent, Preferences::MAX_RECENT, {});
     preferences.recent.clear();
     for (RecentFile& each : recent) preferences.recent.push_back(std::move(each.path));
-    f.checked([&] { static_cast<void>(Keymap(preferences.key_set, preferences.keys)); });
 }
 
 std::filesystem::path folder_from(const char* variable)
@@ -119,6 +137,12 @@ Preferences patched(const Preferences& preferences, std::string_view patch)
     const JsonDocument document(merged(text, patch, "preferences"), "preferences",
                                 {.depth = 8, .expected = "preferences"});
     read_fields(document.root(), {}, [&](Fields& f) { fields(f, read); });
+    static_cast<void>(take_out_unusable(read));
+    for (const auto& [id, chords] : read.unusable_keys) {
+        const auto known = preferences.unusable_keys.find(id);
+        const bool is_new = known == preferences.unusable_keys.end() || known->second != chords;
+        if (is_new) static_cast<void>(Keymap(read.key_set, {{id, chords}}));  // fails, saying why
+    }
     return read;
 }
 
@@ -153,13 +177,15 @@ std::filesystem::path preferences_file()
     return folder / "shvr" / "preferences.json";
 }
 
-Preferences load_preferences(const std::filesystem::path& file)
+Preferences load_preferences(const std::filesystem::path& file, std::vector<std::string>* complaints)
 {
     Preferences preferences;
     std::error_code ignored;
     if (file.empty() || !std::filesystem::exists(file, ignored)) return preferences;
     const JsonDocument document = read_json(file, MAX_BYTES, {.depth = 8, .expected = "preferences"});
     read_fields(document.root(), file.parent_path(), [&](Fields& f) { fields(f, preferences); });
+    for (const std::string& reason : take_out_unusable(preferences))
+        if (complaints) complaints->push_back(sentence(file.string(), ": ", reason, "; the other keys are used"));
     return preferences;
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/workbench/models/preferences.h"
 
@@ -12,9 +13,10 @@ namespace shvr::ui {
 
 /// Returns the path of the file; empty if the environment names no home.
 std::filesystem::path preferences_file();
-/// Returns defaults if the file does not exist. Fails at unknown keys, shortcuts and chords, naming file, key,
-/// value and the expected value.
-Preferences load_preferences(const std::filesystem::path& file);
+/// Returns defaults if the file does not exist. Fails at unknown keys and values, naming file, key, value and the
+/// expected value. A shortcut or chord that this program does not know spoils only itself: it goes to `unusable_keys`,
+/// and a sentence for it to `complaints`.
+Preferences load_preferences(const std::filesystem::path& file, std::vector<std::string>* complaints = nullptr);
 /// Applies a merge patch of that file, as in {"theme": "light"}; null restores a default. Fails as reading does.
 Preferences patched(const Preferences& preferences, std::string_view patch);
 /// Returns the patch that changes a panel's layout; `change` may set any of its parts.

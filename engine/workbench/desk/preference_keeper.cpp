@@ -25,6 +25,7 @@ void PreferenceKeeper::act(const BindKeys& action)
     Preferences preferences = preferences_;
     std::vector<std::string>& keys_of_it = preferences.keys[action.shortcut];
     keys_of_it.clear();
+    preferences.unusable_keys.erase(action.shortcut);
     for (const std::string_view chord : words_of(action.keys)) keys_of_it.emplace_back(chord);
     // A binding equal to the default is not stored, so that it follows a later choice of the set.
     if (Keymap(preferences.key_set, preferences.keys).chords_of(*shortcut) ==
@@ -61,9 +62,11 @@ void PreferenceKeeper::load()
 {
     if (options_.preferences.empty()) return;
     try {
-        preferences_ = ui::load_preferences(options_.preferences);
+        std::vector<std::string> complaints;
+        preferences_ = ui::load_preferences(options_.preferences, &complaints);
         keymap_ = Keymap(preferences_.key_set, preferences_.keys);
         are_kept_ = true;
+        for (const std::string& complaint : complaints) say(complaint, Weight::warning);
     } catch (const Error& error) {
         say(sentence(error.what(), "; the default keys are used, and the file is unchanged"), Weight::warning);
     }

@@ -45,6 +45,7 @@ struct Preferences {
 
     KeySet key_set = KeySet::modern;
     KeyChanges keys;                            ///< changes to the chords of the set
+    KeyChanges unusable_keys;                   ///< changes in the file that name no shortcut or chord; kept there
     std::vector<std::filesystem::path> recent;  ///< newest first, each once
     Theme theme = Theme::dark;
     double font_pixels = 14.0;    ///< at a scale of 1

@@ -102,6 +102,34 @@ TEST_CASE("Preferences of look and layout are kept, patched, and given back")
     CHECK_THROWS_AS(static_cast<void>(patched(Preferences(), "[1]")), Error);
 }
 
+TEST_CASE("A bad shortcut in the preferences spoils only itself, is named, and stays in the file")
+{
+    TemporaryFolder folder;
+    folder.write(
+        "preferences.json",
+        R"({"shvr_preferences":1,"theme":"light","keys":{"undo":{"keys":"Ctrl+U"},"redo":{"keys":"Ctrl+Nonsense"},)"
+        R"("unheard_of":{"keys":"F6"}}})");
+    const std::filesystem::path file = folder.path / "preferences.json";
+    std::vector<std::string> complaints;
+    Preferences preferences = load_preferences(file, &complaints);
+    CHECK((preferences.theme == Theme::light));
+    CHECK(Keymap(preferences.key_set, preferences.keys).text_of(*shortcut_named("undo")) == "Ctrl + U");
+    CHECK(Keymap(preferences.key_set, preferences.keys).text_of(*shortcut_named("redo")) == "Ctrl + Y");
+    REQUIRE(complaints.size() == 2);
+    CHECK(complaints[0].find("preferences.json: keys: redo is 'Ctrl+Nonsense'; expected a key") != std::string::npos);
+    CHECK(complaints[1].find("'unheard_of' is no shortcut; expected") != std::string::npos);
+
+    // A newer program may know them, so that saving another choice keeps them.
+    preferences = patched(preferences, R"({"theme":"dark"})");
+    save_preferences(file, preferences);
+    CHECK((load_preferences(file) == preferences));
+    CHECK(read_text(file, int64_t{1} << 20).find("Ctrl+Nonsense") != std::string::npos);
+    // A patch is refused as before.
+    CHECK_THROWS_WITH_AS(static_cast<void>(patched(preferences, R"({"keys":{"save":{"keys":"Ctrl+Else"}}})")),
+                         doctest::Contains("save is 'Ctrl+Else'"), Error);
+    CHECK((patched(preferences, R"({"keys":{"redo":{"keys":"F6"}}})").unusable_keys.size() == 1));
+}
+
 TEST_CASE("The fonts learn each character once, from any text")
 {
     GlyphSet glyphs;
