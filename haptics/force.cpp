@@ -67,7 +67,7 @@ ForceStep stop(const ForceSettings& settings, uint32_t flags, uint64_t now_ns, F
     add_sent(memory.force_n, now_ns, memory.sent);
     const glm::dvec3 place = settings.workspace.to_point(memory.last.position_m);
     const glm::dvec3 probe = is_finite(place) ? place : glm::dvec3(0.0);
-    return {.probe = probe, .proxy = probe, .flags = memory.flags, .sequence = memory.sent.sequence};
+    return {.probe = probe, .proxy = probe, .middle = probe, .flags = memory.flags, .sequence = memory.sent.sequence};
 }
 
 void accept_elsewhere(const DeviceState& state, ForceMemory& memory)
@@ -202,7 +202,8 @@ ForceStep feel(const ForceSettings& settings, const DeviceCaps& caps, const Rele
     const glm::dvec3 wanted = spring(settings, stiffness, pull.offset);
 
     // An unknown force cannot count as small.
-    const bool may_begin = !caps.outputs_force || (pull.is_usable && glm::length(wanted) < ENGAGE_BELOW_N);
+    const bool is_known = pull.is_usable && pull.known_share == 1.0;
+    const bool may_begin = !caps.outputs_force || (is_known && glm::length(wanted) < ENGAGE_BELOW_N);
     memory.has_begun = memory.has_begun || may_begin;
     if (rate_share == 0.0) disengage(memory);
     const uint64_t engage_ns = caps.outputs_force ? ENGAGE_NS : ENGAGE_SIMULATED_NS;
@@ -228,6 +229,7 @@ ForceStep feel(const ForceSettings& settings, const DeviceCaps& caps, const Rele
     return {.force_n = driven - fade * rate_share * damping_of(settings, memory) + memory.engagement * taken,
             .probe = probe,
             .proxy = probe + pull.offset,
+            .middle = probe + pull.middle,
             .in_contact = pull.in_contact,
             .relevant_share = pull.relevant_share,
             .objects = growth.contacts};
@@ -293,7 +295,7 @@ ForceStep step(const ForceSettings& settings, const DeviceCaps& stated, ReadResu
     const double change = memory.engagement > 0.0 ? double(dt_ns) / double(STRENGTH_FADE_NS) : 1.0;
     memory.strength += std::clamp(strength - memory.strength, -change, change);
     ForceStep now;
-    now.probe = now.proxy = settings.workspace.to_point(memory.last.position_m);
+    now.probe = now.proxy = now.middle = settings.workspace.to_point(memory.last.position_m);
     if (is_there && settings.assistance) {
         const bool is_fresh = result == ReadResult::fresh && memory.glitches == 0;
         now = feel(settings, caps, patch, {now_ns, dt_ns, is_fresh}, memory, growth);
@@ -317,6 +319,8 @@ ForceStep step(const ForceSettings& settings, const DeviceCaps& stated, ReadResu
     now.sequence = memory.sent.sequence;
     now.made_j = memory.energy.made_j;
     now.latency_s = memory.sent.latency_s;
+    const glm::dvec3 velocity = settings.workspace.to_volume * memory.velocity;
+    if (is_finite(velocity)) now.velocity = velocity;
     return now;
 }
 

@@ -88,9 +88,11 @@ struct ForceMemory {
 };
 
 struct ForceStep {
-    glm::dvec3 force_n{0.0};  ///< device frame
-    glm::dvec3 probe{0.0};    ///< physical
-    glm::dvec3 proxy{0.0};    ///< physical position; the probe's if there is no contact
+    glm::dvec3 force_n{0.0};   ///< device frame
+    glm::dvec3 probe{0.0};     ///< physical
+    glm::dvec3 velocity{0.0};  ///< the probe's, physical units per second, smoothed
+    glm::dvec3 proxy{0.0};     ///< physical position; the probe's if there is no contact
+    glm::dvec3 middle{0.0};    ///< physical: where tools act with ForceSettings::finds_middle; otherwise the probe's
     bool in_contact = false;
     double relevant_share = 0.0;
     uint32_t flags = 0;

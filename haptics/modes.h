@@ -22,16 +22,20 @@ inline constexpr double SURFACE_HYSTERESIS = 0.75;
 
 struct ModePull {
     glm::dvec3 offset{0.0};  ///< proxy - probe, physical units
+    glm::dvec3 middle{0.0};  ///< middle of what is touched - probe, with ForceSettings::finds_middle
     bool in_contact = false;
     double relevant_share = 0.0;
-    bool is_usable = false;  ///< the relevance covers the ball, is recent enough and has the present settings
-    bool has_lost = false;   ///< object following: off the object it followed
-    uint32_t object = 0;     ///< number of touched objects and set pins: a change means that the pull is another one
+    double known_share = 0.0;  ///< share of the ball whose relevance is known
+    bool is_usable = false;    ///< enough of the ball is known, by recent relevance of the present settings
+    bool has_lost = false;     ///< object following: off the object it followed
+    uint32_t object = 0;       ///< number of touched objects and set pins: a change means that the pull is another one
 };
 
 ModePull pull_of(const ForceSettings& settings, const RelevancePatch& patch, const glm::dvec3& probe, uint64_t now_ns,
                  SurfaceMemory& surface, GrowthMemory& growth) noexcept;
 
+/// With less of the ball known, the force fades out, a surface neither holds nor lets go, and an object is not lost.
+inline constexpr double MIN_KNOWN_SHARE = 0.5;
 inline constexpr uint64_t RELEVANCE_FRESH_NS = 50'000'000;  ///< with older relevance the force fades out
 
 }  // namespace shvr

@@ -20,8 +20,9 @@ struct Chord {
 };
 
 /// Runs of set bits are integrated word by word: a run over two words is two touching intervals, whose sum is the
-/// run's. Only the ends of the chord are fractions of a voxel.
-Moments integrate_row(const uint32_t* words, const Chord& chord, double centre, double spacing)
+/// run's. Only the ends of the chord are fractions of a voxel. Inlined in both callers: calls cost a tick 5 to 15 %.
+[[gnu::always_inline]] inline Moments integrate_row(const uint32_t* words, const Chord& chord, double centre,
+                                                    double spacing)
 {
     Moments moments;
     const auto last_voxel = int32_t(std::ceil(chord.upper)) - 1;
@@ -91,9 +92,10 @@ glm::dvec3 point_of(double of_volume, double of_height, double of_turn)
     return r * glm::dvec3(across * std::cos(phi), across * std::sin(phi), z);
 }
 
-}  // namespace
-
-BallIntegrals integrate(const RelevancePatch& patch, const glm::dvec3& centre, double radius) noexcept
+/// `IS_CUT`: something within the radius is beyond `reach`. Whole balls, almost all, take a tenth less time without it.
+template <bool IS_CUT>
+BallIntegrals integrate_part(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
+                             const glm::dvec3& reach) noexcept
 {
     BallIntegrals ball;
     const glm::dvec3 spacing = patch.spacing;
@@ -104,7 +106,7 @@ BallIntegrals integrate(const RelevancePatch& patch, const glm::dvec3& centre, d
     const auto add_line = [&](const uint32_t* words, double dy, double dz, double weight) {
         const double rest = radius * radius - dy * dy - dz * dz;
         if (rest <= 0.0) return;
-        const double half = std::sqrt(rest) / spacing.x;
+        const double half = (IS_CUT ? std::min(std::sqrt(rest), reach.x) : std::sqrt(rest)) / spacing.x;
         const Chord chord{std::max(c.x - half, 0.0), std::min(c.x + half, double(patch.size.x))};
         if (chord.lower >= chord.upper) return;
         const Moments moments = integrate_row(words, chord, c.x, spacing.x);
@@ -113,25 +115,45 @@ BallIntegrals integrate(const RelevancePatch& patch, const glm::dvec3& centre, d
         ball.second += weight * (moments.second + (dy * dy + dz * dz) * moments.length);
     };
 
-    const RowRange slices = rows_within(c.z, radius / spacing.z, patch.size.z);
+    // A line stands for a voxel's width, so at a cut its weight falls from 1 to 0 over that width.
+    const auto weight_at = [&](int axis, double away) {
+        if (!IS_CUT || reach[axis] >= radius) return 1.0;
+        return std::clamp((reach[axis] - std::abs(away)) / spacing[axis] + 0.5, 0.0, 1.0);
+    };
+
+    const RowRange slices =
+        rows_within(c.z, (IS_CUT ? std::min(radius, reach.z + spacing.z) : radius) / spacing.z, patch.size.z);
     for (int32_t z = slices.begin; z < slices.end; ++z) {
         // The slice's largest disc lies where the slice is nearest to the centre.
         const double nearest = (std::clamp(c.z, double(z), double(z + 1)) - c.z) * spacing.z;
         const double disc = std::sqrt(std::max(radius * radius - nearest * nearest, 0.0));
-        const RowRange rows = rows_within(c.y, disc / spacing.y, patch.size.y);
+        const RowRange rows =
+            rows_within(c.y, (IS_CUT ? std::min(disc, reach.y + spacing.y) : disc) / spacing.y, patch.size.y);
         for (int32_t y = rows.begin; y < rows.end; ++y) {
             const size_t row = size_t(patch.words_per_row) * (size_t(y) + size_t(patch.size.y) * size_t(z));
             const uint32_t* words = &patch.words[row];
             if (is_empty(words, patch.words_per_row)) continue;
             for (size_t j = 0; j < rule.count; ++j) {
                 const double dz = (z + rule.places[j] - c.z) * spacing.z;
-                for (size_t i = 0; i < rule.count; ++i)
-                    add_line(words, (y + rule.places[i] - c.y) * spacing.y, dz, rule.weights[i] * rule.weights[j]);
+                const double weight = rule.weights[j] * weight_at(2, dz);
+                for (size_t i = 0; i < rule.count; ++i) {
+                    const double dy = (y + rule.places[i] - c.y) * spacing.y;
+                    add_line(words, dy, dz, rule.weights[i] * weight * weight_at(1, dy));
+                }
             }
         }
     }
     const double row_area = spacing.y * spacing.z;
     return {ball.volume * row_area, ball.first * row_area, ball.second * row_area};
+}
+
+}  // namespace
+
+BallIntegrals integrate(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
+                        const glm::dvec3& reach) noexcept
+{
+    const bool is_cut = glm::any(glm::lessThan(reach, glm::dvec3(radius)));
+    return (is_cut ? integrate_part<true> : integrate_part<false>)(patch, centre, radius, reach);
 }
 
 std::vector<glm::dvec3> random_points(int count)
@@ -167,9 +189,13 @@ Proxy find_sampled_proxy(const RelevancePatch& patch, const glm::dvec3& centre, 
     const glm::dvec3 c = centre / patch.spacing - glm::dvec3(patch.origin), reach = radius / patch.spacing;
     if (!patch.is_well_formed() || !(radius > 0.0) || !std::isfinite(c.x + c.y + c.z + radius)) return {};
     const glm::dvec3 size(patch.size);
+    const KnownPart known = patch.known_part(centre, radius);
+    if (!(known.share > 0.0)) return {};
+    const glm::dvec3 part = known.reach / radius;
     glm::dvec3 sum(0.0);
     int count = 0;
     for (const glm::dvec3& point : points) {
+        if (glm::any(glm::greaterThan(glm::abs(point), part))) continue;
         const glm::dvec3 at = c + reach * point;
         if (!glm::all(glm::greaterThanEqual(at, glm::dvec3(0.0))) || !glm::all(glm::lessThan(at, size))) continue;
         const glm::ivec3 voxel(at);
@@ -178,7 +204,8 @@ Proxy find_sampled_proxy(const RelevancePatch& patch, const glm::dvec3& centre, 
         ++count;
     }
     if (count == 0) return {};
-    return {true, radius * sum / double(count), double(count) / double(points.size())};
+    const glm::dvec3 mean = radius * sum / double(count);
+    return {true, known.share * mean, mean, std::min(double(count) / (known.share * double(points.size())), 1.0)};
 }
 
 namespace {
@@ -204,10 +231,22 @@ double denominator_of(ProxyLaw law, const BallIntegrals& ball, double radius, do
 Proxy find_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius, ProxyLaw law) noexcept
 {
     if (law == ProxyLaw::thesis) return find_sampled_proxy(patch, centre, radius, THESIS_POINTS);
-    const BallIntegrals ball = integrate(patch, centre, radius);
+    const KnownPart known = patch.known_part(centre, radius);
+    if (!(known.share > 0.0)) return {};
+    const BallIntegrals ball = integrate(patch, centre, radius, known.reach);
     if (!(ball.volume > 0.0)) return {};
-    const double whole = 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
-    return {true, ball.first / denominator_of(law, ball, radius, whole), ball.volume / whole};
+    const double whole = known.share * 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+    return {true, known.share * ball.first / denominator_of(law, ball, radius, whole), ball.first / ball.volume,
+            ball.volume / whole};
+}
+
+glm::dvec3 find_middle(const RelevancePatch& patch, const glm::dvec3& centre, double radius, ProxyLaw law,
+                       const Proxy& proxy) noexcept
+{
+    if (!proxy.in_contact) return glm::dvec3(0.0);
+    const bool is_exact = law != ProxyLaw::thesis;
+    const glm::dvec3 mean = is_exact ? proxy.mean : find_proxy(patch, centre, radius, ProxyLaw::mean).mean;
+    return mean + find_proxy(patch, centre + mean, radius, ProxyLaw::mean).mean;
 }
 
 }  // namespace shvr

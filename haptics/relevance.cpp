@@ -42,4 +42,24 @@ bool RelevancePatch::covers(const glm::dvec3& centre, double radius) const
     return true;
 }
 
+KnownPart RelevancePatch::known_part(const glm::dvec3& centre, double radius) const
+{
+    KnownPart known;
+    if (covers(centre, radius)) return {glm::dvec3(radius), 1.0};
+    if (sequence == 0 || !(radius > 0.0) || !std::isfinite(centre.x + centre.y + centre.z + radius)) return known;
+    known.share = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        // Beyond the volume's own border nothing is relevant, which is known.
+        const double lower = (centre[axis] - double(origin[axis]) * spacing[axis]);
+        const double upper = (double(origin[axis] + size[axis]) * spacing[axis] - centre[axis]);
+        double reach = radius;
+        if (origin[axis] > 0) reach = std::min(reach, lower);
+        if (origin[axis] + size[axis] < volume_size[axis]) reach = std::min(reach, upper);
+        const double part = std::max(reach, 0.0) / radius;
+        known.reach[axis] = part * radius;
+        known.share *= 0.5 * part * (3.0 - part * part);
+    }
+    return known;
+}
+
 }  // namespace shvr

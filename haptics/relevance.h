@@ -11,6 +11,15 @@
 
 namespace shvr {
 
+/// The part of a ball whose relevance is known, cut by planes at the same distance on both sides of its centre: so what
+/// is left out on one side pulls to neither.
+struct KnownPart {
+    glm::dvec3 reach{0.0};  ///< from the centre along each axis, at most the radius
+    double share =
+        0.0;  ///< fraction of the ball's volume; 0 where the centre itself is unknown. Exact for one cut; several
+              ///< are multiplied
+};
+
 struct RelevancePatch {
     static constexpr int32_t MAX_VOXELS = 128;  ///< per side
     static constexpr size_t MAX_WORDS = size_t(MAX_VOXELS) * MAX_VOXELS * MAX_VOXELS / 32;
@@ -39,6 +48,8 @@ struct RelevancePatch {
     /// Whether the patch covers the part of the ball that lies in the volume. Physical units; the corner of voxel (0,
     /// 0, 0) is the origin and voxel i has its centre at (i + 0.5) * spacing. False while nothing is known yet.
     bool covers(const glm::dvec3& centre, double radius) const;
+    /// The whole ball if `covers`.
+    KnownPart known_part(const glm::dvec3& centre, double radius) const;
 };
 
 }  // namespace shvr

@@ -148,7 +148,9 @@ void Servo::run() noexcept
         state.relevance_age = relevance_age;
         state.relevance_time_ns = relevance.sequence != 0 ? relevance.time_ns : 0;
         state_.publish();
-        place_.publish({.point = force.probe, .is_known = has_settings && !(force.flags & FORCE_NO_DEVICE)});
+        place_.publish({.point = force.probe,
+                        .velocity = force.velocity,
+                        .is_known = has_settings && !(force.flags & FORCE_NO_DEVICE)});
     }
     device_->write(glm::dvec3(0.0), memory.sent.sequence + 1);
 }

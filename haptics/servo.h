@@ -42,10 +42,11 @@ struct TimeHistogram {
     double quantile_us(double share) const noexcept;
 };
 
-/// The probe's position, for the code that mirrors relevance around it.
+/// The probe's position and motion, for the code that mirrors relevance around it.
 struct ProbePlace {
-    glm::dvec3 point{0.0};  ///< physical
-    bool is_known = false;  ///< the device is present, and the servo has settings
+    glm::dvec3 point{0.0};     ///< physical
+    glm::dvec3 velocity{0.0};  ///< physical units per second
+    bool is_known = false;     ///< the device is present, and the servo has settings
 };
 
 /// The servo's state, as published to the application.

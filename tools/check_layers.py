@@ -53,8 +53,8 @@ MAY_INCLUDE = {
     "engine/device": "engine/base engine/volume engine/gpu engine/passes engine/look engine/bricks engine/annotation "
     "engine/annotation/trace engine/annotation/work shaders",
     "engine/picture": "engine/base engine/volume engine/passes engine/look engine/annotation/work engine/session engine/device",
-    "engine/live": "engine/volume engine/passes engine/look engine/annotation engine/annotation/trace engine/annotation/work "
-    "engine/session engine/picture shaders",
+    "engine/live": "engine/touch engine/volume engine/passes engine/look engine/annotation engine/annotation/trace "
+    "engine/annotation/work engine/session engine/picture shaders",
     "haptics": "engine/base engine/touch",
     "haptics/hid": "engine/base haptics",
     "haptics/inverse3": "engine/base haptics",

@@ -21,9 +21,14 @@ struct RelevanceBits {
     int level = 0;                ///< level of the voxels
 };
 
-/// A cube of voxels at a level suited to a ball: 64 voxels a side, or 128 if the ball's radius exceeds 24 voxels; radii
-/// above 48 voxels use coarser levels. The hand can move some distance within it.
+/// A cube of voxels at a level suited to a ball: 64 voxels a side, 96 or 128 where the ball would leave that before the
+/// next cube arrives, and 128 if its radius exceeds 24 voxels. Radii above 48 voxels use coarser levels, as do those
+/// above 24 in fast motion.
 struct RelevancePlace {
+    /// Of a ball, voxels of its level, where there is a coarser one.
+    static constexpr double MAX_BALL_RADIUS = 48.0;
+    /// Motion asks for a coarser level only if the ball has that many voxels there.
+    static constexpr double MIN_COARSE_RADIUS = 12.0;
     int level = 0;
     Size3 level_size{0};      ///< voxels of the level
     glm::dvec3 spacing{1.0};  ///< voxel size of the level
@@ -35,7 +40,7 @@ struct RelevancePlace {
 
 class Relevance {
 public:
-    static constexpr int64_t SIDE = 64, LARGE_SIDE = 128;  ///< voxels
+    static constexpr int64_t SIDE = 64, MOVING_SIDE = 96, LARGE_SIDE = 128;  ///< voxels
 
     explicit Relevance(Renderer& renderer) : renderer_(renderer), query_(renderer, "mirror relevance") {}
 

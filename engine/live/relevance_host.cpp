@@ -31,18 +31,40 @@ bool RelevancePlace::covers(const glm::dvec3& centre, double radius) const
            glm::all(glm::lessThanEqual(most, glm::dvec3(box.upper)));
 }
 
-RelevancePlace relevance_place(const VolumeSource& source, const glm::dvec3& point, double radius)
+namespace {
+
+constexpr double ROUNDING = 1.0;  ///< a cube's corner is a voxel's
+
+/// Side of the cube for a ball that moves by `travel` until the cube arrives, in voxels.
+int64_t side_for(double radius, double travel)
 {
-    constexpr double SMALL = 24.0, LARGEST = 48.0;  // radii, voxels
+    constexpr double SMALL = 24.0;
+    if (radius > SMALL) return Relevance::LARGE_SIDE;
+    for (const int64_t side : {Relevance::SIDE, Relevance::MOVING_SIDE})
+        if (radius + travel + ROUNDING <= 0.5 * double(side)) return side;
+    return Relevance::LARGE_SIDE;
+}
+
+}  // namespace
+
+RelevancePlace relevance_place(const VolumeSource& source, const RegionWish& wish)
+{
     const VolumeInfo& info = source.info();
     const double finest = std::min({info.spacing.x, info.spacing.y, info.spacing.z});
     RelevancePlace place;
-    while (place.level + 1 < source.levels() && radius / std::ldexp(finest, place.level) > LARGEST) ++place.level;
+    const double travel = glm::length(wish.travel());
+    const auto is_too_fine = [&](double voxel) {
+        const bool leaves = (wish.radius + travel) / voxel + ROUNDING > 0.5 * double(Relevance::LARGE_SIDE);
+        return wish.radius / voxel > RelevancePlace::MAX_BALL_RADIUS ||
+               (leaves && wish.radius / (2.0 * voxel) >= RelevancePlace::MIN_COARSE_RADIUS);
+    };
+    while (place.level + 1 < source.levels() && is_too_fine(std::ldexp(finest, place.level))) ++place.level;
     place.spacing = info.spacing * std::ldexp(1.0, place.level);
     place.level_size = size_of_level(info.size, place.level);
-    const bool is_large = radius / std::ldexp(finest, place.level) > SMALL;
-    const int64_t side = is_large ? Relevance::LARGE_SIDE : Relevance::SIDE;
-    place.box = relevance_cube(point / place.spacing, place.level_size, side);
+    const double voxel = std::ldexp(finest, place.level);
+    const int64_t side = side_for(wish.radius / voxel, travel / voxel);
+    const glm::dvec3 middle = wish.region_middle(0.5 * double(side) * place.spacing);
+    place.box = relevance_cube(middle / place.spacing, place.level_size, side);
     return place;
 }
 

@@ -7,6 +7,7 @@
 
 #include "engine/annotation/mask.h"
 #include "engine/live/relevance.h"
+#include "engine/touch/region_wish.h"
 #include "engine/volume/source.h"
 
 namespace shvr {
@@ -15,8 +16,8 @@ namespace shvr {
 /// as possible. Fails if the point is not finite.
 VoxelBox relevance_cube(const glm::dvec3& voxel, const Size3& volume_size, int64_t side);
 
-/// The cube to query for a ball around `point`, in physical units. Fails if the point is not finite.
-RelevancePlace relevance_place(const VolumeSource& source, const glm::dvec3& point, double radius);
+/// The cube to query for a ball, ahead of it where it moves. Fails if the point is not finite.
+RelevancePlace relevance_place(const VolumeSource& source, const RegionWish& wish);
 
 /// Which voxels of a box of a level are at or above the threshold. `source` already includes density offsets.
 RelevanceBits relevance_on_host(const VolumeSource& source, int level, const VoxelBox& box, double threshold);

@@ -116,6 +116,16 @@ void RelevanceMirror::hold(const Wanted& wanted, RelevanceBits bits, bool is_fro
     held_.voxels = wanted.voxels;
     held_.threshold = wanted.threshold;
     held_.is_from_host = is_from_host;
+    measure_latency();
+    waiting_for_.reset();
+}
+
+void RelevanceMirror::measure_latency()
+{
+    if (!waiting_for_) return;
+    constexpr double NEWEST_SHARE = 0.25;
+    const double took_s = std::min(double(ends_.now_ns() - waiting_since_ns_) * 1e-9, MAX_LATENCY_S);
+    latency_s_ += NEWEST_SHARE * (took_s - latency_s_);
 }
 
 void RelevanceMirror::take_offer()
@@ -129,7 +139,6 @@ void RelevanceMirror::take_offer()
     if (!offered || waiting_for_ != offered->wanted || offered->bits.box != offered->wanted.place.box) return;
     if (offered->wanted.settings == now_->settings && offered->wanted.voxels == now_->voxels) {
         hold(offered->wanted, std::move(offered->bits), false);
-        waiting_for_.reset();
     }
 }
 
@@ -142,28 +151,26 @@ void RelevanceMirror::set_wanted(const std::optional<Wanted>& wanted)
 void RelevanceMirror::turn(uint64_t now_ns)
 {
     take_offer();
-    const std::optional<glm::dvec3> probe = ends_.probe();
-    if (!probe || !std::isfinite(probe->x + probe->y + probe->z)) return;
-    const double radius = now_->radius;
-    const Wanted best{relevance_place(*now_->source, *probe, radius), now_->threshold, now_->settings, now_->voxels};
+    const std::optional<ProbeMotion> probe = ends_.probe();
+    const glm::dvec3 checked = probe ? probe->point + probe->velocity : glm::dvec3(NAN);
+    if (!std::isfinite(checked.x + checked.y + checked.z)) return;
+    // An answer is published up to TURN_NS later.
+    const double latency_s = latency_s_ + double(TURN_NS) * 1e-9;
+    const RegionWish wish{probe->point, now_->radius, probe->velocity, latency_s};
+    const Wanted best{relevance_place(*now_->source, wish), now_->threshold, now_->settings, now_->voxels};
 
-    // A new cube is due before the ball reaches the border: once half of the margin in the cube is used up.
     const double finest = std::min({best.place.spacing.x, best.place.spacing.y, best.place.spacing.z});
-    const double slack = 0.5 * double(best.place.box.size().x) * finest - radius;
+    const double margin = 0.5 * double(held_.place.box.size().x) * finest - wish.radius;
     const bool is_current = is_of({held_.place, best.threshold, best.settings, best.voxels});
-    const bool suits =
-        is_current && held_.place.level == best.place.level && held_.place.box.size() == best.place.box.size();
-    const bool is_near = suits && held_.place.covers(*probe, radius + std::max(0.5 * slack, 0.0));
-    if (is_near || is_of(best)) {
+    const bool suits = is_current && held_.place.level <= best.place.level;
+    if ((suits && !is_region_due(held_.place, wish, margin)) || is_of(best)) {
         waiting_for_.reset();
         set_wanted({});
     } else {
         // The awaited request stays the same as long as it still suffices.
         const bool still_does = waiting_for_ && waiting_for_->threshold == best.threshold &&
                                 waiting_for_->settings == best.settings && waiting_for_->voxels == best.voxels &&
-                                waiting_for_->place.level == best.place.level &&
-                                waiting_for_->place.box.size() == best.place.box.size() &&
-                                waiting_for_->place.covers(*probe, radius + std::max(0.25 * slack, 0.0));
+                                waiting_for_->place.covers(wish.point + wish.travel(), wish.radius);
         if (!still_does) {
             if (!waiting_for_) waiting_since_ns_ = now_ns;
             waiting_for_ = best;
@@ -176,7 +183,7 @@ void RelevanceMirror::turn(uint64_t now_ns)
         }();
         const bool may_try = failed_ns_ == 0 || now_ns - failed_ns_ >= TROUBLE_NS;
         // While the held bits leave the hand enough margin, the device gets more time.
-        const bool is_urgent = !is_current || !held_.place.covers(*probe, radius + std::max(0.25 * slack, 0.0));
+        const bool is_urgent = !suits || !held_.place.covers(wish.point + wish.travel(), wish.radius);
         const uint64_t patience_ns = is_urgent ? DEVICE_NS : 4 * DEVICE_NS;
         if (may_try && (!asks_device || is_declined || now_ns - waiting_since_ns_ >= patience_ns))
             make_on_host(best, now_ns);
@@ -193,7 +200,6 @@ void RelevanceMirror::make_on_host(const Wanted& wanted, uint64_t now_ns)
     try {
         hold(wanted, relevance_on_host(*source_with_offsets(), wanted.place.level, wanted.place.box, wanted.threshold),
              true);
-        waiting_for_.reset();
         failed_ns_ = 0;
     } catch (const std::exception& failure) {
         trouble = failure.what();  // the force fades out, as it does when a device does not answer

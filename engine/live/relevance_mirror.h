@@ -7,10 +7,10 @@
 //     wanted() -> Relevance -> offer()   or the host's own      they are known to be true
 //
 // Bits stay valid until the user changes threshold, groups or voxels, so the thread updates their time stamp in each
-// iteration. When the ball comes near the cube's border, or something changed, wanted() names a new cube for the
-// device's compute pass. If no answer came within DEVICE_NS (four times that while the held bits still suffice), or the
-// cube is of a coarser level, or the device declined, the thread reads the voxels itself. The bits are the same
-// (relevance_host.h).
+// iteration. When the ball comes near the cube's border or will be beyond it before an answer arrives (region_wish.h),
+// or something changed, wanted() names a new cube for the device's compute pass. The latency of answers is measured.
+// If no answer came within DEVICE_NS (four times that while the held bits still suffice), or the cube is of a coarser
+// level, or the device declined, the thread reads the voxels itself. The bits are the same (relevance_host.h).
 //
 // choose(), wanted(), offer(), decline(), trouble(): any thread. The thread calls `Ends`.
 
@@ -40,6 +40,11 @@ struct RelevanceChoice {
     bool has_device = true;                         ///< a caller polls wanted() and offers answers
 };
 
+struct ProbeMotion {
+    glm::dvec3 point{0.0};     ///< physical
+    glm::dvec3 velocity{0.0};  ///< physical units per second
+};
+
 /// A mirrored cube, as published.
 struct MirroredRelevance {
     RelevancePlace place;
@@ -56,11 +61,12 @@ class RelevanceMirror {
 public:
     static constexpr uint64_t TURN_NS = 8'000'000;
     static constexpr uint64_t DEVICE_NS = 25'000'000;      ///< how long the host waits for the device
+    static constexpr double MAX_LATENCY_S = 0.1;           ///< the force has faded by then
     static constexpr uint64_t TROUBLE_NS = 1'000'000'000;  ///< pause before voxels that could not be read are tried
                                                            ///< again
 
     struct Ends {
-        std::function<std::optional<glm::dvec3>()> probe;  ///< physical position; null: not known yet
+        std::function<std::optional<ProbeMotion>()> probe;  ///< null: not known yet
         std::function<void(const MirroredRelevance&)> publish;
         std::function<uint64_t()> now_ns;               ///< a steady clock
         std::function<void(uint64_t until_ns)> wait{};  ///< for tests; may return early
@@ -99,6 +105,7 @@ private:
     void turn(uint64_t now_ns);
     void take_offer();
     bool is_of(const Wanted& wanted) const;
+    void measure_latency();
     void hold(const Wanted& wanted, RelevanceBits bits, bool is_from_host);
     void make_on_host(const Wanted& wanted, uint64_t now_ns);
     void set_wanted(const std::optional<Wanted>& wanted);
@@ -121,6 +128,7 @@ private:
     MirroredRelevance held_;
     std::optional<Wanted> waiting_for_;  ///< requested from the device
     uint64_t waiting_since_ns_ = 0, failed_ns_ = 0;
+    double latency_s_ = WINDOW_LATENCY_S;  ///< measured: from wanting a cube until it is held, smoothed
     std::shared_ptr<const VolumeSource> with_offsets_;
     std::shared_ptr<const DensityField> offsets_of_it_;
 

@@ -1,5 +1,6 @@
 #include "haptics/replay/replay.h"
 
+#include <algorithm>
 #include <bit>
 #include <chrono>
 #include <cmath>
@@ -7,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/finite.h"
+#include "haptics/replay/late_relevance.h"
 
 namespace shvr {
 namespace {
@@ -86,36 +88,6 @@ private:
     std::unique_ptr<ModelledTouch> touch_;
     double work_before_j_ = 0.0;  ///< sum over earlier devices
     glm::dvec3 wish_m_{0.0};
-};
-
-/// Computes relevance when the present one no longer suffices.
-class Mirror {
-public:
-    Mirror(const MakeRelevance& make, uint32_t every)
-        : make_(make), every_(every), patch_(std::make_unique<RelevancePatch>())
-    {}
-    const RelevancePatch& around(const glm::dvec3& point, const ForceSettings& settings, double threshold,
-                                 uint64_t now_ns)
-    {
-        const bool is_due = every_ > 0 && ticks_++ % every_ == 0;
-        if (threshold != threshold_ || is_due) patch_->sequence = 0;
-        if (is_finite(point) && !patch_->covers(point, settings.probe_radius)) {
-            make_(point, settings.probe_radius, threshold, *patch_);
-            patch_->sequence = ++made_;
-            threshold_ = threshold;
-        }
-        patch_->time_ns = now_ns;
-        patch_->settings = settings.relevance_settings;
-        return *patch_;
-    }
-    uint64_t made() const { return made_; }
-
-private:
-    const MakeRelevance& make_;
-    uint32_t every_ = 0, ticks_ = 0;
-    std::unique_ptr<RelevancePatch> patch_;
-    uint64_t made_ = 0;
-    double threshold_ = 0.0;
 };
 
 /// The relevance that the servo had, tick by tick.
@@ -204,7 +176,7 @@ ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, cons
 {
     using Clock = std::chrono::steady_clock;
     Player player(trace, options);
-    Mirror mirror(make_relevance, options.relevance_every);
+    LateRelevance mirror(make_relevance, options.relevance_latency_s, options.relevance_every);
     RecordedRelevance recorded(trace);
     const bool is_recorded = replays_relevance(trace, options);
     if (!is_recorded && !make_relevance) fail("the trace holds no relevance that fits; expected a volume");
@@ -217,6 +189,7 @@ ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, cons
     auto settings = trace.settings.begin();
     auto swap = trace.swaps.begin();
     DeviceState state;
+    ForceStep step_now;
     for (size_t i = 0; i < trace.ticks.size(); ++i) {
         const TraceTick& tick = trace.ticks[i];
         while (settings + 1 != trace.settings.end() && (settings + 1)->from_tick <= i) ++settings;
@@ -227,6 +200,8 @@ ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, cons
             tally.swap();
             player.swap();
             recorded.swap();
+            mirror.swap();
+            step_now = {};
             memory = {};
             growth = std::make_unique<GrowthMemory>();
             state = {};
@@ -236,10 +211,10 @@ ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, cons
         const ReadResult read = player.read(tick, state);
         const glm::dvec3 probe = force_settings.workspace.to_point(state.position_m);
         const RelevancePatch& patch =
-            is_recorded ? recorded.at(i) : mirror.around(probe, force_settings, settings->threshold, tick.now_ns);
+            is_recorded ? recorded.at(i)
+                        : mirror.around(step_now.velocity, probe, force_settings, settings->threshold, tick.now_ns);
         const Clock::time_point begin = Clock::now();
-        const ForceStep step_now =
-            step(force_settings, player.caps(i), read, state, patch, tick.now_ns, memory, *growth);
+        step_now = step(force_settings, player.caps(i), read, state, patch, tick.now_ns, memory, *growth);
         result.tick_ns.push_back(uint64_t(std::chrono::nanoseconds(Clock::now() - begin).count()));
         player.write(step_now);
         tally.add(tick, state, step_now);

@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "haptics/replay/late_relevance.h"
 #include "haptics/replay/modelled_touch.h"
 #include "haptics/replay/trace.h"
 
@@ -15,14 +16,11 @@ struct ReplayOptions {
     std::optional<double> stiffness, damping;
     /// A modelled hand moves this device along the trace; without it, the device's answers are those of the trace.
     std::optional<TouchModel> touch;
-    bool relevance_anew = false;   ///< recomputes relevance even if the trace contains it
-    uint32_t relevance_every = 0;  ///< ticks between updates of relevance; 0: when the ball leaves the last patch
+    bool relevance_anew = false;  ///< recomputes relevance even if the trace contains it
+    /// Computed relevance is asked for as in the window (engine/touch/region_wish.h) and felt that much later.
+    double relevance_latency_s = WINDOW_LATENCY_S;
+    uint32_t relevance_every = 0;  ///< ticks between updates of relevance, each felt at once; 0: as in the window
 };
-
-/// Fills `patch` with the relevant voxels around `point` for a ball of `radius` (physical), at or above `threshold`. It
-/// may choose the patch's position and level freely; the replay sets sequence, time and settings afterwards.
-using MakeRelevance =
-    std::function<void(const glm::dvec3& point, double radius, double threshold, RelevancePatch& patch)>;
 
 struct ReplayResult {
     uint64_t ticks = 0;
@@ -41,8 +39,8 @@ struct ReplayResult {
 };
 /// Whether the trace's relevance is used. Not with a modelled hand: its path differs, and no relevance is known there.
 bool replays_relevance(const Trace& trace, const ReplayOptions& options);
-/// Calls `make_relevance` if the trace's relevance is not used, also when the threshold changes, which takes effect at
-/// once; if it is empty, that fails.
+/// Calls `make_relevance` if the trace's relevance is not used, also when the threshold changes; if it is empty, that
+/// fails.
 ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, const MakeRelevance& make_relevance,
                           bool keep_steps = false);
 

@@ -38,11 +38,11 @@ void check(const std::string& text)
         expect(text_of(parse_trace(written, "again")) == written, "a trace that is not read as it was written");
         constexpr size_t FEW = 300;  // ticks are alike
         if (trace.ticks.size() > FEW) trace.ticks.resize(FEW);
-        const MakeRelevance solid = [](const glm::dvec3&, double radius, double, RelevancePatch& patch) {
+        const MakeRelevance solid = [](const RegionWish& wish, double, RelevancePatch& patch) {
             patch.size = glm::ivec3(32);
             patch.volume_size = glm::ivec3(1 << 20);
             patch.words_per_row = 1;
-            patch.spacing = glm::dvec3(radius / 8.0);
+            patch.spacing = glm::dvec3(wish.radius / 8.0);
             std::fill_n(patch.words.begin(), patch.word_count(), ~0u);
         };
         check_replay(trace, {}, solid);

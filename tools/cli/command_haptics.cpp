@@ -53,9 +53,9 @@ MakeRelevance relevance_of(const ReplayCommandOptions& options, Trace& trace, Lo
     const DensityField offsets = offsets_of(work_files(opened.session, info), options.common.belief, notices);
     warn(notices, options.common);
     const std::shared_ptr<const VolumeSource> source = with_offsets(opened.source, offsets);
-    return [source, &work](const glm::dvec3& point, double radius, double threshold, RelevancePatch& patch) {
+    return [source, &work](const RegionWish& wish, double threshold, RelevancePatch& patch) {
         work.stop_if_asked();
-        ui::host_relevance(*source, nullptr, {}, point, radius, threshold, patch);
+        ui::host_relevance(*source, nullptr, {}, wish, threshold, patch);
     };
 }
 

@@ -109,9 +109,9 @@ Json run_case(const std::vector<uint8_t>& scene, const Case& one, LongWork& work
     constexpr size_t TICKS = 1500;
     constexpr uint32_t EVERY = 2;  // half of the ticks grow again: far more than a mirror delivers
     const Trace trace = make_trace(one.radius, one.mode, TICKS);
-    const MakeRelevance make = [&](const glm::dvec3& point, double, double, RelevancePatch& patch) {
+    const MakeRelevance make = [&](const RegionWish& wish, double, RelevancePatch& patch) {
         work.stop_if_asked();
-        cut(scene, point, one.side, patch);
+        cut(scene, wish.point, one.side, patch);
     };
     const ReplayResult result = replay_trace(trace, {.touch = TouchModel{}, .relevance_every = EVERY}, make);
     Json measured = report_of(result, "um");

@@ -190,8 +190,8 @@ ToolPlace Document::tool_place() const
     ToolPlace place = tool_place_at(touch.probe());
     if (place.node || place.internode) return place;
     const ServoState* const servo = touch.servo();
-    const bool has_proxy = session.probe.touch.at_proxy && servo && servo->ticks > 0 && servo->step.in_contact;
-    if (has_proxy) place.point = servo->step.proxy;
+    const bool has_middle = session.probe.touch.at_proxy && servo && servo->ticks > 0 && servo->step.in_contact;
+    if (has_middle) place.point = servo->step.middle;
     return place;
 }
 

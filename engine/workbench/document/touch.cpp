@@ -35,10 +35,11 @@ void Touch::start(std::shared_ptr<HapticDevice> device)
     servo_ = std::make_unique<TappedServo>(std::move(device), real_pacing(), recorder_ ? recorder_->number() : 0);
     Servo& servo = servo_->servo;
     mirror_ = std::make_unique<RelevanceMirror>(
-        RelevanceMirror::Ends{.probe = [&servo]() -> std::optional<glm::dvec3> {
+        RelevanceMirror::Ends{.probe = [&servo]() -> std::optional<ProbeMotion> {
                                   servo.place().take();
                                   const ProbePlace& place = servo.place().value();
-                                  return place.is_known ? std::optional(place.point) : std::nullopt;
+                                  if (!place.is_known) return std::nullopt;
+                                  return ProbeMotion{place.point, place.velocity};
                               },
                               .publish =
                                   [tapped = servo_.get()](const MirroredRelevance& mirrored) {
@@ -161,6 +162,7 @@ void Touch::send_settings(const TouchSettings& settings)
                             .strength = guide.feel.strength,
                             .clicks = guide.feel.clicks,
                             .let_go = settings.lets_go,
+                            .finds_middle = guide.feel.at_proxy,
                             .relevance_settings = chosen_.settings};
     order.plane = plane_of(plane_, on_plane_, order.settings.force.workspace, planes_);
     order.recording = recorder_ ? recorder_->number() : 0;

@@ -230,7 +230,7 @@ void Hand::follow_points(const std::vector<StylusPoint>& points, double node_eve
             end_stroke();
             continue;
         }
-        const glm::dvec3 at = feel.at_proxy ? point.proxy : point.probe;
+        const glm::dvec3 at = feel.at_proxy ? point.middle : point.probe;
         if (last && glm::distance(*last, at) < apart) continue;
         last = at;
         ++placed;

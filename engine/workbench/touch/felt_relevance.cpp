@@ -32,9 +32,9 @@ std::optional<std::bitset<256>> felt_groups(const std::vector<uint8_t>& groups)
 }
 
 void host_relevance(const VolumeSource& source, const Mask* mask, const std::vector<uint8_t>& groups,
-                    const glm::dvec3& point, double radius, double threshold, RelevancePatch& patch)
+                    const RegionWish& wish, double threshold, RelevancePatch& patch)
 {
-    const RelevancePlace place = relevance_place(source, point, radius);
+    const RelevancePlace place = relevance_place(source, wish);
     RelevanceBits bits = relevance_on_host(source, place.level, place.box, threshold);
     if (const auto felt = felt_groups(groups); felt && mask) limit_to_groups(*mask, *felt, bits);
     put_bits(place, bits, patch);

@@ -17,9 +17,9 @@ void put_mirrored(const MirroredRelevance& mirrored, RelevancePatch& patch);
 /// Returns the groups that are felt; without names: all, painted or not.
 std::optional<std::bitset<256>> felt_groups(const std::vector<uint8_t>& groups);
 
-/// Computes the relevance around a point as the window mirrors it. `source` includes density offsets already; `mask`
+/// Computes the relevance around a probe as the window mirrors it. `source` includes density offsets already; `mask`
 /// may be null if no groups are named.
 void host_relevance(const VolumeSource& source, const Mask* mask, const std::vector<uint8_t>& groups,
-                    const glm::dvec3& point, double radius, double threshold, RelevancePatch& patch);
+                    const RegionWish& wish, double threshold, RelevancePatch& patch);
 
 }  // namespace shvr::ui

@@ -36,14 +36,13 @@ std::vector<StylusPoint> play_stylus(const Trace& trace, const GuideSettings& gu
         force.surface_share = guide.feel.surface_share;
         force.strength = guide.feel.strength;
         force.let_go = false;
+        force.finds_middle = guide.feel.at_proxy;
     }
-    constexpr uint32_t RELEVANCE_EVERY = 16;  // ticks between updates of relevance, as in a window
     ReplayOptions how;
     how.relevance_anew = true;  // of the present threshold, groups and voxels
-    how.relevance_every = RELEVANCE_EVERY;
     if (by_hand) how.touch = TouchModel{};
-    const MakeRelevance make = [&](const glm::dvec3& point, double radius, double threshold, RelevancePatch& patch) {
-        host_relevance(*source, &mask, guide.feel.groups, point, radius, threshold, patch);
+    const MakeRelevance make = [&](const RegionWish& wish, double threshold, RelevancePatch& patch) {
+        host_relevance(*source, &mask, guide.feel.groups, wish, threshold, patch);
     };
     const ReplayResult result = replay_trace(led, how, make, true);
     std::vector<StylusPoint> points;
@@ -51,7 +50,7 @@ std::vector<StylusPoint> play_stylus(const Trace& trace, const GuideSettings& gu
     for (size_t i = 0; i < result.steps.size(); ++i) {
         const ForceStep& step = result.steps[i];
         points.push_back({.probe = step.probe,
-                          .proxy = step.in_contact ? step.proxy : step.probe,
+                          .middle = step.in_contact ? step.middle : step.probe,
                           .in_contact = step.in_contact,
                           .relevant_share = step.relevant_share,
                           .is_pressed = (led.ticks[i].state.buttons & PAINT_BUTTON) != 0});

@@ -22,7 +22,7 @@ struct GuideSettings {
 GuideSettings guide_settings(const Session& session, double probe_radius);
 
 struct StylusPoint {
-    glm::dvec3 probe{0.0}, proxy{0.0};  ///< physical units; equal without contact
+    glm::dvec3 probe{0.0}, middle{0.0};  ///< physical units; equal without contact or `at_proxy`
     bool in_contact = false;
     double relevant_share = 0.0;
     bool is_pressed = false;  ///< state of the first button

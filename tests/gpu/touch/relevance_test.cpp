@@ -117,7 +117,7 @@ TEST_CASE("a ball's cube grows with it, then becomes coarser, and always holds t
         const auto share = [&] { return double(random()) / 4294967296.0; };
         const glm::dvec3 at = glm::dvec3(share(), share(), share()) * glm::dvec3(300, 200, 400);
         const double radius = 1.0 + 95.0 * share();
-        const RelevancePlace place = relevance_place(*source, at, radius);
+        const RelevancePlace place = relevance_place(*source, {.point = at, .radius = radius});
         CHECK(place.covers(at, radius));
         CHECK(!place.covers(at, 1000.0));
         ++kinds[{place.level, place.box.size().x}];

@@ -1,5 +1,5 @@
-// Guidance along a tube: how much closer to its middle line a hand and a mouse stay with assistance
-// than without: for a lone tube, in noise, near a neighbour and with one that touches.
+// Guidance along a tube: how much closer to its middle line a hand and a mouse stay with assistance than without: for a
+// lone tube, in noise, near a neighbour and with one that touches. Relevance is as late as in the window.
 
 #include <algorithm>
 #include <array>
@@ -14,6 +14,7 @@
 #include <doctest/doctest.h>
 
 #include "haptics/force.h"
+#include "haptics/replay/late_relevance.h"
 #include "haptics/simulated_device.h"
 #include "tests/support/haptic_scenes.h"
 
@@ -66,11 +67,12 @@ std::vector<uint8_t> make_scene(const SceneKind& kind, double threshold)
     return scene;
 }
 
-void cut(const std::vector<uint8_t>& scene, const glm::dvec3& probe_mm, RelevancePatch& patch)
+void cut(const std::vector<uint8_t>& scene, const RegionWish& wish, RelevancePatch& patch)
 {
     constexpr int SIDE = 64;
+    const glm::dvec3 middle_mm = wish.region_middle(glm::dvec3(0.5 * SIDE * VOXEL_MM));
     const glm::ivec3 origin =
-        glm::clamp(glm::ivec3(glm::round(probe_mm / VOXEL_MM)) - SIDE / 2, glm::ivec3(0), SIZE - SIDE);
+        glm::clamp(glm::ivec3(glm::round(middle_mm / VOXEL_MM)) - SIDE / 2, glm::ivec3(0), SIZE - SIDE);
     fill_patch(patch, origin, glm::ivec3(SIDE), glm::dvec3(VOXEL_MM), [&](const glm::dvec3& p) {
         const glm::ivec3 v(p / VOXEL_MM);
         return scene[size_t(v.x) + size_t(SIZE.x) * (size_t(v.y) + size_t(SIZE.y) * size_t(v.z))] != 0;
@@ -89,9 +91,11 @@ double follow(const std::vector<uint8_t>& scene, const HandModel& hand, std::opt
         std::array<glm::dvec3, 3> phases;
         for (glm::dvec3& p : phases) p = {phase(), phase(), phase()};
         SimulatedDevice device(hand);
-        const auto patch = std::make_unique<RelevancePatch>();
+        LateRelevance relevance([&](const RegionWish& wish, double, RelevancePatch& patch) { cut(scene, wish, patch); },
+                                WINDOW_LATENCY_S);
         const auto growth = std::make_unique<GrowthMemory>();
         ForceMemory memory;
+        ForceStep now;
         ForceSettings settings{.assistance = mode.has_value(), .probe_radius = 2.5};
         settings.workspace = {glm::dmat3(1000.0), glm::dvec3(0.0)};
         settings.mode = mode.value_or(TouchMode::proximity);
@@ -108,10 +112,9 @@ double follow(const std::vector<uint8_t>& scene, const HandModel& hand, std::opt
             DeviceState state;
             device.read(state);
             const glm::dvec3 probe = settings.workspace.to_point(state.position_m);
-            if (!patch->covers(probe, settings.probe_radius + 2.0)) cut(scene, probe, *patch);
             const uint64_t now_ns = uint64_t(tick + 1) * MILLISECOND;
-            patch->time_ns = now_ns;
-            const ForceStep now = step(settings, caps, ReadResult::fresh, state, *patch, now_ns, memory, *growth);
+            const RelevancePatch& patch = relevance.around(now.velocity, probe, settings, 1.0, now_ns);
+            now = step(settings, caps, ReadResult::fresh, state, patch, now_ns, memory, *growth);
             device.write(now.force_n, now.sequence);
             if (tick < 1500) continue;  // engaged by then
             const glm::dvec3 away = LINE.towards(probe);

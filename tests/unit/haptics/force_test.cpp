@@ -406,7 +406,7 @@ TEST_CASE("old relevance fades out over a tenth of a second, fades in at the sam
     CHECK(last == doctest::Approx(full));
 }
 
-TEST_CASE("relevance that is unknown or does not cover the ball fades out as well")
+TEST_CASE("relevance that is unknown or covers less than half of the ball fades out as well")
 {
     for (const bool is_unknown : {true, false}) {
         Bench bench;
@@ -414,7 +414,7 @@ TEST_CASE("relevance that is unknown or does not cover the ball fades out as wel
         if (is_unknown)
             bench.patch.sequence = 0;
         else
-            bench.settings.probe_radius = 7.5;  // y from 9 - 7.5 is covered; up to 16.5 is not
+            bench.settings.probe_radius = 24.0;  // y from 0 to 16 is covered; up to 33 is not
         double last = full;
         for (int i = 0; i < 110; ++i) {
             const double force = glm::length(bench.tick().force_n);

@@ -155,10 +155,11 @@ struct World {
         settings.relevance_settings = 7;
         servo->settings().publish(settings);
         mirror = std::make_unique<RelevanceMirror>(
-            RelevanceMirror::Ends{.probe = [this]() -> std::optional<glm::dvec3> {
+            RelevanceMirror::Ends{.probe = [this]() -> std::optional<ProbeMotion> {
                                       servo->place().take();
                                       const ProbePlace& place = servo->place().value();
-                                      return place.is_known ? std::optional(place.point) : std::nullopt;
+                                      if (!place.is_known) return std::nullopt;
+                                      return ProbeMotion{place.point, place.velocity};
                                   },
                                   .publish = [this](const MirroredRelevance& mirrored) { publish(mirrored); },
                                   .now_ns =

@@ -56,7 +56,7 @@ Trace wandering(int ticks)
     return trace;
 }
 
-void make_tube(const glm::dvec3&, double, double, RelevancePatch& patch)
+void make_tube(const RegionWish&, double, RelevancePatch& patch)
 {
     const Rod rod{.point = glm::dvec3(8.0), .radius = 1.0};
     fill_patch(patch, {0, 0, 0}, glm::ivec3(64), glm::dvec3(0.25), [&](const glm::dvec3& p) { return rod.holds(p); });
