@@ -56,6 +56,20 @@ void read_caps(const JsonNode& node, DeviceCaps& caps)
     caps.tells_force_sequence = node["tells_force_sequence"].flag(caps.tells_force_sequence);
 }
 
+/// Whether the columns have one length and are at right angles, as far as rounding tells: only then is the inverse the
+/// transpose divided by the scale squared, which the force uses.
+bool is_rotation_and_scale(const glm::dmat3& matrix)
+{
+    constexpr double ROUNDING = 1e-6;
+    const glm::dmat3 product = glm::transpose(matrix) * matrix;
+    const double scale = product[0][0];
+    if (!(scale > 0.0)) return false;
+    for (glm::length_t i = 0; i < 3; ++i)
+        for (glm::length_t j = 0; j < 3; ++j)
+            if (!(std::abs(product[i][j] - (i == j ? scale : 0.0)) <= ROUNDING * scale)) return false;
+    return true;
+}
+
 void read_workspace(const JsonNode& node, Workspace& workspace)
 {
     const NumberRange length{-MAX_LENGTH, MAX_LENGTH};
@@ -63,7 +77,8 @@ void read_workspace(const JsonNode& node, Workspace& workspace)
         const std::vector<JsonNode> numbers = matrix.elements(9, 9);
         for (size_t i = 0; i < 9; ++i)
             workspace.to_volume[glm::length_t(i / 3)][glm::length_t(i % 3)] = numbers[i].number(length);
-        if (!(std::abs(glm::determinant(workspace.to_volume)) > 0.0)) matrix.refuse("nine numbers of a turn and scale");
+        if (!is_rotation_and_scale(workspace.to_volume))
+            matrix.refuse("nine numbers of a rotation times a scale, three columns of one length at right angles");
     }
     workspace.origin = node["origin"].vector(workspace.origin, length);
 }
@@ -84,6 +99,9 @@ void read_settings(const JsonNode& node, TraceSettings& settings)
     read_workspace(node, force.workspace);
     force.reset = number_32(node["reset"], force.reset);
     force.to_camera = node["to_camera"].vector(force.to_camera, {-1.0, 1.0});
+    constexpr double ROUNDING = 1e-6;
+    if (!(std::abs(glm::length(force.to_camera) - 1.0) <= ROUNDING))
+        node["to_camera"].refuse("a direction, three numbers with a length of 1");
     force.surface_share = node["surface_share"].number(force.surface_share, {0.0, 1.0});
     force.movement_scale = node["movement_scale"].number(force.movement_scale, above_zero(1e-6, 1e6));
     force.strength = node["strength"].number(force.strength, {0.0, 1.0});

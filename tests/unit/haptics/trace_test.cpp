@@ -99,14 +99,26 @@ TEST_CASE("what is no trace is refused in a sentence with its line")
     CHECK(refusal(HEAD).starts_with("t.trace has no tick; expected"));
     CHECK(refusal("{\"shvr_stylus_trace\":4}\n").find("t.trace:1: key shvr_stylus_trace is 4; expected 1, 2 or 3") ==
           0);
-    for (const char* line : {"{\"at\":[0,0]}", "{\"at\":[0,0,\"far\"]}", "{\"speed\":1}", "{\"read\":\"gone\"}", "7",
-                             "{\"settings\":{\"mode\":\"magic\"}}", "{\"settings\":{\"probe_radius\":0}}",
-                             "{\"settings\":{\"to_volume\":[0,0,0,0,0,0,0,0,0]}}", "{\"now\":-1}", "{\"at\":"}) {
+    for (const char* line :
+         {"{\"at\":[0,0]}", "{\"at\":[0,0,\"far\"]}", "{\"speed\":1}", "{\"read\":\"gone\"}", "7",
+          "{\"settings\":{\"mode\":\"magic\"}}", "{\"settings\":{\"probe_radius\":0}}",
+          "{\"settings\":{\"to_volume\":[0,0,0,0,0,0,0,0,0]}}", "{\"settings\":{\"to_volume\":[2,0,0,1,2,0,0,0,2]}}",
+          "{\"settings\":{\"to_volume\":[2,0,0,0,2,0,0,0,2.1]}}", "{\"settings\":{\"to_camera\":[0,0,0]}}",
+          "{\"settings\":{\"to_camera\":[1,1,0]}}", "{\"now\":-1}", "{\"at\":"}) {
         const std::string said = refusal(HEAD + line);
         CAPTURE(said);
         CHECK(said.find("t.trace:2") == 0);
         CHECK(said.find('\n') == std::string::npos);
     }
+    // A shear doubles forces, and a direction of length 0 never lets go of a surface.
+    CHECK(refusal(HEAD + "{\"settings\":{\"to_volume\":[2,0,0,1,2,0,0,0,2]}}")
+              .find("to_volume is [2,0,0,1,2,0,0,0,2]; "
+                    "expected nine numbers of a rotation") != std::string::npos);
+    CHECK(refusal(HEAD + "{\"settings\":{\"to_camera\":[0,0,0]}}").find("to_camera is [0,0,0]; expected a direction") !=
+          std::string::npos);
+    // A mirrored or turned one is fine.
+    CHECK(refusal(HEAD + "{\"settings\":{\"to_volume\":[0,2,0,2,0,0,0,0,2],\"to_camera\":[0.6,0,0.8]}}")
+              .find("no tick") != std::string::npos);
     CHECK(refusal(HEAD + "{\"now\":5000000}\n{\"now\":4000000}").find("t.trace:3") == 0);  // time goes on
 }
 
