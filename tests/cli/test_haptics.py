@@ -78,6 +78,41 @@ class Haptics(CliTest):
         trace = self.trace()
         self.assertEqual(self.replay(trace, "--threshold", "250")["max_force_n"], 0)
 
+    def test_only_the_chosen_groups_are_felt(self):
+        trace = self.trace(ticks=600)
+        self.assertEqual(self.replay(trace)["contact_ticks"] > 500, True)
+        self.assertEqual(self.replay(trace, "--set", "probe.touch.groups=[5]")["contact_ticks"], 0)
+        self.assertGreater(self.replay(trace, "--set", "probe.touch.groups=[0]")["contact_ticks"], 500)
+        # Painted, group 5 is felt and what is unpainted is not.
+        voxels = (self.folder / "tube.raw").read_bytes()
+        (self.folder / "paint.mask").write_bytes(voxels.replace(b"\xc8", b"\x05"))
+        painted = self.write_session(volume={"path": "tube.nhdr"})
+        felt = {group: self.check_json("haptics", "replay", trace, "--volume", painted,
+                                       "--set", f"probe.touch.groups=[{group}]")["contact_ticks"] for group in (5, 6)}
+        self.assertGreater(felt[5], 500)
+        self.assertEqual(felt[6], 0)
+
+    def test_a_ball_of_seventy_voxels_is_felt_on_coarser_levels(self):
+        side = 160
+        voxels = bytearray(side**3)
+        for z in range(60, 100):
+            for y in range(60, 100):
+                start = side * (y + side * z)
+                voxels[start:start + side] = b"\xc8" * side
+        (self.folder / "large.raw").write_bytes(voxels)
+        large = self.folder / "large.nhdr"
+        large.write_text(self.volume.read_text().replace("64 64 64", "160 160 160").replace("tube.raw", "large.raw"))
+        scale = 140 / 0.0025
+        lines = [{"shvr_stylus_trace": 1},
+                 {"settings": {"assistance": True, "threshold": 100, "probe_radius": 140,
+                               "to_volume": [scale, 0, 0, 0, scale, 0, 0, 0, scale], "origin": [160, 160, 160]}}]
+        lines += [{"at": [0, 0.0005, 0]}] * 400
+        trace = self.folder / "large.trace"
+        trace.write_text("".join(json.dumps(line) + "\n" for line in lines))
+        result = self.check_json("haptics", "replay", trace, "--volume", large)
+        self.assertGreater(result["contact_ticks"], 350)
+        self.assertGreater(result["max_force_n"], 0.05)
+
     def test_forces_of_the_trace_are_compared(self):
         trace = self.trace(more=[{"force": [9, 9, 9]}])
         result = self.replay(trace)

@@ -5,6 +5,7 @@
 
 #include "engine/annotation/work/work_offsets.h"
 #include "engine/base/text.h"
+#include "engine/volume/pyramid_source.h"
 #include "engine/volume/unit.h"
 #include "engine/workbench/touch/felt_relevance.h"
 #include "haptics/replay/replay.h"
@@ -39,6 +40,36 @@ std::vector<std::string> choices()
     return names;
 }
 
+/// Offsets and, if only some groups are felt, what is painted.
+Document felt_document(const ReplayCommandOptions& options, const UnmeasuredSession& opened, const VolumeInfo& info)
+{
+    if (opened.session.probe.touch.groups.empty()) {
+        std::vector<Notice> notices;
+        DensityField offsets = offsets_of(work_files(opened.session, info), options.common.belief, notices);
+        warn(notices, options.common);
+        return {.mask = Mask(info.size), .trace = {}, .density = std::move(offsets)};
+    }
+    Work work(info.size, info.type);
+    warn(work.open(work_files(opened.session, info), {.belief = options.common.belief, .only_look = true}),
+         options.common);
+    work.expect_choice();
+    return work.document();
+}
+
+/// A large ball is felt on coarser levels, at some size or speed. Makes them if the trace has such a ball and the file
+/// has none.
+std::shared_ptr<const VolumeSource> with_levels_for(const Trace& trace, std::shared_ptr<const VolumeSource> source,
+                                                    LongWork& work)
+{
+    constexpr uint64_t HOST_BYTES = uint64_t{1} << 30;  // as elsewhere without --budget-host
+    const glm::dvec3 spacing = source->info().spacing;
+    const double finest = std::min({spacing.x, spacing.y, spacing.z});
+    const bool needs_levels = std::ranges::any_of(trace.settings, [&](const TraceSettings& settings) {
+        return settings.force.probe_radius / finest > 2.0 * RelevancePlace::MIN_COARSE_RADIUS;
+    });
+    return needs_levels ? with_levels(std::move(source), HOST_BYTES, work.begin("making coarser levels")) : source;
+}
+
 /// Relevance of the volume, as the window mirrors it. A trace that names no unit gets the volume's.
 MakeRelevance relevance_of(const ReplayCommandOptions& options, Trace& trace, LongWork& work)
 {
@@ -49,13 +80,13 @@ MakeRelevance relevance_of(const ReplayCommandOptions& options, Trace& trace, Lo
         fail(options.trace, ": key unit is ", in_quotes(trace.unit), ", and lengths of ", options.volume, " are in ",
              in_quotes(info.unit), "; expected a trace of this volume");
     trace.unit = info.unit;
-    std::vector<Notice> notices;
-    const DensityField offsets = offsets_of(work_files(opened.session, info), options.common.belief, notices);
-    warn(notices, options.common);
-    const std::shared_ptr<const VolumeSource> source = with_offsets(opened.source, offsets);
-    return [source, &work](const RegionWish& wish, double threshold, RelevancePatch& patch) {
+    const auto document = std::make_shared<const Document>(felt_document(options, opened, info));
+    const std::shared_ptr<const VolumeSource> source =
+        with_offsets(with_levels_for(trace, opened.source, work), document->density);
+    const std::vector<uint8_t> groups = opened.session.probe.touch.groups;
+    return [source, document, groups, &work](const RegionWish& wish, double threshold, RelevancePatch& patch) {
         work.stop_if_asked();
-        ui::host_relevance(*source, nullptr, {}, wish, threshold, patch);
+        ui::host_relevance(*source, &document->mask, groups, wish, threshold, patch);
     };
 }
 
