@@ -1,6 +1,8 @@
 #include "engine/formats/restated.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "engine/base/error.h"
@@ -31,7 +33,11 @@ public:
     {
         return source_->stored_blocks(level, most);
     }
-    std::optional<VolumeStatistics> statistics() const override { return source_->statistics(); }
+    std::optional<VolumeStatistics> statistics() const override
+    {
+        // What the source knows was measured with its own fill value.
+        return info().nodata ? std::nullopt : source_->statistics();
+    }
 
 private:
     std::unique_ptr<VolumeSource> source_;
@@ -59,11 +65,27 @@ bool is_same(const VolumeInfo& a, const VolumeInfo& b)
     return ((from && to) || a.unit == b.unit) && glm::all(glm::lessThanEqual(apart, TOLERANCE * b.spacing));
 }
 
+/// The value as voxels of that type have it; -3.4e38, for instance, is rounded in float32.
+double as_voxel(VoxelType type, double value)
+{
+    constexpr double MOST = std::numeric_limits<float>::max();
+    return type == VoxelType::float32 && std::isfinite(value) ? double(float(std::clamp(value, -MOST, MOST))) : value;
+}
+
 }  // namespace
+
+std::unique_ptr<VolumeSource> with_nodata(std::unique_ptr<VolumeSource> source, std::optional<double> nodata)
+{
+    if (!nodata) return source;
+    VolumeInfo info = source->info();
+    info.nodata = as_voxel(info.type, *nodata);
+    return std::make_unique<RestatedSource>(std::move(source), std::move(info));
+}
 
 std::unique_ptr<VolumeSource> restated(std::unique_ptr<VolumeSource> source, const std::filesystem::path& path,
                                        const OpenOptions& options)
 {
+    source = with_nodata(std::move(source), options.nodata);
     if (!options.spacing && options.unit.empty()) return source;
     const VolumeInfo& stated = source->info();
     VolumeInfo info = stated;

@@ -9,6 +9,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/formats/restated.h"
 #include "engine/formats/zarr/project.h"
 #include "engine/look/session_color.h"
 #include "engine/projects/import_files.h"
@@ -104,7 +105,8 @@ fs::path session_file_of(const fs::path& path)
 std::unique_ptr<VolumeSource> open_source(const Session& session)
 {
     if (session.procedural) return open_procedural(*session.procedural);
-    if (session.raw_layout) return open_raw(session.volume_path, *session.raw_layout);
+    if (session.raw_layout)
+        return with_nodata(open_raw(session.volume_path, *session.raw_layout), session.open_options.nodata);
     return open_volume(session.volume_path, session.open_options);
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 
 #include "engine/annotation/trace/trace_file.h"
@@ -91,6 +92,31 @@ void spacing_fields(Fields& f, OpenOptions& options)
     f.check("unit", !has_controls(options.unit), "the name of a unit");
 }
 
+constexpr std::string_view NO_NODATA = "none";
+
+/// Infinity stands for "none" (OpenOptions).
+void nodata_field(Fields& f, std::optional<double>& nodata)
+{
+    const auto read = [&](const JsonNode& node) {
+        if (!node.is_text())
+            nodata = node.number(any_number());
+        else if (node.text() == NO_NODATA)
+            nodata = std::numeric_limits<double>::infinity();
+        else
+            node.refuse("a number, or \"none\"");
+    };
+    const auto written = [&]() -> std::optional<std::string> {
+        if (!nodata) return std::nullopt;
+        return std::isinf(*nodata) ? '"' + std::string(NO_NODATA) + '"' : digits_of(*nodata);
+    };
+    f.other(
+        "nodata", read, written,
+        {.meaning = "value of voxels without data (fill value). It counts neither for the histogram's range nor for "
+                    "automatic settings; painting decides by values alone. `\"none\"`: no value is one",
+         .allowed = "number or `\"none\"`",
+         .standard = "values at an end of the range, behind a gap that is wide for all others"});
+}
+
 void procedural_fields(Fields& f, ProceduralSpec& spec)
 {
     const std::vector<std::string> kinds = procedural_kinds();
@@ -136,7 +162,10 @@ void volume_fields(Fields& f, Session& session)
         if (!session.procedural) session.procedural.emplace();
         return procedural_fields(f, *session.procedural);
     }
-    if (f.has("raw", session.raw_layout.has_value())) return raw_fields(f, session.volume_path, session.raw_layout);
+    if (f.has("raw", session.raw_layout.has_value())) {
+        raw_fields(f, session.volume_path, session.raw_layout);
+        return nodata_field(f, session.open_options.nodata);
+    }
     f.path("path", session.volume_path, PATH);
     f.mention("raw", RAW);
     f.mention("procedural", PROCEDURAL);
@@ -162,6 +191,7 @@ void volume_fields(Fields& f, Session& session)
          .standard = "0"});
     session.open_options.level = int(level.value_or(0));
     spacing_fields(f, session.open_options);
+    nodata_field(f, session.open_options.nodata);
 }
 
 // ---- transfer_function, groups, probe, surfaces, annotation ---------------------------------------------------------

@@ -1,8 +1,10 @@
 #include "engine/volume/outliers.h"
 
 #include <algorithm>
-#include <functional>
+#include <cmath>
 #include <limits>
+#include <span>
+#include <utility>
 
 namespace shvr {
 namespace {
@@ -37,7 +39,20 @@ constexpr Rule NEAR{1e-5, 1, 4.0};
 constexpr int64_t TAIL = 32;  ///< values that tell the unit
 constexpr int64_t MIN_VOXELS_OF_TAIL = 4 * TAIL;
 constexpr double MIN_UNITS = 10.0, MIN_STEPS = 2.0, MIN_SHARE = 0.01;
-constexpr size_t STEPS = 8;
+constexpr int STEPS = 8;
+
+/// Fewer different values are labels, or two materials: each is interesting.
+constexpr size_t MIN_VALUES_AT_END = 12;
+
+/// Fill values lie behind a gap of that many times the range of all others; smallest and largest values of a type,
+/// which are unlikely to be measured, behind a smaller one. 0 is air or background, not a fill value: scans are
+/// masked by it, and a synthetic one has objects of nearly one intensity in it. Where every value has its own code,
+/// only negative values and those of the type's ends qualify, because positive ones may be labels, and nothing but the
+/// automatic settings gain. Saturated voxels blend into the rest through partial volumes.
+constexpr double MIN_GAP_OF_FILL = 10.0, MIN_GAP_OF_EXTREME = 2.0;
+constexpr size_t MAX_FILL_VALUES = 3;  ///< at one end
+constexpr int64_t MIN_VOXELS_OF_FILL = 2;
+constexpr double FLOAT_EXTREME = 1e30;  ///< floats this large are markers
 
 /// Half of a - b, which is finite for all finite a and b.
 double half_distance(double a, double b)
@@ -45,121 +60,253 @@ double half_distance(double a, double b)
     return 0.5 * a - 0.5 * b;
 }
 
-/// One end of the sorted values.
-struct End {
-    const std::vector<double>& values;  ///< from the outermost inwards
-    int64_t outliers = 0;               ///< the first of them
+/// Ends of the type, for types so wide that no scanner reaches them by chance.
+bool is_extreme(VoxelType type, double value)
+{
+    switch (type) {
+        case VoxelType::uint8:
+        case VoxelType::int8: return false;
+        case VoxelType::uint16: return value == 65535.0;
+        case VoxelType::int16: return value == -32768.0 || value == 32767.0;
+        case VoxelType::uint32: return value == 4294967295.0;
+        case VoxelType::int32: return value == -2147483648.0 || value == 2147483647.0;
+        case VoxelType::float32:
+        case VoxelType::float64: return std::abs(value) >= FLOAT_EXTREME;
+    }
+    return false;
+}
 
-    double innermost(int64_t limit) const { return values[size_t(outliers + limit)]; }
+}  // namespace
+
+/// One end of the values; those of the lower end are negative, so that it descends, too.
+class OutlierFinder::End {
+public:
+    explicit End(const Largest& values) : values_(values.sorted()) {}
+
+    /// The value of the voxel at that place, counted from the outermost that is not excluded.
+    double at(int64_t place) const
+    {
+        size_t i = first_;
+        for (; i + 1 < values_.size() && place >= values_[i].voxels; ++i) place -= values_[i].voxels;
+        return values_[i].value;
+    }
+    /// The outermost value that is not excluded.
+    double outermost() const { return values_[first_].value; }
+    double at_start() const { return values_.front().value; }
+    int64_t outliers() const { return outliers_; }
+    int64_t fill_voxels() const
+    {
+        int64_t voxels = 0;
+        for (const ValueCount& each : fill_) voxels += each.voxels;
+        return voxels;
+    }
+    const std::vector<ValueCount>& fill() const { return fill_; }
+
+    /// The k-th different value; minus infinity if there are fewer.
+    double different(size_t k) const
+    {
+        return first_ + k < values_.size() ? values_[first_ + k].value : -std::numeric_limits<double>::infinity();
+    }
 
     /// Walks outwards, and excludes everything beyond the first gap.
     void exclude(const Rule& rule, int64_t limit, double other_end)
     {
-        for (int64_t i = outliers + limit; i-- > outliers;) {
-            const double inside = values[size_t(i + 1)], outside = values[size_t(i)];
-            const double range = std::abs(half_distance(inside, other_end));
-            if (std::abs(half_distance(outside, inside)) <= rule.gap * range) continue;
-            outliers = i + 1;
+        exclude_beyond(limit, [&](size_t last, int64_t) {
+            const double inside = values_[last + 1].value, outside = values_[last].value;
+            return half_distance(outside, inside) > rule.gap * half_distance(inside, other_end);
+        });
+    }
+
+    /// Excludes what is far out for the spacing of the values inside.
+    void exclude_isolated(int64_t limit, double range)
+    {
+        exclude_beyond(limit, [&](size_t last, int64_t voxels) {
+            const double inside = values_[last + 1].value, gap = values_[last].value - inside;
+            double harmonic = 0.0;
+            for (int64_t k = 2; k <= TAIL; ++k) harmonic += 1.0 / double(k);
+            const double unit = (inside - at(voxels - 1 + TAIL)) / harmonic;
+            return gap > std::max({MIN_SHARE * range, MIN_UNITS * unit, MIN_STEPS * largest_step(last + 1)});
+        });
+    }
+
+    /// Excludes the outermost values, up to MAX_FILL_VALUES, if all `are_fill` (value, gap in units of the range).
+    template <class AreFill>
+    bool exclude_fill(double other_end, const AreFill& are_fill)
+    {
+        for (size_t last = std::min(first_ + MAX_FILL_VALUES, values_.size() - 1); last-- > first_;) {
+            const double inside = values_[last + 1].value;
+            const double range = half_distance(inside, other_end);
+            const double gap = half_distance(values_[last].value, inside) / range;
+            const auto begin = values_.begin() + std::ptrdiff_t(first_);
+            const auto end = values_.begin() + std::ptrdiff_t(last) + 1;
+            if (!(range > 0.0) || !std::all_of(begin, end, [&](const ValueCount& each) {
+                    return each.voxels >= MIN_VOXELS_OF_FILL && are_fill(each.value, gap);
+                }))
+                continue;
+            fill_.insert(fill_.end(), begin, end);
+            first_ = last + 1;
+            return true;
+        }
+        return false;
+    }
+
+private:
+    /// Excludes everything up to the innermost value that `is_last(index, voxels up to it)`, at most `limit` voxels.
+    template <class IsLast>
+    void exclude_beyond(int64_t limit, const IsLast& is_last)
+    {
+        size_t end = first_;
+        int64_t voxels = 0;
+        while (end + 1 < values_.size() && voxels + values_[end].voxels <= limit) voxels += values_[end++].voxels;
+        for (; end > first_; voxels -= values_[--end].voxels) {
+            if (!is_last(end - 1, voxels)) continue;
+            outliers_ += voxels;
+            first_ = end;
             return;
         }
     }
 
-    /// Excludes what is far out for the spacing of the values inside. `distinct`: the outermost values times `sign`,
-    /// each once, descending.
-    void exclude_isolated(std::span<const double> distinct, double sign, int64_t limit, double range)
-    {
-        for (int64_t i = outliers + limit; i-- > outliers;) {
-            const double inside = values[size_t(i + 1)];
-            const double gap = std::abs(values[size_t(i)] - inside);
-            double harmonic = 0.0;
-            for (int64_t k = 2; k <= TAIL; ++k) harmonic += 1.0 / double(k);
-            const double unit = std::abs(inside - values[size_t(i + TAIL)]) / harmonic;
-            if (gap >
-                std::max({MIN_SHARE * range, MIN_UNITS * unit, MIN_STEPS * largest_step(distinct, sign * inside)})) {
-                outliers = i + 1;
-                return;
-            }
-        }
-    }
-
-private:
-    /// The largest distance between neighbours of the outermost distinct values from `inside` on.
-    static double largest_step(std::span<const double> distinct, double inside)
+    /// The largest distance between neighbours of the next different values.
+    double largest_step(size_t from) const
     {
         double largest = 0.0;
-        size_t steps = 0;
-        for (size_t k = 0; k + 1 < distinct.size() && steps < STEPS; ++k) {
-            if (distinct[k] > inside) continue;
-            largest = std::max(largest, distinct[k] - distinct[k + 1]);
-            ++steps;
-        }
+        for (size_t i = from; i + 1 < values_.size() && i < from + STEPS; ++i)
+            largest = std::max(largest, values_[i].value - values_[i + 1].value);
         return largest;
     }
+
+    std::vector<ValueCount> values_;
+    size_t first_ = 0;  ///< the first that is not excluded
+    int64_t outliers_ = 0;
+    std::vector<ValueCount> fill_{};
 };
+
+// ---- The largest values ---------------------------------------------------------------------------------------------
+
+namespace {
+
+void sort_and_merge(std::vector<ValueCount>& values)
+{
+    std::ranges::sort(values, std::greater<>(), &ValueCount::value);
+    size_t last = 0;
+    for (size_t i = 1; i < values.size(); ++i) {
+        if (values[i].value == values[last].value)
+            values[last].voxels += values[i].voxels;
+        else
+            values[++last] = values[i];
+    }
+    if (!values.empty()) values.resize(last + 1);
+}
 
 }  // namespace
 
-void OutlierFinder::Distinct::insert(double value)
+void OutlierFinder::Largest::append(double value, int64_t times)
 {
-    auto place = std::ranges::lower_bound(values_, value, std::greater<>());
-    if (*place == value) return;
-    std::move_backward(place, values_.end() - 1, values_.end());
-    *place = value;
+    if (value > most_.value) {
+        std::swap(value, most_.value);
+        std::swap(times, most_.voxels);
+        if (times == 0) return;
+    }
+    others_.push_back({value, times});
+    if (others_.size() >= 2 * kept_) shrink();
 }
 
-OutlierFinder::OutlierFinder(int64_t voxels, bool integers)
-    : integers_(integers),
-      kept_(size_t(FAR.limit(voxels) + 2 * NEAR.limit(voxels) + TAIL + 1)),
-      lowest_kept_of_largest_(-std::numeric_limits<double>::infinity()),
-      highest_kept_of_smallest_(std::numeric_limits<double>::infinity())
+void OutlierFinder::Largest::shrink()
+{
+    sort_and_merge(others_);
+    if (others_.size() < kept_) return;
+    others_.resize(kept_);
+    least_ = others_.back().value;
+}
+
+std::vector<ValueCount> OutlierFinder::Largest::sorted() const
+{
+    std::vector<ValueCount> all = others_;
+    if (most_.voxels > 0) all.push_back(most_);
+    sort_and_merge(all);
+    return all;
+}
+
+// ---- Outliers and fill values ---------------------------------------------------------------------------------------
+
+OutlierFinder::OutlierFinder(int64_t voxels, VoxelType type, std::optional<double> nodata)
+    : type_(type),
+      nodata_(nodata.value_or(std::numeric_limits<double>::infinity())),
+      finds_fill_(!nodata),
+      largest_(size_t(FAR.limit(voxels) + 2 * NEAR.limit(voxels) + TAIL + 1) + 2 * MAX_FILL_VALUES),
+      smallest_(largest_)
 {}
 
-void OutlierFinder::add_large(double value, int64_t times)
+bool OutlierFinder::is_fill_like(double value, bool has_exact_codes, double gap) const
 {
-    largest_.insert(largest_.end(), std::min(size_t(times), kept_), value);
-    if (largest_.size() < 2 * kept_) return;
-    std::ranges::nth_element(largest_, largest_.begin() + std::ptrdiff_t(kept_ - 1), std::greater<>());
-    largest_.resize(kept_);
-    lowest_kept_of_largest_ = largest_.back();
+    if (value == 0.0) return false;
+    if (is_extreme(type_, value)) return gap >= MIN_GAP_OF_EXTREME;
+    if (has_exact_codes && (value > 0.0 || bytes_of(type_) == 1)) return false;
+    return gap >= MIN_GAP_OF_FILL;
 }
 
-void OutlierFinder::add_small(double value, int64_t times)
+void OutlierFinder::exclude_strays(End& upper, End& lower, bool has_exact_codes) const
 {
-    smallest_.insert(smallest_.end(), std::min(size_t(times), kept_), value);
-    if (smallest_.size() < 2 * kept_) return;
-    std::ranges::nth_element(smallest_, smallest_.begin() + std::ptrdiff_t(kept_ - 1));
-    smallest_.resize(kept_);
-    highest_kept_of_smallest_ = smallest_.back();
+    const bool is_continuous = upper.different(MIN_VALUES_AT_END - 1) > -lower.different(MIN_VALUES_AT_END - 1);
+    for (const Rule& rule : {FAR, NEAR}) {
+        if (!is_continuous && (has_exact_codes || rule.gap == NEAR.gap)) continue;
+        const int64_t limit = rule.limit(count_);
+        const double upper_end = upper.at(limit), lower_end = -lower.at(limit);
+        // If nearly all voxels are equal, the few others are the interesting ones.
+        if (!(lower_end < upper_end)) continue;
+        upper.exclude(rule, limit, lower_end);
+        lower.exclude(rule, limit, -upper_end);
+    }
+}
+
+bool OutlierFinder::exclude_fill(End& upper, End& lower, bool has_exact_codes) const
+{
+    const auto exclude = [&](End& end, const End& other, double sign) {
+        End without = end;
+        if (!without.exclude_fill(-other.outermost(), [&](double value, double gap) {
+                return is_fill_like(sign * value, has_exact_codes, gap);
+            }))
+            return false;
+        // Everything else must be more than a few labels.
+        if (!(without.different(MIN_VALUES_AT_END - 1) > -other.different(MIN_VALUES_AT_END - 1))) return false;
+        if (count_ - without.fill_voxels() - other.fill_voxels() < MIN_VOXELS) return false;
+        end = std::move(without);
+        return true;
+    };
+    const bool has_lower = exclude(lower, upper, -1.0);
+    return exclude(upper, lower, 1.0) || has_lower;
 }
 
 std::optional<OutlierFinder::Bulk> OutlierFinder::bulk()
 {
-    if (count_ < MIN_VOXELS) return std::nullopt;
-    std::ranges::sort(largest_, std::greater<>());
-    std::ranges::sort(smallest_);
-    End upper{largest_}, lower{smallest_};
-    // Few different values are labels, or two materials: each is interesting.
-    const bool is_continuous = !largest_distinct_.overlap(smallest_distinct_);
-    const bool has_exact_codes = integers_ && half_distance(largest_.front(), smallest_.front()) <= 0.5 * 65535.0;
-    for (const Rule& rule : {FAR, NEAR}) {
-        if (!is_continuous && (has_exact_codes || rule.gap == NEAR.gap)) continue;
-        const int64_t limit = rule.limit(count_);
-        const double upper_end = upper.innermost(limit), lower_end = lower.innermost(limit);
-        // If nearly all voxels are equal, the few others are the interesting ones.
-        if (!(lower_end < upper_end)) continue;
-        upper.exclude(rule, limit, lower_end);
-        lower.exclude(rule, limit, upper_end);
-    }
-    if (count_ >= MIN_VOXELS_OF_TAIL && is_continuous) {
-        const int64_t limit = NEAR.limit(count_);
-        const double range = 2.0 * half_distance(upper.innermost(limit), lower.innermost(limit));
-        if (range > 0.0) {
-            upper.exclude_isolated(largest_distinct_.values(), 1.0, limit, range);
-            lower.exclude_isolated(smallest_distinct_.values(), -1.0, limit, range);
+    std::vector<ValueCount> fill;
+    if (nodata_voxels_ > 0) fill.push_back({nodata_, nodata_voxels_});
+    if (count_ == 0) return std::nullopt;
+    End upper(largest_), lower(smallest_);
+    if (count_ >= MIN_VOXELS) {
+        const bool has_exact_codes =
+            !is_float(type_) && half_distance(upper.at_start(), -lower.at_start()) <= 0.5 * 65535.0;
+        exclude_strays(upper, lower, has_exact_codes);
+        // A fill value hides what is stray at the other end.
+        if (finds_fill_ && exclude_fill(upper, lower, has_exact_codes)) {
+            exclude_strays(upper, lower, has_exact_codes);
+            exclude_fill(upper, lower, has_exact_codes);
+        }
+        const bool is_continuous = upper.different(MIN_VALUES_AT_END - 1) > -lower.different(MIN_VALUES_AT_END - 1);
+        if (count_ >= MIN_VOXELS_OF_TAIL && is_continuous) {
+            const int64_t limit = NEAR.limit(count_);
+            const double range = 2.0 * half_distance(upper.at(limit), -lower.at(limit));
+            if (range > 0.0) {
+                upper.exclude_isolated(limit, range);
+                lower.exclude_isolated(limit, range);
+            }
         }
     }
-    if (upper.outliers + lower.outliers == 0) return std::nullopt;
-    return Bulk{{lower.innermost(0), upper.innermost(0)}, upper.outliers + lower.outliers};
+    for (const ValueCount& each : lower.fill()) fill.push_back({-each.value, each.voxels});
+    fill.insert(fill.end(), upper.fill().begin(), upper.fill().end());
+    const int64_t outliers = upper.outliers() + lower.outliers();
+    if (outliers == 0 && fill.empty()) return std::nullopt;
+    return Bulk{{-lower.outermost(), upper.outermost()}, outliers, std::move(fill)};
 }
 
 }  // namespace shvr

@@ -1,74 +1,84 @@
 #pragma once
 // Finds the few values of a volume that are so far from all others that a range including them would show nothing else.
 
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "engine/volume/volume.h"
 
 namespace shvr {
 
-/// Collects the largest and the smallest values, and finds the outliers among them: few values beyond a gap that is
-/// wide compared with the range of all others, or with the spacing of the values next to it. outliers.cpp has the
-/// limits. One thread.
+/// Collects the largest and the smallest values, and finds among them
+/// - fill values: single values of any share at an end of the range, behind a gap that is wide for all others;
+/// - outliers: few values beyond a gap that is wide compared with the range of all others, or with the spacing of the
+///   values next to it.
+/// outliers.cpp has the limits. One thread.
 class OutlierFinder {
 public:
-    /// `voxels`: upper bound of the number of values that will be added. `integers`: few different ones may be labels.
-    explicit OutlierFinder(int64_t voxels, bool integers = false);
+    /// `voxels`: upper bound of the number of values that will be added. `type`: few different integers may be labels.
+    /// `nodata`: the only fill value, if it is known (VolumeInfo::nodata).
+    explicit OutlierFinder(int64_t voxels, VoxelType type = VoxelType::float64, std::optional<double> nodata = {});
 
     /// Adds a finite value that occurs `times` times.
     void add(double value, int64_t times = 1)
     {
+        if (value == nodata_) {
+            nodata_voxels_ += times;
+            return;
+        }
         count_ += times;
-        if (value >= lowest_kept_of_largest_) add_large(value, times);
-        if (value <= highest_kept_of_smallest_) add_small(value, times);
-        largest_distinct_.add(value);
-        smallest_distinct_.add(-value);
+        largest_.add(value, times);
+        smallest_.add(-value, times);
     }
 
     struct Bulk {
-        ValueRange range;      ///< the exact range of all values except the outliers
-        int64_t outliers = 0;  ///< at least 1
+        ValueRange range;      ///< the exact range of all values except fill values and outliers
+        int64_t outliers = 0;  ///< those that are no fill values
+        std::vector<ValueCount> fill{};
     };
-    /// Null if there are no outliers.
+    /// Null if there are neither outliers nor fill values.
     std::optional<Bulk> bulk();
 
-private:
-    static constexpr size_t DISTINCT = 12;
-    /// The largest values, each once.
-    class Distinct {
+    /// The largest values, each once, with its count.
+    class Largest {
     public:
-        void add(double value)
+        explicit Largest(size_t kept) : kept_(kept) {}
+        void add(double value, int64_t times)
         {
-            if (value > values_.back()) insert(value);
+            if (value < least_) return;
+            if (value == most_.value)
+                most_.voxels += times;
+            else if (!others_.empty() && others_.back().value == value)  // neighbours are often equal
+                others_.back().voxels += times;
+            else
+                append(value, times);
         }
-        /// Descending; minus infinity where there were fewer.
-        std::span<const double> values() const { return values_; }
-        /// Whether a value is in both, or there are fewer than both can hold. `smallest` has negative values.
-        bool overlap(const Distinct& smallest) const { return !(values_.back() > -smallest.values_.back()); }
+        /// Descending; `kept` of them, or all.
+        std::vector<ValueCount> sorted() const;
 
     private:
-        void insert(double value);
-        std::array<double, DISTINCT> values_ = [] {
-            std::array<double, DISTINCT> none;
-            none.fill(-std::numeric_limits<double>::infinity());
-            return none;
-        }();
-    };
-    void add_large(double value, int64_t times);
-    void add_small(double value, int64_t times);
+        void append(double value, int64_t times);
+        void shrink();
 
-    bool integers_;
-    size_t kept_;  ///< number of values kept at each end
-    int64_t count_ = 0;
-    // At most three times as many as are kept: the surplus is dropped at twice as many.
-    std::vector<double> largest_, smallest_;
-    double lowest_kept_of_largest_, highest_kept_of_smallest_;
-    Distinct largest_distinct_, smallest_distinct_;  ///< the latter of negative values
+        size_t kept_;
+        double least_ = -std::numeric_limits<double>::infinity();  ///< smaller ones are dropped
+        ValueCount most_{-std::numeric_limits<double>::infinity(), 0};
+        std::vector<ValueCount> others_;  ///< at most twice as many as are kept, in any order
+    };
+
+private:
+    bool is_fill_like(double value, bool has_exact_codes, double gap) const;
+    class End;
+    void exclude_strays(End& upper, End& lower, bool has_exact_codes) const;
+    bool exclude_fill(End& upper, End& lower, bool has_exact_codes) const;
+
+    VoxelType type_;
+    double nodata_;  ///< infinite if there is none
+    bool finds_fill_;
+    int64_t count_ = 0, nodata_voxels_ = 0;
+    Largest largest_, smallest_;  ///< the latter of negative values
 };
 
 }  // namespace shvr

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/volume/gaps.h"
 #include "engine/volume/outliers.h"
 #include "engine/volume/voxel_walk.h"
@@ -80,7 +81,7 @@ VolumeStatistics measure_integers(const Measured& measured)
         }
         ascending.push_back(count);
     }
-    return statistics_of(ascending, LOWEST);
+    return statistics_of(ascending, LOWEST, measured.source.info().nodata);
 }
 
 // ---- Types with too many values to count each -----------------------------------------------------------------------
@@ -104,14 +105,33 @@ int64_t for_each_finite(const Measured& measured, double lower, double upper, co
     return others;
 }
 
-/// Excludes outliers from the statistics' range, if there are any.
-void find_bulk(OutlierFinder& outliers, VolumeStatistics& statistics)
+/// Excludes fill values and outliers from the statistics' range, if there are any.
+void find_bulk(OutlierFinder& outliers, std::optional<double> nodata, VolumeStatistics& statistics)
 {
-    const std::optional<OutlierFinder::Bulk> bulk = outliers.bulk();
+    std::optional<OutlierFinder::Bulk> bulk = outliers.bulk();
     if (!bulk) return;
     statistics.bulk = bulk->range;
     statistics.beyond_bulk = bulk->outliers;
+    statistics.fill = std::move(bulk->fill);
+    statistics.fill_is_given = nodata && !statistics.fill.empty();
 }
+
+bool is_fill(const VolumeStatistics& statistics, double value)
+{
+    return std::ranges::any_of(statistics.fill, [&](const ValueCount& fill) { return fill.value == value; });
+}
+
+/// The sum and the number of values, for a mean.
+struct Sum {
+    long double sum = 0.0L;
+    int64_t voxels = 0;
+    void add(double value, int64_t times)
+    {
+        sum += static_cast<long double>(value) * static_cast<long double>(times);
+        voxels += times;
+    }
+    double mean() const { return voxels > 0 ? double(sum / static_cast<long double>(voxels)) : 0.0; }
+};
 
 template <class T>
 VolumeStatistics measure_wide(const Measured& measured)
@@ -119,24 +139,25 @@ VolumeStatistics measure_wide(const Measured& measured)
     VolumeStatistics statistics;
     statistics.histogram.assign(BINS, 0);
     ValueRange all{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-    long double sum = 0.0L;
-    int64_t finite = 0;
-    OutlierFinder outliers(measured.walk.voxels() + measured.walk.rest(), std::is_integral_v<T>);
+    const VolumeInfo& info = measured.source.info();
+    OutlierFinder outliers(measured.walk.voxels() + measured.walk.rest(), info.type, info.nodata);
     statistics.not_finite = for_each_finite<T>(measured, 0.0, 0.5, [&](double value, int64_t times) {
         all.lower = std::min(all.lower, value);
         all.upper = std::max(all.upper, value);
-        sum += static_cast<long double>(value) * static_cast<long double>(times);
         outliers.add(value, times);
-        finite += times;
     });
-    if (finite == 0) return statistics;
+    if (!(all.lower <= all.upper)) return statistics;
     statistics.minimum = all.lower;
     statistics.maximum = all.upper;
-    statistics.mean = double(sum / static_cast<long double>(finite));
-    find_bulk(outliers, statistics);
+    find_bulk(outliers, info.nodata, statistics);
     const ValueRange range = statistics.range();
-    for_each_finite<T>(measured, 0.5, 1.0,
-                       [&](double value, int64_t times) { statistics.histogram[bin_of(range, value)] += times; });
+    Sum sum;
+    for_each_finite<T>(measured, 0.5, 1.0, [&](double value, int64_t times) {
+        if (!statistics.fill.empty() && is_fill(statistics, value)) return;
+        statistics.histogram[bin_of(range, value)] += times;
+        sum.add(value, times);
+    });
+    statistics.mean = sum.mean();
     return statistics;
 }
 
@@ -240,7 +261,7 @@ Size3 size_of_level(const Size3& size, int level)
     return (size + (side - 1)) / side;
 }
 
-VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest)
+VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest, std::optional<double> nodata)
 {
     std::vector<std::pair<double, int64_t>> present;  // value, how often; ascending
     for (size_t i = 0; i < counts.size(); ++i) {
@@ -253,15 +274,19 @@ VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest)
     statistics.maximum = present.back().first;
     int64_t voxels = 0;
     for (const auto& [value, count] : present) voxels += count;
-    OutlierFinder outliers(voxels, true);
+    const bool is_signed = lowest<0, is_short = counts.size()> 256;
+    const VoxelType type = is_short ? (is_signed ? VoxelType::int16 : VoxelType::uint16)
+                                    : (is_signed ? VoxelType::int8 : VoxelType::uint8);
+    OutlierFinder outliers(voxels, type, nodata);
     for (const auto& [value, count] : present) outliers.add(value, count);
-    find_bulk(outliers, statistics);
-    long double sum = 0.0L;
+    find_bulk(outliers, nodata, statistics);
+    Sum sum;
     for (const auto& [value, count] : present) {
+        if (is_fill(statistics, value)) continue;
         statistics.histogram[bin_of(statistics.range(), value)] += count;
-        sum += static_cast<long double>(value) * static_cast<long double>(count);
+        sum.add(value, count);
     }
-    statistics.mean = double(sum / static_cast<long double>(voxels));
+    statistics.mean = sum.mean();
     return statistics;
 }
 
@@ -323,6 +348,13 @@ std::string warning_of_outliers(const VolumeStatistics& statistics)
                     " neither for the histogram's range nor for automatic settings");
 }
 
+std::string warning_of_fill(const ValueCount& fill)
+{
+    return sentence(fill.voxels, fill.voxels == 1 ? " voxel has" : " voxels have", " the value ", digits_of(fill.value),
+                    ", far outside all others: it is taken for a fill value, which counts neither for the histogram's "
+                    "range nor for automatic settings; `volume.nodata` can state another one, or \"none\"");
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const VolumeStatistics& statistics)
@@ -333,7 +365,9 @@ std::vector<std::string> warnings_of(const VolumeStatistics& statistics)
         warnings.push_back(sentence(statistics.not_finite, is_one ? " voxel is" : " voxels are",
                                     " NaN or infinite and ", is_one ? "is" : "are", " left out of every number"));
     }
-    if (statistics.bulk) warnings.push_back(warning_of_outliers(statistics));
+    if (!statistics.fill_is_given)
+        for (const ValueCount& fill : statistics.fill) warnings.push_back(warning_of_fill(fill));
+    if (statistics.beyond_bulk > 0) warnings.push_back(warning_of_outliers(statistics));
     if (statistics.sampled_voxels > 0) {
         warnings.push_back(sentence("intensities were estimated from a sample of ", statistics.sampled_voxels,
                                     " voxels; others may lie beyond ", statistics.range().lower, " to ",

@@ -35,6 +35,8 @@ struct OpenOptions {
     /// Replaces the spacing that the file states, or lacks (engine/formats/restated.h).
     std::optional<glm::dvec3> spacing{};
     std::string unit{};  ///< empty: the file's
+    /// The value of voxels without data; infinite: no value; null: found by its gap (outliers.h).
+    std::optional<double> nodata{};
     bool operator==(const OpenOptions&) const = default;
 };
 
@@ -97,11 +99,11 @@ inline constexpr int64_t MAX_STORED_BLOCKS = int64_t{1} << 24;
 
 /// Like an exact `measure`, for one level, always by reading its voxels.
 VolumeStatistics measure_level(const VolumeSource& source, int level, const MeasureOptions& options = {});
-/// The statistics of integers of 8 or 16 bits; `lowest` + i occurs `counts[i]` times.
-VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest);
+/// The statistics of integers of 8 or 16 bits; `lowest` + i occurs `counts[i]` times. `nodata`: see VolumeInfo.
+VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest, std::optional<double> nodata = {});
 
-/// Warnings for the user about the voxels, one sentence each: NaN, infinities, outliers, and whether only a coarser
-/// level or a sample was measured.
+/// Warnings for the user about the voxels, one sentence each: NaN, infinities, fill values, outliers; whether only a
+/// coarser level or a sample was measured.
 std::vector<std::string> warnings_of(const VolumeStatistics& statistics);
 
 /// ceil(size / 2^level).

@@ -61,6 +61,8 @@ struct VolumeInfo {
     glm::dmat3 directions{1.0};
     glm::dvec3 origin{0.0};
     std::string frame{};
+    /// The fill value that the user states; infinite: none; null: fill values are found by their gap (outliers.h).
+    std::optional<double> nodata{};
     /// The reader's assumptions and omissions, one sentence each ("no spacing stated; 1 voxel assumed").
     std::vector<std::string> warnings{};
 };
@@ -80,19 +82,29 @@ struct ValueRange {
     bool operator==(const ValueRange&) const = default;
 };
 
+/// A value, and how many voxels have it.
+struct ValueCount {
+    double value = 0.0;
+    int64_t voxels = 0;
+    bool operator==(const ValueCount&) const = default;
+};
+
 /// Minimum, maximum, mean and a 256-bin histogram of the finite voxels, in the file's own intensity units.
 struct VolumeStatistics {
     double minimum = 0.0;
     double maximum = 0.0;
-    double mean = 0.0;
+    double mean = 0.0;  ///< without fill values
     int64_t not_finite = 0;
-    std::vector<int64_t> histogram{};  ///< 256 bins over range(); values outside it count in the first or last bin
-    /// The extremes without a few outliers: fill values, broken voxels, dead and hot ones (outliers.h). Null if there
-    /// are none.
+    /// 256 bins over range(); values outside it count in the first or last bin, fill values in none.
+    std::vector<int64_t> histogram{};
+    /// The extremes without fill values and a few outliers: broken voxels, dead and hot ones (outliers.h). Null if
+    /// there are none.
     std::optional<ValueRange> bulk{};
-    int64_t beyond_bulk = 0;     ///< number of outliers
-    int measured_level = 0;      ///< the level that was measured; above 0, its voxels are means
-    int64_t sampled_voxels = 0;  ///< above 0: all members were estimated from this many voxels
+    int64_t beyond_bulk = 0;         ///< number of outliers that are no fill values
+    std::vector<ValueCount> fill{};  ///< values that stand for "no data", whatever their share
+    bool fill_is_given = false;      ///< by the user, not found
+    int measured_level = 0;          ///< the level that was measured; above 0, its voxels are means
+    int64_t sampled_voxels = 0;      ///< above 0: all members were estimated from this many voxels
 
     /// The range used for pictures, thresholds and the histogram.
     ValueRange range() const { return bulk.value_or(ValueRange{minimum, maximum}); }
@@ -117,5 +129,7 @@ struct IntensityWindow {
 /// integer has one. Over all of the type for 16-bit integers measured in part, since other voxels may exceed the range.
 IntensityWindow window_for(VoxelType type, const VolumeStatistics& statistics);
 IntensityWindow window_for(VoxelType type, double minimum, double maximum);
+/// Whether every voxel of such a volume has a code of its own in its window, so that codes decide as intensities do.
+bool has_exact_codes(VoxelType type, const VolumeStatistics& statistics);
 
 }  // namespace shvr

@@ -3,6 +3,7 @@
 #include <iomanip>
 #include <iostream>
 
+#include "engine/base/text.h"
 #include "engine/tasks/describe_task.h"
 #include "tools/cli/cli.h"
 
@@ -16,6 +17,13 @@ struct InfoCommandOptions {
     bool exact = false;
     bool allows_incomplete = false;
 };
+
+Json fill_values(const VolumeStatistics& statistics)
+{
+    Json all = Json::array();
+    for (const ValueCount& fill : statistics.fill) all.push_back({{"value", fill.value}, {"voxels", fill.voxels}});
+    return all;
+}
 
 /// How the statistics were obtained.
 std::string measured_text(const VolumeStatistics& statistics)
@@ -54,6 +62,7 @@ Json to_json(const DescribeResult& described, const std::string& input)
             {"measured_level", statistics.measured_level},
             {"voxels", voxels},
             {"voxels_not_finite", statistics.not_finite},
+            {"fill_values", fill_values(statistics)},
             {"voxels_not_read", described.voxels_not_read},
             {"complete", described.voxels_not_read == 0},
             {"bytes", uint64_t(voxels) * bytes_of(info.type)},
@@ -108,6 +117,8 @@ void print_text(const DescribeResult& described)
     const std::string how = measured_text(statistics);
     print_line("intensities", sentence(statistics.minimum, " to ", statistics.maximum, ", mean ", statistics.mean,
                                        how == "exact" ? "" : " (" + how + ")"));
+    for (const ValueCount& fill : statistics.fill)
+        print_line("fill value", sentence(digits_of(fill.value), " in ", grouped(fill.voxels), " voxels"));
     if (described.levels > 1) print_line("levels", sentence(described.levels, ", each half as fine as the one before"));
     if (!described.mask.empty()) print_line("mask", described.mask.string());
     std::cout.flush();

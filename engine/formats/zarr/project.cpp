@@ -38,6 +38,7 @@ OrderedJson list_of(const glm::dvec3& vector)
     return {vector.x, vector.y, vector.z};
 }
 
+constexpr size_t MAX_FILL_VALUES = 16;
 constexpr int64_t MAX_COUNT = std::numeric_limits<int64_t>::max();
 
 glm::dmat3 read_matrix(const JsonNode& node)
@@ -66,6 +67,9 @@ VolumeStatistics read_statistics(const JsonNode& node)
         statistics.bulk = {bulk["min"].number(any_number()), bulk["max"].number(any_number())};
         if (!(statistics.bulk->lower <= statistics.bulk->upper)) bulk["max"].refuse("at least min");
         statistics.beyond_bulk = bulk["beyond"].whole(0, MAX_COUNT);
+        if (const JsonNode fill = bulk["fill"]; fill.exists())  // older projects have none
+            for (const JsonNode& each : fill.elements(0, MAX_FILL_VALUES))
+                statistics.fill.push_back({each["value"].number(any_number()), each["voxels"].whole(1, MAX_COUNT)});
     }
     return statistics;
 }
@@ -131,6 +135,8 @@ std::string to_text(const ProjectRecord& record)
     if (statistics.bulk) {
         measured["bulk"] = {
             {"min", statistics.bulk->lower}, {"max", statistics.bulk->upper}, {"beyond", statistics.beyond_bulk}};
+        for (const ValueCount& fill : statistics.fill)
+            measured["bulk"]["fill"].push_back({{"value", fill.value}, {"voxels", fill.voxels}});
     }
     measured["histogram"] = statistics.histogram;
     const OrderedJson document = {

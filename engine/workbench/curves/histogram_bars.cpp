@@ -128,6 +128,7 @@ HistogramBars histogram_bars(VoxelType type, const VolumeStatistics& statistics)
     HistogramBars made;
     const std::vector<int64_t>& counts = statistics.histogram;
     const ValueRange range = statistics.range();
+    for (const ValueCount& each : statistics.fill) made.fill.push_back({each.value, each.value, double(each.voxels)});
     if (counts.empty() || !(range.upper > range.lower)) return made;
     const double width = (range.upper - range.lower) / double(counts.size());
     const auto bin_at = [&](size_t bin) { return range.lower + double(bin) * width; };

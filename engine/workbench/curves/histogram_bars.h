@@ -13,6 +13,7 @@ struct HistogramBar {
 };
 struct HistogramBars {
     std::vector<HistogramBar> bars;
+    std::vector<HistogramBar> fill{};  ///< a bar for each fill value, which lies outside all others
     /// Voxel values are the minimum plus multiples of this, rounded if it is no whole number; 0: floats, or the values
     /// are unknown.
     double step = 0.0;

@@ -198,8 +198,13 @@ TEST_CASE("what is written reads back the same")
         "seed": 4294967295, "type": "int16", "spacing": [1, 2, 0.1], "unit": "um"}, "camera": "top"})";
     const std::string channel = R"({"shvr_session": 1, "volume": {"path": "a.tif", "channel": "2", "frame": "red"}})";
     CHECK(parse(channel).open_options == OpenOptions{.channel = "2", .frame = "red"});
+    const std::string nodata = R"({"shvr_session": 1, "volume": {"path": "a.tif", "nodata": -9999.5}})";
+    const std::string none =
+        R"({"shvr_session": 1, "volume": {"raw": "4x3x2:float32", "path": "a.raw", "nodata": "none"}})";
+    CHECK(parse(nodata).open_options.nodata == -9999.5);
+    CHECK(std::isinf(parse(none).open_options.nodata.value()));
     for (const std::string& text :
-         {EVERYTHING, procedural, channel, with(""), with(R"("camera": {"side": "back", "zoom": 2})"),
+         {EVERYTHING, procedural, channel, nodata, none, with(""), with(R"("camera": {"side": "back", "zoom": 2})"),
           with(R"("transfer_function": {"points": []})")}) {
         const Session first = parse(text);
         const std::string written = to_text(first, "/data/scans");
@@ -330,7 +335,7 @@ TEST_CASE("keys that are not known are refused by their full name, with those th
     }
     CHECK(volume_refusal(R"({"path": "a", "size": [1, 1, 1]})") ==
           "s.json: unknown key volume.size; expected one of: path, raw, procedural, channel, frame, level, spacing, "
-          "unit");
+          "unit, nodata");
     CHECK(volume_refusal(R"({"path": "a", "procedural": "tubes"})").starts_with("s.json: unknown key volume.path;"));
 }
 
@@ -448,8 +453,7 @@ TEST_CASE("volumes that cannot be are refused")
 {
     CHECK(refusal(R"({"shvr_session": 1})") ==
           "s.json: key volume is missing; expected an object with keys out of: path, raw, procedural, channel, frame, "
-          "level, "
-          "spacing, unit");
+          "level, spacing, unit, nodata");
     for (const auto& [volume, sentence] : std::map<std::string, std::string>{
              {"3", "volume is 3; expected an object"},
              {"{}", "volume.path is missing; expected a path"},

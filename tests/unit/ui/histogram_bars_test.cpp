@@ -53,6 +53,20 @@ TEST_CASE("a smooth histogram is drawn smooth, whatever the values are multiples
     }
 }
 
+TEST_CASE("a fill value has a bar of its own, apart from all others")
+{
+    VolumeStatistics statistics = hill(300, 1);
+    const size_t bars = histogram_bars(VoxelType::int32, statistics).bars.size();
+    statistics.minimum = -2147483648.0;
+    statistics.bulk = ValueRange{0.0, 300.0};
+    statistics.fill = {{-2147483648.0, 5000}};
+    const HistogramBars made = histogram_bars(VoxelType::int32, statistics);
+    CHECK(made.bars.size() == bars);
+    REQUIRE(made.fill.size() == 1);
+    CHECK(made.fill[0].lower == -2147483648.0);
+    CHECK(made.fill[0].voxels == 5000.0);
+}
+
 TEST_CASE("values that lie apart have a bar each, centred on them")
 {
     const HistogramBars bars = histogram_bars(VoxelType::int16, hill(4000, 20));

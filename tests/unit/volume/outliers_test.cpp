@@ -149,11 +149,13 @@ TEST_CASE("a value that occurs many times counts as often")
             if (i == 1000) counted.add(1e30, strays);
         }
         const std::optional<OutlierFinder::Bulk> found = counted.bulk(), expected = bulk_of(all);
-        REQUIRE(found.has_value() == expected.has_value());
-        CHECK(found.has_value() == (strays == 3));
-        if (!found) continue;
+        REQUIRE(found.has_value());
+        REQUIRE(expected.has_value());
         CHECK(found->range == range_of(values));
-        CHECK(found->outliers == strays);
+        CHECK(expected->range == found->range);
+        CHECK(found->fill == expected->fill);
+        CHECK(found->outliers == (strays == 3 ? 3 : 0));
+        if (strays > 3) CHECK(found->fill == std::vector<ValueCount>{{1e30, strays}});
     }
     // The few values that a sparse volume stores are not left out.
     OutlierFinder sparse(int64_t{1} << 60);
@@ -179,4 +181,124 @@ TEST_CASE("a small float volume says what it leaves out, in one number or severa
                           : "3 voxels lie far outside 0 to 99, where all others are (with them the range is 0 to "
                             "1e+30), and are shown as if they were at the nearer end of that range"));
     }
+}
+
+// ---- Fill values ----------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// Tissue of whole numbers from `lower` to `upper`; every n-th voxel of it has the fill value, n = 1 / share.
+std::vector<double> filled(double lower, double upper, double fill, double share)
+{
+    std::vector<double> values(40 * 40 * 40);
+    uint32_t state = 1;
+    double due = 0.0;
+    for (double& value : values) {
+        state = state * 1664525u + 1013904223u;
+        value = lower + double((state >> 8) % uint32_t(upper - lower + 1.0));
+        if ((due += share) < 1.0) continue;
+        due -= 1.0;
+        value = fill;
+    }
+    return values;
+}
+
+std::optional<OutlierFinder::Bulk> bulk_of(VoxelType type, const std::vector<double>& values,
+                                           std::optional<double> nodata = {})
+{
+    OutlierFinder finder(int64_t(values.size()), type, nodata);
+    for (const double value : values) finder.add(value);
+    return finder.bulk();
+}
+
+}  // namespace
+
+TEST_CASE("a fill value of any share is found at either end, and the rest keeps its range")
+{
+    struct Case {
+        VoxelType type;
+        double fill;
+    };
+    for (const Case& each : {Case{VoxelType::int32, -2147483648.0},
+                             {VoxelType::int32, 10000000.0},
+                             {VoxelType::uint32, 4294967295.0},
+                             {VoxelType::float32, double(-3.4e38f)},
+                             {VoxelType::float32, -9999.0},
+                             {VoxelType::float64, 1e20},
+                             {VoxelType::int16, -32768.0},
+                             {VoxelType::uint16, 65535.0},
+                             {VoxelType::int16, -9999.0}})
+        for (const double share : {0.0002, 0.002, 0.08, 0.3, 0.9, 0.999}) {
+            CAPTURE(name_of(each.type));
+            CAPTURE(each.fill);
+            CAPTURE(share);
+            const std::vector<double> values = filled(1, 120, each.fill, share);
+            const std::optional<OutlierFinder::Bulk> found = bulk_of(each.type, values);
+            REQUIRE(found.has_value());
+            CHECK(found->range.lower >= 1.0);
+            CHECK(found->range.upper <= 120.0);
+            const int64_t count = std::ranges::count(values, each.fill);
+            if (!found->fill.empty()) CHECK(found->fill == std::vector<ValueCount>{{each.fill, count}});
+            CHECK(found->outliers + (found->fill.empty() ? 0 : count) == count);
+            if (share >= 0.002) CHECK_FALSE(found->fill.empty());
+        }
+}
+
+TEST_CASE("two fill values, and a hot voxel beside one, are told apart")
+{
+    std::vector<double> values = filled(1, 120, -9999.0, 0.1);
+    for (size_t i = 5; i < values.size(); i += 50) values[i] = -9998.0;
+    values[77] = 60000.0;
+    const std::optional<OutlierFinder::Bulk> found = bulk_of(VoxelType::float32, values);
+    REQUIRE(found.has_value());
+    CHECK(found->range == ValueRange{1.0, 120.0});
+    CHECK(found->outliers == 1);
+    CHECK(found->fill.size() == 2);
+}
+
+TEST_CASE("air at 0, labels, two materials and saturation are no fill values")
+{
+    const auto has_none = [](VoxelType type, const std::vector<double>& values) {
+        const std::optional<OutlierFinder::Bulk> found = bulk_of(type, values);
+        CHECK((!found || found->fill.empty()));
+    };
+    for (const VoxelType type : {VoxelType::uint16, VoxelType::int32, VoxelType::float32})
+        for (const double share : {0.01, 0.5, 0.95}) {
+            CAPTURE(name_of(type));
+            CAPTURE(share);
+            has_none(type, filled(1000, 1040, 0.0, share));  // air around an object of nearly one intensity
+            has_none(type, filled(100, 200, 255.0, share));  // saturation
+            has_none(type, filled(1, 9, 1000000.0, share));  // ten labels
+            has_none(type, filled(7, 7, 9000.0, share));     // two materials
+        }
+    has_none(VoxelType::uint16, filled(1, 60, 9000.0, 0.1));  // labels with exact codes
+    has_none(VoxelType::uint8, filled(100, 105, 255.0, 0.1));
+}
+
+TEST_CASE("a stated fill value is the only one, wherever it lies, and infinity states that there is none")
+{
+    const std::vector<double> values = filled(1, 120, -9999.0, 0.25);
+    const int64_t count = std::ranges::count(values, 60.0);
+    const std::optional<OutlierFinder::Bulk> within = bulk_of(VoxelType::int16, values, 60.0);
+    REQUIRE(within.has_value());
+    CHECK(within->fill == std::vector<ValueCount>{{60.0, count}});
+    CHECK(within->range == ValueRange{-9999.0, 120.0});
+    CHECK_FALSE(bulk_of(VoxelType::int16, values, std::numeric_limits<double>::infinity()).has_value());
+}
+
+TEST_CASE("the histogram and the mean leave a fill value out, and a warning says so")
+{
+    const std::vector<double> values = filled(1, 120, -2147483648.0, 0.08);
+    std::vector<int32_t> voxels(values.begin(), values.end());
+    const VolumeStatistics found = measure(memory_source({40, 40, 40}, VoxelType::int32, voxels));
+    CHECK(found.minimum == -2147483648.0);
+    CHECK(found.range() == ValueRange{1.0, 120.0});
+    CHECK(found.mean > 50.0);
+    CHECK(found.mean < 70.0);
+    CHECK(std::accumulate(found.histogram.begin(), found.histogram.end(), int64_t{0}) + found.fill.at(0).voxels ==
+          64000);
+    CHECK(found.beyond_bulk == 0);
+    CHECK(window_for(VoxelType::int32, found).codes_per_unit >= 1.0);
+    REQUIRE(warnings_of(found).size() == 1);
+    CHECK(contains(warnings_of(found)[0], " voxels have the value -2147483648, far outside all others"));
 }

@@ -34,9 +34,10 @@ constexpr float MARGIN = 0.65f;           ///< margin around the axes, so that c
 constexpr float REACH = 0.65f;            ///< distance within which the mouse grabs things, in font sizes
 constexpr float COLUMN = 2.0f;            ///< width of one colour in the coloured area, in pixels
 constexpr float STROKE = 0.11f;           ///< in font sizes
+constexpr float FILL_BAR = 0.5f;          ///< width of the bar of a fill value, in font sizes
 
 constexpr ThemeColor BACKGROUND{ColorRole::chart}, BARS{ColorRole::chart_bars}, LINE{ColorRole::chart_line},
-    PAINT_LINE{ColorRole::chart_paint}, FELT_LINE{ColorRole::chart_felt};
+    PAINT_LINE{ColorRole::chart_paint}, FELT_LINE{ColorRole::chart_felt}, FILL_BARS{ColorRole::chart_felt};
 
 /// The widget's state between frames. Everything else belongs to the session.
 struct WidgetState {
@@ -85,6 +86,13 @@ void draw_histogram(const CurveAxes& axes, const WidgetState& state, ImDrawList&
         const auto height = float(height_of_bar(bar.voxels, most, state.is_logarithmic)) * (axes.end.y - axes.begin.y);
         const float left = axes.x_of(bar.lower), right = std::max(axes.x_of(bar.upper), left + 1.0f);
         list.AddRectFilled({left, axes.end.y - height}, {right, axes.end.y}, BARS);
+    }
+    // Fill values lie far outside the axis: their bars stand at its ends.
+    const float width = FILL_BAR * ImGui::GetFontSize();
+    for (const HistogramBar& bar : state.bars.fill) {
+        const auto height = float(height_of_bar(bar.voxels, most, state.is_logarithmic)) * (axes.end.y - axes.begin.y);
+        const float left = std::clamp(axes.x_of(bar.lower), axes.begin.x, axes.end.x - width);
+        list.AddRectFilled({left, axes.end.y - height}, {left + width, axes.end.y}, FILL_BARS);
     }
 }
 
@@ -339,6 +347,9 @@ void scale_and_help(const Model& model, WidgetState& state, Actions& actions)
         "number itself.";
     if (state.bars.step > 1.0)
         bins += " The values in this volume are multiples of " + digits(state.bars.step) + "; only these have bars.";
+    for (const HistogramBar& fill : state.bars.fill)
+        bins += " " + digits(fill.voxels) + " voxels have the fill value " + digits(fill.lower) +
+                ", whose bar stands at the end of the axis.";
     hint(bins.c_str());
     point_buttons(model, state, actions);
     ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize("How to edit (?)").x);
