@@ -159,7 +159,13 @@ void Scene::load(uint64_t reserved_bytes)
     const AtlasCodes codes = codes_of(memory_, *source_, options_);
     const bool is_paged = pages(memory_, *source_, options_, reserved_bytes) || !load_resident(window);
     mask_.emplace(executor_, memory_, is_paged);
-    if (!is_paged) return;
+    if (is_paged) load_paged(window, codes, reserved_bytes);
+    if (!has_exact_codes(source_->info().type, statistics_))
+        threshold_bricks_ = std::make_unique<ThresholdBricks>(offsets_);
+}
+
+void Scene::load_paged(const IntensityWindow& window, AtlasCodes codes, uint64_t reserved_bytes)
+{
     PagedVolume::Options paged{
         .codes = codes,
         .threads = options_.threads,
@@ -369,6 +375,7 @@ void Scene::note_density(const DensityField& field, std::span<const VoxelBox> ch
     std::vector<OffsetSource::Brick> offsets;
     for (const int64_t brick : bricks) offsets.push_back({field.position_of(brick), field.brick(brick)});
     offsets_->set(offsets);
+    if (threshold_bricks_) threshold_bricks_->renew(changed);
     unshown_density_.insert(unshown_density_.end(), changed.begin(), changed.end());
 }
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "engine/annotation/work/history.h"
+#include "engine/bricks/threshold_bricks.h"
 #include "engine/device/device_mask.h"
 #include "engine/device/device_volume.h"
 #include "engine/device/look_table.h"
@@ -73,6 +74,8 @@ public:
     /// Whether pictures draw the finest level everywhere, because there is no other: the volume would be resident under
     /// a larger budget, and budgets must not change pictures. Live views draw it as coarsely as the screen allows.
     bool draws_finest() const { return draws_finest_; }
+    /// Decides which voxels a brush or touch may select, where codes cannot; null: every value has its own code.
+    ThresholdBricks* threshold_bricks() { return threshold_bricks_.get(); }
     const DeviceMask& mask() const { return *mask_; }
     Occlusion& occlusion() { return occlusion_; }
     SurfaceScene& surfaces() { return surfaces_; }
@@ -156,6 +159,7 @@ public:
 private:
     void load(uint64_t reserved_bytes);
     bool load_resident(const IntensityWindow& window);
+    void load_paged(const IntensityWindow& window, AtlasCodes codes, uint64_t reserved_bytes);
     void make_room(uint64_t bytes);
     void drop_occlusion(const std::string& why);
     Occlusion::Look occlusion_look(const Look& look);
@@ -171,6 +175,7 @@ private:
     VolumeStatistics statistics_;
     bool draws_finest_ = false;
     std::shared_ptr<OffsetSource> offsets_;  ///< the source that volume_ reads from
+    std::unique_ptr<ThresholdBricks> threshold_bricks_;
     std::unique_ptr<DeviceVolume> volume_;
     std::optional<DeviceMask> mask_;
     Occlusion occlusion_;

@@ -1,5 +1,6 @@
 #include "engine/live/region_query.h"
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -44,6 +45,25 @@ Resource add_brush(FrameGraph& graph, const VolumeBinding& volume, Brush brush, 
     SHVR_CHECK(false, "brush ", int(brush));
 }
 
+Resource add_brush(FrameGraph& graph, Brush brush, const gpu::RegionParams& params, std::span<const gpu::RowSpan> rows,
+                   std::span<const uint32_t> bits)
+{
+    return brush == Brush::flood ? select_flood_in(graph, params, bits) : select_speckles_in(graph, params, rows, bits);
+}
+
+/// Clears the bits outside the region's rows.
+void keep_rows(const BrushRegion& region, std::vector<uint32_t>& words)
+{
+    const auto per_row = int32_t(region.words_per_row());
+    for (size_t row = 0; row < region.rows.size(); ++row)
+        for (int32_t w = 0; w < per_row; ++w) {
+            const int32_t begin = std::clamp(region.rows[row].begin - 32 * w, 0, 32);
+            const int32_t end = std::clamp(region.rows[row].end - 32 * w, begin, 32);
+            const auto within = uint32_t((uint64_t{1} << end) - (uint64_t{1} << begin));
+            words[row * size_t(per_row) + size_t(w)] &= within;
+        }
+}
+
 VoxelBox box_around(std::span<const RegionAt> regions)
 {
     VoxelBox box = regions.front().region.box;
@@ -78,6 +98,9 @@ FrameOfRegions frame_of_regions(const PaintOp& op, std::span<const glm::dvec3> p
 bool RegionQuery::ask(const PaintOp& op, std::vector<RegionAt> regions, Wait wait)
 {
     SHVR_CHECK(!regions.empty());
+    drop();
+    if (ThresholdBricks* const bricks = renderer_.scene().threshold_bricks())
+        return ask_host(*bricks, op, std::move(regions), wait);
     DeviceVolume& volume = renderer_.volume();
     const std::optional<RegionBricks> bricks = volume.region(box_around(regions), wait == Wait::for_bricks);
     if (!bricks) return false;
@@ -93,9 +116,34 @@ bool RegionQuery::ask(const PaintOp& op, std::vector<RegionAt> regions, Wait wai
     return true;
 }
 
+bool RegionQuery::ask_host(ThresholdBricks& bricks, const PaintOp& op, std::vector<RegionAt>&& regions, Wait wait)
+{
+    if (wait == Wait::no && !bricks.get_ready(box_around(regions), op.threshold)) return false;
+    FrameGraph graph;
+    std::vector<std::vector<uint32_t>> bits;
+    for (const RegionAt& at : regions) {
+        bits.push_back(bricks.bits_in(at.region.box, op.threshold));
+        keep_rows(at.region, bits.back());
+        if (op.brush != Brush::fill)
+            graph.read_back(add_brush(graph, op.brush, region_params(at, op, 0), at.region.rows, bits.back()), name_);
+    }
+    if (op.brush == Brush::fill) {
+        for (size_t i = 0; i < regions.size(); ++i)
+            known_.push_back({std::move(regions[i].region), regions[i].centre_voxel, std::move(bits[i])});
+        return true;
+    }
+    frame_ = renderer_.executor().submit(std::move(graph), {});
+    regions_ = std::move(regions);
+    return true;
+}
+
 std::vector<RegionAnswer> RegionQuery::answer()
 {
     SHVR_CHECK(is_asking());
+    if (!known_.empty()) {
+        gpu_ms_ = 0.0;
+        return std::exchange(known_, {});
+    }
     const gpu::FrameResult result = std::exchange(frame_, {}).finish();
     gpu_ms_ = 0.0;
     for (const gpu::PassReport& pass : result.passes) gpu_ms_ += pass.gpu_ms;

@@ -3,6 +3,9 @@
 //
 //   positions -> frame_of_regions (CPU) -> RegionQuery::ask -> passes of the brush (device) -> RegionQuery::answer
 //
+// Voxels at or above the threshold are those whose own number is. Where several numbers share a code, the host decides
+// that (Scene::threshold_bricks); the device then only connects voxels, and a filling brush does not need it.
+//
 // One query in flight per object. One thread, the renderer's.
 
 #include <optional>
@@ -43,24 +46,31 @@ public:
     explicit RegionQuery(Renderer& renderer, const char* name = "") : renderer_(renderer), name_(name) {}
 
     /// Queries which voxels of `regions` (at least one) `op` selects, by its brush, threshold and connectivity. Drops
-    /// an earlier query. If bricks of the regions are not on the device yet, either reads them, or submits nothing and
+    /// an earlier query. If bricks of the regions have not been loaded yet, either reads them, or submits nothing and
     /// returns false.
     bool ask(const PaintOp& op, std::vector<RegionAt> regions, Wait wait);
-    bool is_asking() const { return bool(frame_); }
+    bool is_asking() const { return frame_ || !known_.empty(); }
     /// Whether `answer` would return without waiting.
-    bool is_answered() const { return frame_ && frame_.done(); }
+    bool is_answered() const { return !known_.empty() || (frame_ && frame_.done()); }
     /// The answers, one per region, in order. Waits if necessary; afterwards no query is in flight.
     std::vector<RegionAnswer> answer();
     /// Drops the query in flight, if any.
-    void drop() { frame_ = {}; }
+    void drop()
+    {
+        frame_ = {};
+        known_.clear();
+    }
     /// Device time of the last answer; 0 where the device has no timestamps.
     double gpu_ms() const { return gpu_ms_; }
 
 private:
+    bool ask_host(ThresholdBricks& bricks, const PaintOp& op, std::vector<RegionAt>&& regions, Wait wait);
+
     Renderer& renderer_;
     const char* name_;
     std::vector<RegionAt> regions_;
     gpu::Submission frame_;
+    std::vector<RegionAnswer> known_;  ///< answers that did not need the device
     double gpu_ms_ = 0.0;
 };
 

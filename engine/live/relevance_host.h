@@ -1,7 +1,6 @@
 #pragma once
 // The relevance pass on the host: the same bits from the file's own voxels, for replay without a device and for when
-// the device is late. Equal to the device's if 16-bit codes hold the intensities exactly (IntensityWindow); in other
-// volumes, voxels within half a code of the threshold may differ. Any thread.
+// the device is late. Equal to those of a query (region_query.h). Any thread.
 
 #include <bitset>
 

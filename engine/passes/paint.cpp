@@ -51,14 +51,15 @@ Labelled region_merge(FrameGraph& graph, const gpu::RegionParams& params, const 
     return {region.bits, pass.modify("parents", region.parents)};
 }
 
-Resource region_mark(FrameGraph& graph, const RegionInput& input, const Labelled& region, Resource marked)
+Resource region_mark(FrameGraph& graph, const gpu::RegionParams& params, std::span<const gpu::RowSpan> rows,
+                     const Labelled& region, Resource marked)
 {
     Pass pass = graph.compute("region_mark");
     pass.read("bits", region.bits);
     pass.read("parents", region.parents);
-    pass.block("rows", input.rows);
-    pass.push(input.params);
-    pass.dispatch(words_of(input.params));
+    pass.block("rows", rows);
+    pass.push(params);
+    pass.dispatch(words_of(params));
     return pass.modify("marked", marked);
 }
 
@@ -120,17 +121,48 @@ Resource select_fill(FrameGraph& graph, const VolumeBinding& volume, const Regio
     return region_bits(graph, volume, input).bits;
 }
 
+namespace {
+
+Resource flood(FrameGraph& graph, const gpu::RegionParams& params, const Labelled& bits)
+{
+    const Labelled region = region_merge(graph, params, bits);
+    return region_select(graph, params, region, region.bits, gpu::KEEP_SEED);  // a flood fill reads no marks
+}
+
+Resource speckles(FrameGraph& graph, const gpu::RegionParams& params, std::span<const gpu::RowSpan> rows,
+                  const Labelled& bits)
+{
+    const Labelled region = region_merge(graph, params, bits);
+    return region_select(graph, params, region, region_mark(graph, params, rows, region, no_marks(graph, params)),
+                         gpu::KEEP_UNMARKED);
+}
+
+Labelled known_bits(FrameGraph& graph, const gpu::RegionParams& params, std::span<const uint32_t> bits)
+{
+    return region_roots(graph, params, graph.upload("region mask", bits));
+}
+
+}  // namespace
+
 Resource select_flood(FrameGraph& graph, const VolumeBinding& volume, const RegionInput& input)
 {
-    const Labelled region = region_merge(graph, input.params, region_bits(graph, volume, input));
-    return region_select(graph, input.params, region, region.bits, gpu::KEEP_SEED);  // a flood fill reads no marks
+    return flood(graph, input.params, region_bits(graph, volume, input));
 }
 
 Resource select_speckles(FrameGraph& graph, const VolumeBinding& volume, const RegionInput& input)
 {
-    const Labelled region = region_merge(graph, input.params, region_bits(graph, volume, input));
-    return region_select(graph, input.params, region, region_mark(graph, input, region, no_marks(graph, input.params)),
-                         gpu::KEEP_UNMARKED);
+    return speckles(graph, input.params, input.rows, region_bits(graph, volume, input));
+}
+
+Resource select_flood_in(FrameGraph& graph, const gpu::RegionParams& params, std::span<const uint32_t> bits)
+{
+    return flood(graph, params, known_bits(graph, params, bits));
+}
+
+Resource select_speckles_in(FrameGraph& graph, const gpu::RegionParams& params, std::span<const gpu::RowSpan> rows,
+                            std::span<const uint32_t> bits)
+{
+    return speckles(graph, params, rows, known_bits(graph, params, bits));
 }
 
 Resource select_object(FrameGraph& graph, const gpu::RegionParams& params, Resource mask, const SeedBits& seeds)

@@ -23,6 +23,12 @@ Resource select_flood(FrameGraph& graph, const VolumeBinding& volume, const Regi
 /// Selects the components without a voxel on the region's boundary.
 Resource select_speckles(FrameGraph& graph, const VolumeBinding& volume, const RegionInput& input);
 
+/// The same two brushes where the bits of the region, within its rows, are known already (engine/bricks/
+/// threshold_bricks.h).
+Resource select_flood_in(FrameGraph& graph, const gpu::RegionParams& params, std::span<const uint32_t> bits);
+Resource select_speckles_in(FrameGraph& graph, const gpu::RegionParams& params, std::span<const gpu::RowSpan> rows,
+                            std::span<const uint32_t> bits);
+
 /// Hints that a brush is likely to be used soon.
 void expect_brushes(FrameGraph& graph, const VolumeBinding& volume);
 

@@ -140,7 +140,7 @@ class CliTest(unittest.TestCase):
 class Volume:
     """Voxels in Python: a list with x fastest."""
 
-    TYPES = {"uint8": "B", "int8": "b", "uint16": "H", "int16": "h", "float": "f"}
+    TYPES = {"uint8": "B", "int8": "b", "uint16": "H", "int16": "h", "int32": "i", "float": "f"}
 
     def __init__(self, size, values, spacing=(1.0, 1.0, 1.0), voxel_type="uint8"):
         self.size, self.values, self.spacing, self.type = size, list(values), spacing, voxel_type

@@ -71,6 +71,28 @@ class Script(CliTest):
             self.annotate([{"op": "expect", "voxels_in_group": {"1": painted, "2": painted}}, {"op": what, "count": 2},
                            {"op": "expect", "voxels_in_group": {"1": 1 - painted}}, {"op": back, "count": 2}])
 
+    def test_fill_values_of_any_share_take_no_voxel_from_paint_and_are_told(self):
+        random = [(i * 7919) % 200 for i in range(20 * 20 * 20)]
+        for voxel_type, fill, every in [("int32", -2147483648, 12), ("float", -3.4e38, 3), ("float", 1e7, 500)]:
+            with self.subTest(voxel_type=voxel_type, fill=fill):
+                values = [fill if i % every == 0 else value for i, value in enumerate(random)]
+                name = Volume((20, 20, 20), values, voxel_type=voxel_type).write(self.folder).name
+                self.session = self.write_session(volume={"path": name})
+                right = sum(value >= 60 for value in values)
+                said = self.annotate([paint("fill", "box", 3, 60, 40, [[10, 10, 10]]),
+                                      {"op": "expect", "voxels_in_group": {"3": right}}], "--fresh").stderr
+                self.assertIn("far outside all others: it is taken for a fill value", said)
+                info = self.check_json("info", self.session)
+                self.assertEqual(info["fill_values"][0]["voxels"], values.count(fill))
+                self.assertEqual(sum(info["histogram"]), len(values) - values.count(fill))
+                info = self.check_json("info", self.session, "--set", "volume.nodata=none")
+                self.assertEqual(info["fill_values"], [])
+                info = self.check_json("info", self.session, "--set", "volume.nodata=7")
+                self.assertEqual(info["fill_values"], [{"value": 7, "voxels": values.count(7)}])
+                self.annotate([paint("fill", "box", 4, 60, 40, [[10, 10, 10]]),
+                               {"op": "expect", "voxels_in_group": {"4": right}}], "--fresh",
+                              "--set", "volume.nodata=none")
+
     def test_a_density_stroke_on_a_fresh_project_is_saved(self):
         project = self.folder / "project"
         self.check("import", Volume.noise((9, 8, 7), seed=1).write(self.folder, "other"), project)

@@ -479,6 +479,36 @@ TEST_CASE("a voxel at exactly the threshold is open, whatever the voxel type")
     CHECK(messages_of(renderer) == "");
 }
 
+TEST_CASE("values that share a code are told apart, beside fill values and under offsets, too")
+{
+    Renderer renderer(with_validation());
+    struct Case {
+        VoxelType type;
+        double step, fill;
+    };
+    for (const Case& c :
+         {Case{VoxelType::int32, 1.0, -2147483648.0}, Case{VoxelType::int32, 1.0, 2147483647.0},
+          Case{VoxelType::float32, 0.0009765625, double(-3.4e38f)}, Case{VoxelType::float64, 1e-9, 1e7}}) {
+        CAPTURE(std::string(name_of(c.type)));
+        CAPTURE(c.fill);
+        std::mt19937 random(56);
+        const Voxels voxels = voxels_of({40, 37, 35}, c.type, [&](const Size3& v) {
+            return (v.x + v.y) % 3 == 0 ? c.fill : c.step * double(random() % 2000000);
+        });
+        load(renderer, voxels);
+        Annotator annotator(renderer);
+        for (const double threshold : {c.step * 900000.0, c.step * 900000.5, c.step * 1400001.0})
+            for (const Brush brush : {Brush::fill, Brush::flood, Brush::speckle}) {
+                PaintOp op = flood_at({20.0, 18.5, 17.5}, 30.0, threshold);
+                op.brush = brush;
+                op.region = brush == Brush::speckle ? RegionShape::ball : RegionShape::box;
+                op.path.push_back({21.0, 19.5, 17.5});
+                check_against_reference(annotator, voxels, op);
+            }
+    }
+    CHECK(messages_of(renderer) == "");
+}
+
 TEST_CASE("a region of 128 voxels a side is flooded voxel for voxel")
 {
     Renderer renderer(with_validation());

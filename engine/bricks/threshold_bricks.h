@@ -1,0 +1,59 @@
+#pragma once
+// Which voxels are at or above a threshold, by the numbers of the file: bits of bricks, read as they are needed and
+// kept. Brushes and touch decide by them where several values share a 16-bit code (has_exact_codes, volume.h).
+//
+// One thread owns an object; what get_ready() starts reads on a thread of its own.
+
+#include <array>
+#include <future>
+#include <memory>
+#include <optional>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "engine/volume/source.h"
+
+namespace shvr {
+
+class ThresholdBricks {
+public:
+    /// `source`: with offsets, if there are any.
+    explicit ThresholdBricks(std::shared_ptr<const VolumeSource> source);
+    ~ThresholdBricks();
+    ThresholdBricks(const ThresholdBricks&) = delete;
+
+    /// Whether bits_in() would read nothing. If not, starts reading in the background: ask again. Fails if voxels
+    /// cannot be read.
+    bool get_ready(const VoxelBox& box, double threshold);
+    /// The bits of a box inside the volume, in rows of whole words along x: bit b of word w of row (y, z) is voxel
+    /// x = box.lower.x + 32 w + b. NaN is below every threshold. Reads what is missing; fails if it cannot be read.
+    std::vector<uint32_t> bits_in(const VoxelBox& box, double threshold);
+    /// Forgets the voxels in these boxes, since they have changed.
+    void renew(std::span<const VoxelBox> changed);
+
+private:
+    static constexpr int64_t SIDE = 32;                    ///< voxels of a brick along each axis: a row is one word
+    static constexpr size_t MAX_BRICKS = size_t{1} << 12;  ///< kept: 16 MiB
+    using Bits = std::array<uint32_t, SIDE * SIDE>;        ///< rows, y fastest
+    struct Key {
+        double threshold = 0.0;
+        Size3 brick{0};
+        bool operator==(const Key&) const = default;
+    };
+    struct KeyHash {
+        size_t operator()(const Key& key) const;
+    };
+    using Bricks = std::unordered_map<Key, std::shared_ptr<const Bits>, KeyHash>;
+
+    std::vector<Size3> missing(const VoxelBox& box, double threshold) const;
+    static Bricks read(const VolumeSource& source, const std::vector<Size3>& bricks, double threshold);
+    void take_reading();
+
+    std::shared_ptr<const VolumeSource> source_;
+    Bricks kept_;
+    std::future<Bricks> reading_;    ///< in the background; its destructor waits
+    bool reading_is_stale_ = false;  ///< voxels changed since it began
+};
+
+}  // namespace shvr
