@@ -479,7 +479,8 @@ TEST_CASE("a voxel at exactly the threshold is open, whatever the voxel type")
     CHECK(messages_of(renderer) == "");
 }
 
-TEST_CASE("values that share a code are told apart, beside fill values and under offsets, too")
+// Kind (Values): thresholds between values that share a 16-bit code
+TEST_CASE("values that share a code are told apart, next to fill values and under offsets, too")
 {
     Renderer renderer(with_validation());
     struct Case {

@@ -61,6 +61,7 @@ class Compare(CliTest):
             self.assertIn(gate[0], result.stderr)
             self.assertIn('"max_abs"', result.stdout)  # the numbers are printed either way
 
+    # Kind (Instruments): pictures that differ in alpha
     def test_the_error_of_alpha_is_gated(self):
         faint = write_png(self.folder / "faint.png", 20, 10, lambda x, y: (100, 100, 100, 251))
         result = self.check("compare", self.a, faint, "--max-rmse", "3", "--json", status=3)

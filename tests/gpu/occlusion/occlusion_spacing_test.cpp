@@ -126,6 +126,7 @@ double lumen(const glm::dvec3& p)
 
 }  // namespace
 
+// Kind (Light): ambient occlusion with anisotropic spacing
 TEST_CASE_FIXTURE(OnDevice, "light is the definition's, and all of it on planes, however long voxels are along an axis")
 {
     const auto hollow = [](const glm::dvec3& p) { return glm::length(p - CENTRE) - 10.0; };

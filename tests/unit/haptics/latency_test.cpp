@@ -190,6 +190,7 @@ TEST_CASE("on a straight tube's axis nothing pulls along it where the region end
     }
 }
 
+// Kind (Touch): a hand that is faster than the relevance
 TEST_CASE("a region that is not renewed does not pull a hand back along a straight tube")
 {
     for (const glm::dvec3& direction : {glm::dvec3(1, 0, 0), glm::dvec3(2, 1, -1)})
@@ -217,6 +218,7 @@ TEST_CASE("a region that ends at the volume's border is known to be empty beyond
     CHECK(patch->known_part({std::nan(""), 96.0, 96.0}, 10.0).share == 0.0);
 }
 
+// Kind (Touch): large and fast probes with late relevance
 TEST_CASE("guidance stays above its bound for every radius, speed and latency of the sweep")
 {
     using List = std::vector<double>;

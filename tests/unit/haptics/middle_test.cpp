@@ -78,6 +78,7 @@ Traced trace_along(const Rod& rod, const RelevancePatch& scene, double radius, P
 
 }  // namespace
 
+// Kind (Touch): tracing at the middle of a tube, with each law of the force
 TEST_CASE("a line traced at the middle of what is touched is within 0.3 voxels of the axis, with each law")
 {
     const auto scene = std::make_unique<RelevancePatch>();

@@ -63,6 +63,7 @@ double farthest_apart(const std::vector<double>& a, const std::vector<double>& b
 
 }  // namespace
 
+// Kind (Values): one dead or hot voxel, in any type
 TEST_CASE("one dead or hot voxel of any type moves no automatic setting by 1 % of the tissue's range")
 {
     struct Case {

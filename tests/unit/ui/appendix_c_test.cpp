@@ -112,6 +112,7 @@ constexpr Printed APPENDIX_C[] = {
 
 }  // namespace
 
+// Kind (Window): the keys of the thesis
 TEST_CASE("every key of the thesis's appendix C means in its set what is printed there")
 {
     const Keymap thesis(KeySet::thesis);

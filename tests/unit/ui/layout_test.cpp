@@ -102,6 +102,7 @@ TEST_CASE("Preferences of look and layout are kept, patched, and given back")
     CHECK_THROWS_AS(static_cast<void>(patched(Preferences(), "[1]")), Error);
 }
 
+// Kind (Window): one bad shortcut in the preferences
 TEST_CASE("A bad shortcut in the preferences spoils only itself, is named, and stays in the file")
 {
     TemporaryFolder folder;

@@ -61,6 +61,7 @@ TEST_CASE("stray values are left out of a range whatever the number of voxels")
         }
 }
 
+// Kind (Values): a few stray values far from all others
 TEST_CASE("several stray values are left out while they are few")
 {
     const std::vector<double> plain = tissue(60 * 60 * 60);
@@ -80,6 +81,7 @@ TEST_CASE("several stray values are left out while they are few")
     CHECK(bulk_of(values).value().outliers == 4);
 }
 
+// Kind (Values): rare bright voxels that belong to the scan
 TEST_CASE("what is rare and bright in a scan stays in the range")
 {
     const std::vector<double> plain = tissue(60 * 60 * 60);
@@ -213,6 +215,7 @@ std::optional<OutlierFinder::Bulk> bulk_of(VoxelType type, const std::vector<dou
 
 }  // namespace
 
+// Kind (Values): a fill value at an end of the range, at any share
 TEST_CASE("a fill value of any share is found at either end, and the rest keeps its range")
 {
     struct Case {
@@ -244,7 +247,8 @@ TEST_CASE("a fill value of any share is found at either end, and the rest keeps 
         }
 }
 
-TEST_CASE("two fill values, and a hot voxel beside one, are told apart")
+// Kind (Values): two fill values, and a hot voxel next to one
+TEST_CASE("two fill values, and a hot voxel next to one, are told apart")
 {
     std::vector<double> values = filled(1, 120, -9999.0, 0.1);
     for (size_t i = 5; i < values.size(); i += 50) values[i] = -9998.0;
@@ -256,6 +260,7 @@ TEST_CASE("two fill values, and a hot voxel beside one, are told apart")
     CHECK(found->fill.size() == 2);
 }
 
+// Kind (Values): air at 0, labels, two materials and saturation, which are no fill values
 TEST_CASE("air at 0, labels, two materials and saturation are no fill values")
 {
     const auto has_none = [](VoxelType type, const std::vector<double>& values) {
@@ -275,7 +280,8 @@ TEST_CASE("air at 0, labels, two materials and saturation are no fill values")
     has_none(VoxelType::uint8, filled(100, 105, 255.0, 0.1));
 }
 
-TEST_CASE("a stated fill value is the only one, wherever it lies, and infinity states that there is none")
+// Kind (Values): a fill value that the user states
+TEST_CASE("a stated fill value is the only one, wherever it lies, and infinity states none")
 {
     const std::vector<double> values = filled(1, 120, -9999.0, 0.25);
     const int64_t count = std::ranges::count(values, 60.0);

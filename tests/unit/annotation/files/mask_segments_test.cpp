@@ -61,6 +61,7 @@ bool has_line(const std::string& header, const std::string& line)
 
 }  // namespace
 
+// Kind (Masks): a segmentation with names, colours and terminology
 TEST_CASE("a save over a segmentation keeps names, colours, identifiers, terminology and unknown keys")
 {
     const TemporaryFolder folder;

@@ -72,6 +72,7 @@ Errors errors_of(const Drawing& drawing, const Drawing& truth)
 
 }  // namespace
 
+// Kind (Scores): a break in the middle of a tube
 TEST_CASE("a tube that is broken once or twice has that many breaks, however wide they are")
 {
     for (const double width : {2.0, 4.0, 20.0}) {
@@ -101,6 +102,7 @@ TEST_CASE("a break in an arm, and one in a tube whose ends are not traced")
     CHECK(errors_of(short_tube, tube()) == Errors{.breaks = 1});
 }
 
+// Kind (Scores): an arm that is not joined to its trunk
 TEST_CASE("an arm that stops before its branch is an unjoined end, at any distance")
 {
     for (const double distance : {1.0, 2.0, 4.0, 15.0}) {
@@ -124,6 +126,7 @@ TEST_CASE("an arm whose trunk passes without a node at the branch is an unjoined
     CHECK(errors_of(drawing, branched()) == Errors{.gaps = 1});
 }
 
+// Kind (Scores): spurs shorter than two radii
 TEST_CASE("short side branches are spurs, wherever they are")
 {
     for (const double length : {0.5, 1.5, 2.4}) {
@@ -153,6 +156,7 @@ TEST_CASE("a trace that is a little longer or shorter than the truth has no spur
     }
 }
 
+// Kind (Scores): superfluous segments
 TEST_CASE("small loops, rungs and loose pieces are superfluous, and short cuts double it")
 {
     Drawing short_cut = tube(), loop = tube(), beside = tube(), rung;

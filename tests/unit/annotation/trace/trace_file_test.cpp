@@ -384,6 +384,7 @@ TEST_CASE("hostile text is refused in one sentence")
     CHECK(refusal("a.doc", node) == "a.doc: has the extension \".doc\"; expected .graphml, .txt, .swc or .rsml");
 }
 
+// Kind (Traces): SWC with odd lines
 TEST_CASE("odd lines of SWC are read past and named, a kind each")
 {
     const auto read = [](const std::string& text, size_t nodes, size_t internodes,
@@ -426,6 +427,7 @@ TEST_CASE("odd lines of SWC are read past and named, a kind each")
     CHECK(read(two, 2, 1, SPACE).empty());
 }
 
+// Kind (Traces): a trace in another unit of length than the volume
 TEST_CASE("a trace in another unit of length is converted")
 {
     const TemporaryFolder folder;
@@ -439,6 +441,7 @@ TEST_CASE("a trace in another unit of length is converted")
     CHECK(contains(file.warnings[0], "lengths were converted from um to mm, the unit of the volume"));
 }
 
+// Kind (Traces): GraphML with odd elements and defaults
 TEST_CASE("odd elements of GraphML are read past, and its defaults taken")
 {
     const TemporaryFolder folder;
@@ -475,6 +478,7 @@ TEST_CASE("odd elements of GraphML are read past, and its defaults taken")
     for (size_t i = 0; i < std::size(parts); ++i) CHECK(contains(file.warnings[i], parts[i]));
 }
 
+// Kind (Traces): RSML with functions over the length
 TEST_CASE("functions of RSML over the length and uniform ones give the points their radius")
 {
     const TemporaryFolder folder;

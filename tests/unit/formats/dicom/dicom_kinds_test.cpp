@@ -51,6 +51,7 @@ std::string refusal(const fs::path& path, const OpenOptions& options = {})
 
 }  // namespace
 
+// Kind (DICOM): frames with one position; a negative distance between slices
 TEST_CASE("frames of one position are slices, at the distance that is stated, in the direction of its sign")
 {
     for (const char* distance : {"1.25", "-1.25"}) {
@@ -76,6 +77,7 @@ TEST_CASE("frames of one position are slices, at the distance that is stated, in
     CHECK(source->info().origin == glm::dvec3(1, 2, 3));
 }
 
+// Kind (DICOM): positions both in the file and in its frames
 TEST_CASE("positions of frames count before one of the file")
 {
     TemporaryFolder folder;
@@ -90,6 +92,7 @@ TEST_CASE("positions of frames count before one of the file")
     CHECK(source->info().origin == glm::dvec3(1, 2, 3));
 }
 
+// Kind (DICOM): enhanced files with shared functional groups
 TEST_CASE("shared functional groups state the distance between frames without positions")
 {
     TemporaryFolder folder;
@@ -107,6 +110,7 @@ TEST_CASE("shared functional groups state the distance between frames without po
     CHECK(warns_of(*source, "slices are taken to be 3 mm apart"));
 }
 
+// Kind (DICOM): slices stored as time points
 TEST_CASE("times of one place are time points, and can be stacked")
 {
     TemporaryFolder folder;
@@ -124,6 +128,7 @@ TEST_CASE("times of one place are time points, and can be stacked")
     CHECK(is_chirality_phantom(*open_volume(folder.path, {.frame = "z"})));
 }
 
+// Kind (DICOM): several stacks in one file
 TEST_CASE("of several stacks of a file, one is chosen")
 {
     TemporaryFolder folder;
@@ -145,6 +150,7 @@ TEST_CASE("of several stacks of a file, one is chosen")
     CHECK(contains(refusal(folder.path, {.frame = "stack C"}), "frame is \"stack C\"; expected a frame, one of: "));
 }
 
+// Kind (DICOM): direction cosines that differ by rounding
 TEST_CASE("directions that differ by rounding are one, wherever the rounded ones would part")
 {
     TemporaryFolder folder;
@@ -160,6 +166,7 @@ TEST_CASE("directions that differ by rounding are one, wherever the rounded ones
     CHECK(source->info().warnings.empty());
 }
 
+// Kind (DICOM): pixel spacing that changes within a series
 TEST_CASE("a pixel spacing that changes within a series is told")
 {
     TemporaryFolder folder;
@@ -170,6 +177,7 @@ TEST_CASE("a pixel spacing that changes within a series is told")
                    "states 0.6 x 0.6 mm, the first slice 0.5 x 0.5 mm"));
 }
 
+// Kind (DICOM): a slice scanned twice
 TEST_CASE("a slice scanned twice is named by its place, and one of them is chosen")
 {
     TemporaryFolder folder;
@@ -188,6 +196,7 @@ TEST_CASE("a slice scanned twice is named by its place, and one of them is chose
     CHECK_THROWS_AS(open_volume(folder.path), ChoiceNeeded);
 }
 
+// Kind (DICOM): one file of a series of multi-frame files
 TEST_CASE("one file of many frames stands for a series that others continue")
 {
     TemporaryFolder folder;
@@ -208,6 +217,7 @@ TEST_CASE("one file of many frames stands for a series that others continue")
     CHECK(warns_of(*open_volume(second), "one of the 2 files of its series is read"));
 }
 
+// Kind (DICOM): text in a character set other than UTF-8
 TEST_CASE("texts are shown and chosen in UTF-8, whatever character set they are stored in")
 {
     CHECK(dicom_text("plain", "") == "plain");
@@ -228,6 +238,7 @@ TEST_CASE("texts are shown and chosen in UTF-8, whatever character set they are 
     CHECK(is_chirality_phantom(*open_volume(folder.path, {.channel = "Bl\xc3\xbcte"})));
 }
 
+// Kind (DICOM): Float and Double Float Pixel Data
 TEST_CASE("floats in Float Pixel Data and Double Float Pixel Data are read as they are")
 {
     for (const uint32_t tag : {0x7fe00008u, 0x7fe00009u})
@@ -257,6 +268,7 @@ TEST_CASE("floats in Float Pixel Data and Double Float Pixel Data are read as th
         }
 }
 
+// Kind (DICOM): files without preamble; folders of folders
 TEST_CASE("files without preamble, and folders of folders, are opened")
 {
     for (const char* syntax : {EXPLICIT_LITTLE, IMPLICIT_LITTLE}) {

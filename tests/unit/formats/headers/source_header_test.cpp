@@ -236,6 +236,7 @@ TEST_CASE("spacing, unit and orientation of an NRRD survive, and what changes is
     CHECK(folder.nrrd("spacings:", "spacings: 1 -2 -3")->info().warnings.empty());  // a rotation by 180 degrees
 }
 
+// Kind (Headers): NRRD that states axis mins and maxs
 TEST_CASE("axis mins and maxs of an NRRD give the spacing, node-centred or cell-centred")
 {
     const Folder folder;
@@ -264,6 +265,7 @@ TEST_CASE("axis mins and maxs of an NRRD give the spacing, node-centred or cell-
     CHECK(contains(folder.nrrd_refusal("spacings", mins + maxs + "centerings: node node edge"), "centerings is"));
 }
 
+// Kind (Headers): a colour picture in NRRD
 TEST_CASE("a colour picture in an NRRD is one slice with channels, and no grey volume")
 {
     const Folder folder;
@@ -277,6 +279,7 @@ TEST_CASE("a colour picture in an NRRD is one slice with channels, and no grey v
     CHECK(green->info().unit == "mm");
 }
 
+// Kind (Headers): MetaImage with an intensity function
 TEST_CASE("intensity functions of a MetaImage are applied")
 {
     const Folder folder;
@@ -295,6 +298,7 @@ TEST_CASE("intensity functions of a MetaImage are applied")
                    "ElementToIntensityFunctionSlope is \"0\"; expected a finite number other than 0"));
 }
 
+// Kind (Headers): Windows paths to voxels next to the header
 TEST_CASE("a header from Windows finds the voxels that lie beside it")
 {
     const Folder folder;

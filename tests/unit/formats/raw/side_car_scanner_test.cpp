@@ -46,6 +46,7 @@ std::string refusal(const fs::path& path)
 
 }  // namespace
 
+// Kind (Scanner headers): `.vgi` with several sections
 TEST_CASE("a .vgi describes its voxels by the section of the file, from either file")
 {
     const TemporaryFolder folder;
@@ -65,6 +66,7 @@ TEST_CASE("a .vgi describes its voxels by the section of the file, from either f
     CHECK(open_volume(folder.path / "other.vol")->info().type == VoxelType::float32);
 }
 
+// Kind (Scanner headers): `.xtekct`, which states no voxel type
 TEST_CASE("a .xtekct describes voxels whose type the size of their file tells")
 {
     const TemporaryFolder folder;
@@ -86,6 +88,7 @@ TEST_CASE("a .xtekct describes voxels whose type the size of their file tells")
     CHECK(contains(refusal(header), "holds 3 bytes; expected 1, 2 or 4 for each of the 24 voxels that scan.xtekct"));
 }
 
+// Kind (Scanner headers): `.vol.info` with byte order and micrometres
 TEST_CASE("a .vol.info states size, byte order and micrometres")
 {
     const TemporaryFolder folder;
