@@ -95,13 +95,11 @@ reference::OcclusionSide side_at(const reference::Scene& scene, const glm::dvec3
     for (int axis = 0; axis < 3; ++axis) {
         glm::dvec3 step(0.0);
         step[axis] = 1.0;
-        slope[axis] = 0.5 *
-                      (reference::density_at(scene, centre + step) - reference::density_at(scene, centre - step)) *
-                      per_unit[axis];
+        slope[axis] = 0.5 * (reference::density_at(scene, centre + step) - reference::density_at(scene, centre - step));
     }
     const double square = glm::dot(slope, slope), fade = scene.shading->fade;
     if (square == 0.0) return {};
-    return {-slope / std::sqrt(square), square / (square + fade * fade)};
+    return {-glm::normalize(slope * per_unit), square / (square + fade * fade), -slope / std::sqrt(square)};
 }
 
 std::vector<double> ambient_shares(const reference::Scene& scene, const OcclusionSettings& settings)
