@@ -1,4 +1,5 @@
 """The scripts of tools/ that a person runs: what tools/build says while it builds, and which packages tools/setup asks for."""
+import errno
 import os
 import pty
 import re
@@ -21,6 +22,18 @@ exit "${{BUILD_STATUS:-0}}"
 APT = """#!/bin/bash
 [[ " $* " != *" install "* ]] || printf '%s\\n' "$@" >> "$ASKED"
 """
+
+
+def read_to_end(terminal):
+    """All that was written to the other end, which is closed: a terminal hands it on piece by piece."""
+    said = b""
+    try:
+        while piece := os.read(terminal, 65536):
+            said += piece
+    except OSError as error:
+        if error.errno != errno.EIO:
+            raise
+    return said.decode()
 
 
 class Tools(unittest.TestCase):
@@ -56,7 +69,7 @@ class Tools(unittest.TestCase):
         ours, theirs = pty.openpty()
         result = self.build(env=self.environment, stderr=theirs, stdout=subprocess.PIPE)
         os.close(theirs)
-        said = os.read(ours, 65536).decode()
+        said = read_to_end(ours)
         os.close(ours)
         self.assertEqual(result.returncode, 0)
         self.assertIn(f"\rbuilding dev: step {STEPS} of {STEPS}, part_{STEPS}.o\x1b[K", said)
