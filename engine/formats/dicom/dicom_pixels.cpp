@@ -3,6 +3,7 @@
 #include <gdcmJPEGLSCodec.h>
 #include <gdcmRLECodec.h>
 #include <gdcmSequenceOfFragments.h>
+#include <gdcmTransferSyntax.h>
 
 #include <algorithm>
 #include <cstring>
