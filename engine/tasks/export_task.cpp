@@ -7,6 +7,7 @@
 #include "engine/annotation/measures/measures.h"
 #include "engine/annotation/trace/trace_mesh.h"
 #include "engine/base/atomic_file.h"
+#include "engine/base/text.h"
 #include "engine/session/label_looks.h"
 #include "engine/tasks/task_output.h"
 
