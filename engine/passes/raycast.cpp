@@ -59,6 +59,9 @@ std::vector<std::byte> bytes_of(const RaycastOcclusion& occlusion)
     return bytes;
 }
 
+/// Shorter steps, in reference lengths, are added by compensated sums: plain ones are 1.5e-7 / step off.
+constexpr float MIN_PLAIN_STEP = 0.05f;
+
 /// The inputs that select the kernel and its constants.
 struct Choice {
     bool is_paged, is_filtered, is_masked, is_occluded, is_surfaced;
@@ -117,6 +120,7 @@ Constants constants_of_steps(const Choice& choice, const RaycastInput& input)
                         {"PREINTEGRATED", input.preintegrated ? input.params.opaque_map > 0 ? 2 : 1 : 0}};
     if (!choice.is_paged && !choice.is_filtered) constants.emplace_back("HAS_SAMPLE_BITS", choice.has_sample_bits);
     if (choice.is_masked) constants.emplace_back("SMOOTH_BORDERS", input.smooth_borders);
+    if (input.params.step < MIN_PLAIN_STEP) constants.emplace_back("COMPENSATED", 1);
     return constants;
 }
 

@@ -3,6 +3,8 @@
 // pictures with and without skipping have the same bits. The number of steps is not limited: a long ray is drawn in
 // blocks of steps, one dispatch each, because some devices end a thread's loops after 65535 turns, without a word.
 //
+// COMPENSATED: rounding errors of sums do not add up, as they would over many short steps.
+//
 // Needs volume.glsl, ray.glsl, the constants SHADED, COUNT_WORK, FEEDBACK, PREINTEGRATED, SMOOTH_BORDERS and
 // DISTANCE_BLEND, where SHADED may be 1 library/shade.glsl. PICKS: how the opacity rises is noted on the way.
 #ifdef PICKS
@@ -14,6 +16,7 @@
 layout(constant_id = 12) const uint HAS_SAMPLE_BITS = 0u;
 layout(binding = 14, r32ui) uniform readonly uimage3D sample_bits;   // leap.h
 #endif
+layout(constant_id = 17) const uint COMPENSATED = 0u;
 // linear RGB (PREINTEGRATED: times opacity), opacity of a full step; then optical depths (raycast.h)
 layout(binding = 3, rgba32f) uniform readonly image2D table;
 
@@ -95,12 +98,24 @@ void accumulate(inout vec4 sum, vec4 look)
     sum.a += weight;
 }
 
+// The same with compensated sums (Kahan 1965): `above` is how much the sum is above its exact value.
+void accumulate_compensated(inout vec4 sum, inout vec4 above, vec4 look)
+{
+    const float weight = ((1.0 - sum.a) + above.a) * look.a;
+    precise const vec4 added = vec4(weight * look.rgb, weight) - above;
+    precise const vec4 next = sum + added;
+    precise const vec4 rounded = (next - sum) - added;
+    above = rounded;
+    sum = next;
+}
+
 #include "../library/search.glsl"
 
 // A ray's accumulated state, and its position.
 struct March {
     uint i;        // index of the next step: whole steps, then the rest; beyond that, none
     vec4 sum;
+    vec4 above;    // accumulate_compensated(), since the dispatch began
 #ifdef PICKS
     Rises rises;
 #endif
@@ -116,6 +131,7 @@ March march_from(uint step, vec4 sum)
     March march;
     march.i = step;
     march.sum = sum;
+    march.above = vec4(0.0);
 #ifdef PICKS
     march.rises = Rises(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
 #endif
@@ -130,7 +146,10 @@ void add(vec4 look, float middle, inout March march)
 #ifdef PICKS
     note_rise(march.rises, (1.0 - march.sum.a) * look.a, look.a, middle);
 #endif
-    accumulate(march.sum, look);
+    if (COMPENSATED != 0u)
+        accumulate_compensated(march.sum, march.above, look);
+    else
+        accumulate(march.sum, look);
 }
 
 // The density at the beginning of a step.

@@ -67,6 +67,24 @@ TEST_CASE_FIXTURE(OnDevice, "a Gaussian blob has its closed depth, with order 2 
     check_below("order of convergence, below 2", std::max(2.0 - order_of(errors), 0.0), 0.2);
 }
 
+TEST_CASE_FIXTURE(OnDevice, "the shortest steps sum to what long ones do")
+{
+    constexpr double OPACITY = 0.5;  // of a voxel's length: plain sums would be 4e-4 off
+    load(constant_volume({16, 16, 16}, 40000.0));
+    Session session = plain_session(uniform_points(WHITE, OPACITY), {1, 1});
+    session.render.background = glm::dvec4(0.0);
+    session.render.opacity_limit = 1.0;
+    const Camera camera = camera_along(volume(), {1, 0, 0}, 1.0);
+    const double expected = 1.0 - std::pow(1.0 - OPACITY, 16.0);
+    for (const double step : {0.01, 0.001, 0.0001}) {
+        CAPTURE(step);
+        session.render.step_voxels = step;
+        const glm::dvec4 found = pixels_of(draw(session, camera))[0];
+        check_below("opacity of many steps", std::abs(found.a - expected), 1e-6);
+        check_below("colour of many steps", std::abs(found.r - expected), 1e-6);
+    }
+}
+
 TEST_CASE_FIXTURE(OnDevice, "an exponential medium has its closed depth, with order 2 in its height")
 {
     constexpr double DEPTH = 0.05;  // of a voxel's length at z = 0
