@@ -23,7 +23,7 @@ class Phantom(CliTest):
 
     def test_every_kind_and_type(self):
         for kind in ("constant", "ramp", "sphere", "marschner_lobb", "tubes", "speckles", "fog", "checker",
-                     "chirality"):
+                     "chirality", "capitulum"):
             for voxel_type in ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"):
                 result = self.check_json("phantom", kind, "--size", 5, "--type", voxel_type, "-o", self.folder)
                 self.assertEqual(self.check_json("info", result["volume"])["type"], voxel_type)
@@ -81,6 +81,38 @@ class Phantom(CliTest):
                                  "--truth-trace", result["truth_trace"], "--trace", result["truth_trace"])
         self.assertEqual(scores["dice_by_group"], {str(group): 1 for group in (1, 2, 3, 4)})
         self.assertEqual((scores["node_score"], scores["topological_errors"]), (1, 0))
+
+    def test_truths_are_exact(self):
+        for kind, options in (("tubes", ["--size", "40x30x36"]), ("speckles", ["--size", 30]),
+                              ("capitulum", ["--size", 40, "--florets", 34, "--gaps", 20, "--double-tubes"])):
+            result = self.check_json("phantom", kind, *options, "-o", self.folder)
+            _, groups = self.voxels(result["truth_mask"])
+            self.assertEqual(set(groups) - {0}, set(result["sections"].values()), kind)
+            scores = self.check_json("evaluate", "--truth-mask", result["truth_mask"], "--mask", result["truth_mask"],
+                                     "--truth-trace", result["truth_trace"], "--trace", result["truth_trace"])
+            self.assertEqual((scores["dice"], scores["node_score"], scores["topological_errors"]), (1, 1, 0), kind)
+            self.assertGreater(scores["node_out"][1], 10)
+            self.assertEqual(scores["internode_score"], None if kind == "speckles" else 1, kind)
+            self.assertEqual(scores["segments"][0], scores["segments"][1], kind)
+
+    def test_options_without_effect_are_refused(self):
+        self.check_refused("phantom", "fog", "--noise", 5, "-o", self.folder, status=2,
+                           says=["--noise does not apply to fog"])
+        self.check_refused("phantom", "tubes", "--species", "bellis", "-o", self.folder, status=2,
+                           says=["--species does not apply to tubes"])
+        self.check_refused("phantom", "capitulum", "--specks", 5, "-o", self.folder, status=2, says=["specks"])
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_options_decide(self):
+        volumes = set()
+        options = ([], ["--species", "bellis"], ["--species", "helianthus"], ["--stage", "b"], ["--noise", 9],
+                   ["--phyllotaxis", "lucas"], ["--phyllotaxis", "bijugate"], ["--hand", "left"], ["--blur", 3],
+                   ["--florets", 60], ["--double-tubes"], ["--rings", 20], ["--streaks", 20], ["--specks", 2],
+                   ["--gaps", 50], ["--falling", 50], ["--seed", 2])
+        for given in options:
+            self.check("phantom", "capitulum", "--size", 24, *given, "-o", self.folder)
+            volumes.add((self.folder / "capitulum.raw").read_bytes())
+        self.assertEqual(len(volumes), len(options))
 
     def test_wrong_usage(self):
         for size in ("0", "-3", "4x4", "4x4x4y", "1048577", "4x4x", ""):

@@ -9,7 +9,7 @@
 #include "engine/base/atomic_writer.h"
 #include "engine/base/text.h"
 #include "engine/volume/grid.h"
-#include "engine/volume/procedural/source_procedural.h"
+#include "engine/volume/phantoms/phantom.h"
 #include "engine/volume/voxel_walk.h"
 #include "tools/cli/cli.h"
 
@@ -22,10 +22,12 @@ constexpr int64_t SLAB_BYTES = int64_t{32} << 20;
 
 struct PhantomCommandOptions {
     Common common;
-    std::string kind, folder;
+    std::string folder;
     std::string size = "64";
     std::string type = "uint8";
-    uint32_t seed = 1;
+    std::string hand = "right";
+    PhantomSpec spec;
+    std::vector<const CLI::Option*> of_capitulum, of_flaws;  ///< that other kinds have no use for
 };
 
 /// "64" or "64x32x16"
@@ -73,33 +75,7 @@ void write_voxels(const std::filesystem::path& path, const VolumeSource& volume,
     writer.commit();
 }
 
-/// The colour groups of a volume's voxels, at their centres.
-class GroupSource final : public VolumeSource {
-public:
-    GroupSource(const VolumeInfo& volume, std::function<uint8_t(const glm::dvec3&)> group)
-        : VolumeSource(of_groups(volume)), group_(std::move(group))
-    {}
-
-    void read(const VoxelBox& box, std::span<std::byte> voxels) const override
-    {
-        size_t at = 0;
-        for (int64_t z = box.lower.z; z < box.upper.z; ++z)
-            for (int64_t y = box.lower.y; y < box.upper.y; ++y)
-                for (int64_t x = box.lower.x; x < box.upper.x; ++x)
-                    voxels[at++] = std::byte(group_(glm::dvec3(x, y, z) + 0.5));
-    }
-
-private:
-    static VolumeInfo of_groups(VolumeInfo volume)
-    {
-        volume.type = VoxelType::uint8;
-        return volume;
-    }
-
-    std::function<uint8_t(const glm::dvec3&)> group_;
-};
-
-TraceGraph trace_of(const ProceduralTruth& truth, const VolumeInfo& volume)
+TraceGraph trace_of(const Phantom& truth, const VolumeInfo& volume)
 {
     TraceGraph trace;
     for (size_t i = 0; i < truth.nodes.size(); ++i) {
@@ -135,29 +111,44 @@ std::string write_volume(const std::filesystem::path& folder, const std::string&
     return header.string();
 }
 
+/// Refuses options without effect: a phantom that is not as asked for would look like one that is.
+void check_use(const PhantomCommandOptions& options)
+{
+    const std::string& kind = options.spec.kind;
+    const auto refuse = [&](const std::vector<const CLI::Option*>& unused, const char* of) {
+        for (const CLI::Option* option : unused)
+            if (option->count() > 0)
+                throw UsageError(sentence(option->get_name(), " does not apply to ", kind, "; it is for ", of));
+    };
+    if (!has_flaws(kind)) refuse(options.of_flaws, "models of plants, such as capitulum");
+    if (kind != "capitulum") refuse(options.of_capitulum, "capitulum");
+}
+
 void run_phantom(const PhantomCommandOptions& options)
 {
     const std::optional<VoxelType> type = voxel_type_of(options.type);
     if (!type)
         throw UsageError(sentence("--type is ", in_quotes(options.type), "; expected a voxel type, such as uint8"));
-    const ProceduralSpec spec{
-        .kind = options.kind, .size = parse_volume_size(options.size), .seed = options.seed, .type = *type};
-    const std::unique_ptr<VolumeSource> source = open_procedural(spec);
-    const std::optional<ProceduralTruth> truth = procedural_truth(spec);
+    check_use(options);
+    PhantomSpec spec = options.spec;
+    spec.size = parse_volume_size(options.size);
+    spec.type = *type;
+    spec.left_handed = options.hand == "left";
+    const Phantom phantom = make_phantom(spec);
+    const VolumeInfo& info = phantom.volume->info();
 
     LongWork work(options.common.quiet);
     const std::filesystem::path folder = options.folder;
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) fail(options.folder, ": cannot be created: ", error.message());
-    Json written = {{"volume", write_volume(folder, options.kind, *source, work)},
+    Json written = {{"volume", write_volume(folder, spec.kind, *phantom.volume, work)},
                     {"truth_mask", nullptr},
                     {"truth_trace", nullptr}};
-    if (truth) {
-        written["truth_mask"] =
-            write_volume(folder, options.kind + "-mask", GroupSource(source->info(), truth->group), work);
-        const std::filesystem::path trace = folder / (options.kind + "-trace.graphml");
-        save_trace(trace, trace_of(*truth, source->info()), space_of(source->info()));
+    if (phantom.mask) written["truth_mask"] = write_volume(folder, spec.kind + "-mask", *phantom.mask, work);
+    if (!phantom.nodes.empty()) {
+        const std::filesystem::path trace = folder / (spec.kind + "-trace.graphml");
+        save_trace(trace, trace_of(phantom, info), space_of(info));
         written["truth_trace"] = trace.string();
     }
 
@@ -166,14 +157,14 @@ void run_phantom(const PhantomCommandOptions& options)
             if (path.is_string()) say(options.common, path.get<std::string>());
         return;
     }
-    const Size3 size = source->info().size;
     print({{"volume", written["volume"]},
            {"truth_mask", written["truth_mask"]},
            {"truth_trace", written["truth_trace"]},
-           {"size", {size.x, size.y, size.z}},
+           {"sections", phantom.sections},
+           {"size", {info.size.x, info.size.y, info.size.z}},
            {"type", name_of(*type)},
-           {"kind", options.kind},
-           {"seed", options.seed}});
+           {"kind", spec.kind},
+           {"seed", spec.seed}});
 }
 
 std::vector<std::string> type_names()
@@ -183,6 +174,49 @@ std::vector<std::string> type_names()
     return names;
 }
 
+void add_capitulum_options(CLI::App& command, PhantomCommandOptions& options)
+{
+    PhantomSpec& spec = options.spec;
+    const auto add = [&](CLI::Option* option) {
+        options.of_capitulum.push_back(option->group("Flower heads (capitulum)")->capture_default_str());
+        return option;
+    };
+    add(command.add_option("--species", spec.species, "Course of adaxial veins and shape of the head"))
+        ->check(CLI::IsMember(capitulum_species()));
+    add(command.add_option("--stage", spec.stage, "Of development, from a, only abaxial veins, to d, all joined"))
+        ->check(CLI::IsMember({"a", "b", "c", "d"}));
+    add(command.add_option("--phyllotaxis", spec.phyllotaxis, "Arrangement of the florets"))
+        ->check(CLI::IsMember({"fibonacci", "lucas", "bijugate"}));
+    add(command.add_option("--hand", options.hand, "left: successive florets turn clockwise, seen from above"))
+        ->check(CLI::IsMember({"left", "right"}));
+    add(command.add_option("--florets", spec.florets, "Number of florets"))->check(CLI::Range(8, 1000));
+    options.of_capitulum.push_back(
+        command.add_flag("--double-tubes", spec.double_tubes, "Phloem next to each bundle's xylem, which is traced")
+            ->group("Flower heads (capitulum)"));
+}
+
+void add_flaw_options(CLI::App& command, PhantomCommandOptions& options)
+{
+    PhantomFlaws& flaws = options.spec.flaws;
+    const auto add = [&](const char* name, double& value, double most, const char* meaning) {
+        options.of_flaws.push_back(
+            command.add_option(name, value, meaning)
+                ->group("Flaws of models of plants; percent, of the contrast of veins unless stated")
+                ->check(CLI::Range(0.0, most))
+                ->capture_default_str());
+    };
+    add("--noise", flaws.noise, 100.0, "Standard deviation of noise");
+    add("--rings", flaws.rings, 100.0, "Height of rings around the axis z");
+    add("--streaks", flaws.streaks, 100.0, "Height of straight streaks in slices");
+    add("--specks", flaws.specks, 4.0, "Voxels, of all, in bright specks");
+    add("--gaps", flaws.gaps, 100.0, "Pieces of veins, of all, with a gap, which the truth bridges");
+    add("--falling", flaws.falling, 100.0, "Intensity missing on the axis z");
+    options.of_flaws.push_back(command.add_option("--blur", flaws.blur, "Voxels over which surfaces are soft")
+                                   ->group("Flaws of models of plants; percent, of the contrast of veins unless stated")
+                                   ->check(CLI::Range(0.01, 16.0))
+                                   ->capture_default_str());
+}
+
 }  // namespace
 
 void add_phantom(CLI::App& program)
@@ -190,20 +224,24 @@ void add_phantom(CLI::App& program)
     auto options = std::make_shared<PhantomCommandOptions>();
     CLI::App* command = program.add_subcommand(
         "phantom", "Writes a synthetic volume, with its true mask and trace where they are known");
-    command->add_option("KIND", options->kind, "What it shows")->required()->check(CLI::IsMember(procedural_kinds()));
+    command->add_option("KIND", options->spec.kind, "What it shows")->required()->check(CLI::IsMember(phantom_kinds()));
     command->add_option("--size", options->size, "Voxels, as in 64 or 64x32x16")->capture_default_str();
-    command->add_option("--seed", options->seed, "Equal seeds give equal volumes")->capture_default_str();
+    command->add_option("--seed", options->spec.seed, "Equal seeds give equal volumes")->capture_default_str();
     command->add_option("--type", options->type, "Type of the voxels")
         ->check(CLI::IsMember(type_names()))
         ->capture_default_str();
     command
-        ->add_option("-o,--output", options->folder,
-                     "Folder for KIND.nhdr and KIND.raw, and of a kind whose truth is known (chirality) also "
-                     "KIND-mask.nhdr and KIND-trace.graphml; made where missing")
+        ->add_option(
+            "-o,--output", options->folder,
+            "Folder for KIND.nhdr and KIND.raw, and of a kind whose truth is known (capitulum, tubes, speckles, "
+            "chirality) also KIND-mask.nhdr and KIND-trace.graphml; made where missing")
         ->required();
+    add_capitulum_options(*command, *options);
+    add_flaw_options(*command, *options);
     add_output_options(*command, options->common);
     command->footer(
         "Example:\n  shvr phantom tubes --size 256 --seed 1 -o phantoms\n  shvr info phantoms/tubes.nhdr\n"
+        "  shvr phantom capitulum --size 128 --species bellis --noise 5 -o phantoms\n"
         "  shvr phantom chirality -o phantoms    # a mark that no mirrored or exchanged axis leaves as it is");
     command->callback([options] { run_phantom(*options); });
 }

@@ -24,35 +24,70 @@ int64_t floor_of(double coordinate)
 /// so no two of them touch: each is one component. All lengths are sixteenths of a voxel, so distances are exact.
 class Speckles final : public ProceduralKind {
 public:
-    explicit Speckles(uint32_t seed) : seed_(seed) {}
+    Speckles(const Size3& size, uint32_t seed) : size_(size), seed_(seed) {}
 
     double value(const glm::dvec3& voxel) const override
     {
-        const int64_t x = floor_of(voxel.x / CELL);
-        const int64_t y = floor_of(voxel.y / CELL);
-        const int64_t z = floor_of(voxel.z / CELL);
-        const uint32_t hash = hash_of(seed_, bits_of(x), bits_of(y), bits_of(z));
-        if (hash % 4 != 0) return BACKGROUND;
-        const uint32_t radius = 15 + (hash >> 2) % 26;  // 0.94 ... 2.5 voxels
-        const uint32_t room = 112 - 16 - 2 * radius + 1;
+        const Size3 cell(floor_of(voxel.x / CELL), floor_of(voxel.y / CELL), floor_of(voxel.z / CELL));
+        const std::optional<Ball> ball = ball_in(cell);
+        if (!ball) return BACKGROUND;
         double squared = 0.0;
-        uint32_t bits = hash;
-        for (const double local :
-             {voxel.x - CELL * double(x), voxel.y - CELL * double(y), voxel.z - CELL * double(z)}) {
-            bits = mixed(bits + 1);
-            const double offset = 16.0 * local - (16 + radius + bits % room);
+        for (int axis = 0; axis < 3; ++axis) {
+            const double offset = 16.0 * (voxel[axis] - CELL * double(cell[axis])) - ball->centre[axis];
             squared += offset * offset;
         }
-        return squared <= double(radius * radius) ? BALL : BACKGROUND;
+        return squared <= ball->radius * ball->radius ? BALL : BACKGROUND;
     }
     bool has_gradient() const override { return false; }
     glm::dvec3 gradient(const glm::dvec3&) const override { return glm::dvec3(0.0); }
 
+    /// A node for each ball that lies in the volume as a whole; in volumes of more than MAX_CELLS cells none.
+    std::optional<ProceduralTruth> truth() const override
+    {
+        ProceduralTruth truth;
+        truth.group = [kind = *this](const glm::dvec3& voxel) { return uint8_t(kind.value(voxel) == BALL); };
+        const Size3 cells = (size_ + Size3(int64_t(CELL) - 1)) / int64_t(CELL);
+        if (cells.x * cells.y > MAX_CELLS || cells.x * cells.y * cells.z > MAX_CELLS) return truth;
+        for (int64_t z = 0; z < cells.z; ++z)
+            for (int64_t y = 0; y < cells.y; ++y)
+                for (int64_t x = 0; x < cells.x; ++x) {
+                    const std::optional<Ball> ball = ball_in({x, y, z});
+                    if (!ball) continue;
+                    const glm::dvec3 centre = CELL * glm::dvec3(x, y, z) + ball->centre / 16.0;
+                    const double radius = ball->radius / 16.0;
+                    if (glm::all(glm::lessThanEqual(centre + radius, glm::dvec3(size_))))
+                        truth.nodes.push_back({centre, radius, 1});
+                }
+        return truth;
+    }
+
 private:
+    /// In sixteenths of a voxel; the centre from the cell's lower corner.
+    struct Ball {
+        glm::dvec3 centre;
+        double radius;
+    };
+    std::optional<Ball> ball_in(const Size3& cell) const
+    {
+        const uint32_t hash = hash_of(seed_, bits_of(cell.x), bits_of(cell.y), bits_of(cell.z));
+        if (hash % 4 != 0) return std::nullopt;
+        const uint32_t radius = 15 + (hash >> 2) % 26;  // 0.94 ... 2.5 voxels
+        const uint32_t room = 112 - 16 - 2 * radius + 1;
+        Ball ball{.centre = {}, .radius = double(radius)};
+        uint32_t bits = hash;
+        for (int axis = 0; axis < 3; ++axis) {
+            bits = mixed(bits + 1);
+            ball.centre[axis] = double(16 + radius + bits % room);
+        }
+        return ball;
+    }
+
+    static constexpr int64_t MAX_CELLS = int64_t{1} << 20;
     static constexpr double CELL = 8.0;
     static constexpr double BACKGROUND = 20.0;
     static constexpr double BALL = 200.0;
 
+    Size3 size_;
     uint32_t seed_;
 };
 
@@ -192,9 +227,9 @@ private:
 
 }  // namespace
 
-std::unique_ptr<ProceduralKind> make_speckles(const Size3&, uint32_t seed)
+std::unique_ptr<ProceduralKind> make_speckles(const Size3& size, uint32_t seed)
 {
-    return std::make_unique<Speckles>(seed);
+    return std::make_unique<Speckles>(size, seed);
 }
 
 std::unique_ptr<ProceduralKind> make_fog(const Size3&, uint32_t seed)

@@ -9,6 +9,7 @@
 
 #include "engine/volume/procedural/procedural_hash.h"
 #include "engine/volume/procedural/procedural_kind.h"
+#include "engine/volume/procedural/tubes_truth.h"
 
 namespace shvr {
 namespace {
@@ -209,6 +210,8 @@ public:
         return std::make_unique<CoarseRows>(*this, side, size, box.lower.x);
     }
 
+    std::optional<ProceduralTruth> truth() const override { return truth_of_tubes(strands_, size_); }
+
 private:
     /// The n-th random number of tube `tube`, from -1 to 1.
     double random(uint32_t tube, uint32_t n) const
@@ -217,11 +220,12 @@ private:
     }
 
     void make_segments();
-    void add_tube(const Bezier& curve, double radius);
+    void add_tube(const Bezier& curve, double radius, std::optional<size_t> parent = {});
 
     Size3 size_;
     uint32_t seed_;
     std::vector<Segment> segments_;
+    std::vector<TubeStrand> strands_;  ///< centre lines of `segments_`
 };
 
 void Tubes::make_segments()
@@ -265,17 +269,21 @@ void Tubes::make_segments()
             const glm::dvec3 point = from + (to - from) * share;
             return inside(point.x + 0.1 * r(n), point.y + 0.1 * r(n + 1), point.z);
         };
-        add_tube({from, between(0.333, 3), between(0.667, 5), to}, std::max(1.0, radii[parent] * (0.65 + 0.1 * r(7))));
+        add_tube({from, between(0.333, 3), between(0.667, 5), to}, std::max(1.0, radii[parent] * (0.65 + 0.1 * r(7))),
+                 parent);
     }
 }
 
-void Tubes::add_tube(const Bezier& curve, double radius)
+void Tubes::add_tube(const Bezier& curve, double radius, std::optional<size_t> parent)
 {
+    TubeStrand& strand = strands_.emplace_back(TubeStrand{.radius = radius, .parent = parent});
     const auto pieces = std::clamp<int64_t>(std::max({size_.x, size_.y, size_.z}) / 8, 8, 256);
     glm::dvec3 from = curve[0] * glm::dvec3(size_);
+    strand.points.push_back(from);
     for (int64_t piece = 1; piece <= pieces; ++piece) {
         const glm::dvec3 to = point_on(curve, double(piece) / double(pieces)) * glm::dvec3(size_);
         segments_.emplace_back(from, to, radius);
+        strand.points.push_back(to);
         from = to;
     }
 }

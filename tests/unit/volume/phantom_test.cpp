@@ -1,0 +1,238 @@
+#include "engine/volume/phantoms/phantom.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <doctest/doctest.h>
+
+#include "engine/volume/phantoms/turns.h"
+#include "engine/volume/procedural/tube_scene.h"
+#include "tests/support/volume_files.h"
+
+using namespace shvr;
+using namespace shvr::test;
+
+namespace {
+
+uint64_t phantom_hash(const std::vector<uint8_t>& bytes)
+{
+    uint64_t hash = 0xcbf29ce484222325u;
+    for (const uint8_t byte : bytes) hash = (hash ^ byte) * 0x100000001b3u;
+    return hash;
+}
+
+PhantomSpec flawed(const std::string& kind, int64_t side)
+{
+    PhantomSpec spec{.kind = kind, .size = Size3(side), .seed = 3};
+    spec.flaws = {.noise = 4, .rings = 10, .streaks = 20, .specks = 1, .gaps = 20, .falling = 30};
+    return spec;
+}
+
+/// Voxels of balls of nodes, and of balls half-way along links, that the mask leaves out.
+int64_t left_out(const Phantom& phantom)
+{
+    const Size3 size = phantom.mask->info().size;
+    const std::vector<uint8_t> mask = voxels_of<uint8_t>(*phantom.mask);
+    int64_t outside = 0;
+    const auto count = [&](const glm::dvec3& centre, double radius) {
+        const Size3 lower(glm::floor(centre - radius)), upper(glm::floor(centre + radius));
+        for (int64_t z = lower.z; z <= upper.z; ++z)
+            for (int64_t y = lower.y; y <= upper.y; ++y)
+                for (int64_t x = lower.x; x <= upper.x; ++x) {
+                    const glm::dvec3 d = glm::dvec3(x, y, z) + 0.5 - centre;
+                    if (d.x * d.x + d.y * d.y + d.z * d.z > radius * radius) continue;
+                    const bool is_inside = std::min({x, y, z}) >= 0 && x < size.x && y < size.y && z < size.z;
+                    outside += !is_inside || mask[size_t(x + size.x * (y + size.y * z))] == 0;
+                }
+    };
+    for (const auto& node : phantom.nodes) count(node.voxel, node.radius_voxels);
+    for (const auto& [a, b] : phantom.links)
+        count(0.5 * (phantom.nodes[a].voxel + phantom.nodes[b].voxel),
+              0.5 * (phantom.nodes[a].radius_voxels + phantom.nodes[b].radius_voxels));
+    return outside;
+}
+
+}  // namespace
+
+TEST_CASE("directions of turns are sine and cosine, exact at quarters")
+{
+    for (int i = -2000; i <= 2000; ++i) {
+        const double turns = 0.00137 * i;
+        const glm::dvec2 direction = direction_of(turns);
+        CHECK(std::abs(direction.x - std::cos(2.0 * std::numbers::pi * turns)) < 4e-15);
+        CHECK(std::abs(direction.y - std::sin(2.0 * std::numbers::pi * turns)) < 4e-15);
+    }
+    CHECK(direction_of(0.25) == glm::dvec2(0.0, 1.0));
+    CHECK(direction_of(-0.5) == glm::dvec2(-1.0, 0.0));
+    CHECK(direction_of(7.75) == glm::dvec2(0.0, -1.0));
+}
+
+TEST_CASE("the distance of a tube is that of the union of its balls")
+{
+    const Tube tubes[] = {{.ends = {glm::dvec3(2, 3, 4), glm::dvec3(9, 5, 8)}, .radii = {1.5, 3.0}},
+                          {.ends = {glm::dvec3(2, 3, 4), glm::dvec3(9, 5, 8)}, .radii = {2.0, 2.0}},
+                          {.ends = {glm::dvec3(2, 3, 4), glm::dvec3(3, 3, 4)}, .radii = {1.0, 4.0}},
+                          {.ends = {glm::dvec3(5, 5, 5), glm::dvec3(5, 5, 5)}, .radii = {2.0, 2.0}}};
+    for (const Tube& tube : tubes)
+        for (int i = 0; i < 300; ++i) {
+            const glm::dvec3 p(i % 7 * 2.1 - 1.0, i / 7 % 7 * 1.9 - 1.0, i / 49 * 2.0 - 1.0);
+            double least = 1e9;
+            for (int k = 0; k <= 20000; ++k) {
+                const double t = k / 20000.0;
+                least = std::min(least, glm::length(p - glm::mix(tube.ends[0], tube.ends[1], t)) -
+                                            (1.0 - t) * tube.radii[0] - t * tube.radii[1]);
+            }
+            CHECK(std::abs(distance_from(tube, p).voxels - least) < 1e-6);
+        }
+}
+
+TEST_CASE("a scene finds every tube that is near, and the group of the deepest")
+{
+    std::vector<Tube> tubes;
+    for (int i = 0; i < 40; ++i) {
+        const auto place = [&](int k) { return glm::dvec3(i * 37 % 61 + k, i * 23 % 57 - 2 * k, i * 11 % 67 + k); };
+        tubes.push_back({.ends = {place(0), place(9)}, .radii = {1.0 + i % 3, 2.0}, .group = uint8_t(i % 4)});
+    }
+    const Size3 size(60, 50, 70);
+    const TubeScene scene(tubes, size, 1.5);
+    for (int64_t z = -4; z < size.z + 4; z += 3)
+        for (int64_t y = -4; y < size.y + 4; y += 3)
+            for (int64_t x = -4; x < size.x + 4; x += 3) {
+                const glm::dvec3 p = glm::dvec3(x, y, z) + 0.5;
+                const auto near = scene.near(p);
+                const bool is_inside = std::min({x, y, z}) >= 0 && x < size.x && y < size.y && z < size.z;
+                double deepest = 1e-6;
+                uint8_t group = 0;
+                for (uint32_t i = 0; i < tubes.size(); ++i) {
+                    const double distance = distance_from(tubes[i], p).voxels;
+                    if (is_inside && distance <= 1.5) CHECK(std::ranges::find(near, i) != near.end());
+                    if (tubes[i].group == 0 || distance > deepest || (group != 0 && distance == deepest)) continue;
+                    deepest = distance;
+                    group = tubes[i].group;
+                }
+                if (is_inside) CHECK(scene.group(p) == group);
+            }
+}
+
+TEST_CASE("the graph of a phantom lies in its mask to the last voxel")
+{
+    for (const std::string kind : {"capitulum", "tubes", "speckles"})
+        for (const int64_t side : {7, 33, 48}) {
+            CAPTURE(kind);
+            CAPTURE(side);
+            const Phantom phantom = make_phantom({.kind = kind, .size = Size3(side), .seed = uint32_t(side)});
+            if (kind != "capitulum" || side > 16) CHECK(left_out(phantom) == 0);
+            CHECK((side < 16 || phantom.nodes.size() > 8));
+            for (const auto& node : phantom.nodes) CHECK(node.group != 0);
+            CHECK(!phantom.sections.empty());
+        }
+}
+
+TEST_CASE("a phantom's voxels do not depend on the box that is read")
+{
+    const Phantom phantom = make_phantom(flawed("capitulum", 40));
+    for (const VolumeSource* source : {phantom.volume.get(), phantom.mask.get()}) {
+        const std::vector<uint8_t> all = voxels_of<uint8_t>(*source);
+        const VoxelBox box{{5, 17, 12}, {33, 36, 29}};
+        const std::vector<uint8_t> part = voxels_in<uint8_t>(*source, box);
+        size_t at = 0;
+        int64_t different = 0;
+        for (int64_t z = box.lower.z; z < box.upper.z; ++z)
+            for (int64_t y = box.lower.y; y < box.upper.y; ++y)
+                for (int64_t x = box.lower.x; x < box.upper.x; ++x)
+                    different += part[at++] != all[size_t(x + 40 * (y + 40 * z))];
+        CHECK(different == 0);
+    }
+}
+
+TEST_CASE("a box of a phantom of 4096 voxels a side is read by itself")
+{
+    PhantomSpec spec = flawed("capitulum", 4096);
+    spec.type = VoxelType::uint16;
+    const Phantom phantom = make_phantom(spec);
+    REQUIRE(!phantom.nodes.empty());
+    for (const size_t i : {size_t{0}, phantom.nodes.size() / 2, phantom.nodes.size() - 1}) {
+        const Size3 at(glm::floor(phantom.nodes[i].voxel));
+        const VoxelBox box{at - Size3(4), at + Size3(4)};
+        CHECK(std::ranges::count(voxels_in<uint8_t>(*phantom.mask, box), 0) == 0);
+        const std::vector<uint16_t> voxels = voxels_in<uint16_t>(*phantom.volume, box);
+        CHECK(voxels.back() > 0);
+        CHECK(voxels_in<uint16_t>(*phantom.volume, {at + Size3(3), at + Size3(4)}).front() == voxels.back());
+    }
+}
+
+TEST_CASE("16 bits hold a phantom's intensities a hundredfold")
+{
+    PhantomSpec spec = flawed("capitulum", 24);
+    const std::vector<uint8_t> bytes = voxels_of<uint8_t>(*make_phantom(spec).volume);
+    spec.type = VoxelType::int8;
+    const std::vector<int8_t> lowered = voxels_of<int8_t>(*make_phantom(spec).volume);
+    spec.type = VoxelType::uint16;
+    const std::vector<uint16_t> words = voxels_of<uint16_t>(*make_phantom(spec).volume);
+    int64_t wrong = 0;
+    for (size_t i = 0; i < bytes.size(); ++i)
+        wrong += bytes[i] != (words[i] + 50) / 100 || int(bytes[i]) != int(lowered[i]) + 128;
+    CHECK(wrong <= int64_t(bytes.size() / 100));  // both are rounded once, so that halves differ
+}
+
+TEST_CASE("flaws are as strong as they are said to be")
+{
+    // No head: noise, rings and streaks alone, in air.
+    const auto of = [](const PhantomFlaws& flaws) {
+        return voxels_of<double>(
+            *make_phantom({.kind = "capitulum", .size = {64, 64, 64}, .type = VoxelType::float64, .flaws = flaws})
+                 .volume);
+    };
+    const std::vector<double> plain = of({.noise = 0});
+    const std::vector<double> noisy = of({.noise = 5}), ringed = of({.noise = 0, .rings = 10});
+    const std::vector<double> specked = of({.noise = 0, .specks = 2}), fallen = of({.noise = 0, .falling = 40});
+    const std::vector<double> streaked = of({.noise = 0, .streaks = 10});
+    double squares = 0.0, ring = 0.0, streak = 0.0;
+    int64_t specks = 0, higher = 0;
+    for (size_t i = 0; i < plain.size(); ++i) {
+        squares += (noisy[i] - plain[i]) * (noisy[i] - plain[i]);
+        ring = std::max(ring, std::abs(ringed[i] - plain[i]));
+        streak = std::max(streak, std::abs(streaked[i] - plain[i]));
+        specks += plain[i] < 3000.0 && specked[i] > 13000.0;
+        higher += fallen[i] > plain[i];
+    }
+    // 140 intensities between ground tissue and veins, a hundredfold.
+    CHECK(std::sqrt(squares / double(plain.size())) == doctest::Approx(0.05 * 14000.0).epsilon(0.03));
+    CHECK(ring <= 1400.0);
+    CHECK(ring > 1000.0);
+    CHECK(streak <= 2800.0);
+    CHECK(streak > 700.0);
+    CHECK(double(specks) / double(plain.size()) == doctest::Approx(0.02).epsilon(0.5));
+    CHECK(higher == 0);
+    const size_t axis = 32 + 64 * (32 + 64 * 34), corner = 64 * 64 * 40;
+    CHECK(fallen[axis] == doctest::Approx(0.6 * plain[axis]).epsilon(0.01));
+    CHECK(fallen[corner] == plain[corner]);
+}
+
+TEST_CASE("equal seeds give equal phantoms, on every machine")
+{
+    const std::vector<uint8_t> once = voxels_of<uint8_t>(*make_phantom(flawed("capitulum", 40)).volume);
+    CHECK(once == voxels_of<uint8_t>(*make_phantom(flawed("capitulum", 40)).volume));
+    CHECK(phantom_hash(once) == 16231550836526738997u);
+    PhantomSpec other = flawed("capitulum", 40);
+    other.seed = 4;
+    CHECK(once != voxels_of<uint8_t>(*make_phantom(other).volume));
+}
+
+TEST_CASE("a phantom that cannot be is refused in words")
+{
+    const auto refusal = [](auto change) {
+        PhantomSpec spec{.size = Size3(8)};
+        change(spec);
+        return error_of([&] { make_phantom(spec); });
+    };
+    CHECK(refusal([](PhantomSpec& spec) { spec.flaws.specks = 5; }) == "capitulum: specks is 5; expected 0 to 4");
+    CHECK(refusal([](PhantomSpec& spec) { spec.flaws.blur = 0; }) == "capitulum: blur is 0; expected 0.01 to 16");
+    CHECK(refusal([](PhantomSpec& spec) { spec.florets = 3; }) == "capitulum: florets is 3; expected 8 to 1000");
+    CHECK(refusal([](PhantomSpec& spec) { spec.species = "rosa"; }) ==
+          "species is \"rosa\"; expected gerbera, helianthus or bellis");
+    CHECK(refusal([](PhantomSpec& spec) { spec.stage = "e"; }) == "stage is \"e\"; expected a, b, c or d");
+    CHECK(refusal([](PhantomSpec& spec) { spec.phyllotaxis = "whorled"; }) ==
+          "phyllotaxis is \"whorled\"; expected fibonacci, lucas or bijugate");
+}
