@@ -226,6 +226,47 @@ void compare_files(const ErrorBenchOptions& options)
                                  changes.front().scene, ", ", changes.front().run, ": ", changes.front().what));
 }
 
+/// Options that choose pictures and how they are drawn.
+void add_picture_options(CLI::App& command, ErrorBenchOptions& options)
+{
+    command
+        .add_option(
+            "--scenes", options.scenes,
+            "Scenes, with commas between: tubes, noisy-surface, tissue, fog, peaks, uint16, anisotropic, paged, "
+            "painted, occluded, surfaces; tubes-matt, noisy-surface-matt, tissue-matt, which VTK draws the same; "
+            "stent, cranium, stent-matt, cranium-matt (tools/fetch_example); or paths of sessions; unless given, all "
+            "that exist")
+        ->delimiter(',');
+    command
+        .add_option("--sweeps", options.sweeps,
+                    "blur, labelling, proxy: speed against error beside pictures; without it and --scenes all")
+        ->delimiter(',')
+        ->check(CLI::IsMember(std::vector<std::string>(std::begin(SWEEPS), std::end(SWEEPS))));
+    command.add_option("--side", options.side, "Voxels along each side of our own scenes; 64, or 32 where quick")
+        ->check(CLI::Range(16, 512));
+    command.add_option("--size", options.size, "Pixels, width,height; 120,90, or 48,36 where quick")
+        ->delimiter(',')
+        ->expected(2)
+        ->check(CLI::Range(8, 4096));
+    command.add_option(
+        "--peer", options.peer,
+        "Program that draws with VTK, where it draws the same: tools/peers/vtk_raycast.py, unless given; "
+        "none: SHVR alone");
+    command.add_option("--mappers", options.mappers, "VTK's: fixed (its better one on processors), gpu (OpenGL)")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"fixed", "gpu"}));
+    command.add_option("--examples", options.examples,
+                       "Folder of the scans; that of tools/fetch_example, unless given");
+    command.add_flag("--quick", options.quick, "Small volumes, few runs: seconds a scene");
+    command
+        .add_option("--mixed", options.mixed,
+                    "Number of additional runs, each with its own step, resolution, opacity limit, pre-integration "
+                    "and sampling")
+        ->check(CLI::Range(0, 1024));
+    command.add_option("--rounds", options.rounds, "Timed pictures of each run, alternating between runs")
+        ->check(CLI::Range(1, 1000));
+}
+
 }  // namespace
 
 void add_bench(CLI::App& program)
@@ -233,42 +274,7 @@ void add_bench(CLI::App& program)
     auto options = std::make_shared<ErrorBenchOptions>();
     CLI::App* command =
         program.add_subcommand("bench", "Speed against error: each way of drawing against the reference renderer");
-    command
-        ->add_option(
-            "--scenes", options->scenes,
-            "Scenes, with commas between: tubes, noisy-surface, tissue, fog, peaks, uint16, anisotropic, paged, "
-            "painted, occluded, surfaces; tubes-matt, noisy-surface-matt, tissue-matt, which VTK draws the same; "
-            "stent, cranium, stent-matt, cranium-matt (tools/fetch_example); or paths of sessions; unless given, all "
-            "that exist")
-        ->delimiter(',');
-    command
-        ->add_option("--sweeps", options->sweeps,
-                     "blur, labelling, proxy: speed against error beside pictures; without it and --scenes all")
-        ->delimiter(',')
-        ->check(CLI::IsMember(std::vector<std::string>(std::begin(SWEEPS), std::end(SWEEPS))));
-    command->add_option("--side", options->side, "Voxels along each side of our own scenes; 64, or 32 where quick")
-        ->check(CLI::Range(16, 512));
-    command->add_option("--size", options->size, "Pixels, width,height; 120,90, or 48,36 where quick")
-        ->delimiter(',')
-        ->expected(2)
-        ->check(CLI::Range(8, 4096));
-    command->add_option(
-        "--peer", options->peer,
-        "Program that draws with VTK, where it draws the same: tools/peers/vtk_raycast.py, unless given; "
-        "none: SHVR alone");
-    command->add_option("--mappers", options->mappers, "VTK's: fixed (its better one on processors), gpu (OpenGL)")
-        ->delimiter(',')
-        ->check(CLI::IsMember({"fixed", "gpu"}));
-    command->add_option("--examples", options->examples,
-                        "Folder of the scans; that of tools/fetch_example, unless given");
-    command->add_flag("--quick", options->quick, "Small volumes, few runs: seconds a scene");
-    command
-        ->add_option("--mixed", options->mixed,
-                     "Number of additional runs, each with its own step, resolution, opacity limit, pre-integration "
-                     "and sampling")
-        ->check(CLI::Range(0, 1024));
-    command->add_option("--rounds", options->rounds, "Timed pictures of each run, alternating between runs")
-        ->check(CLI::Range(1, 1000));
+    add_picture_options(*command, *options);
     command->add_option("-o,--output", options->output,
                         "Folder for bench.json, bench.csv, equal_*.csv, pareto*.svg and .png, insets.png, sweep-*, "
                         "report.html, and the references");
