@@ -2,14 +2,26 @@
 // The base of all services: short names for the members of the desk, and a step of the main loop.
 //
 // A service has its own state, carries out the actions whose rows name it (`act`), and contributes its part of the
-// model. It may call other services, which its constructor names. No service is called before all are constructed.
+// model. Its header includes no other service: the functions of others that it calls are the members of its struct
+// `Others` (services.h connects them), so that a test constructs it alone. None is called before all services are
+// constructed.
 
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "engine/workbench/desk/desk.h"
 
 namespace shvr::ui {
+
+/// A function that the constructor of a service requires: a struct of them that lacks one does not compile.
+template <class Signature>
+class Call : public std::function<Signature> {
+public:
+    template <class Function>
+    Call(Function called) : std::function<Signature>(std::move(called))
+    {}
+};
 
 class Service {
 public:

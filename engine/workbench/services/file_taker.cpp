@@ -10,7 +10,6 @@
 #include "engine/session/label_looks.h"
 #include "engine/session/lasting_settings.h"
 #include "engine/session/session_patch.h"
-#include "engine/workbench/services/services.h"
 
 namespace shvr::ui {
 
@@ -47,14 +46,14 @@ bool is_preset(const std::string& text, const std::filesystem::path& path)
 
 }  // namespace
 
-FileTaker::FileTaker(Services& all) : Service(all.desk), opener_(all.opener), settings_(all.settings) {}
+FileTaker::FileTaker(Desk& desk, Others others) : Service(desk), others_(std::move(others)) {}
 
 void FileTaker::act(const Open& action)
 {
     candidate_.reset();
     unclear_.reset();
-    if (action.saves_outside) opener_.allow_outside(action.path);
-    opener_.begin_open(action.path, lines_of(action.settings));
+    if (action.saves_outside) others_.allow_outside(action.path);
+    others_.begin_open(action.path, lines_of(action.settings), {});
 }
 
 /// Opens a copy: the shipped example must stay as it is, since its folder may be read-only and others open it, too.
@@ -70,7 +69,7 @@ void FileTaker::act(const OpenExample&)
             std::filesystem::create_directories(own.parent_path());
             write_file_atomically(own, std::as_bytes(std::span(text)));
         }
-        return Jobs::Completion([this, own] { opener_.begin_open(own, {}); });
+        return Jobs::Completion([this, own] { others_.begin_open(own, {}, {}); });
     });
 }
 
@@ -118,7 +117,7 @@ void FileTaker::act(const TakeFile& action)
     unclear_.reset();
     std::vector<std::filesystem::path> others;
     for (const std::string& line : lines_of(action.beside)) others.emplace_back(line);
-    if (action.use == FileUse::scan) return opener_.begin_open(action.path, {}, others);
+    if (action.use == FileUse::scan) return others_.begin_open(action.path, {}, others);
     if (action.use != FileUse::by_contents) {
         take_as(action.use, action.path);
         for (const std::filesystem::path& path : others) act(TakeFile{.path = path});
@@ -202,7 +201,7 @@ void FileTaker::take_together(std::vector<std::filesystem::path> paths)
                 for (const std::filesystem::path& path : others) beside += path.string() + '\n';
                 return ask_what_it_is({.path = opened[0], .beside = beside});
             }
-            if (opened.size() == 1) return opener_.begin_open(opened[0], {}, others);
+            if (opened.size() == 1) return others_.begin_open(opened[0], {}, others);
             for (const std::filesystem::path& path : others) act(TakeFile{.path = path});
         });
     });
@@ -210,7 +209,7 @@ void FileTaker::take_together(std::vector<std::filesystem::path> paths)
 
 void FileTaker::take(FileContent content, const std::filesystem::path& path)
 {
-    if (is_opened(content)) return opener_.begin_open(path, {});
+    if (is_opened(content)) return others_.begin_open(path, {}, {});
     take_as(content == FileContent::mask      ? FileUse::mask
             : content == FileContent::offsets ? FileUse::offsets
             : content == FileContent::trace   ? FileUse::trace
@@ -234,11 +233,11 @@ void FileTaker::take_transfer_function(const std::filesystem::path& path)
                 Session after = document_->session;
                 const TransferPreset preset = parse_transfer_preset(text, path.stem().string(), path.string());
                 after.transfer_function = transfer_function_of(preset, document_->statistics);
-                settings_.take_session(std::move(after));
+                others_.take_session(std::move(after));
             } else {
-                settings_.act(Set{patch_of("transfer_function=" + text)});
+                others_.set(Set{patch_of("transfer_function=" + text)});
             }
-            settings_.record_settings();
+            others_.record_settings();
             say("The transfer function of " + path.string() + " is taken; undo takes it back");
         });
     });
@@ -264,7 +263,7 @@ void FileTaker::take_annotation(Part part, const std::filesystem::path& path)
                 fail(path.string(), ": belongs to a volume that is no longer open");
             Annotator& annotator = document_->annotator;
             if (annotator.stroke_is_running()) fail(path.string(), ": a stroke is being painted; drop it again");
-            settings_.record_settings();
+            others_.record_settings();
             std::vector<Change> changes = changes_between(part, annotator.document(), *found);
             if (looks != groups && document_->session.groups == groups && !document_->is_script()) {
                 Session after = document_->session;
@@ -277,7 +276,7 @@ void FileTaker::take_annotation(Part part, const std::filesystem::path& path)
             const Command* const command =
                 annotator.perform(sentence(name_of(part), " of ", short_name(path)), std::move(changes));
             if (!command) return say(path.string() + ": its " + name_of(part) + " is already in use");
-            settings_.show_changes(*command);
+            others_.show_changes(*command);
             for (const std::string& warning : warnings) say(warning, Weight::warning);
             say(sentence("The ", name_of(part), " of ", path.string(), " is taken; undo takes it back"));
         });

@@ -6,13 +6,20 @@
 
 namespace shvr::ui {
 
-class Opener;
-struct Services;
-class SettingsEditor;
-
 class FileTaker : public Service {
 public:
-    explicit FileTaker(Services& all);
+    /// Functions of other services that it calls.
+    struct Others {
+        Call<void(const std::filesystem::path&)> allow_outside;
+        Call<void(const std::filesystem::path& path, const std::vector<std::string>& settings,
+                  std::vector<std::filesystem::path> taken_into_it)>
+            begin_open;
+        Call<void(Session)> take_session;
+        Call<void(const Set&)> set;
+        Call<void()> record_settings;
+        Call<void(const Command&)> show_changes;
+    };
+    FileTaker(Desk& desk, Others others);
     void act(const Open& action);
     void act(const OpenExample& action);
     void act(const LookAtFile& action);
@@ -33,8 +40,7 @@ private:
     void ask_what_it_is(UnclearFile file);
     void take_annotation(Part part, const std::filesystem::path& path);
 
-    Opener& opener_;
-    SettingsEditor& settings_;
+    const Others others_;
     std::unique_ptr<Candidate> candidate_;
     std::optional<UnclearFile> unclear_;
 };

@@ -5,7 +5,6 @@
 
 #include "engine/annotation/work/work_offsets.h"
 #include "engine/workbench/edits/puck_moves.h"
-#include "engine/workbench/services/services.h"
 
 namespace shvr::ui {
 
@@ -25,14 +24,8 @@ std::filesystem::path free_trace_path(const std::filesystem::path& stem)
 
 }  // namespace
 
-Hand::Hand(Services& all)
-    : Service(all.desk),
-      viewer_(all.viewer),
-      prober_(all.prober),
-      painter_(all.painter),
-      tracer_(all.tracer),
-      photographer_(all.photographer),
-      keeper_(all.keeper)
+Hand::Hand(Desk& desk, PreferenceKeeper& keeper, Others others)
+    : Service(desk), keeper_(keeper), others_(std::move(others))
 {}
 
 void Hand::advance()
@@ -116,7 +109,7 @@ void Hand::follow_grab()
     const DeviceState& device = touch.last_state().device;
     const TouchSettings settings = touch_settings();
     const double units_per_m = settings.scale * settings.view_height / WORKSPACE_M;
-    viewer_.look_from(camera_of_grab(*grab_, device.position_m, device.rotation, units_per_m));
+    others_.look_from(camera_of_grab(*grab_, device.position_m, device.rotation, units_per_m));
 }
 
 /// No report means rest: the back end then gives no speed.
@@ -160,7 +153,7 @@ void Hand::act(const RecordStylus& action)
     if (!options_.has_servo) fail("no device runs here; expected the window");
     if (document_->touch.recorder()) fail("the stylus is being recorded already; expected that to be ended first");
     if (document_->touch.puck()) fail("the device moves the view; expected one that moves the probe");
-    hand_.recording = action.path.empty() ? free_trace_path(photographer_.stem()) : action.path;
+    hand_.recording = action.path.empty() ? free_trace_path(others_.stem()) : action.path;
     document_->touch.begin_recording(hand_.recording);
     note_hand();
     say("Recording the stylus");
@@ -220,7 +213,7 @@ void Hand::follow_points(const std::vector<StylusPoint>& points, double node_eve
     PaintOp stroke = document_->stroke();
     std::optional<glm::dvec3> last;
     const auto end_stroke = [&] {
-        if (!stroke.path.empty()) painter_.act(PaintOp(stroke));
+        if (!stroke.path.empty()) others_.paint(stroke);
         stroke.path.clear();
         last.reset();
     };
@@ -242,10 +235,10 @@ void Hand::follow_points(const std::vector<StylusPoint>& points, double node_eve
         if (feel.overlap_radius && point.in_contact)
             if (const auto radius = radius_from_overlap(point.relevant_share, document_->probe_radius()))
                 node.radius_voxels = *radius / spacing.x;
-        tracer_.trace(node);
+        others_.trace(node);
     }
     end_stroke();
-    if (!points.empty()) prober_.move_probe(points.back().probe, true);
+    if (!points.empty()) others_.move_probe(points.back().probe, true);
     say(sentence("Followed ", points.size(), " steps of the stylus: ", placed,
                  is_tracing ? " nodes" : " points of strokes"));
 }

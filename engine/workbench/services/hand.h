@@ -3,22 +3,23 @@
 
 #include <set>
 
+#include "engine/workbench/desk/preference_keeper.h"
 #include "engine/workbench/desk/service.h"
 #include "engine/workbench/models/hand_view.h"
 
 namespace shvr::ui {
 
-class Painter;
-class Photographer;
-class PreferenceKeeper;
-class Prober;
-struct Services;
-class Tracer;
-class Viewer;
-
 class Hand : public Service {
 public:
-    explicit Hand(Services& all);
+    /// Functions of other services that it calls.
+    struct Others {
+        Call<void(const Camera&)> look_from;
+        Call<void(const glm::dvec3& point, bool jumps)> move_probe;
+        Call<void(const PaintOp&)> paint;
+        Call<void(const TraceOp&)> trace;
+        Call<std::filesystem::path()> stem;  ///< base of names for files next to the session
+    };
+    Hand(Desk& desk, PreferenceKeeper& keeper, Others others);
     void act(const LetGo& action);
     void act(const GrabVolume& action);
     void act(const UseDevice& action);
@@ -48,12 +49,8 @@ private:
     void finish_recording();
     void follow_points(const std::vector<StylusPoint>& points, double node_every);
 
-    Viewer& viewer_;
-    Prober& prober_;
-    Painter& painter_;
-    Tracer& tracer_;
-    Photographer& photographer_;
     PreferenceKeeper& keeper_;
+    const Others others_;
     std::unique_ptr<DeviceWatch> watch_;    ///< null: no search for devices
     std::shared_ptr<HapticDevice> device_;  ///< null: none is open
     HandView hand_;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/workbench/services/services.h"
-
 namespace shvr::ui {
 
 namespace {

@@ -8,7 +8,7 @@
 #include "engine/session/session_keys.h"
 #include "engine/session/session_patch.h"
 #include "engine/workbench/services/opening.h"
-#include "engine/workbench/services/services.h"
+#include "engine/workbench/services/saver.h"
 
 namespace shvr::ui {
 
@@ -46,18 +46,8 @@ std::filesystem::path session_saved_for(const std::filesystem::path& volume)
 
 }  // namespace
 
-Opener::Opener(Services& all)
-    : Service(all.desk),
-      taker_(all.taker),
-      painter_(all.painter),
-      photographer_(all.photographer),
-      keeper_(all.keeper),
-      reader_(all.reader),
-      reloader_(all.reloader),
-      saver_(all.saver),
-      settings_(all.settings),
-      tasks_(all.tasks),
-      viewer_(all.viewer)
+Opener::Opener(Desk& desk, PreferenceKeeper& keeper, Others others)
+    : Service(desk), keeper_(keeper), others_(std::move(others))
 {}
 
 Opener::~Opener() = default;
@@ -73,9 +63,9 @@ void Opener::start(Opening next)
     if (opening_) {
         jobs_.cancel(opening_->number);  // its result is no longer wanted
         opening_.reset();
-        tasks_.advance();
+        others_.advance_jobs();
     }
-    reloader_.cancel();
+    others_.cancel_reload();
     open_failure_.clear();
     failed_path_.clear();
     next.name = short_name(next.path);
@@ -91,7 +81,7 @@ void Opener::open(const std::filesystem::path& path, const std::vector<std::stri
     awaited_failure_ = failure;
     start({.path = path, .settings = settings, .how = std::move(how), .saves_before = false});
     while (opening_) {
-        tasks_.advance();
+        others_.advance_jobs();
         advance();
         if (opening_ && !opening_->scene) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
@@ -180,13 +170,13 @@ bool Opener::is_ready_to_load()
     if (!document_) return true;
     if (opening_->saves_before) {
         std::string why;
-        const Leave leave_now = saver_.leave(why);
+        const Leave leave_now = others_.leave(why);
         if (leave_now == Leave::later) return false;
         if (leave_now == Leave::refused) fail("the open work cannot be saved: ", why);
     }
     Work& work = document_->annotator.work();
     if (!is_one_journal(document_->session.journal_path, opening_->read->opened.session.journal_path)) return true;
-    if (saver_.is_saving()) return false;
+    if (others_.is_saving()) return false;
     work.settle();  // it was flushed a moment ago
     if (work.journal().bytes == opening_->journal_bytes) return true;
     read_next();
@@ -198,7 +188,7 @@ void Opener::begin_loading()
     Document::Read& read = *opening_->read;
     const Session& session = read.opened.session;
     const bool has_light = shows_occlusion(session.light);
-    photographer_.drop_large("opening another scan");
+    others_.drop_screenshot("opening another scan");
     if (!renderer_.fits_beside(*read.opened.source, session.render, has_light)) {
         if (document_) {
             document_->screen.clear();
@@ -213,7 +203,7 @@ void Opener::begin_loading()
 void Opener::finish()
 {
     const std::shared_ptr<Opening> opening = std::exchange(opening_, nullptr);
-    viewer_.look_again();
+    others_.look_again();
     if (document_) document_->screen.clear();
     std::unique_ptr<Scene> before = renderer_.show(std::move(opening->scene));
     if (opening->comes_back) return show_again();
@@ -232,7 +222,7 @@ void Opener::finish()
     begin_document(*opening);
     welcome(opening->path, losses);
     if (opening->pictured) show_picture(*opening->pictured);
-    for (const std::filesystem::path& taken : opening->taken_into_it) taker_.act(TakeFile{.path = taken});
+    for (const std::filesystem::path& taken : opening->taken_into_it) others_.take_file(TakeFile{.path = taken});
 }
 
 /// Shows again the document that was put away.
@@ -256,10 +246,7 @@ void Opener::begin_document(const Opening& opening)
     desk_.opened_s = opening.begun_s;
     keeper_.note_opened(opening.path);
     ++desk_.openings;
-    reader_.begin_document();
-    settings_.begin_document();
-    saver_.begin_document();
-    painter_.begin_document();
+    others_.begin_document();
 }
 
 void Opener::take(Document::Read read)
@@ -294,8 +281,8 @@ void Opener::show_picture(const Session& pictured)
     wanted.probe = document_->session.probe;
     const std::string patch = patch_between(document_->session, wanted);
     if (!patch.empty()) apply(Set{patch});
-    settings_.record_settings();
-    viewer_.look_from(camera_named(pictured, pictured.camera_name, document_->volume()));
+    others_.record_settings();
+    others_.look_from(camera_named(pictured, pictured.camera_name, document_->volume()));
     say("Shown as in the picture; undo restores the previous settings");
 }
 

@@ -12,28 +12,33 @@
 #include <exception>
 #include <set>
 
+#include "engine/workbench/desk/preference_keeper.h"
 #include "engine/workbench/desk/service.h"
 
 namespace shvr::ui {
 
-class FileTaker;
-class Painter;
-class Photographer;
-class PreferenceKeeper;
-class Reader;
-class Reloader;
-class Saver;
-struct Services;
-class SettingsEditor;
-class TaskRunner;
-class Viewer;
+enum class Leave;
 
 class Opener : public Service {
 public:
     /// Seconds per step that may be spent on loading slices of a volume.
     static constexpr double SLICE_S = 0.005;
 
-    explicit Opener(Services& all);
+    /// Functions of other services that it calls.
+    struct Others {
+        Call<void()> advance_jobs;
+        Call<Leave(std::string& why)> leave;
+        Call<bool()> is_saving;
+        Call<void()> cancel_reload;
+        Call<void()> forget_reload;
+        Call<void(const char* by)> drop_screenshot;
+        Call<void()> look_again;
+        Call<void(const Camera&)> look_from;
+        Call<void(const TakeFile&)> take_file;
+        Call<void()> record_settings;
+        Call<void()> begin_document;  ///< resets state of the previous document
+    };
+    Opener(Desk& desk, PreferenceKeeper& keeper, Others others);
     ~Opener() override;
     void act(const DismissNotices& action);
 
@@ -51,11 +56,11 @@ public:
     bool is_opening() const { return opening_ != nullptr; }
     /// Returns the name of the file being opened; empty: none.
     std::string_view opening_name() const;
-    /// Returns the number of the reading job, afterwards of the opening; 0: nothing is being opened.
-    Jobs::Number number() const;
     void cancel();
-    /// Handles the end of the reading job; `failure` describes its error.
-    void end_reading(const std::string& failure);
+    /// Cancels the opening if it has this number. Returns whether it has.
+    bool cancel(Jobs::Number number);
+    /// Handles the end of the reading job. Returns whether this job is the one.
+    bool end_reading(const Jobs::Finished& job);
     /// Adds states of the opening: while it loads or is restored, and while its ended job is missing from `states`.
     void add_loading(std::vector<Jobs::State>& states) const;
     void add_read(std::vector<Jobs::State>& states) const;
@@ -82,16 +87,8 @@ private:
     void load_again();
     Jobs::State state_of(const Opening& opening) const;
 
-    FileTaker& taker_;
-    Painter& painter_;
-    Photographer& photographer_;
     PreferenceKeeper& keeper_;
-    Reader& reader_;
-    Reloader& reloader_;
-    Saver& saver_;
-    SettingsEditor& settings_;
-    TaskRunner& tasks_;
-    Viewer& viewer_;
+    const Others others_;
     std::shared_ptr<Opening> opening_;                     ///< null: nothing is being opened
     std::shared_ptr<std::exception_ptr> awaited_failure_;  ///< failure of the opening that `open` waits for
     Jobs::Number next_return_ = Jobs::Number{1} << 48;     ///< number range of its own, apart from jobs

@@ -4,14 +4,8 @@
 
 #include "engine/base/text.h"
 #include "engine/workbench/services/opening.h"
-#include "engine/workbench/services/services.h"
 
 namespace shvr::ui {
-
-Jobs::Number Opener::number() const
-{
-    return opening_ ? opening_->number : 0;
-}
 
 std::string_view Opener::opening_name() const
 {
@@ -51,10 +45,23 @@ OpeningModel Opener::model() const
 
 // ---- Where it does not come to its end ------------------------------------------------------------------------------
 
-void Opener::end_reading(const std::string& failure)
+bool Opener::end_reading(const Jobs::Finished& job)
 {
-    const bool was_thrown = opening_->thrown && *opening_->thrown;
-    end(was_thrown ? *opening_->thrown : std::make_exception_ptr(Error(failure)));
+    if (!opening_ || opening_->number != job.number) return false;
+    if (job.was_cancelled) {
+        cancel();
+    } else if (!job.failure.empty()) {
+        const bool was_thrown = opening_->thrown && *opening_->thrown;
+        end(was_thrown ? *opening_->thrown : std::make_exception_ptr(Error(job.failure)));
+    }
+    return true;
+}
+
+bool Opener::cancel(Jobs::Number number)
+{
+    if (!opening_ || opening_->number != number) return false;
+    cancel();
+    return true;
 }
 
 void Opener::cancel()
@@ -72,7 +79,7 @@ void Opener::end(std::exception_ptr failure)
 {
     const std::shared_ptr<Opening> ended = std::exchange(opening_, nullptr);
     ended->scene.reset();
-    viewer_.look_again();
+    others_.look_again();
     std::string why = "an error of an unknown kind";
     try {
         std::rethrow_exception(failure);
@@ -129,7 +136,7 @@ void Opener::bring_back()
 void Opener::restart_device(const std::function<void()>& make_anew)
 {
     const bool was_painting = document_ && document_->annotator.stroke_is_running();
-    photographer_.drop_large("the loss of the device");
+    others_.drop_screenshot("the loss of the device");
     if (document_) {
         document_->annotator.drop_queries();
         document_->previewer.drop();
@@ -137,10 +144,10 @@ void Opener::restart_device(const std::function<void()>& make_anew)
         document_->touch.drop_queries();
         document_->screen.drop();
     }
-    if (opening_) opening_->scene.reset();  // it is loaded again from its beginning
-    if (document_) reloader_.forget();      // the document is loaded with its present settings
+    if (opening_) opening_->scene.reset();   // it is loaded again from its beginning
+    if (document_) others_.forget_reload();  // the document is loaded with its present settings
     make_anew();
-    viewer_.look_again();
+    others_.look_again();
     if (document_) load_again();
     if (away_ && (!opening_ || opening_->comes_back)) bring_back();
     say(sentence("The graphics device stopped responding and was restarted; ",

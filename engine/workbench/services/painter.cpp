@@ -6,7 +6,6 @@
 #include <thread>
 
 #include "engine/workbench/actions/action_rows.h"
-#include "engine/workbench/services/services.h"
 #include "engine/workbench/sight/words.h"
 
 namespace shvr::ui {
@@ -28,7 +27,8 @@ bool is_hardly_any(const StrokeResult& result, const glm::dvec3& spacing)
 
 }  // namespace
 
-Painter::Painter(Services& all) : Service(all.desk), settings_(all.settings), tracer_(all.tracer), keeper_(all.keeper)
+Painter::Painter(Desk& desk, PreferenceKeeper& keeper, Others others)
+    : Service(desk), keeper_(keeper), others_(std::move(others))
 {}
 
 void Painter::advance()
@@ -51,17 +51,17 @@ void Painter::act(const Paint& action)
 {
     Annotator& annotator = document_->annotator;
     if (document_->session.probe.tool == Tool::trace) {
-        if (action.on) tracer_.add_node_here();
+        if (action.on) others_.add_node_here();
         return;
     }
     if (action.on && !annotator.stroke_is_open()) {
-        if (settings_.has_settings_to_record() || document_->drags_node)
+        if (others_.has_settings_to_record() || document_->drags_node)
             await_strokes();  // in the history they come before
-        if (document_->drags_node) tracer_.act(DragNode{false});
+        if (document_->drags_node) others_.stop_drag();
         const Previewer& previewer = document_->previewer;
         if (previewer.shown() && previewer.is_current()) previewed_at_stroke_ = previewer.shown()->voxels;
         check_radius(document_->brush().radius_voxels, document_->volume().spacing, document_->volume().size);
-        settings_.record_settings();
+        others_.record_settings();
         annotator.begin_stroke(document_->stroke());
         stroke_end_voxel_ = document_->tool_voxel();
         annotator.extend_stroke(stroke_end_voxel_);
@@ -74,7 +74,7 @@ void Painter::act(const Paint& action)
 void Painter::act(const PaintOp& op)
 {
     if (document_->annotator.stroke_is_running()) fail("a stroke is being painted; expected it to have ended");
-    settings_.record_settings();
+    others_.record_settings();
     document_->annotator.paint(in_session(op, document_->session));
     stroke_ended();
 }
@@ -173,7 +173,7 @@ void Painter::stroke_ended()
         is_as_meant && result.voxels() == 0 && result.kept_painted == 0 && !result.stroke.erases();
     if (is_as_meant && !result.stroke.erases() && is_hardly_any(result, document_->volume().spacing))
         said += how_to_reach_this();
-    settings_.note_stroke(result.voxels() == 0);
+    others_.note_stroke(result.voxels() == 0);
     if (result.voxels() != 0) document_->painted_at = document_->touch.probe();
     say(said, is_as_meant && !found_nothing ? Weight::done : Weight::warning);
 }
@@ -203,7 +203,7 @@ void Painter::follow_preview()
         if (dynamic_cast<const gpu::MemoryError*>(&error) != nullptr && !is_of_budget) throw;  // there may be some soon
         // Other errors: the brush is too large, or a file cannot be read.
         document.session.probe.preview = false;
-        settings_.note_edit();
+        others_.note_edit();
         document.previewer.want(std::nullopt);
         say(error.what(), Weight::error);
     }

@@ -1,18 +1,23 @@
 #pragma once
 // Strokes: how they begin, follow the probe and end; the preview of the brush; the state of the journal.
 
+#include "engine/workbench/desk/preference_keeper.h"
 #include "engine/workbench/desk/service.h"
 
 namespace shvr::ui {
 
-class PreferenceKeeper;
-struct Services;
-class SettingsEditor;
-class Tracer;
-
 class Painter : public Service {
 public:
-    explicit Painter(Services& all);
+    /// Functions of other services that it calls.
+    struct Others {
+        Call<bool()> has_settings_to_record;
+        Call<void()> record_settings;
+        Call<void()> note_edit;
+        Call<void(bool is_empty)> note_stroke;
+        Call<void()> stop_drag;
+        Call<void()> add_node_here;
+    };
+    Painter(Desk& desk, PreferenceKeeper& keeper, Others others);
     void act(const Paint& action);
     void act(const PaintOp& op);
 
@@ -43,9 +48,8 @@ private:
     std::string how_to_reach_this() const;
     void follow_preview();
 
-    SettingsEditor& settings_;
-    Tracer& tracer_;
     PreferenceKeeper& keeper_;
+    const Others others_;
     double stroke_progress_s_ = 0.0;  ///< time when its last brick arrived
     uint64_t stroke_uploads_ = 0;
     glm::dvec3 stroke_end_voxel_{0.0};  ///< last point of the open stroke

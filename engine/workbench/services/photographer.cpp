@@ -3,11 +3,16 @@
 #include <cstdlib>
 
 #include "engine/session/picture_session.h"
-#include "engine/workbench/services/services.h"
 
 namespace shvr::ui {
 
-Photographer::Photographer(Services& all) : Service(all.desk), viewer_(all.viewer) {}
+namespace {
+
+constexpr Jobs::Number NUMBER_OF_LARGE = (Jobs::Number{1} << 49) + 1;  // no job has it
+
+}  // namespace
+
+Photographer::Photographer(Desk& desk, Others others) : Service(desk), others_(std::move(others)) {}
 
 void Photographer::advance()
 {
@@ -25,7 +30,7 @@ void Photographer::follow_screenshots()
 {
     if (document_->annotator.stroke_is_running()) drop_large("painting");  // only some parts would show it
     const Screenshots::Turn turn =
-        screenshots_.advance(document_->screen, stem(), is_still_, texts_of_picture(viewer_.pixels(), true),
+        screenshots_.advance(document_->screen, stem(), is_still_, texts_of_picture(others_.pixels(), true),
                              [this] { return figure_of_picture(1); });
     if (!turn.said.empty()) say(turn.said);
     if (!turn.progress.empty()) desk_.messages.amend(options_.now_s(), turn.progress);
@@ -40,11 +45,20 @@ std::filesystem::path Photographer::stem() const
     return is_example && home && *home ? std::filesystem::path(home) / stem.filename() : stem;
 }
 
-Jobs::State Photographer::state_of_large() const
+bool Photographer::cancel(Jobs::Number number)
 {
-    return {.number = NUMBER,
-            .what = "drawing " + short_name(screenshots_.large_path()),
-            .fraction = screenshots_.progress()};
+    if (number != NUMBER_OF_LARGE || !has_large()) return false;
+    screenshots_.drop_large();
+    say("Cancelled: the large screenshot", Weight::warning);
+    return true;
+}
+
+void Photographer::add_loading(std::vector<Jobs::State>& states) const
+{
+    if (!document_ || !has_large()) return;
+    states.push_back({.number = NUMBER_OF_LARGE,
+                      .what = "drawing " + short_name(screenshots_.large_path()),
+                      .fraction = screenshots_.progress()});
 }
 
 void Photographer::act(const Screenshot& action)
@@ -55,7 +69,7 @@ void Photographer::act(const Screenshot& action)
         return say("The screenshot will be taken when the picture is sharp");
     }
     Session session = document_->saved_session();
-    session.render.size = viewer_.pixels() * session.interaction.screenshot_scale;
+    session.render.size = others_.pixels() * session.interaction.screenshot_scale;
     RenderOptions options;
     options.part_pixels = 96;  // bounds the delay when the user resumes
     screenshots_.take_large(stem(), renderer_, session, document_->camera, options,
@@ -70,7 +84,7 @@ Figure Photographer::figure_of_picture(uint32_t scale) const
 {
     const Document& document = *document_;
     if (!document.session.interaction.screenshot_marks) return {};
-    const std::vector<Pane> panes = panes_of(document.session.view, document.camera, viewer_.pixels() * scale,
+    const std::vector<Pane> panes = panes_of(document.session.view, document.camera, others_.pixels() * scale,
                                              document.volume(), document.probe_voxel());
     return figure_of(model(), panes, units_ * scale, options_.draw_texts);
 }

@@ -6,15 +6,13 @@
 
 namespace shvr::ui {
 
-struct Services;
-class Viewer;
-
 class Photographer : public Service {
 public:
-    /// Number of the large screenshot among the jobs: no job has it.
-    static constexpr Jobs::Number NUMBER = (Jobs::Number{1} << 49) + 1;
-
-    explicit Photographer(Services& all);
+    /// Functions of other services that it calls.
+    struct Others {
+        Call<glm::uvec2()> pixels;  ///< size of the displayed picture
+    };
+    Photographer(Desk& desk, Others others);
     void act(const Screenshot& action);
 
     void advance() override;
@@ -23,9 +21,10 @@ public:
     void wait() const { screenshots_.wait(); }
     /// Cancels the large screenshot, if there is one, and reports the cause.
     void drop_large(const char* by);
-    /// Cancels it silently.
-    void drop_large() { screenshots_.drop_large(); }
-    Jobs::State state_of_large() const;
+    /// Cancels the large screenshot and reports it if it has this number among the jobs. Returns whether it has.
+    bool cancel(Jobs::Number number);
+    /// Adds the state of the large screenshot, if there is one.
+    void add_loading(std::vector<Jobs::State>& states) const;
     /// Returns the base of names for files next to the session: "scan" for scan-view-1.png.
     std::filesystem::path stem() const;
     /// Sets the pixels per unit of the interface, for drawing over pictures.
@@ -38,7 +37,7 @@ private:
     Figure figure_of_picture(uint32_t scale) const;
     Screenshots::Texts texts_of_picture(const glm::uvec2& pixels, bool shows_probe) const;
 
-    Viewer& viewer_;
+    const Others others_;
     Screenshots screenshots_;
     double units_ = 1.0;
     bool is_still_ = true;

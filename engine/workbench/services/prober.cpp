@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/workbench/services/services.h"
 #include "engine/workbench/sight/words.h"
 
 namespace shvr::ui {
@@ -25,8 +24,7 @@ glm::dvec3 in_plane_of(const glm::dvec3& probe, const Pane& seen, const glm::dve
 
 }  // namespace
 
-Prober::Prober(Services& all) : Service(all.desk), viewer_(all.viewer), painter_(all.painter), settings_(all.settings)
-{}
+Prober::Prober(Desk& desk, Others others) : Service(desk), others_(std::move(others)) {}
 
 /// Interrupts an open stroke: it paints nothing on the way to the hand's next position.
 void Prober::lift()
@@ -36,15 +34,15 @@ void Prober::lift()
 
 void Prober::act(const ProbeTo& action)
 {
-    const glm::dvec3 point = in_plane_of(document_->touch.probe(), viewer_.pane(action.pane), action.pixel);
+    const glm::dvec3 point = in_plane_of(document_->touch.probe(), others_.pane(action.pane), action.pixel);
     if (action.jumps) lift();
     move_probe(point, false);
 }
 
 void Prober::act(const ProbeOnto& action)
 {
-    const Pane seen = viewer_.pane(action.pane);
-    const std::optional<glm::dvec3> point = viewer_.seen_at(seen, action.pixel);
+    const Pane seen = others_.pane(action.pane);
+    const std::optional<glm::dvec3> point = others_.seen_at(seen, action.pixel);
     if (!point) return say("Nothing is seen there: the probe stays where it is");
     move_probe(*point, true);
     const Document& document = *document_;
@@ -62,13 +60,13 @@ void Prober::act(const ProbeOnto& action)
 
 void Prober::act(const ProbeAlong& action)
 {
-    const Pane seen = viewer_.pane(action.pane);
+    const Pane seen = others_.pane(action.pane);
     const glm::dvec3 probe = document_->touch.probe(), level = in_plane_of(probe, seen, action.pixel);
     const bool is_stroke = document_->annotator.stroke_is_open() && !action.jumps;
     const std::optional<glm::dvec3> point =
-        is_stroke ? viewer_.seen_near(seen, action.pixel, depth_of(seen.shot.camera, level),
+        is_stroke ? others_.seen_near(seen, action.pixel, depth_of(seen.shot.camera, level),
                                       document_->probe_radius() + glm::distance(level, probe))
-                  : viewer_.seen_at(seen, action.pixel);
+                  : others_.seen_at(seen, action.pixel);
     if (action.jumps) lift();
     move_probe(point.value_or(level), false);
     if (!document_->touch.servo()) log_instead({PlaceProbe{document_->probe_voxel(), action.jumps}});
@@ -76,7 +74,7 @@ void Prober::act(const ProbeAlong& action)
 
 void Prober::act(const PushProbe& action)
 {
-    const CameraAxes axes = axes_of(viewer_.pane(action.pane).shot.camera);
+    const CameraAxes axes = axes_of(others_.pane(action.pane).shot.camera);
     const auto step = [&](const glm::dvec3& way, double voxels) {
         return way * (voxels * glm::length(way * document_->volume().spacing));
     };
@@ -98,15 +96,15 @@ void Prober::move_probe(const glm::dvec3& point, bool jumps)
         document_->touch.place(point);
     else
         document_->touch.wish(point);
-    settings_.note_to_keep();
-    painter_.extend_stroke();
+    others_.note_to_keep();
+    others_.extend_stroke();
 }
 
 void Prober::act(const ScaleProbe& action)
 {
     double& radius = document_->session.probe.brush.radius_voxels;
     radius = std::clamp(radius * action.factor, MIN_RADIUS_VOXELS, MAX_RADIUS_VOXELS);
-    settings_.note_edit();
+    others_.note_edit();
     say(sentence("Probe radius ", std::round(10.0 * radius) / 10.0, " voxels"));
 }
 

@@ -5,14 +5,18 @@
 
 namespace shvr::ui {
 
-class Painter;
-struct Services;
-class SettingsEditor;
-class Viewer;
-
 class Prober : public Service {
 public:
-    explicit Prober(Services& all);
+    /// Functions of other services that it calls.
+    struct Others {
+        Call<Pane(size_t index)> pane;
+        Call<std::optional<glm::dvec3>(const Pane&, const glm::dvec2& pixel)> seen_at;
+        Call<std::optional<glm::dvec3>(const Pane&, const glm::dvec2& pixel, double depth, double reach)> seen_near;
+        Call<void()> extend_stroke;
+        Call<void()> note_edit;
+        Call<void()> note_to_keep;
+    };
+    Prober(Desk& desk, Others others);
     void act(const ProbeTo& action);
     void act(const ProbeOnto& action);
     void act(const ProbeAlong& action);
@@ -27,9 +31,7 @@ public:
 private:
     void lift();
 
-    Viewer& viewer_;
-    Painter& painter_;
-    SettingsEditor& settings_;
+    const Others others_;
 };
 
 }  // namespace shvr::ui

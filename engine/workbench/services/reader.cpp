@@ -3,12 +3,13 @@
 #include <cmath>
 
 #include "engine/live/densities.h"
-#include "engine/workbench/services/services.h"
 #include "engine/workbench/sight/words.h"
 
 namespace shvr::ui {
 
-Reader::Reader(Services& all) : Service(all.desk), viewer_(all.viewer), settings_(all.settings), keeper_(all.keeper) {}
+Reader::Reader(Desk& desk, PreferenceKeeper& keeper, Others others)
+    : Service(desk), keeper_(keeper), others_(std::move(others))
+{}
 
 void Reader::advance()
 {
@@ -21,12 +22,12 @@ glm::dvec3 Reader::voxel_to_read() const
 {
     const Document& document = *document_;
     const std::vector<Screen::Part>& parts = document.screen.parts();
-    if (!viewer_.pointer() || viewer_.pointer()->pane >= parts.size() ||
-        !parts[viewer_.pointer()->pane].pane.shot.is_slice)
+    if (!others_.pointer() || others_.pointer()->pane >= parts.size() ||
+        !parts[others_.pointer()->pane].pane.shot.is_slice)
         return document.probe_voxel();
-    const Pane& slice = parts[viewer_.pointer()->pane].pane;
+    const Pane& slice = parts[others_.pointer()->pane].pane;
     const Camera& camera = slice.shot.camera;
-    return unproject(camera, slice.pixels(), viewer_.pointer()->pixel,
+    return unproject(camera, slice.pixels(), others_.pointer()->pixel,
                      0.5 * (camera.near_distance + camera.far_distance)) /
            document.volume().spacing;
 }
@@ -99,7 +100,7 @@ void Reader::read_at(const glm::dvec3& voxel)
 void Reader::act(const MeasureAt& action)
 {
     Document& document = *document_;
-    const std::optional<glm::dvec3> point = viewer_.seen_at(viewer_.pane(action.pane), action.pixel);
+    const std::optional<glm::dvec3> point = others_.seen_at(others_.pane(action.pane), action.pixel);
     if (!point) fail("nothing is seen there; expected a visible point to measure from");
     const glm::dvec3 voxel = *point / document.volume().spacing;
     if (!document.measuring_from) {
@@ -111,7 +112,7 @@ void Reader::act(const MeasureAt& action)
         fail(MAX_MEASUREMENTS, " distances are measured, and no more are kept; expected them to be copied and removed");
     after.measurements.push_back({*document.measuring_from, voxel});
     document.measuring_from.reset();
-    settings_.take_session(std::move(after));
+    others_.take_session(std::move(after));
     const std::vector<Measurement>& all = document.session.measurements;
     const double length = length_of(all.back(), document.volume().spacing);
     const std::string copy = keeper_.keys_of("copy_measurements"), clear = keeper_.keys_of("clear_measurements");
@@ -128,7 +129,7 @@ void Reader::act(const ClearMeasurements&)
         return;
     }
     after.measurements.clear();
-    settings_.take_session(std::move(after));
+    others_.take_session(std::move(after));
     say("Distances are removed; undo brings them back");
 }
 

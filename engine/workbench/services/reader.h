@@ -1,18 +1,21 @@
 #pragma once
 // Readings under the probe and the pointer, measurements, and reports of the scene.
 
+#include "engine/workbench/desk/preference_keeper.h"
 #include "engine/workbench/desk/service.h"
 
 namespace shvr::ui {
 
-class PreferenceKeeper;
-class SettingsEditor;
-struct Services;
-class Viewer;
-
 class Reader : public Service {
 public:
-    explicit Reader(Services& all);
+    /// Functions of other services that it calls.
+    struct Others {
+        Call<std::optional<Pointer>()> pointer;
+        Call<Pane(size_t index)> pane;
+        Call<std::optional<glm::dvec3>(const Pane&, const glm::dvec2& pixel)> seen_at;
+        Call<void(Session)> take_session;
+    };
+    Reader(Desk& desk, PreferenceKeeper& keeper, Others others);
     void act(const MeasureAt& action);
     void act(const ClearMeasurements& action);
     void act(const CopyMeasurements& action);
@@ -30,9 +33,8 @@ private:
     bool probe_is_measured() const;
     glm::dvec3 voxel_to_read() const;
 
-    Viewer& viewer_;
-    SettingsEditor& settings_;
     PreferenceKeeper& keeper_;
+    const Others others_;
     Reading reading_;
     std::optional<glm::dvec3> read_voxel_;  ///< integer coordinates of the voxel whose intensity is in `reading_`
     uint64_t read_revision_ = 0;            ///< revision of the paint

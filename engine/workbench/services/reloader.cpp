@@ -1,28 +1,28 @@
 #include "engine/workbench/services/reloader.h"
 
-#include "engine/workbench/services/services.h"
+#include "engine/workbench/services/opener.h"
 
 namespace shvr::ui {
+
+namespace {
+
+constexpr Jobs::Number NUMBER_OF_RELOAD = Jobs::Number{1} << 49;  // no job has it
+
+}  // namespace
 
 struct Reloader::Reload {
     RenderSettings before;           ///< settings with which the displayed scene was loaded
     std::unique_ptr<Scene> scene{};  ///< null: it has not begun
 };
 
-Reloader::Reloader(Services& all)
-    : Service(all.desk),
-      opener_(all.opener),
-      photographer_(all.photographer),
-      settings_(all.settings),
-      viewer_(all.viewer)
-{}
+Reloader::Reloader(Desk& desk, Others others) : Service(desk), others_(std::move(others)) {}
 
 Reloader::~Reloader() = default;
 
 /// Reports at once if the volume cannot be loaded with the session's settings.
 void Reloader::want(const RenderSettings& before)
 {
-    if (opener_.is_opening()) fail(opener_.opening_name(), " is being opened; expected that to have ended");
+    if (others_.is_opening()) fail(others_.opening_name(), " is being opened; expected that to have ended");
     const Session& session = document_->session;
     renderer_.check_sizes(*document_->source, session.render, shows_occlusion(session.light));
     reload_ = std::make_shared<Reload>(Reload{.before = reload_ ? reload_->before : before});
@@ -32,13 +32,12 @@ void Reloader::begin()
 {
     const Session& session = document_->session;
     const bool has_light = shows_occlusion(session.light);
-    photographer_.drop_large("reloading the volume");
+    others_.drop_screenshot("reloading the volume");
     if (!renderer_.fits_beside(*document_->source, session.render, has_light)) {
         reload_.reset();
         drop_queries();
         document_->screen.clear();
-        opener_.put_away();
-        return opener_.bring_back();
+        return others_.load_alone();
     }
     reload_->scene = renderer_.begin_loading(document_->source, document_->statistics, session.render, has_light,
                                              document_->annotator.document());
@@ -65,11 +64,11 @@ void Reloader::advance()
         Session& session = document_->session;
         session.render.sampling = reload_->before.sampling;
         session.render.paging = reload_->before.paging;
-        settings_.note_edit();
+        others_.note_edit();
         say(sentence(error.what(), "; the volume stays as it was loaded"), Weight::error);
     }
     reload_.reset();
-    viewer_.look_again();
+    others_.look_again();
 }
 
 bool Reloader::cancel()
@@ -77,17 +76,24 @@ bool Reloader::cancel()
     if (!reload_) return false;
     document_->session.render.sampling = reload_->before.sampling;
     document_->session.render.paging = reload_->before.paging;
-    settings_.note_edit();
+    others_.note_edit();
     reload_.reset();
     return true;
 }
 
-Jobs::State Reloader::state() const
+bool Reloader::cancel(Jobs::Number number)
 {
-    const std::string name = short_name(document_->session_path);
-    return {.number = NUMBER,
-            .what = "loading " + name + " once more",
-            .fraction = reload_->scene ? reload_->scene->loaded() : -1.0};
+    if (number != NUMBER_OF_RELOAD || !cancel()) return false;
+    say("Cancelled: reloading", Weight::warning);
+    return true;
+}
+
+void Reloader::add_loading(std::vector<Jobs::State>& states) const
+{
+    if (!reload_ || !document_) return;
+    states.push_back({.number = NUMBER_OF_RELOAD,
+                      .what = "loading " + short_name(document_->session_path) + " once more",
+                      .fraction = reload_->scene ? reload_->scene->loaded() : -1.0});
 }
 
 /// Drops pending requests to the scene that is replaced.

@@ -7,18 +7,18 @@
 
 namespace shvr::ui {
 
-class Opener;
-class Photographer;
-struct Services;
-class SettingsEditor;
-class Viewer;
-
 class Reloader : public Service {
 public:
-    /// Number of the reload among the jobs: no job has it.
-    static constexpr Jobs::Number NUMBER = Jobs::Number{1} << 49;
-
-    explicit Reloader(Services& all);
+    /// Functions of other services that it calls.
+    struct Others {
+        Call<bool()> is_opening;
+        Call<std::string_view()> opening_name;
+        Call<void()> load_alone;  ///< puts the document away and loads it again
+        Call<void(const char* by)> drop_screenshot;
+        Call<void()> note_edit;
+        Call<void()> look_again;
+    };
+    Reloader(Desk& desk, Others others);
     ~Reloader() override;
 
     void advance() override;
@@ -28,19 +28,19 @@ public:
     bool is_wanted() const { return reload_ != nullptr; }
     /// Cancels the reload. Returns whether there was one.
     bool cancel();
+    /// Cancels the reload and reports it if it has this number among the jobs. Returns whether it has.
+    bool cancel(Jobs::Number number);
     /// Drops the reload: the volume was loaded with the current settings by other means.
     void forget() { reload_.reset(); }
-    Jobs::State state() const;
+    /// Adds the state of the reload, if there is one.
+    void add_loading(std::vector<Jobs::State>& states) const;
 
 private:
     struct Reload;
     void begin();
     void drop_queries();
 
-    Opener& opener_;
-    Photographer& photographer_;
-    SettingsEditor& settings_;
-    Viewer& viewer_;
+    const Others others_;
     std::shared_ptr<Reload> reload_;  ///< null: the displayed scene matches the settings
 };
 

@@ -4,19 +4,12 @@
 #include <thread>
 
 #include "engine/look/camera_motion.h"
-#include "engine/workbench/services/services.h"
+#include "engine/workbench/services/painter.h"
 
 namespace shvr::ui {
 
-Saver::Saver(Services& all)
-    : Service(all.desk),
-      opener_(all.opener),
-      painter_(all.painter),
-      photographer_(all.photographer),
-      keeper_(all.keeper),
-      settings_(all.settings),
-      tasks_(all.tasks),
-      viewer_(all.viewer)
+Saver::Saver(Desk& desk, PreferenceKeeper& keeper, Others others)
+    : Service(desk), keeper_(keeper), others_(std::move(others))
 {}
 
 void Saver::advance()
@@ -45,9 +38,9 @@ void Saver::act(const SaveAs& action)
 void Saver::save_to(const std::filesystem::path& path)
 {
     Annotator& annotator = document_->annotator;
-    painter_.extend_stroke();
+    others_.extend_stroke();
     if (annotator.stroke_is_open()) annotator.end_stroke();
-    painter_.note_progress();
+    others_.note_progress();
     if (!save_ && !annotator.stroke_is_running()) return begin_save_to(path);
     wanted_save_ = path;
     say(save_ ? "Will be saved again after the running save" : "Saved when the stroke that is under way is painted");
@@ -58,9 +51,9 @@ void Saver::follow_save()
     if (!wanted_save_ || save_) return;
     Annotator& annotator = document_->annotator;
     if (annotator.stroke_is_running()) {
-        renderer_.scene().advance();                               // takes its bricks, also where no picture is drawn
-        if (annotator.stroke_is_open()) painter_.note_progress();  // a hand may rest
-        if (!painter_.is_stuck()) return;
+        renderer_.scene().advance();                              // takes its bricks, also where no picture is drawn
+        if (annotator.stroke_is_open()) others_.note_progress();  // a hand may rest
+        if (!others_.is_stuck()) return;
         annotator.drop_strokes();
         unpainted_ = Painter::why_stuck();
     }
@@ -75,13 +68,13 @@ void Saver::begin_save_to(const std::filesystem::path& path)
 
 void Saver::begin_save(bool is_asked_for, Document::Parts parts)
 {
-    if (parts == Document::Parts::all) settings_.record_settings();
+    if (parts == Document::Parts::all) others_.record_settings();
     start_saving(document_->begin_save(parts), is_asked_for);
 }
 
 void Saver::begin_save_as(const std::filesystem::path& path)
 {
-    settings_.record_settings();
+    others_.record_settings();
     start_saving(document_->begin_save_as(path), true);
     say("Saving as " + path.string() + "; until that ends, nothing can be painted, traced or undone");
 }
@@ -110,7 +103,7 @@ void Saver::act(const WorkOnCopy&)
 /// Copies the present state, whatever is done while it is written.
 void Saver::start_copy(const std::filesystem::path& path, bool opens_it)
 {
-    if (!document_->only_looks()) settings_.record_settings();
+    if (!document_->only_looks()) others_.record_settings();
     const std::function<std::filesystem::path()> copy = document_->copier(path);
     const std::string name = short_name(document_->session_path);
     copies_.insert(
@@ -118,7 +111,7 @@ void Saver::start_copy(const std::filesystem::path& path, bool opens_it)
             static_cast<void>(reporter.begin("writing a copy of " + name));
             const std::filesystem::path copied = copy();
             return [this, copied, opens_it] {
-                if (opens_it) return opener_.begin_open(copied, {});
+                if (opens_it) return others_.begin_open(copied);
                 say("Copied to " + copied.string() + "; this window goes on with " + document_->session_path.string());
             };
         }));
@@ -151,11 +144,11 @@ void Saver::end_save(const Jobs::Finished& job)
                                  : say(job.failure + unpainted + kept, Weight::error);
     }
     if (save->saving->is_under_another_name()) {
-        viewer_.look_again();
+        others_.look_again();
         keeper_.note_opened(document_->session_path);
         return say("Saved as " + document_->session_path.string() + unpainted + kept);
     }
-    if (std::exchange(reopens_when_saved_, false)) opener_.begin_open(document_->session_path, {});
+    if (std::exchange(reopens_when_saved_, false)) others_.begin_open(document_->session_path);
     if (!save->is_asked_for && kept.empty()) return;
     const Session& session = document_->session;
     const bool has_trace = !session.trace_path.empty() && !document_->annotator.document().trace.nodes().empty();
@@ -167,7 +160,7 @@ void Saver::end_save(const Jobs::Finished& job)
 
 Leave Saver::leave(std::string& why)
 {
-    if (tasks_.is_writing() || photographer_.has_large()) {
+    if (others_.is_writing()) {
         if (!std::exchange(told_of_writers_, true))
             say("Waiting until the current file is written; cancel that to continue now");
         return Leave::later;
@@ -184,7 +177,7 @@ Leave Saver::leave(std::string& why)
     const bool asks = !document_->annotator.work().disputes().empty();
     const bool is_running = document_->annotator.stroke_is_running();
     try {
-        if (document_->only_looks() || settings_.is_discarded()) return Leave::now;
+        if (document_->only_looks() || others_.is_discarded()) return Leave::now;
         if (asks && !document_->has_settings_to_save()) return Leave::now;
         if (!asks && document_->is_saved() && !is_running) {
             if (!document_->has_view_to_keep() || std::exchange(has_tried_view_, true)) return Leave::now;
@@ -207,7 +200,7 @@ Leave Saver::leave(std::string& why)
 Work::Saved Saver::finish_save()
 {
     while (is_saving()) {
-        tasks_.advance();
+        others_.advance_jobs();
         follow_save();
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
@@ -217,7 +210,7 @@ Work::Saved Saver::finish_save()
 
 void Saver::act(const Quit& action)
 {
-    if (!action.saves) settings_.discard();
+    if (!action.saves) others_.discard();
     quits_ = true;
 }
 
@@ -243,7 +236,7 @@ void Saver::act(const CorrectSpacing& action)
         if (!action.unit.empty()) session.open_options.unit = action.unit;
     }
     try {
-        if (const std::string unpainted = painter_.finish_stroke(); !unpainted.empty()) say(unpainted, Weight::error);
+        if (const std::string unpainted = others_.finish_stroke(); !unpainted.empty()) say(unpainted, Weight::error);
         begin_save(true);
     } catch (...) {
         session = before;

@@ -1,21 +1,12 @@
 #pragma once
-// Saving, in place or elsewhere, and leaving: data to write is copied at once, and files are written in the
-// background.
+// Saving, in place or elsewhere, and leaving: the data is copied at once, and the files are written in the background.
 
 #include <set>
 
+#include "engine/workbench/desk/preference_keeper.h"
 #include "engine/workbench/desk/service.h"
 
 namespace shvr::ui {
-
-class Opener;
-class Painter;
-class Photographer;
-class PreferenceKeeper;
-struct Services;
-class SettingsEditor;
-class TaskRunner;
-class Viewer;
 
 /// Result of asking whether the open document may be closed (Workbench::leave).
 enum class Leave {
@@ -26,7 +17,21 @@ enum class Leave {
 
 class Saver : public Service {
 public:
-    explicit Saver(Services& all);
+    /// Functions of other services that it calls.
+    struct Others {
+        Call<void(const std::filesystem::path&)> begin_open;
+        Call<void()> extend_stroke;
+        Call<std::string()> finish_stroke;
+        Call<bool()> is_stuck;
+        Call<void()> note_progress;
+        Call<bool()> is_writing;  ///< a file that the user requested is being written
+        Call<void()> record_settings;
+        Call<void()> discard;
+        Call<bool()> is_discarded;
+        Call<void()> advance_jobs;
+        Call<void()> look_again;
+    };
+    Saver(Desk& desk, PreferenceKeeper& keeper, Others others);
     void act(const SaveOp& action);
     void act(const SaveAs& action);
     void act(const CopySession& action);
@@ -39,10 +44,10 @@ public:
     void begin_document();
     bool is_saving() const { return save_ != nullptr || wanted_save_; }
     bool is_copying() const { return !copies_.empty(); }
-    /// Handles the end of a job of the savers.
+    /// Handles the end of a job of the worker that saves.
     void end(const Jobs::Finished& job);
     Leave leave(std::string& why);
-    /// Waits for the save under way. Returns what was written; fails with the reason if that is not all.
+    /// Waits for the save under way. Returns the written parts; fails with the reason if one could not be written.
     Work::Saved finish_save();
     /// Returns whether Quit was requested, and clears the request.
     bool take_quit() { return std::exchange(quits_, false); }
@@ -58,13 +63,8 @@ private:
     void start_copy(const std::filesystem::path& path, bool opens_it);
     void end_save(const Jobs::Finished& job);
 
-    Opener& opener_;
-    Painter& painter_;
-    Photographer& photographer_;
     PreferenceKeeper& keeper_;
-    SettingsEditor& settings_;
-    TaskRunner& tasks_;
-    Viewer& viewer_;
+    const Others others_;
     /// The save under way.
     struct Save {
         Jobs::Number number = 0;

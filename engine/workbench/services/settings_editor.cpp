@@ -6,7 +6,6 @@
 #include "engine/workbench/actions/action_rows.h"
 #include "engine/workbench/edits/edit.h"
 #include "engine/workbench/edits/group_steps.h"
-#include "engine/workbench/services/services.h"
 #include "engine/workbench/words/settings_words.h"
 
 namespace shvr::ui {
@@ -24,9 +23,7 @@ bool look_the_same(Session before, const Session& after)
 
 }  // namespace
 
-SettingsEditor::SettingsEditor(Services& all)
-    : Service(all.desk), viewer_(all.viewer), tracer_(all.tracer), painter_(all.painter), reloader_(all.reloader)
-{}
+SettingsEditor::SettingsEditor(Desk& desk, Others others) : Service(desk), others_(std::move(others)) {}
 
 void SettingsEditor::advance()
 {
@@ -107,7 +104,7 @@ void SettingsEditor::take_session(Session session)
         throw;
     }
     note_edit();
-    if (!look_the_same(std::move(before), after)) viewer_.look_again();
+    if (!look_the_same(std::move(before), after)) others_.look_again();
 }
 
 /// Updates the window's data about the trace; the annotator passes changes to the scene itself.
@@ -122,23 +119,23 @@ void SettingsEditor::show_changes(const Command& command)
     if (!is_set) return;
     const Session before = document.session;
     document.take_settings();
-    if (!look_the_same(before, document.session)) viewer_.look_again();
+    if (!look_the_same(before, document.session)) others_.look_again();
 }
 
-/// Applies effects of settings other than a new picture.
+/// Applies the effects of changed settings, except drawing a new picture.
 void SettingsEditor::settings_changed(const Session& before)
 {
     Document& document = *document_;
     const Session& after = document.session;
     if (before.render.sampling != after.render.sampling || before.render.paging != after.render.paging) {
-        reloader_.want(before.render);
+        others_.reload(before.render);
     } else if (before.groups != after.groups) {
         renderer_.scene().show_surfaces(document.surfaces, document.annotator.document().trace, after.groups);
     }
-    if (before.cut != after.cut) viewer_.show_cut_box();
+    if (before.cut != after.cut) others_.show_cut_box();
     if (before.probe.tool != after.probe.tool) {
         if (document.annotator.stroke_is_open()) document.annotator.end_stroke();
-        if (document.drags_node) tracer_.act(DragNode{false});
+        if (document.drags_node) others_.stop_drag();
         document.measuring_from.reset();
     }
 }
@@ -252,7 +249,7 @@ void SettingsEditor::act(const ChooseBelief& action)
     for (const Notice& notice : document_->annotator.choose(action.takes_files ? Belief::files : Belief::journal))
         said += (said.empty() ? "" : "; ") + notice.text;
     document_->drags_node = false;
-    viewer_.look_again();
+    others_.look_again();
     say(said);
 }
 
@@ -260,7 +257,7 @@ void SettingsEditor::act(const ChooseBelief& action)
 void SettingsEditor::discard()
 {
     if (!document_ || document_->only_looks() || !document_->annotator.work().disputes().empty()) return;
-    static_cast<void>(painter_.finish_stroke());  // which is discarded
+    static_cast<void>(others_.finish_stroke());  // which is discarded
     record_settings();
     const Command* done = nullptr;
     try {

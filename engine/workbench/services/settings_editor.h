@@ -5,15 +5,17 @@
 
 namespace shvr::ui {
 
-class Painter;
-class Reloader;
-struct Services;
-class Tracer;
-class Viewer;
-
 class SettingsEditor : public Service {
 public:
-    explicit SettingsEditor(Services& all);
+    /// Functions of other services that it calls.
+    struct Others {
+        Call<void()> look_again;
+        Call<void()> show_cut_box;
+        Call<void()> stop_drag;
+        Call<std::string()> finish_stroke;
+        Call<void(const RenderSettings& before)> reload;
+    };
+    SettingsEditor(Desk& desk, Others others);
     void act(const Set& action);
     void act(const NewGroup& action);
     void act(const EndStep& action);
@@ -59,10 +61,7 @@ private:
     template <class Way>
     void step(int count, const char* done, const char* nothing, Way way);
 
-    Viewer& viewer_;
-    Tracer& tracer_;
-    Painter& painter_;
-    Reloader& reloader_;
+    const Others others_;
     bool is_hand_down_ = false;
     bool settings_to_record_ = false, was_set_in_this_turn_ = false;
     std::optional<double> to_keep_since_s_;       ///< time since when the journal lacks the current view

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/workbench/services/services.h"
-
 namespace shvr::ui {
 
 namespace {
@@ -30,28 +28,14 @@ std::string sentence_about(const EvaluateResult& result)
 
 }  // namespace
 
-TaskRunner::TaskRunner(Services& all)
-    : Service(all.desk),
-      taker_(all.taker),
-      opener_(all.opener),
-      photographer_(all.photographer),
-      reloader_(all.reloader),
-      saver_(all.saver),
-      settings_(all.settings)
-{}
+TaskRunner::TaskRunner(Desk& desk, Others others) : Service(desk), others_(std::move(others)) {}
 
 void TaskRunner::advance()
 {
-    for (const Jobs::Finished& job : savers_.finish()) saver_.end(job);
+    for (const Jobs::Finished& job : savers_.finish()) others_.end_save(job);
     for (const Jobs::Finished& job : jobs_.finish()) {
         writers_.erase(job.number);
-        if (opener_.is_opening() && opener_.number() == job.number) {
-            if (job.was_cancelled)
-                opener_.cancel();
-            else if (!job.failure.empty())
-                opener_.end_reading(job.failure);
-            continue;
-        }
+        if (others_.end_reading(job)) continue;
         if (job.was_cancelled)
             say("Cancelled: " + job.what, Weight::warning);
         else if (!job.failure.empty())
@@ -61,12 +45,7 @@ void TaskRunner::advance()
 
 void TaskRunner::act(const CancelJob& action)
 {
-    if (opener_.is_opening() && opener_.number() == action.number) return opener_.cancel();
-    if (action.number == Reloader::NUMBER && reloader_.cancel()) return say("Cancelled: reloading", Weight::warning);
-    if (action.number == Photographer::NUMBER && photographer_.has_large()) {
-        photographer_.drop_large();
-        return say("Cancelled: the large screenshot", Weight::warning);
-    }
+    if (others_.cancel(action.number)) return;
     jobs_.cancel(action.number);
     savers_.cancel(action.number);
 }
@@ -74,17 +53,15 @@ void TaskRunner::act(const CancelJob& action)
 JobModel TaskRunner::model() const
 {
     std::vector<Jobs::State> states = savers_.states();
-    opener_.add_loading(states);
-    if (document_ && reloader_.is_wanted()) states.push_back(reloader_.state());
-    if (document_ && photographer_.has_large()) states.push_back(photographer_.state_of_large());
+    others_.add_loading(states);
     for (Jobs::State& state : jobs_.states()) states.push_back(std::move(state));
-    opener_.add_read(states);
+    others_.add_reading(states);
     return {.jobs = std::move(states)};
 }
 
 void TaskRunner::act(const ExportTask& task)
 {
-    settings_.record_settings();
+    others_.record_settings();
     const Document& document = *document_;
     const shvr::Document& annotation = document.annotator.document();
     const AnnotationView view{.volume = document.volume(),
@@ -121,7 +98,7 @@ void TaskRunner::act(const ImportTask& task)
         const ImportResult result = run(wanted, reporter);
         return [this, project = result.report.project, warnings = result.report.warnings] {
             for (const std::string& warning : warnings) say(warning, Weight::warning);
-            taker_.act(Open{project});
+            others_.open(project);
         };
     };
     writers_.insert(jobs_.start("importing " + short_name(task.volume), import));

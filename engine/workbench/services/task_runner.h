@@ -8,17 +8,19 @@
 
 namespace shvr::ui {
 
-class FileTaker;
-class Opener;
-class Photographer;
-class Reloader;
-class Saver;
-struct Services;
-class SettingsEditor;
-
 class TaskRunner : public Service {
 public:
-    explicit TaskRunner(Services& all);
+    /// Functions of other services that it calls.
+    struct Others {
+        Call<void(const Jobs::Finished&)> end_save;
+        Call<bool(const Jobs::Finished&)> end_reading;  ///< returns whether the job was the opening's
+        Call<bool(Jobs::Number)> cancel;                ///< returns whether another service has this number
+        Call<void(std::vector<Jobs::State>&)> add_loading;
+        Call<void(std::vector<Jobs::State>&)> add_reading;
+        Call<void(const std::filesystem::path&)> open;
+        Call<void()> record_settings;
+    };
+    TaskRunner(Desk& desk, Others others);
     void act(const ExportTask& task);
     void act(const ImportTask& task);
     void act(const LabelTask& task);
@@ -33,12 +35,7 @@ public:
     JobModel model() const;
 
 private:
-    FileTaker& taker_;
-    Opener& opener_;
-    Photographer& photographer_;
-    Reloader& reloader_;
-    Saver& saver_;
-    SettingsEditor& settings_;
+    const Others others_;
     std::set<Jobs::Number> writers_;
 };
 

@@ -4,7 +4,6 @@
 
 #include "engine/workbench/edits/edit.h"
 #include "engine/workbench/edits/trace_ops.h"
-#include "engine/workbench/services/services.h"
 #include "engine/workbench/words/trace_words.h"
 
 namespace shvr::ui {
@@ -39,8 +38,8 @@ glm::dvec3 sight_through(const Camera& camera, const glm::dvec3& point)
 
 }  // namespace
 
-Tracer::Tracer(Services& all)
-    : Service(all.desk), viewer_(all.viewer), prober_(all.prober), settings_(all.settings), keeper_(all.keeper)
+Tracer::Tracer(Desk& desk, PreferenceKeeper& keeper, Others others)
+    : Service(desk), keeper_(keeper), others_(std::move(others))
 {}
 
 /// Gives new nodes the radius of the structure around them, if requested and measurable.
@@ -69,14 +68,14 @@ void Tracer::trace(const TraceOp& asked)
         fail("Group 0 is the eraser; choose a group from 1 up for the node");
     if (const GroupOp* group = std::get_if<GroupOp>(&op); group && group->group == 0)
         fail("Group 0 is the eraser, and traces belong to a group from 1 up");
-    settings_.record_settings();
+    others_.record_settings();
     const TraceSize before{trace.nodes().size(), trace.internodes().size()};
     const auto cut = std::holds_alternative<DeleteOp>(op) ? ends_of_cut(trace) : std::nullopt;
     TraceEffect effect = effect_of(op, trace, document_->trace_defaults());
     if (effect.selection) annotator.work().select_trace(*effect.selection);
     const Command* const done = annotator.edit_trace(std::move(effect.label), std::move(effect.changes));
     document_->drags_node = false;
-    if (done) settings_.show_changes(*done);
+    if (done) others_.show_changes(*done);
     if (cut && done && !options_.is_script) return note_cut(cut);
     const std::string said = said_of(op, effect.selection.has_value(), done, trace, before);
     const bool places = std::holds_alternative<NodeOp>(op) || std::holds_alternative<MoveOp>(op);
@@ -147,21 +146,22 @@ bool Tracer::add_drawn_node(const ToolPlace& place)
     const auto op = trace_op_at(place, document_->annotator.document().trace, spacing);
     if (!op) return false;
     Actions done = add_node_at(*op);
-    prober_.move_probe(place.point, false);
+    others_.move_probe(place.point, false);
     done.push_back(PlaceProbe{place.point / spacing});
     log_instead(done);
     return true;
 }
 
-/// On what is seen; or where that is wanted in the middle of what the line of sight enters there, in slices as it is.
+/// Adds the node at the visible point, or in the middle of the structure that the line of sight enters there if
+/// `centered_nodes` is set; in slices at the clicked point.
 void Tracer::act(const NodeAt& action)
 {
-    const Pane seen = viewer_.pane(action.pane);
+    const Pane seen = others_.pane(action.pane);
     if (const auto line = line_at(seen, action.pixel)) {
         add_drawn_node(*line);
         return;
     }
-    const std::optional<glm::dvec3> point = viewer_.seen_at(seen, action.pixel);
+    const std::optional<glm::dvec3> point = others_.seen_at(seen, action.pixel);
     if (!point) fail("nothing is seen there; expected a visible point for the node");
     glm::dvec3 voxel = *point / document_->volume().spacing;
     const bool goes_inside = document_->session.probe.centered_nodes && !seen.shot.is_slice;
@@ -186,7 +186,7 @@ void Tracer::act(const NodeAt& action)
     if (ball && ball->is_held)
         say(desk_.messages.last() +
             "; it is not in the middle, which lies further aside than the probe's radius: a larger probe finds it");
-    prober_.move_probe(voxel * spacing, false);
+    others_.move_probe(voxel * spacing, false);
     log_instead({NodeOp{.at = voxel, .radius_voxels = {}, .group = {}}, PlaceProbe{voxel}});
 }
 
@@ -194,7 +194,7 @@ void Tracer::act(const SelectAt& action)
 {
     Document& document = *document_;
     if (document.annotator.stroke_is_running()) fail("Nothing can be selected while a stroke is being painted");
-    const Pane seen = viewer_.pane(action.pane);
+    const Pane seen = others_.pane(action.pane);
     const TraceGraph& trace = document.annotator.document().trace;
     const TraceHit hit = trace_hit(trace, seen, action.pixel, document.volume());
     if ((hit.node || hit.internode) && !is_hidden(seen, action.pixel, hit)) {
@@ -203,7 +203,7 @@ void Tracer::act(const SelectAt& action)
         if (action.whole_segment) select_segment();
         return;
     }
-    const std::optional<glm::dvec3> point = viewer_.seen_at(seen, action.pixel);
+    const std::optional<glm::dvec3> point = others_.seen_at(seen, action.pixel);
     const glm::dvec3 voxel = point ? *point / document.volume().spacing : glm::dvec3(-1.0);
     const bool is_inside = glm::all(glm::greaterThanEqual(voxel, glm::dvec3(0.0))) &&
                            glm::all(glm::lessThan(voxel, glm::dvec3(document.volume().size)));
@@ -213,7 +213,7 @@ void Tracer::act(const SelectAt& action)
         return;
     }
     if (group == document.brush().group) return say(sentence("Group ", int(group), " is the active group already"));
-    settings_.act(edited(document.session, [&](Session& s) { s.probe.brush.group = group; }));
+    others_.set(edited(document.session, [&](Session& s) { s.probe.brush.group = group; }));
 }
 
 /// A node where segments meet, or that belongs to none, stays selected alone.
@@ -265,8 +265,8 @@ void Tracer::act(const StepNode& action)
     Camera camera = document.camera;
     camera.eye += position - camera.target;
     camera.target = position;
-    viewer_.look_from(camera);
-    prober_.move_probe(position, true);
+    others_.look_from(camera);
+    others_.move_probe(position, true);
 }
 
 void Tracer::act(const DragNode& action)

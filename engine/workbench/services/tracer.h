@@ -1,20 +1,25 @@
 #pragma once
 // The trace: the operations that scripts use, as commands of the one history; selecting and adding by pointing.
 
+#include "engine/workbench/desk/preference_keeper.h"
 #include "engine/workbench/desk/service.h"
 #include "engine/workbench/sight/hits.h"
 
 namespace shvr::ui {
 
-class PreferenceKeeper;
-class Prober;
-struct Services;
-class SettingsEditor;
-class Viewer;
-
 class Tracer : public Service {
 public:
-    explicit Tracer(Services& all);
+    /// Functions of other services that it calls.
+    struct Others {
+        Call<Pane(size_t index)> pane;
+        Call<std::optional<glm::dvec3>(const Pane&, const glm::dvec2& pixel)> seen_at;
+        Call<void(const Camera&)> look_from;
+        Call<void(const glm::dvec3& point, bool jumps)> move_probe;
+        Call<void(const Set&)> set;
+        Call<void()> record_settings;
+        Call<void(const Command&)> show_changes;
+    };
+    Tracer(Desk& desk, PreferenceKeeper& keeper, Others others);
     void act(const DragNode& action);
     void act(const NodeOp& op) { trace(op); }
     void act(const SelectOp& op) { trace(op); }
@@ -45,10 +50,8 @@ private:
     void note_cut(std::optional<std::pair<uint32_t, uint32_t>> ends);
     bool is_hidden(const Pane& pane, const glm::dvec2& pixel, const TraceHit& hit) const;
 
-    Viewer& viewer_;
-    Prober& prober_;
-    SettingsEditor& settings_;
     PreferenceKeeper& keeper_;
+    const Others others_;
 };
 
 }  // namespace shvr::ui

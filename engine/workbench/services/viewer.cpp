@@ -7,7 +7,6 @@
 #include "engine/workbench/actions/action_rows.h"
 #include "engine/workbench/edits/edit.h"
 #include "engine/workbench/edits/trace_ops.h"
-#include "engine/workbench/services/services.h"
 
 namespace shvr::ui {
 
@@ -28,7 +27,7 @@ double height_of(const Camera& camera)
 
 }  // namespace
 
-Viewer::Viewer(Services& all) : Service(all.desk), settings_(all.settings) {}
+Viewer::Viewer(Desk& desk, Others others) : Service(desk), others_(std::move(others)) {}
 
 void Viewer::advance()
 {
@@ -39,7 +38,7 @@ void Viewer::look_from(const Camera& camera)
 {
     document_->camera = camera;
     camera_moved_ = true;
-    settings_.note_to_keep();
+    others_.note_to_keep();
 }
 
 /// The point that the view turns about.
@@ -60,7 +59,7 @@ void Viewer::act(const PivotAt& action)
     document_->picked_pivot = point;
     Session after = document_->session;
     after.interaction.pivot = Pivot::picked;
-    settings_.take_session(std::move(after));
+    others_.take_session(std::move(after));
     say("The pivot is at the small cross");
 }
 
@@ -92,7 +91,7 @@ void Viewer::show_slices(SliceSettings slices)
 {
     document_->session.view.slices = slices;
     look_again();
-    settings_.note_to_keep();
+    others_.note_to_keep();
 }
 
 /// Moves the slices along with a probe that has left their plane, whatever moved it.
@@ -192,7 +191,7 @@ void Viewer::act(const KeepCamera& action)
 {
     const std::string name = action.name.empty() ? free_camera_name(document_->session) : action.name;
     document_->session.cameras[name] = document_->camera;
-    settings_.note_edit();
+    others_.note_edit();
     say("This view is kept as " + name);
 }
 
@@ -201,7 +200,7 @@ void Viewer::act(const ForgetCamera& action)
     if (document_->session.cameras.erase(action.name) == 0)
         fail("no view is kept as '", action.name, "'; expected one of the session's cameras");
     if (document_->session.camera_name == action.name) document_->session.camera_name.clear();
-    settings_.note_edit();
+    others_.note_edit();
     say("The view " + action.name + " is no longer kept");
 }
 
@@ -216,7 +215,7 @@ void Viewer::act(const RenameCamera& action)
     renamed.key() = action.to;
     cameras.insert(std::move(renamed));
     if (document_->session.camera_name == action.name) document_->session.camera_name = action.to;
-    settings_.note_edit();
+    others_.note_edit();
     say("The view " + action.name + " is now called " + action.to);
 }
 
@@ -254,7 +253,7 @@ void Viewer::act(const MoveCut& action)
     const double low = action.upper ? cut.lower[action.axis] : 0.0;
     const double high = action.upper ? size[action.axis] : cut.upper[action.axis];
     plane = std::clamp(plane + action.share * size[action.axis], low, high);
-    settings_.take_session(std::move(after));
+    others_.take_session(std::move(after));
     say(sentence(action.upper ? "Far" : "Near", " cutting plane of ", "xyz"[action.axis], " at voxel ",
                  std::lround(plane)));
 }
@@ -280,7 +279,7 @@ void Viewer::act(const ResetCuts&)
 {
     Session after = document_->session;
     after.cut = {};
-    settings_.take_session(std::move(after));
+    others_.take_session(std::move(after));
     document_->camera.near_distance = document_->camera.far_distance = 0.0;
     look_again();
     say("All cutting planes are removed");

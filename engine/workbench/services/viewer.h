@@ -5,12 +5,15 @@
 
 namespace shvr::ui {
 
-struct Services;
-class SettingsEditor;
-
 class Viewer : public Service {
 public:
-    explicit Viewer(Services& all);
+    /// Functions of other services that it calls.
+    struct Others {
+        Call<void()> note_edit;
+        Call<void()> note_to_keep;
+        Call<void(Session)> take_session;
+    };
+    Viewer(Desk& desk, Others others);
     void act(const Orbit& action);
     void act(const Roll& action);
     void act(const Move& action);
@@ -59,7 +62,7 @@ private:
     void follow_look();
     glm::dvec3 pivot() const;
 
-    SettingsEditor& settings_;
+    const Others others_;
     glm::uvec2 pixels_{0};
     bool look_is_stale_ = true, camera_moved_ = false;
     std::optional<Pointer> pointer_;

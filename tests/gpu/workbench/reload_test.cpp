@@ -17,12 +17,12 @@ namespace {
 
 constexpr const char *PAGED = R"({"render":{"paging":"always"}})", *RESIDENT = R"({"render":{"paging":"never"}})";
 
-struct Desk {
+struct PagedDesk {
     TemporaryFolder folder;
     Renderer renderer{{.device = {}, .budget = {.device_bytes = uint64_t{64} << 20, .host_bytes = 0}}};
     Workbench bench{renderer, {.has_servo = false}};
 
-    Desk()
+    PagedDesk()
     {
         folder.write("scan.json", R"({"shvr_session": 1,
             "volume": {"procedural": "tubes", "size": [160, 160, 160], "seed": 4}, "render": {"paging": "always"}})");
@@ -52,7 +52,7 @@ private:
 
 TEST_CASE("settings that load the volume once more do so beside the work, and what is shown stays in use")
 {
-    Desk desk;
+    PagedDesk desk;
     CHECK(desk.is_paged());
     desk.bench.perform(Set{RESIDENT});
     CHECK(desk.is_paged());
@@ -78,7 +78,7 @@ TEST_CASE("settings that load the volume once more do so beside the work, and wh
 
 TEST_CASE("loading once more can be cancelled, and then the setting is as it was")
 {
-    Desk desk;
+    PagedDesk desk;
     desk.bench.perform(Set{RESIDENT});
     desk.bench.advance();
     const Jobs::State* const job = desk.job("loading scan.json once more");
@@ -91,7 +91,7 @@ TEST_CASE("loading once more can be cancelled, and then the setting is as it was
 
 TEST_CASE("where the device has no room for both, the document comes back with its work")
 {
-    Desk desk;
+    PagedDesk desk;
     desk.stroke(3);
     const int64_t painted = desk.bench.model().voxels_by_group[3];
     for (const char* const settings : {RESIDENT, PAGED}) {  // bricks take what room there is
@@ -113,7 +113,7 @@ TEST_CASE("where the device has no room for both, the document comes back with i
 
 TEST_CASE("a large screenshot is among the jobs, and is cancelled as one")
 {
-    Desk desk;
+    PagedDesk desk;
     desk.bench.perform(Set{R"({"interaction":{"screenshot_scale":8}})"});
     settle(desk.bench);
     desk.bench.perform(Screenshot{.is_large = true});

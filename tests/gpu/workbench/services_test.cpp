@@ -1,4 +1,4 @@
-// Each service by itself, without workbench or window: what it refuses, what it leaves as it was, and what it ends in.
+// Services together, without workbench or window: requests that one refuses because of another, and the order of steps.
 
 #include <chrono>
 #include <fstream>
