@@ -108,7 +108,8 @@ inline constexpr uint64_t MODE_FADE_NS = 100'000'000;         ///< from one pull
 inline constexpr uint64_t STRENGTH_FADE_NS = 200'000'000;     ///< from no strength to all of it
 inline constexpr uint64_t ENGAGE_NS = 1'000'000'000;          ///< for devices with motors
 inline constexpr uint64_t ENGAGE_SIMULATED_NS = 100'000'000;  ///< for the mouse
-inline constexpr double ENGAGE_BELOW_N = 0.2;                 ///< as in chai3d: a device never starts with a jerk
+inline constexpr double ENGAGE_BELOW_N = 0.2;                 ///< as in CHAI3D, so that a device never starts with a
+                                                              ///< jerk
 inline constexpr uint64_t SILENCE_NS = 20'000'000;            ///< a device silent for that long counts as absent
 inline constexpr double GLITCH_M = 0.005;                     ///< no hand moves that far in one tick
 inline constexpr int GLITCHES_TO_ACCEPT = 3;                  ///< number of states in a row at a new position after
@@ -122,7 +123,8 @@ inline constexpr double GENTLE_SPEED = 0.05;   ///< m/s
 /// The stiffness at the hand, after scaling and clamping.
 double stiffness_at_hand(const ForceSettings& settings, const DeviceCaps& caps, const SentForces& sent);
 
-/// One tick. `now_ns` is the servo's clock; `state` is the device's latest state and `result` what read() returned.
+/// Runs one tick. `now_ns` is the servo's clock, `state` the device's latest state, and `result` the return value of
+/// read().
 ForceStep step(const ForceSettings& settings, const DeviceCaps& caps, ReadResult result, const DeviceState& state,
                const RelevancePatch& patch, uint64_t now_ns, ForceMemory& memory, GrowthMemory& growth) noexcept;
 

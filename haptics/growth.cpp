@@ -239,7 +239,7 @@ const RelevancePatch& advance_object(const RelevancePatch& patch, const glm::dve
         }
     }
     RelevancePatch& held = memory.patches[memory.current];
-    // The same bits with a newer time stamp: the growth stays valid for as long.
+    // The same bits with a newer time stamp extend the validity of the growth.
     if (patch.sequence == held.sequence && patch.settings == held.settings)
         held.time_ns = std::max(held.time_ns, patch.time_ns);
     if (!memory.is_growing) return memory.object();

@@ -39,8 +39,7 @@ bool seed_nearest(const RelevancePatch& mask, const glm::dvec3& centre, double r
 uint32_t grow(const RelevancePatch& mask, RelevancePatch& grown, GrowthList& list, uint32_t steps) noexcept;
 
 inline constexpr uint32_t GROWTH_STEPS = 8192;         ///< words per tick: 0.2 ms at most
-inline constexpr uint64_t RECONTACT_NS = 100'000'000;  ///< after that long off the object, the next touch counts as a
-                                                       ///< new one
+inline constexpr uint64_t RECONTACT_NS = 100'000'000;  ///< time without contact after which the next touch is a new one
 
 struct GrowthMemory {
     std::array<RelevancePatch, 2> patches;  ///< two patches: the object, and the one that is being grown

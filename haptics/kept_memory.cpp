@@ -29,7 +29,7 @@ bool keep(const Pages& pages, int how) noexcept
     return ::mlock(pages.begin, pages.bytes) == 0;
 }
 
-/// The program and the libraries used by its arithmetic and clock; not the drivers, which are many times larger.
+/// Selects the program and the libraries of its arithmetic and clock, not the drivers, which are many times larger.
 bool is_used_by_ticks(const char* file)
 {
     return file[0] == '\0' || std::strstr(file, "/libc.so") || std::strstr(file, "/libm.so");

@@ -26,7 +26,7 @@ private:
     bool is_kept_;
 };
 
-/// Likewise for the program's own code and that of the C and mathematics libraries, once for the life of the process.
+/// Locks the code of the program and of the C and mathematics libraries into memory, once for the life of the process.
 /// False: see is_kept().
 bool keep_code() noexcept;
 

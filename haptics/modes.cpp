@@ -54,7 +54,7 @@ ModePull pull_to_object(const ForceSettings& settings, const RelevancePatch& pat
     const bool may_grow = is_finite(probe) && patch.settings == settings.relevance_settings;
     const RelevancePatch& object = may_grow ? advance_object(patch, probe, radius, growth) : growth.object();
     ModePull pull = pull_in(settings, object, probe);
-    // A ball that has left what is known has not left its object.
+    // A ball outside the known region may still touch its object.
     const RelevancePatch& felt = object.sequence == 0 ? patch : object;
     const bool is_on = pull.in_contact || felt.known_part(probe, radius).share < MIN_KNOWN_SHARE;
     if (may_grow) keep_contact(patch, probe, radius, is_on, now_ns, growth);

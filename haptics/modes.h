@@ -22,7 +22,8 @@ inline constexpr double SURFACE_HYSTERESIS = 0.75;
 
 struct ModePull {
     glm::dvec3 offset{0.0};  ///< proxy - probe, physical units
-    glm::dvec3 middle{0.0};  ///< middle of what is touched - probe, with ForceSettings::finds_middle
+    glm::dvec3 middle{0.0};  ///< vector from the probe to the middle of the touched structure, with
+                             ///< ForceSettings::finds_middle
     bool in_contact = false;
     double relevant_share = 0.0;
     double known_share = 0.0;  ///< share of the ball whose relevance is known

@@ -84,7 +84,7 @@ bool is_empty(const uint32_t* words, int32_t count)
     return std::all_of(words, words + count, [](uint32_t word) { return word == 0; });
 }
 
-/// Maps three fractions of 1 to a point in the ball of radius 1, uniformly distributed if they are.
+/// Maps three numbers of 0 ... 1 to a point in the ball of radius 1. Uniform numbers give uniform points.
 glm::dvec3 point_of(double of_volume, double of_height, double of_turn)
 {
     const double r = std::cbrt(of_volume), z = 2.0 * of_height - 1.0;

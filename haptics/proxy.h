@@ -33,7 +33,7 @@ struct BallIntegrals {
     glm::dvec3 first{0.0};  ///< integral of a - p
     double second = 0.0;    ///< integral of |a - p|^2
 };
-/// `reach`: leaves out what is farther from the centre along an axis.
+/// Voxels farther than `reach` from the centre along any axis are left out.
 BallIntegrals integrate(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
                         const glm::dvec3& reach) noexcept;
 inline BallIntegrals integrate(const RelevancePatch& patch, const glm::dvec3& centre, double radius) noexcept
@@ -47,14 +47,15 @@ struct Proxy {
     bool in_contact = false;      ///< the ball contains relevant voxels
     glm::dvec3 offset{0.0};       ///< proxy - probe, physical units; 0 without contact
     glm::dvec3 mean{0.0};         ///< mean of the relevant points - probe, whatever the law
-    double relevant_share = 0.0;  ///< share of the volume of what is known of the ball
+    double relevant_share = 0.0;  ///< relevant share of the known part of the ball, by volume
 };
 inline constexpr double POTENTIAL_FLOOR = 0.05;  ///< eps above
 Proxy find_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius, ProxyLaw law) noexcept;
 
-/// Returns the middle of what a ball with this proxy touches, minus its centre: where tools act. It is the exact mean
-/// of a ball around the exact mean, since the first ball's rim cuts more off the far side of a thick tube. In balls of
-/// 1.5 times a tube's radius it is within 0.11 voxels of the axis (RMS, guided hand); the first mean is within 0.65.
+/// Returns the middle of the structure that a ball with this proxy touches, where tools act, minus the ball's centre.
+/// It is the exact mean of a ball around the exact mean, since the first ball's rim cuts more off the far side of a
+/// thick tube. In balls of 1.5 times a tube's radius it is within 0.11 voxels of the axis (RMS, guided hand); the first
+/// mean is within 0.65.
 glm::dvec3 find_middle(const RelevancePatch& patch, const glm::dvec3& centre, double radius, ProxyLaw law,
                        const Proxy& proxy) noexcept;
 
@@ -63,7 +64,8 @@ glm::dvec3 find_middle(const RelevancePatch& patch, const glm::dvec3& centre, do
 
 /// Random points in a ball of radius 1, uniformly distributed (algorithm 2 of the thesis); the same on every machine.
 std::vector<glm::dvec3> random_points(int count);
-/// Likewise with low discrepancy: additive recurrence with the plastic number (Roberts 2018) over equal volumes.
+/// Points in the ball with low discrepancy: additive recurrence with the plastic number (Roberts 2018) over equal
+/// volumes.
 std::vector<glm::dvec3> even_points(int count);
 /// Returns the proxy at the mean of the relevant ones among these points.
 Proxy find_sampled_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius,

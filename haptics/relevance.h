@@ -11,10 +11,10 @@
 
 namespace shvr {
 
-/// The part of a ball whose relevance is known, cut by planes at the same distance on both sides of its centre: so what
-/// is left out on one side pulls to neither.
+/// The part of a ball whose relevance is known, cut by planes at the same distance on both sides of its centre: so that
+/// a part missing on one side causes no pull to the other.
 struct KnownPart {
-    glm::dvec3 reach{0.0};  ///< from the centre along each axis, at most the radius
+    glm::dvec3 reach{0.0};  ///< distance of the planes from the centre along each axis, at most the radius
     double share =
         0.0;  ///< fraction of the ball's volume; 0 where the centre itself is unknown. Exact for one cut; several
               ///< are multiplied

@@ -6,8 +6,8 @@
 namespace shvr {
 namespace {
 
-/// A device's stiffness limit applies at two ticks: 2 ms, half a tick for which a force is held, and what smoothing the
-/// velocity at 100 Hz adds (fitted to K = 300 B at two ticks).
+/// A device's stiffness limit applies at two ticks: 2 ms, half a tick for which a force is held, and the delay of
+/// smoothing the velocity at 100 Hz (fitted to K = 300 B at two ticks).
 constexpr double USUAL_LATENCY_S = 0.002, HELD_S = 0.0005, VELOCITY_LAG_S = 0.00083;
 constexpr double LATENCY_SMOOTHING_S = 0.1;
 constexpr double SLOWEST_TAKEN = 0.002;  ///< speed in m/s below which damping would divide by nearly nothing

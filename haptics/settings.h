@@ -35,7 +35,7 @@ struct ForceSettings {
     double strength = 1.0;                ///< factor of the force, 0 ... 1
     bool clicks = false;                  ///< a short pulse when contact begins; only for devices with motors
     bool let_go = false;                  ///< no force from the next tick on; when unset, the force fades in again
-    bool finds_middle = false;            ///< tools act at the middle of what is touched; no effect on the force
+    bool finds_middle = false;            ///< tools act at the middle of the touched structure; no effect on the force
     uint32_t relevance_settings = 0;      ///< counts changes of threshold and groups: relevance made before fades out
     bool operator==(const ForceSettings&) const = default;
 };

@@ -19,7 +19,7 @@ struct AdaptiveParams {
     uvec2 pixel_begin;  ///< the part of the picture that is drawn
     uvec2 pixel_end;
     uvec2 target;     ///< texel of pixel_begin
-    float tolerance;  ///< of colours, in square roots of linear light, 0 ... 1
+    float tolerance;  ///< tolerated difference of colours, in square roots of linear light, 0 ... 1
     uint groups_in_dispatch;
 };
 

@@ -12,8 +12,8 @@ SHARED_CONST uint COUNTER_LEAPS = 3u;           // jumps over empty cells
 SHARED_CONST uint COUNTER_BRICKS_VISITED = 4u;  // bricks in which a ray took a sample, summed over rays and blocks
 SHARED_CONST uint COUNTER_BRICKS_SKIPPED = 5u;  // bricks that a ray crossed without taking a sample, likewise
 SHARED_CONST uint COUNTER_TERMINATED = 6u;      // rays that ended early
-/// Always counted: rays that stopped before their end, once per dispatch in which they stopped. The picture lacks what
-/// is behind.
+/// Always counted: rays that stopped before their end, once per dispatch in which they stopped. The picture lacks
+/// everything behind that point.
 SHARED_CONST uint COUNTER_CUT_SHORT = 7u;
 SHARED_CONST uint COUNTER_DENSITY_READS = 8u;  // texels of the atlas, or taps of its filter, read by samples
 SHARED_CONST uint COUNTER_TURNS = 9u;          // iterations of the loops along a ray, except loops of fixed length

@@ -17,7 +17,8 @@ struct PreviewParams {
     uint words_per_row;  ///< bit b of word w is x = 32 w + b
     vec3 lower;          ///< position of the box's first corner in the volume, voxels
     vec3 color;          ///< linear light
-    uint is_striped;     ///< for voxels that would be erased: distinct from any colour, even without colour vision
+    uint is_striped;     ///< marks voxels that would be erased: stripes differ from any colour, even without colour
+                         ///< vision
 };
 
 struct PreviewOverParams {

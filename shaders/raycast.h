@@ -33,11 +33,11 @@ SHARED_CONST uint SHELL_BOX = 2u;
 SHARED_CONST uint PICK_ROWS = 3u;
 SHARED_CONST float MIN_SEEN = 0.015625f;
 
-/// The specialization constant KEPT: what a ray stores in the image `rays` between two dispatches, besides the colour
-/// accumulated in its pixel. x: length of the ray up to the next iso-surface; y: length from which the search continues
-/// (negative before the region). KEPT_ALL is for rays that wait for bricks, each at its own position; z, w: the next
-/// step, in two halves of 16 bits, with RAY_* times 65536 added to w; the image then has a second half below this one,
-/// for the accumulated colour, and every dispatch writes the pixels themselves fully composited.
+/// The specialization constant KEPT: the values that a ray stores in the image `rays` between two dispatches, besides
+/// the colour accumulated in its pixel. x: length of the ray up to the next iso-surface; y: length from which the
+/// search continues (negative before the region). KEPT_ALL is for rays that wait for bricks, each at its own position;
+/// z, w: the next step, in two halves of 16 bits, with RAY_* times 65536 added to w; the image then has a second half
+/// below this one, for the accumulated colour, and every dispatch writes the pixels themselves fully composited.
 SHARED_CONST uint KEPT_NOTHING = 0u;
 SHARED_CONST uint KEPT_SHELL = 1u;
 SHARED_CONST uint KEPT_ALL = 2u;

@@ -11,7 +11,8 @@ struct SaturationParams {
     float saturation;  ///< 1: colours as they are; 0: the grey of the same luminance
 };
 
-SHARED_CONST float LUMINANCE_OF_RED = 0.2126f;   ///< of linear sRGB (IEC 61966-2-1, Rec. ITU-R BT.709)
+SHARED_CONST float LUMINANCE_OF_RED = 0.2126f;   ///< weights of luminance in linear sRGB (IEC 61966-2-1, Rec. ITU-R
+                                                 ///< BT.709)
 SHARED_CONST float LUMINANCE_OF_BLUE = 0.0722f;  ///< green has the rest
 
 SHARED_END

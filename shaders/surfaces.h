@@ -14,7 +14,7 @@ struct Surface {
     vec3 along;       ///< from the first ball to the second
     float radius_to;  ///< neither ball contains the other
     vec3 from_rest;
-    uint number;  ///< tie-breaker: of two surfaces at the same length, the lower number is visible
+    uint number;  ///< tie-breaker: if two surfaces are at the same length, the lower number is visible
     vec3 color;   ///< linear light
     uint unused;
 };
@@ -48,7 +48,7 @@ struct SurfaceParams {
     vec3 middle_corner;
     vec3 middle_dx;
     vec3 middle_dy;
-    vec3 along_corner;  ///< from the near plane to the far one
+    vec3 along_corner;  ///< vector from the near plane to the far plane
     vec3 along_dx;
     vec3 along_dy;
     float begin;   ///< start of the clip range, between the near plane (0) and the far one (1)
@@ -76,7 +76,8 @@ SHARED_FUNCTION uvec2 surface_tiles_of(uvec2 pixels)
     return (pixels + SURFACE_TILE - 1u) / SURFACE_TILE;
 }
 
-/// The bit of a pixel's block: 0 1 in the tile's first two rows, 2 3 below, and so on.
+/// The bit of the block of 4 x 2 pixels that holds a pixel: bits 0 and 1 are the blocks of the tile's first two rows,
+/// bits 2 and 3 those of the next two, and so on.
 SHARED_FUNCTION uint surface_block(uvec2 in_part)
 {
     return SURFACE_BLOCK + in_part.x / 4u % 2u + 2u * (in_part.y / 2u % 4u);

@@ -212,7 +212,7 @@ bool App::something_moves() const
 double App::next_reason_to_draw_s() const
 {
     if (undrawable_since_s_) return 0.0;
-    // Until a picture exists, the first one has the device to itself.
+    // Until the first picture exists, it has the device to itself.
     const bool waits_for_picture =
         bench_->is_open() && !bench_->document().screen.shows_anything() && viewport_.pixels().x > 0;
     if (waits_for_picture && !report_.has_unanswered()) return report_.last_begun_s() + SHARPEN_S;
@@ -338,7 +338,7 @@ void App::apply_all()
 {
     for (const Action& action : std::exchange(actions_, {})) {
         was_asked_to_close_ &= std::holds_alternative<Quit>(action);
-        // With nothing open such actions are ignored: an error for each key would cover the hint of what to do.
+        // With nothing open such actions are ignored: an error for each key would cover the hint.
         if (!bench_->is_open() && !bench_->why_not(action).empty()) continue;
         static_cast<void>(bench_->apply(action));
     }

@@ -44,8 +44,8 @@ bool App::draw_ui()
 {
     const double begun = window_.now_s();
     const bool moves = something_moves(), is_open = bench_->is_open();
-    // A software device presents after all earlier submissions, so this wait only moves forward one that would happen
-    // below; and the view's measured cost then excludes the interface.
+    // A software device presents after all earlier submissions, so waiting here replaces a wait below, and the measured
+    // cost of the view excludes the interface.
     if (is_open && renderer_->device().traits().is_cpu) bench_->screen().wait();
     const double waited_s = window_.now_s() - begun;
     follow_appearance();  // new fonts wait for the device, which must not have an image of the screen then

@@ -22,7 +22,8 @@ struct AppReport {
     /// does.
     std::vector<double> own_idle_ms, own_busy_ms;
     std::vector<double> interval_ms;  ///< time between two frames while something was moving
-    std::vector<double> input_ms;     ///< from a key or button until the frame that shows its effect is finished
+    std::vector<double> input_ms;     ///< latencies from a key or button until the frame that shows its effect is
+                                      ///< finished
     /// Time from opening the last volume until the device has finished the first frame that shows any of it, and the
     /// first that shows all of it sharp.
     std::optional<double> first_picture_ms, sharp_picture_ms;

@@ -23,7 +23,7 @@ struct Range {
 template <class Test>
 Range range_where(double centre, double reach, const Range& within, const Test& holds)
 {
-    constexpr double FAR_AWAY = 1 << 22;  // beyond it (or if NaN) the estimate is useless
+    constexpr double FAR_AWAY = 1 << 22;  // voxels from the volume beyond which the estimate is useless, as for NaN
     Range range = within;
     if (reach < FAR_AWAY && std::abs(centre) < FAR_AWAY) {
         range.begin = std::clamp(int64_t(std::floor(centre - reach)) - 1, within.begin, within.end);

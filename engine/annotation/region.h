@@ -2,7 +2,7 @@
 // The local region of a brush (a ball or its bounding box around the probe) and sets of selected voxels.
 //
 // A region is a list of row spans: for each (y, z) of its box the half-open range of x that belongs to it. The spans
-// are computed here, in double, once; brush kernels only intersect them with what they find in the volume, so the CPU
+// are computed here, in double, once; brush kernels only intersect them with the voxels that they select, so the CPU
 // and the device can never disagree about a voxel on the region's surface.
 
 #include <cstdint>

@@ -25,7 +25,7 @@ struct ImageF {
 
 /// The exact piecewise curve of IEC 61966-2-1 from linear light to sRGB, both in 0..1; not clamped.
 double srgb_encode(double linear);
-/// The inverse. The standard's rounded constants leave a gap of 3e-9 where the pieces meet.
+/// The inverse of srgb_encode. The standard's rounded constants leave a gap of 3e-9 where the pieces meet.
 double srgb_decode(double encoded);
 
 /// Un-premultiplies, clamps to 0..1, encodes and rounds to nearest. Alpha is not encoded. A pixel whose alpha rounds to

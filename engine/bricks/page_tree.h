@@ -43,7 +43,7 @@ struct PageTree {
     /// `leaf_of_entry` names a leaf, the caller fills in the brick to draw for it.
     std::vector<uint32_t> entries;
     std::vector<uint32_t> leaf_of_entry;
-    /// The inverse: leaf i is in `entries_of_leaves`[`begin_of_leaf`[i] ... `begin_of_leaf`[i + 1] - 1].
+    /// The inverse mapping: leaf i is in `entries_of_leaves`[`begin_of_leaf`[i] ... `begin_of_leaf`[i + 1] - 1].
     std::vector<uint32_t> entries_of_leaves, begin_of_leaf;
 };
 

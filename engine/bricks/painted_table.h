@@ -12,7 +12,7 @@
 namespace shvr {
 
 struct PaintedBrick {
-    glm::uvec3 brick;   ///< in bricks of the mask, below 65536 along x and y
+    glm::uvec3 brick;   ///< position in bricks of the mask, below 65536 along x and y
     uint32_t slot = 0;  ///< never gpu::NO_SLOT, which marks free entries
 };
 

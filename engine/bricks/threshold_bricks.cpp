@@ -68,7 +68,7 @@ std::vector<uint32_t> ThresholdBricks::bits_in(const VoxelBox& box, double thres
     if (reading_.valid()) {
         try {
             take_reading();
-        } catch (const Error&) {  // what is needed now is read again, and fails then
+        } catch (const Error&) {  // a brick that is needed now is read again, and that read reports the failure
         }
     }
     if (kept_.size() + missing(box, threshold).size() > MAX_BRICKS) kept_.clear();

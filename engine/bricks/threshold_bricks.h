@@ -1,8 +1,9 @@
 #pragma once
-// Which voxels are at or above a threshold, by the numbers of the file: bits of bricks, read as they are needed and
-// kept. Brushes and touch decide by them where several values share a 16-bit code (has_exact_codes, volume.h).
+// One bit per voxel: whether its value in the file is at or above a threshold. Bricks of bits are read when they are
+// needed, and kept. Brushes and touch decide by them where several values share a 16-bit code (has_exact_codes,
+// volume.h).
 //
-// One thread owns an object; what get_ready() starts reads on a thread of its own.
+// One thread owns an object; get_ready() reads on a separate thread.
 
 #include <array>
 #include <future>
@@ -26,8 +27,8 @@ public:
     /// Whether bits_in() would read nothing. If not, starts reading in the background: ask again. Fails if voxels
     /// cannot be read.
     bool get_ready(const VoxelBox& box, double threshold);
-    /// The bits of a box inside the volume, in rows of whole words along x: bit b of word w of row (y, z) is voxel
-    /// x = box.lower.x + 32 w + b. NaN is below every threshold. Reads what is missing; fails if it cannot be read.
+    /// The bits of a box inside the volume, in rows of whole words along x: bit b of word w of row (y, z) is voxel x =
+    /// box.lower.x + 32 w + b. NaN is below every threshold. Reads missing bricks; fails if one cannot be read.
     std::vector<uint32_t> bits_in(const VoxelBox& box, double threshold);
     /// Forgets the voxels in these boxes, since they have changed.
     void renew(std::span<const VoxelBox> changed);

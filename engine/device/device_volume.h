@@ -86,11 +86,12 @@ public:
     /// A graph with one short step of prepare()'s work that can be done in advance; null when none is left. The graph
     /// must be submitted before the next call.
     virtual std::optional<FrameGraph> next_preparation(const Visibility& visibility, const DeviceMask& mask) = 0;
-    /// Likewise, for one step of work that makes later pictures faster without changing them.
+    /// Returns a graph with one step of work that makes later pictures faster without changing them; null if there is
+    /// none.
     virtual std::optional<FrameGraph> next_refinement(const Visibility& visibility, const DeviceMask& mask) = 0;
     virtual bool refinement_is_due() const = 0;
-    /// Adds the passes that update what rays read, and returns the handles to draw with. `painted`: the mask's handles
-    /// in that graph. `feedback`: rays record the bricks that they visit.
+    /// Adds the passes that update the data read by rays, and returns the handles to draw with. `painted`: the mask's
+    /// handles in that graph. `feedback`: rays record the bricks that they visit.
     virtual VolumeBinding prepare(FrameGraph& graph, const DeviceMask& mask, const std::optional<MaskBinding>& painted,
                                   bool feedback) = 0;
     /// Whether prepare() would upload changes made since the last picture.
@@ -182,7 +183,8 @@ public:
         uint64_t leaves = 0;   ///< leaves of the tree
         uint64_t reached = 0;  ///< leaves that rays visited
         // Work done by the drawing thread itself:
-        uint64_t leaves_looked_up = 0;                 ///< to find what the directory shows in their place
+        uint64_t leaves_looked_up = 0;                 ///< leaves looked up to find the bricks that the directory shows
+                                                       ///< in their place
         uint64_t directory_bytes = 0;                  ///< directory bytes written
         uint64_t waits_for_lists = 0;                  ///< calls of look() that had to wait until the view's bricks
                                                        ///< were listed

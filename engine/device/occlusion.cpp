@@ -195,7 +195,7 @@ void Occlusion::changed(const VoxelBox& changed, int64_t apron)
         entry.needs_cells = entry.needs_cells || meet(brick, voxels);
         const auto reach = int64_t(std::ceil(look_->radius + std::ldexp(MARGIN_VOXELS, key.level)));
         entry.needs_values = entry.needs_values || meet(brick, {voxels.lower - reach, voxels.upper + reach});
-        // Coarse bricks are visible wherever there is paint, others if their neighbours have some.
+        // The change may affect whether a brick is seen: any coarse brick, and bricks of level 0 next to it.
         const int64_t beside = int64_t{gpu::BRICK_SIZE} << key.level;
         if (key.level > 0 || meet(brick, {voxels.lower - beside, voxels.upper + beside})) entry.is_seen.reset();
     }

@@ -1,6 +1,6 @@
 #pragma once
 // Lists the bricks that a view needs, on its own thread: for 10^5 bricks that takes 10 ms, for which the drawing thread
-// must not wait while a camera moves. The lister has a copy of what is known of the bricks, and is notified of every
+// must not wait while a camera moves. The lister has its own copy of the table of bricks, and is notified of every
 // change. A list reflects the changes noted before it was requested; its taker applies the later ones (changes_since).
 // A few lists are kept, for panes that alternate.
 //

@@ -349,8 +349,8 @@ std::optional<RegionBricks> PagedVolume::region(const VoxelBox& voxels, bool wai
     return region;
 }
 
-/// Records that a brick of any level has gained or lost paint of a brick below it. Updates what the view shows for it
-/// and for the neighbours that its paint reaches. Returns true if the view now needs other bricks; `asks`: whether to
+/// Records that a brick of any level has gained or lost paint of a brick below it. Updates the view's entries of it and
+/// of the neighbours that its paint reaches. Returns true if the view now needs other bricks; `asks`: whether to
 /// determine that.
 bool PagedVolume::note_painted_in(const BrickKey& key, bool is, bool asks)
 {

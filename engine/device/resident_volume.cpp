@@ -323,7 +323,8 @@ void ResidentVolume::note_painted(const Mask& mask, std::span<const int64_t> bri
 {
     for (const int64_t brick : bricks) {
         const glm::uvec3 first = gpu::BRICK_CELLS * glm::uvec3(position_of(brick, mask.brick_counts()));
-        const glm::uvec3 reach(visibility_.params.paint_reach);  // at most a voxel away, and so at most a cell
+        const glm::uvec3 reach(visibility_.params.paint_reach);  // paint reaches at most one voxel, hence at most one
+                                                                 // cell
         empty_space_.changed(
             {first - glm::min(first, reach), glm::min(first + gpu::BRICK_CELLS + reach, cell_counts_)});
     }

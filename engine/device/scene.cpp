@@ -15,7 +15,7 @@ namespace shvr {
 namespace {
 
 // Shares of the device memory that is free when a volume is loaded.
-/// A resident volume may take all of it except what pictures drawn in parts and tables need.
+/// A resident volume may take all of it except these shares for tables and for pictures drawn in parts.
 constexpr uint64_t PICTURE_SIXTEENTHS = 1;
 /// Minimum reserved for pictures and tables: tables of one or two megabytes, the directory of bricks, parts of 64
 /// pixels a side.
@@ -91,7 +91,7 @@ int64_t finest_bricks(const VolumeInfo& info)
     return counts.x * counts.y * counts.z;
 }
 
-/// The budget in MiB that leaves `bytes` in addition to what pictures need.
+/// The budget in MiB that leaves `bytes` free besides the share for pictures.
 uint64_t budget_for(uint64_t bytes)
 {
     return (std::max(bytes + MIN_PICTURE_BYTES, bytes / (16 - PICTURE_SIXTEENTHS) * 16) >> 20) + 1;
@@ -151,7 +151,7 @@ Scene::Scene(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const
     options_.in_slices = false;  // reloading for lack of memory is done at once
 }
 
-/// `reserved_bytes`: device memory for what is shown in addition to the volume.
+/// `reserved_bytes`: device memory for paint, offsets and surfaces.
 void Scene::load(uint64_t reserved_bytes)
 {
     memory_.free_idle();
@@ -207,7 +207,7 @@ bool Scene::load_resident(const IntensityWindow& window)
     }
 }
 
-/// Keeps `bytes` of device memory free, in addition to what pictures need, by loading the volume with fewer bricks.
+/// Keeps `bytes` of device memory free, besides the share for pictures, by loading the volume with fewer bricks.
 void Scene::make_room(uint64_t bytes)
 {
     memory_.free_idle();

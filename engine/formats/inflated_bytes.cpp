@@ -257,7 +257,7 @@ std::string inflated_head(const std::filesystem::path& path, size_t max_bytes)
     Decoder decoder(file, 0);
     size_t done = 0;
     try {
-        // Byte by byte, to find exactly what precedes a damaged byte.
+        // Decodes byte by byte, to find all bytes before a damaged one.
         while (done < max_bytes && decoder.decode(bytes.subspan(done, 1)) == 1) ++done;
     } catch (const Error&) {
         // The file's reader will report the problem.

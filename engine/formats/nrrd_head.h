@@ -1,6 +1,7 @@
 #pragma once
 // The header of an NRRD file as its lines (http://teem.sourceforge.net/nrrd/format.html), and the segments that 3D
-// Slicer describes in it, so that a program that replaces the file can keep what it does not understand. Any thread.
+// Slicer describes in it, so that a program that replaces the file can keep the fields that it does not understand. Any
+// thread.
 
 #include <cstdint>
 #include <filesystem>

@@ -25,8 +25,8 @@ struct InputFile {
     FileDescriptor descriptor;
     int64_t bytes = 0;
 
-    /// Reads what exists of the bytes from `offset` on; returns the number of bytes read, which is smaller at the end
-    /// of the file.
+    /// Reads the existing bytes from `offset` on; returns the number of bytes read, which is smaller at the end of the
+    /// file.
     size_t read_some(int64_t offset, std::span<std::byte> buffer) const;
 };
 /// Fails for folders, pipes and devices, and never blocks on one.

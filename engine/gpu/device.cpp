@@ -63,7 +63,7 @@ bool device_extension_is_present(VkPhysicalDevice physical, const char* name)
     });
 }
 
-/// A queue family that supports compute, and what else it can do.
+/// A queue family that supports compute, and its other capabilities.
 struct Family {
     uint32_t index = 0;
     bool presents = false;

@@ -43,7 +43,8 @@ struct DeviceOptions {
     /// Out-of-bounds reads return 0 or data of the same buffer, and out-of-bounds writes are discarded. It hides such
     /// accesses from the validation layer.
     bool robust_buffers = true;
-    std::vector<std::string> instance_extensions;  ///< those for a window's surface; if any, the device can present
+    std::vector<std::string> instance_extensions;  ///< instance extensions for a window's surface; if any are given,
+                                                   ///< the device can present
     /// Whether a queue family can present to the window; null: presentation is not required.
     std::function<bool(VkInstance, VkPhysicalDevice, uint32_t family)> can_present{};
 };

@@ -24,7 +24,8 @@ struct DeviceHas {
     VkFormatFeatureFlags r8_uint = 0, r32_uint = 0;  ///< features of images with optimal tiling
 };
 
-/// Why such a device cannot run the kernels, as a message that states what it has and what is expected; null: it can.
+/// Returns why such a device cannot run the kernels: a message with the value found and the value expected; null: it
+/// can.
 std::optional<std::string> why_too_limited(const DeviceHas& has);
 
 /// The message if there is no driver at all.

@@ -47,8 +47,8 @@ Storage& Executor::take_transient(const std::string& name, const ResourceDesc& w
 {
     ResourceDesc desc = wanted;
     if (placement != Placement::device) desc.bytes = rounded(desc.bytes);
-    // Of several suitable buffers, takes the least recently used: buffers that only peaks need then alternate with the
-    // others, and are not freed and created again.
+    // Takes the least recently used suitable buffer, so that buffers which only peaks need stay in rotation, and are
+    // not freed and created again.
     Transient* found = nullptr;
     for (const auto& transient : transients_) {
         if (transient->taken || transient->placement != placement || !(transient->desc == desc)) continue;

@@ -40,7 +40,8 @@ struct PassReport {
     uint32_t tiles = 0;              ///< number of dispatches that its declaration asks for; slow devices split it into
                                      ///< more
     uint32_t submissions = 0;        ///< submissions that hold parts of it
-    uint64_t bytes = 0;              ///< total size of the resources it binds: an upper bound of what it accesses
+    uint64_t bytes = 0;              ///< total size of the bound resources: an upper bound of the bytes that it
+                                     ///< accesses
     std::string barrier;             ///< "compute -> transfer", empty if none
     std::vector<uint64_t> counters;  ///< empty where the kernel has none
     uint32_t counted_rows = 0;       ///< number of rows of counters in which anything was counted

@@ -1,4 +1,4 @@
-// Acquires what a graph needs before its commands are recorded (frame_in_flight.h): memory, kernels, descriptors.
+// Acquires memory, kernels and descriptors for a graph before its commands are recorded (frame_in_flight.h).
 
 #include <algorithm>
 #include <cstring>

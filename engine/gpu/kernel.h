@@ -119,7 +119,7 @@ private:
     std::thread worker_;
 };
 
-/// Checks the bindings of a compute pass against what its kernel declares; fails with both lists.
+/// Checks the bindings of a compute pass against its kernel's declarations; fails with both lists.
 void check_bindings(const PassData& pass, const KernelInterface& interface,
                     const std::vector<FrameGraph::ResourceData>& resources);
 

@@ -89,7 +89,7 @@ public:
                                        Placement placement = Placement::device) const;
     bool can_create(const ResourceDesc& desc) const { return !why_not("", desc); }
     /// Throws BudgetError if the budget cannot hold it, MemoryError if the driver cannot, and Error if the device never
-    /// can (`why_not`). `purpose`: what it is for, in the user's words.
+    /// can (`why_not`). `purpose`: the use of the memory, in the user's words.
     Storage create(const std::string& name, const ResourceDesc& desc, Placement placement = Placement::device,
                    const char* purpose = "a step of the work");
     /// Sets a function that frees allocated but idle memory; it is called before an allocation is refused.

@@ -1,7 +1,6 @@
 #pragma once
-// Learns from measured times what passes cost on this device, so that a short graph is one queue submission, and a
-// graph that is so long that a driver might take it for a hang is split into several. Knows nothing of Vulkan. One
-// thread.
+// Learns the cost of passes on this device from measured times, so that a short graph is one queue submission, and a
+// graph long enough to look like a hang to a driver is split into several. Knows nothing of Vulkan. One thread.
 
 #include <cstdint>
 #include <string>

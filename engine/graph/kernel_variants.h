@@ -24,7 +24,7 @@ struct VariantChoice {
 
 struct KernelVariants {
     std::string_view kernel;                   ///< "raycast" for shaders/rays/raycast.comp
-    std::span<const std::string_view> macros;  ///< in the kernel's order; empty where it has no variants
+    std::span<const std::string_view> macros;  ///< macros in the kernel's order; empty if it has no variants
 };
 /// The tables of all kernels that have variants.
 std::span<const KernelVariants> kernel_variants();

@@ -28,8 +28,8 @@ PaintOp in_session(PaintOp op, const Session& session);
 
 /// The files in which a session stores its work.
 WorkFiles work_files(const Session& session, const VolumeInfo& volume);
-/// Likewise with the lasting settings of an `OpenedSession`, except those set for this run only by the "key=value"
-/// settings in `overridden`.
+/// Likewise, with the lasting settings of an `OpenedSession`, except those that `overridden` ("key=value") sets for
+/// this run only.
 WorkFiles work_files(const Session& session, const VolumeInfo& volume, const std::vector<std::string>& overridden);
 /// Adds the kept settings, for callers that apply Work::kept_settings() and report changes to Work::keep_settings.
 WorkFiles with_kept_settings(WorkFiles files, const Session& session, const std::vector<std::string>& overridden);

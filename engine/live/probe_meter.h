@@ -30,8 +30,8 @@ public:
         query_.drop();
         asked_.reset();
     }
-    /// 0 ... 1, among the voxels inside the volume; null if there are none, or nothing is known yet. Lags behind a
-    /// moving ball.
+    /// Relevant share, 0 ... 1, of the voxels inside the volume; null if there are none, or if the first answer is
+    /// pending. Lags behind a moving ball.
     std::optional<double> share() const { return wanted_ ? share_ : std::nullopt; }
     bool is_current() const;
     /// Whether a query is in flight. False while its bricks are missing: it is submitted again as they arrive.

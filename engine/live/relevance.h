@@ -21,11 +21,11 @@ struct RelevanceBits {
     int level = 0;                ///< level of the voxels
 };
 
-/// A cube of voxels at a level suited to a ball: 64 voxels a side, 96 or 128 where the ball would leave that before the
-/// next cube arrives, and 128 if its radius exceeds 24 voxels. Radii above 48 voxels use coarser levels, as do those
-/// above 24 in fast motion.
+/// A cube of voxels around a ball, at a level that suits the ball. Its side is 64 voxels; 96 or 128 if the ball would
+/// leave a smaller cube before the next one arrives; 128 if the radius exceeds 24 voxels. Radii above 48 voxels use
+/// coarser levels, and so do radii above 24 voxels in fast motion.
 struct RelevancePlace {
-    /// Of a ball, voxels of its level, where there is a coarser one.
+    /// Maximum radius of a ball, in voxels of its level; larger balls use a coarser level, if one exists.
     static constexpr double MAX_BALL_RADIUS = 48.0;
     /// Motion asks for a coarser level only if the ball has that many voxels there.
     static constexpr double MIN_COARSE_RADIUS = 12.0;

@@ -17,7 +17,7 @@ class Screen {
 public:
     Screen(Renderer& renderer, const View::Options& options) : renderer_(renderer), options_(options) {}
 
-    /// Sets what to show and redraws everything. Call it only if something changed.
+    /// Sets the displayed content and redraws everything. Call it only if something changed.
     void look(const Session& session, const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& probe_voxel);
     /// Moves the camera or the probe in the same session; unchanged panes are not redrawn.
     void look_from(const Camera& camera, const glm::dvec3& probe_voxel);
@@ -36,7 +36,7 @@ public:
     void wait();
     /// Frees all panes and their device memory; look() makes new ones.
     void clear();
-    /// The same after the device was lost: does not wait.
+    /// Like clear(), after the device was lost: does not wait.
     void drop();
     bool complete() const;
 

@@ -269,7 +269,8 @@ Resource View::draw(FrameGraph& graph, const PicturePart& part, Import light, Ru
 {
     const Sight& sight = *running.sight;
     PicturePart shown = part;
-    shown.always_shown = voxels_of_shell(probe_, scene().info());  // for all parts of it, even those without the probe
+    shown.always_shown = voxels_of_shell(probe_, scene().info());  // shown in all parts of the view, even those without
+                                                                   // the probe
     Drawn drawn = shvr::draw(graph, scene(), sight.look, sight.shot, shown, graph.import("light", light));
     running.pace = &rays_;
     running.units = double(running.pixels);

@@ -36,14 +36,14 @@ public:
         double step_ms = 2.0;        ///< device time of one graph
         double in_flight_ms = 3.5;   ///< device time of the graphs in flight
         double motion_ms = 40.0;     ///< for a sketch of the whole picture
-        double probe_ms = 20.0;      ///< for a sketch of the pixels that the probe may cover
+        double probe_ms = 20.0;      ///< time limit for a sketch of the pixels that the probe may cover
         double moment_ms = 300.0;    ///< sharp tiles that take less are shown all at once
         bool swap_red_blue = false;  ///< in the shown images
     };
     View(Renderer& renderer, const Options& options) : renderer_(renderer), options_(options) {}
     explicit View(Renderer& renderer) : View(renderer, Options{}) {}
 
-    /// Sets what to show and redraws all of it. Call it only if something changed.
+    /// Sets the displayed content and redraws everything. Call it only if something changed.
     void look(const Look& look, const InteractionSettings& interaction, const Shot& shot, const glm::uvec2& pixels);
     void look(const Session& session, const Shot& shot, const glm::uvec2& pixels)
     {
@@ -61,7 +61,7 @@ public:
     /// Renews ambient occlusion once, even if the session has disabled automatic updates.
     void update_occlusion() { occlusion_is_asked_for_ = true; }
 
-    /// Collects what the device has finished and loaded, and submits what is due next.
+    /// Collects finished submissions and loaded bricks, and submits the next work.
     void advance();
     // advance() in steps, for owners of several views, who take the scene's changes and report them to each view.
     void collect() { reap(); }

@@ -176,7 +176,7 @@ void add_probe(Strokes& strokes, const Camera& camera, const glm::uvec2& pixels,
     if (const auto at = project(camera, pixels, probe.center)) {
         way = at->pixel - 0.5 * glm::dvec2(pixels);
         const glm::dvec2 inside = glm::abs(way) - 0.5 * glm::dvec2(pixels);
-        if (inside.x < 0.0 && inside.y < 0.0) return;  // it fills the pane, or contains the eye
+        if (inside.x < 0.0 && inside.y < 0.0) return;  // the ball fills the pane, or contains the eye
     }
     if (glm::length(way) > 1e-9) add_arrow(strokes, pixels, way, probe.color);
 }

@@ -77,7 +77,7 @@ struct Pane {
     enum class Kind { main, left_eye, right_eye, map, slice };
     Kind kind = Kind::main;
     Shot shot;
-    PixelBox box;      ///< in a slice: the axis perpendicular to it; otherwise -1
+    PixelBox box;      ///< axis perpendicular to the slice; -1 if this is no slice
     std::string name;  ///< "top", "slice across z", ...
     int axis = -1;     ///< slices: the axis perpendicular to it
     glm::uvec2 pixels() const { return box.end - box.begin; }

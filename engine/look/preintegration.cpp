@@ -37,7 +37,7 @@ double mean_extinction(double from, double to)
     return (integral(a) - integral(b)) / (a - b);
 }
 
-/// Integrals over density, from the first entry to each: of extinction, and of extinction times colour.
+/// Integrals of extinction, and of extinction times colour, over density from the first entry to each entry.
 struct Integrals {
     std::vector<double> density, extinction;
     std::vector<glm::dvec3> light;

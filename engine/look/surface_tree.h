@@ -22,7 +22,7 @@ struct SurfaceLook {
 };
 
 /// The owner of a surface. Sort order: a session's surfaces by index, then nodes and internodes of the trace by number.
-/// Of two surfaces at the same length along a ray, the earlier one is visible.
+/// If two surfaces are at the same length along a ray, the earlier one is visible.
 enum class SurfaceKind : uint8_t { session, node, internode };
 constexpr uint64_t surface_key(SurfaceKind kind, uint32_t number)
 {

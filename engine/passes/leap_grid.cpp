@@ -6,8 +6,8 @@ namespace shvr {
 
 namespace {
 
-/// The cells that a stage must compute: those that the changed cells can affect, and what later stages read around
-/// them.
+/// The cells that a stage must compute: those that the changed cells can affect, and those that later stages read
+/// around them.
 CellBox cells_of_stage(const CellBox& changed, const glm::uvec3& counts, uint32_t stage)
 {
     // A distance is at most LEAP_LIMIT, so the last stage covers one reach around the change. Stage s is read along the

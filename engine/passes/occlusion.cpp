@@ -114,8 +114,8 @@ OcclusionTaps occlusion_taps_of(const glm::dvec3& spacing, double radius, bool i
 
 uint32_t occlusion_reach(double radius)
 {
-    // A tap lies within the radius of its ray's start; 4 covers the distance of the start from the voxel, and the
-    // voxel.
+    // A tap lies within the radius of its ray's start. 4 voxels more cover the voxel itself and its distance from the
+    // start.
     return std::max(1u, uint32_t(std::ceil((radius + 4.0) / gpu::BRICK_SIZE)));
 }
 

@@ -172,7 +172,7 @@ KernelVariant kernel_of(const Choice& choice, const RaycastInput& input)
 }
 
 /// Hints for likely next actions: painting, bringing an iso-surface or an opaque surface into the picture, clicking.
-/// `kept_of_shell`: what rays keep if there is an iso-surface.
+/// `kept_of_shell`: the KEPT constant of pictures with an iso-surface.
 void expect_next(FrameGraph& graph, const Choice& now, const RaycastInput& input, uint32_t kept_of_shell)
 {
     const auto expect = [&](const auto& change) {
@@ -224,7 +224,7 @@ std::vector<Area> areas_of(const RaycastInput& input, bool is_shelled)
     return areas;
 }
 
-/// Binds what all rays read: bricks, and the paint in them.
+/// Binds the data that all rays read: bricks, and the paint in them.
 void bind_volume(Pass& pass, VolumeBinding& volume, const RaycastInput& input)
 {
     pass.block("params_block", std::span(&input.params, 1));
@@ -255,7 +255,7 @@ void bind_steps(Pass& pass, const VolumeBinding& volume, const RaycastInput& inp
         pass.read("surfaces", *input.surfaces);
 }
 
-/// Binds what rays keep from one block to the next; one texel where they keep nothing.
+/// Binds the image of values that rays keep between blocks; one texel if they keep none.
 void bind_rays(FrameGraph& graph, Pass& pass, const RaycastInput& input, std::optional<Resource>& rays, bool is_begun)
 {
     const bool is_first = input.params.first_step == 0;

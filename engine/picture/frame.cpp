@@ -203,7 +203,7 @@ Resource draw_contents(FrameGraph& graph, Scene& scene, Prepared& prepared, Rayc
                          .share = input.slice ? PREVIEW_SLICE_SHARE : PREVIEW_SHARE});
 }
 
-/// Likewise through a translucent ball: mixes pictures with an opaque ball and without it.
+/// Draws through a translucent ball: mixes pictures with an opaque ball and without it.
 Resource draw_through_ball(FrameGraph& graph, Scene& scene, Prepared& prepared, const RaycastInput& input,
                            const Camera& camera, const PicturePart& part, Resource target, const WaitingRays* rays,
                            size_t eye)

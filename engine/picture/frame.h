@@ -75,8 +75,8 @@ Drawn draw(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, 
 /// A graph with the preparation shared by all parts of a shot, whatever their size: tables, directory, surfaces. It
 /// must be submitted before any graph made later. Optional: draw() does this as well.
 FrameGraph prepared(Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);
-/// Adds the passes that find what is visible at one pixel; returns a one-texel image: the position and 1, or 0 if
-/// nothing is.
+/// Adds the passes that find the visible point at one pixel; returns a one-texel image: its position and 1, or 0 if no
+/// point is visible.
 Resource pick(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);
 
 /// Number of drawn rays that stopped before their end although nothing opaque ended them. Their pixels are wrong.

@@ -37,7 +37,7 @@ public:
     bool is_waiting() const { return rounds_.has_value(); }
     /// The fraction of all pixels drawn so far.
     double progress() const { return double(drawn_pixels_) / double(uint64_t(size_.x) * size_.y); }
-    /// Whether nothing is missing from what is drawn so far.
+    /// Whether the parts drawn so far are complete.
     bool is_complete() const { return picture_.complete && !scene().occlusion_has_no_room() && rays_cut_short_ == 0; }
     /// The picture without its image. Call it after the last step.
     Picture take();

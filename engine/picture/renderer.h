@@ -70,8 +70,8 @@ public:
     void load(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
               const RenderSettings& settings = {}, bool with_occlusion = false, const Progress& progress = {});
     /// Likewise in time slices, for a loop that keeps running: starts loading a second scene, if fits_beside() holds,
-    /// or the only one after take_scene(); when its load_on() is done, show() it. `document`: what it will show. The
-    /// source should already have its levels (with_levels); otherwise they are made here.
+    /// or the only one after take_scene(); when its load_on() is done, show() it. `document`: the annotation that it
+    /// will show. The source should already have its levels (with_levels); otherwise they are made here.
     std::unique_ptr<Scene> begin_loading(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
                                          const RenderSettings& settings, bool with_occlusion, const Document& document);
     bool fits_beside(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion);

@@ -1,6 +1,6 @@
 #pragma once
 // Writes a folder all or nothing: its content is built in a hidden folder next to the target, and takes the target's
-// place at the end, in one exchange of names. A reader finds the old folder or the new one at every moment, whenever
+// place at the end, in one exchange of names. At every moment a reader finds either the old or the new folder, even if
 // the program is killed. Without `commit` the target stays as it was.
 //
 // The hidden folder `.NAME.shvr-part` has no content of its own that readers of Zarr would list. It is locked while

@@ -1,5 +1,5 @@
 #pragma once
-// OME-Zarr images of what a source stores, with levels only where something is stored: for 2^20 voxels a side and one
+// Writes OME-Zarr images of the stored blocks of a source, and levels of only these: for 2^20 voxels a side and one
 // stored chunk, 16 chunks are written. The files equal those of a dense import, byte for byte. The image replaces an
 // old one as a whole (atomic_folder.h). Any thread may call these.
 
@@ -12,7 +12,7 @@
 namespace shvr {
 
 /// The chunks of IMPORT_CHUNK^3 voxels that stored blocks touch, in an order in which those below one chunk of a
-/// coarser level are adjacent. Null if the source does not know what it stores, or if the fill value is not 0.
+/// coarser level are adjacent. Null if the source cannot list its stored blocks, or if the fill value is not 0.
 std::optional<std::vector<Size3>> stored_chunks(const VolumeSource& source);
 /// Whether writing these chunks alone takes less time than a dense import with all threads: up to an eighth of all.
 bool are_few(const std::vector<Size3>& chunks, const Size3& size);
@@ -22,12 +22,13 @@ bool are_few(const std::vector<Size3>& chunks, const Size3& size);
 ImportReport write_label_image(const VolumeSource& labels, const std::filesystem::path& target,
                                const std::vector<Size3>& chunks, const ImportOptions& options);
 
-/// Like `export_label_image`, for a source that knows what it stores, always at a cost of only that, on one thread.
+/// Like `export_label_image`, for a source that can list its stored blocks, at a cost proportional to these, on one
+/// thread.
 ImportReport save_label_image(const VolumeSource& labels, const std::filesystem::path& folder, const LabelImage& image,
                               const ImportOptions& options = {});
 
-/// Saves numbers, from a source that knows what it stores, as an OME-Zarr 0.4 of level 0 alone, whose attribute "shvr"
-/// is {"shvr_KIND": 1}. Replaces an image of that kind; anything else at that path is refused.
+/// Saves numbers, from a source that can list its stored blocks, as an OME-Zarr 0.4 of level 0 alone, whose attribute
+/// "shvr" is {"shvr_KIND": 1}. Replaces an image of that kind; anything else at that path is refused.
 ImportReport save_number_image(const VolumeSource& numbers, const std::filesystem::path& folder,
                                const std::string& kind, const Progress& progress = {});
 

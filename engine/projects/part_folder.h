@@ -32,8 +32,8 @@ public:
     void clear_temporary() const;
     /// Returns once everything written so far is on the disk (including any other pending writes to this file system).
     void sync() const;
-    /// Moves the folder to the target's place, replacing what was there, and deletes the state. Then the folder is the
-    /// target.
+    /// Moves the folder to the target's place, replacing an existing folder, and deletes the state. Then the folder is
+    /// the target.
     void finish();
     /// Deletes unfinished work, as far as possible.
     void abandon();

@@ -11,7 +11,7 @@ constexpr Quality QUALITIES[] = {
      .note = "To look around in on a slow machine: about 1 of 255 levels from the reference (root mean square), "
              "27 at most. Step 1, no narrow peaks.",
      .step_voxels = 1.0,
-     .opacity_limit = 0.99,  // at 0.95 deep fog is 6 levels off, and takes three quarters of the time
+     .opacity_limit = 0.99,  // 0.95 would take three quarters of the time, but deep fog would be 6 levels of 255 off
      .detail = 0.5},
     {.name = "interactive",
      .note = "To work in, and what a new session has: about 0.2 of 255 levels from the reference, 9 at most. Step 0.5.",

@@ -103,8 +103,8 @@ struct ProbeSettings {
     BrushSettings brush;
     std::optional<double> haptic_threshold;  ///< intensity; default: the brush's threshold
     bool shown = false;                      ///< in pictures; the window always shows it
-    /// Shows an iso-surface at the brush's threshold in the
-    /// probe's region: what density painting would raise above it.
+    /// Shows an iso-surface at the brush's threshold in the probe's region: the voxels that density painting would
+    /// raise above it.
     bool shell = false;
     double shell_opacity = 0.4;  ///< of one crossing of the surface
     bool preview = false;        ///< draws the brush's effect at the probe

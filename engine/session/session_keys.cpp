@@ -462,7 +462,7 @@ void fields(Fields& f, SurfaceLook& surface)
 
 namespace {
 
-/// In files, other sections come between these and the cuts.
+/// Separate from the cuts, since files have other sections between them.
 void look_fields(Fields& f, Session& session)
 {
     f.section("transfer_function", [&](Fields& transfer) { transfer_fields(transfer, session); });

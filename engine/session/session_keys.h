@@ -20,7 +20,7 @@ void fields(Fields& f, Session& session);
 void lasting_fields(Fields& f, Session& session);
 /// The sections of session_patch.h.
 void setting_fields(Fields& f, Session& session);
-/// Those of kept_settings.h; `camera` and `cameras` are one, since one names what is in the other.
+/// The fields of kept_settings.h; `camera` and `cameras` are one section, since `camera` names an entry of `cameras`.
 void kept_fields(Fields& f, Session& session);
 void fields(Fields& f, Groups& groups);
 void fields(Fields& f, SurfaceLook& surface);

@@ -28,7 +28,7 @@ struct ExportTask {
     // Files to write; empty: not written.
     std::filesystem::path mask, offset, trace, mesh, metrics;
     bool labels = false;       ///< writes the mask also as labels/mask in the project
-    bool break_loops = false;  ///< for trace formats that can only hold trees
+    bool break_loops = false;  ///< removes loops of the trace, for formats that can only hold trees
     Positions space = Positions::physical;
     std::optional<OmeZarrVersion> version;
 

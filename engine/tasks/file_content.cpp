@@ -40,7 +40,7 @@ std::optional<FileContent> content_of_json(const fs::path& path)
     return std::nullopt;
 }
 
-/// Lines of the thesis's traces and of SWC, which have no magic number.
+/// Recognises lines of the thesis's traces and of SWC, which have no magic number.
 bool begins_like_a_trace(const std::string& begin)
 {
     const size_t line = begin.find_first_not_of(" \t\r\n");

@@ -29,8 +29,8 @@ struct WhatItIs {
 };
 /// `open`: the currently open volume, whose size identifies masks and offsets; null: none.
 WhatItIs what_is(const std::filesystem::path& path, const VolumeInfo* open);
-/// The same for a file that is to be loaded into the open volume: never a volume, session, project or picture. A volume
-/// of another size is refused with both sizes; one of unsigned integers is a mask.
+/// Determines the content of a file that is to be loaded into the open volume: never a volume, session, project or
+/// picture. A volume of another size is refused with both sizes; one of unsigned integers is a mask.
 WhatItIs what_annotation_is(const std::filesystem::path& path, const VolumeInfo& open);
 
 }  // namespace shvr

@@ -36,8 +36,8 @@ std::unique_ptr<VolumeSource> open_as_told(const ImportTask& task)
     return open_raw(volume, layout);
 }
 
-/// A project that is replaced is removed with all annotations in it, so it cannot be what is imported, nor hold it, by
-/// whatever path.
+/// A project that is replaced is removed with all annotations in it, so it must not be or contain the imported file, by
+/// any path.
 void refuse_own_source(const ImportTask& task)
 {
     std::error_code error;
@@ -69,7 +69,7 @@ public:
             reporter_.show(told.fraction, sentence(std::fixed, std::setprecision(rate < 10.0 ? 1 : 0), rate, " MB/s"),
                            told.seconds_left);
         } catch (const Stopped&) {
-            // The import polls for a stop itself, and keeps what is done.
+            // The import polls for a stop itself, and keeps finished chunks.
         }
     }
 

@@ -1,6 +1,6 @@
 #pragma once
 // Imports a volume as a project, for `shvr import`. The order is: crop, reverse, blur, downscale. A stopped import
-// keeps what is done, and the same import resumes it. Any thread.
+// keeps its finished chunks, and the same import resumes it. Any thread.
 
 #include "engine/tasks/task_options.h"
 
@@ -15,7 +15,7 @@ struct ImportTask {
     glm::dvec3 blur_voxels{0.0};  ///< sigma
     int downscale = 1;
     bool labels = false;  ///< the voxels are labels
-    std::string raw;      ///< for bare voxels, in the form of `parse_raw_layout`
+    std::string raw;      ///< layout of bare voxels, in the form of `parse_raw_layout`
     OpenOptions choice;   ///< spacing, unit, channel, frame
     std::optional<OmeZarrVersion> version;
     bool shards = false;  ///< version 0.5 only: many chunks per file

@@ -33,8 +33,9 @@ struct LabelResult {
 
 /// Checks options and names.
 void check(const LabelTask& task);
-/// Also checks whether the output can be written for such a volume: for a sparse one an OME-Zarr needs only what is
-/// stored, all other formats hold every voxel. `volume`: its file, which the output may not replace, or empty.
+/// Also checks whether the output can be written for such a volume: of a sparse volume an OME-Zarr needs only the
+/// stored blocks, whereas all other formats hold every voxel. `volume`: its file, which the output may not replace, or
+/// empty.
 void check(const LabelTask& task, const VolumeSource& source, const std::filesystem::path& volume);
 /// `source`: includes density offsets, if any. `name`: the volume's, for the progress line.
 LabelResult run(const LabelTask& task, const VolumeSource& source, const std::string& name, ProgressReporter& reporter);

@@ -14,7 +14,7 @@ void check_output(const std::string& option, const std::filesystem::path& path,
 /// Likewise for a file with any extension.
 void check_output_place(const std::filesystem::path& path);
 /// The file to be written for an output that a user names: a symbolic link stays, and its target is written. Removes
-/// what killed programs have left next to it.
+/// temporary files that killed programs have left next to it.
 std::filesystem::path written_path(const std::filesystem::path& path);
 /// Fails if writing `output` would replace `input`, which is read, or add to it: a file, or one in a folder of slices,
 /// in which a new picture would be read as a slice.

@@ -14,7 +14,7 @@ struct RegionWish {
     glm::dvec3 point{0.0};     ///< the ball's centre
     double radius = 1.0;       ///< the ball's
     glm::dvec3 velocity{0.0};  ///< the point's
-    double latency_s = 0.0;    ///< from asking for a region until it is felt
+    double latency_s = 0.0;    ///< time from requesting a region until it is felt
 
     /// How far the ball moves until the answer arrives.
     glm::dvec3 travel() const { return latency_s * velocity; }
@@ -32,8 +32,8 @@ struct RegionWish {
 /// turn, then one picture for the pass. Simulations use it.
 inline constexpr double WINDOW_LATENCY_S = 0.024;
 
-/// Whether another region is due, where `held` is a place with `covers(centre, radius)` and `margin` is what its half
-/// side exceeds the radius by: at rest once half of the margin is used up, in motion before the answer would be late.
+/// Whether another region is due, where `held` is a place with `covers(centre, radius)` and `margin` is half its side
+/// minus the radius: at rest once half of the margin is used up, in motion before the answer would be late.
 template <class Place>
 bool is_region_due(const Place& held, const RegionWish& wish, double margin)
 {

@@ -41,7 +41,7 @@ constexpr int64_t MIN_VOXELS_OF_TAIL = 4 * TAIL;
 constexpr double MIN_UNITS = 10.0, MIN_STEPS = 2.0, MIN_SHARE = 0.01;
 constexpr int STEPS = 8;
 
-/// Fewer different values are labels, or two materials: each is interesting.
+/// Fewer distinct values are labels or a few materials, none of which is an outlier.
 constexpr size_t MIN_VALUES_AT_END = 12;
 
 /// Fill values lie behind a gap of that many times the range of all others; smallest and largest values of a type,
@@ -117,7 +117,7 @@ public:
         });
     }
 
-    /// Excludes what is far out for the spacing of the values inside.
+    /// Excludes values that are far from the others, compared with the spacing of those.
     void exclude_isolated(int64_t limit, double range)
     {
         exclude_beyond(limit, [&](size_t last, int64_t voxels) {
@@ -287,7 +287,7 @@ std::optional<OutlierFinder::Bulk> OutlierFinder::bulk()
         const bool has_exact_codes =
             !is_float(type_) && half_distance(upper.at_start(), -lower.at_start()) <= 0.5 * 65535.0;
         exclude_strays(upper, lower, has_exact_codes);
-        // A fill value hides what is stray at the other end.
+        // A fill value hides outliers at the other end.
         if (finds_fill_ && exclude_fill(upper, lower, has_exact_codes)) {
             exclude_strays(upper, lower, has_exact_codes);
             exclude_fill(upper, lower, has_exact_codes);

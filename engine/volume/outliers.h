@@ -65,7 +65,7 @@ public:
         size_t kept_;
         double least_ = -std::numeric_limits<double>::infinity();  ///< smaller ones are dropped
         ValueCount most_{-std::numeric_limits<double>::infinity(), 0};
-        std::vector<ValueCount> others_;  ///< at most twice as many as are kept, in any order
+        std::vector<ValueCount> others_;  ///< candidates: at most twice as many as are kept, in any order
     };
 
 private:

@@ -18,8 +18,8 @@
 
 namespace shvr {
 
-/// The stored parts of a level that may be mostly absent, as in a sparse file: work on it then costs only what is
-/// stored.
+/// The stored blocks of a level that may be mostly absent, as in a sparse file, so that work on it costs no more than
+/// these.
 struct StoredBlocks {
     Size3 block{1};                    ///< voxels of a block; block i covers [i * block, (i + 1) * block)
     double fill = 0.0;                 ///< value of every voxel outside all blocks; may be infinite or NaN

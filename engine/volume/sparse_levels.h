@@ -15,8 +15,8 @@ namespace shvr {
 /// Leaves the source's own levels unchanged; coarser ones are computed from its coarsest.
 class SparseLevels {
 public:
-    /// Plans up to `levels` levels, including the source's own; reads nothing. Null if the source does not know what it
-    /// stores, or if it stores so much that dense levels would be smaller.
+    /// Plans up to `levels` levels, including the source's own; reads nothing. Null if the source cannot list its
+    /// stored blocks, or stores so many that dense levels would be smaller.
     static std::optional<SparseLevels> plan(const VolumeSource& source, int levels);
 
     uint64_t bytes() const;

@@ -197,7 +197,7 @@ IntensityWindow window_for(VoxelType type, const VolumeStatistics& statistics)
 
 bool has_exact_codes(VoxelType type, const VolumeStatistics& statistics)
 {
-    if (bytes_of(type) <= 2) return true;  // the window spans all values, or the type
+    if (bytes_of(type) <= 2) return true;  // the window spans all values of the volume, or of its type
     const bool is_partial = statistics.measured_level > 0 || statistics.sampled_voxels > 0;
     return !is_float(type) && !is_partial && statistics.maximum - statistics.minimum <= MAX_CODE;
 }

@@ -129,7 +129,8 @@ struct IntensityWindow {
 /// integer has one. Over all of the type for 16-bit integers measured in part, since other voxels may exceed the range.
 IntensityWindow window_for(VoxelType type, const VolumeStatistics& statistics);
 IntensityWindow window_for(VoxelType type, double minimum, double maximum);
-/// Whether every voxel of such a volume has a code of its own in its window, so that codes decide as intensities do.
+/// Whether every voxel of such a volume has a code of its own in its window, so that comparing codes gives the same
+/// results as comparing intensities.
 bool has_exact_codes(VoxelType type, const VolumeStatistics& statistics);
 
 }  // namespace shvr

@@ -77,7 +77,7 @@ public:
     void advance();
     /// Runs steps until the current stroke is painted. Returns why part of it was not; empty if all was.
     std::string finish_stroke() { return services_.painter.finish_stroke(); }
-    /// Waits for the save under way. Returns what was written; fails with the reason if that is not all.
+    /// Waits for the save under way. Returns the written parts; fails with the reason if one could not be written.
     Work::Saved finish_save() { return services_.saver.finish_save(); }
     /// Waits until all changes are in the journal on disk; fails with the reason if that is not possible.
     void flush() { desk_.document->annotator.work().flush(); }

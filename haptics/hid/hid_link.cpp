@@ -322,7 +322,7 @@ private:
     std::atomic<uint64_t> connection_;  ///< 0: none
     std::atomic<bool> is_running_{true}, write_failed_{false};
     std::atomic<uint32_t> malformed_{0}, wake_{0};
-    uint32_t malformed_seen_ = 0;  ///< this and the next two: used by the servo only
+    uint32_t malformed_seen_ = 0;  ///< this member and the next two are used by the servo's thread only
     RateMotion motion_;
     glm::dvec3 force_n_{0.0};
 

@@ -99,7 +99,7 @@ struct HidProfile {
     std::optional<HidRate> rate;  ///< set: it reports speeds, not positions
     /// The field in any input report; null if none has it.
     const HidField* find_input(HidQuantity quantity) const;
-    glm::dmat3 axes{1.0};  ///< from the device's axes to +x right, +y up, +z towards the user; a signed permutation
+    glm::dmat3 axes{1.0};  ///< maps the device's axes to +x right, +y up, +z towards the user; a signed permutation
     DeviceCaps limits;
     uint32_t watchdog_ms = 0;  ///< time without a report after which the device drops its force; 0: it has no watchdog
     std::string provenance;    ///< source of the layout

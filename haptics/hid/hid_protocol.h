@@ -44,8 +44,8 @@ HidBytes encode(const HidProfile& profile, const glm::dvec3& force_n, uint32_t s
 /// workspace or a longer latency. The profile's own if `report` is not its feature report.
 DeviceCaps decode_feature(const HidProfile& profile, std::span<const uint8_t> report);
 
-/// Extends a counter of 1 to 32 bits past its overflows. A step of more than half its range counts as backwards, as
-/// after a restart.
+/// Extends a counter of 1 to 32 bits past its overflows. A step of more than half its range counts as a step backwards,
+/// such as a restart.
 class Unwrapped {
 public:
     explicit Unwrapped(uint32_t bits) : mask_(bits >= 32 ? ~uint32_t{0} : (uint32_t{1} << bits) - 1) {}

@@ -225,7 +225,7 @@ private:
         if (channels_.events) trouble_ = "";
     }
 
-    /// One iteration: waits, receives, sends what is due.
+    /// Runs one iteration: waits, receives, sends due messages.
     void serve()
     {
         std::array<pollfd, 3> each{pollfd{wake_, POLLIN, 0}, pollfd{channels_.states->descriptor(), POLLIN, 0},

@@ -19,7 +19,7 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr int MAX_RECEIVES = 4;  ///< at a time, of 16 KiB: a flood of messages must not keep us from sending
+constexpr int MAX_RECEIVES = 4;  ///< receives of 16 KiB in a row: a flood of messages must not prevent sending
 
 /// False once the time is up, even if there is something: bytes that keep coming must not extend a deadline.
 bool wait_for(int descriptor, short what, SteadyClock::time_point until)

@@ -22,7 +22,7 @@ public:
     WebSocketClient& operator=(const WebSocketClient&) = delete;
 
     int descriptor() const { return descriptor_; }
-    /// False if the other side is gone or does not read what was sent.
+    /// False if the other side is gone or does not read.
     bool send_text(std::string_view text);
     /// Receives pending data; false if the connection has ended. Complete messages are still available through
     /// `next()`.

@@ -34,7 +34,7 @@ inline constexpr size_t MAX_WEBSOCKET_MESSAGE = 256 << 10;  ///< an inventory of
 
 /// Appends one whole frame, masked as RFC 6455 requires of clients.
 void append_websocket_frame(std::string& bytes, WebSocketOpcode opcode, std::string_view payload, uint32_t mask);
-/// Likewise without a mask, as servers send it.
+/// Appends a frame without a mask, as servers send it.
 void append_unmasked_websocket_frame(std::string& bytes, WebSocketOpcode opcode, std::string_view payload);
 
 /// Splits received bytes into messages.

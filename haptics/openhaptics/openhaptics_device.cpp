@@ -16,11 +16,11 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds WRITE_TIMEOUT{18};
-constexpr std::chrono::milliseconds HOLD{100};   ///< after an error: long enough for the servo to notice
+constexpr std::chrono::milliseconds HOLD{100};   ///< hold time after an error, long enough for the servo to notice
 constexpr double TOO_WARM = 0.95;                ///< fraction of the motors' limit at which force ends, before the
                                                  ///< driver switches off by itself
 constexpr double WARM_AGAIN = 0.8;               ///< below it force is enabled again
-constexpr uint64_t MAX_ERRORS = 100;             ///< in a row, 0.1 s: the device is gone
+constexpr uint64_t MAX_ERRORS = 100;             ///< consecutive errors (0.1 s) after which the device is gone
 constexpr double RECOMMENDED_STIFFNESS = 400.0;  ///< N/m, chai3d's figure for a Touch; two ticks of delay
 
 std::atomic<bool> is_in_use{false};

@@ -31,7 +31,7 @@ struct ReplayResult {
     double proxy_rms = 0.0;       ///< distance between probe and proxy in contact, physical units
     uint64_t contact_ticks = 0, patches = 0;
     uint32_t objects = 0, swaps = 0;    ///< number of objects touched on the last device; number of device changes
-    bool is_recorded = false;           ///< the relevance is the trace's; otherwise it was computed
+    bool is_recorded = false;           ///< the relevance was read from the trace; false: it was computed
     uint64_t hash = 0;                  ///< FNV-1a of all forces' bits
     uint64_t told = 0, told_equal = 0;  ///< ticks whose force the trace contains, and those with the same bits
     std::vector<uint64_t> tick_ns;      ///< time that each step() took on the real clock

@@ -1,7 +1,7 @@
 #pragma once
 // A stylus trace: the device's answers and the user's settings, tick by tick, as a file (README.md has the format).
-// Reading returns exactly what was written, bit for bit. Version 3, which ends with a hash of itself; versions 1 and 2,
-// which do not, are read as well. Any thread.
+// Reading returns exactly the written values, bit for bit. Version 3, which ends with a hash of itself; versions 1 and
+// 2, which do not, are read as well. Any thread.
 
 #include <filesystem>
 #include <iosfwd>

@@ -32,7 +32,7 @@ shared uint distances[2][BRICK_CELLS * BRICK_CELLS * BRICK_CELLS];
 CellPaint paint_of(const BrickLeapJob job, uvec3 cell)
 {
     if (job.mask_slot == 0u) return CellPaint(false, false);
-    // A coarse cell has too many voxels to examine: if any of its brick are painted, the cell counts as painted.
+    // A coarse cell has too many voxels to examine: if any voxel of its brick is painted, the cell counts as painted.
     if (job.level > 0u) return CellPaint(true, true);
     if (params.paint_reach > 0u) return paint_around(BRICK_CELLS * job.brick + cell, uvec3(0xffffffffu));
     return paint_in(job.mask_slot, cell);

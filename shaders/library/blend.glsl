@@ -1,4 +1,4 @@
-// Distance colour blending, and what is drawn behind a picture.
+// Colour blending by distance, and the background of a picture.
 
 // Distance colour blending (Rheingans and Ebert 2001, Volume illustration): mixes in a colour with growing distance.
 vec3 blended(const RaycastParams params, vec3 color, vec3 position)

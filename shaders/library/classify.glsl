@@ -101,7 +101,7 @@ Opaque opaque_ahead(const RaycastParams params, float front, float back)
     return opaque_interval(params, rises ? number + 1u : number - 1u);
 }
 
-// As classify_change; a step that meets an opaque density shows what is in front of it, and then its colour.
+// Like classify_change, but a step that meets an opaque density shows the part in front of it, then the opaque colour.
 vec4 classify_step(const RaycastParams params, float front, float back, float part)
 {
     if (PREINTEGRATED < 2u) return classify_change(params, front, back, part);

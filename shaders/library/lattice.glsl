@@ -42,7 +42,7 @@ vec3 sample_position(const RaycastParams params, const Ray ray, float begin, uin
     return position_at(params, ray, step_middle(params, begin, step));
 }
 
-// The middle of a step or of the rest.
+// The middle of a whole step, or of the shorter last one.
 float middle_of(const RaycastParams params, const Lattice lattice, uint step)
 {
     return step < lattice.whole ? step_middle(params, lattice.begin, step) : lattice.rest_middle;

@@ -2,7 +2,7 @@
 
 // Result of PICK: the run of samples that adds most to the ray's opacity, and the sample in it that adds most.
 struct Rises {
-    float most, most_at;               // of the best run so far; `_at`: lengths along the ray
+    float most, most_at;               // the best run so far; members ending in `_at` are lengths along the ray
     float run, steepest, steepest_at;  // of the present run
     float peak, trough;                // largest opacity of a sample of this run, and smallest since then
 };

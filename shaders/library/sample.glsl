@@ -28,8 +28,8 @@ float value_near(vec3 in_brick, ivec3 first)
     return value_of(density_at(ivec3(corner) + first, held - corner));
 }
 
-// The density where a step begins or ends, at length `s` along the ray; `texels` are those of the step's middle; the
-// apron of its brick reaches that far. One step's end is the next one's beginning, with the same bits if both are in
+// The density at an end of a step, at length `s` along the ray. `texels` are the texels of the step's middle; the apron
+// of that brick reaches to both ends. One step's end is the next one's beginning, with the same bits if both are in
 // bricks of one level, because only whole numbers are subtracted from a position.
 float value_at_end(const RaycastParams params, const Ray ray, float s, const Texels texels, const Place place)
 {

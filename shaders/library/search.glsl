@@ -24,8 +24,7 @@ bool may_be_seen(const RaycastParams params, vec3 position, const Place place)
 // Minimum empty space, in cells, around places worth leaping from in a loop. In noise, nearly all leaps are short.
 const uint NEAR = 1u;
 
-// Samples per iteration whose density is read after their bits: where noise is above a threshold, bits are set in
-// groups.
+// Samples per iteration whose density is read once a bit is set: in noise above a threshold, set bits come in groups.
 const uint ASKED_IN_TURN = 2u;
 
 // Which of the samples from step `i` on have their bits set; the lowest bit is that of step `i`. Positions are in fixed

@@ -50,7 +50,7 @@ SHARED_CONST uint OCCLUSION_COLUMN = 16u;
 SHARED_CONST uint OCCLUSION_COLUMNS_A_ROW = 4u;
 SHARED_CONST uint OCCLUSION_NEAR_APRON = 4u;  // voxels
 SHARED_CONST uint OCCLUSION_NEAR_SIDE = 40u;  // BRICK_SIZE + 2 OCCLUSION_NEAR_APRON
-/// Likewise for paged bricks, whose rays begin in their aprons as well.
+/// The same margin for paged bricks, whose rays also begin in their aprons.
 SHARED_CONST uint OCCLUSION_NEAR_APRON_PAGED = 8u;
 SHARED_CONST uint OCCLUSION_NEAR_SIDE_PAGED = 48u;
 /// Maximum number of bricks away, on each side of a brick, from which light arrives; sets the largest radius.

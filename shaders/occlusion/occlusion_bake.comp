@@ -1,7 +1,7 @@
 // Computes how much light reaches every potentially visible voxel of a brick, by the definition in occlusion.h. A ray
 // takes three samples in ramps of voxels, three in ramps of cells of two voxels and two in cells of four. PAGED: cells
-// are those of paged bricks. STRETCHED: voxels are no cubes; 2: and all samples in cells are in those of two voxels, as
-// cells of four are longer than what they are to resolve.
+// are those of paged bricks. STRETCHED: voxels are no cubes; 2: all samples in cells use cells of two voxels, since
+// cells of four are longer than the distances to resolve.
 // variants: PAGED FILTERED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -50,12 +50,13 @@ layout(binding = 10, scalar) readonly buffer Opacities { OcclusionEntry entries[
 OcclusionBakeParams params;
 #include "../library/occupancy.glsl"
 
-// Found by optimization: minimal errors over the cases of tests/gpu/occlusion/occlusion_light_test.cpp. A cell of 4
-// counts as this much nearer to the surface than it is, in units; ...
+// These constants were found by optimization: minimal errors over the cases of
+// tests/gpu/occlusion/occlusion_light_test.cpp. MARGIN_4: distance by which a cell of 4 counts as nearer to the
+// surface, in units.
 const float MARGIN_4 = 0.853;
-// ... this much more of it is attributed to the surface; ...
+// Factor of the share of a cell of 4 that is attributed to the surface.
 const float WALL_4 = 8.2;
-// ... and its opacity is concentrated this much towards the start of the stretch.
+// Degree to which the opacity of a cell of 4 is concentrated at the start of the stretch.
 const float BEND_4 = 0.08;
 // Ramps are softened more with distance, since rays represent the directions around them.
 const float SOFT_NEAR[] = {1.25, 0.874, 0.734}, SOFT_2[] = {0.751, 0.59, 0.527, 0.5, 0.45};
@@ -67,9 +68,8 @@ const float STEEPEST_OF_VOXELS = 3.3, STEEPEST_OF_CELLS = 2.6;   // occlusion_ra
 // are positive when truncated: the arithmetic is the same wherever a brick, or its apron, begins.
 const int NEAR_AHEAD = 4, CELLS_AHEAD = 64;
 
-// Converts positions in that block to texels: of the scratch images, which hold jobs stacked along z, and of the cells,
-// from which those of a resident volume are read. The box that blocks light is in the same positions: everything
-// outside is empty.
+// Converts positions in that block to texels of the scratch images, which hold jobs stacked along z, and to the cells
+// of a resident volume. The box that blocks light is in the same coordinates; everything outside it is empty.
 struct Block {
     ivec3 to_near, to_2, to_4;
     vec3 lower, upper;
@@ -145,7 +145,7 @@ struct Surface {
     vec3 normal;
     float strength;
     vec3 place;     // start of rays, in voxels from the block's corner
-    vec3 heights;   // in which direction densities fall fastest, in voxels
+    vec3 heights;   // direction in which densities fall fastest, in voxels
     vec3 scale;     // the part of a cell's columns along each axis that is behind it: base - scale * height in cells
     vec3 base;
     float height;   // distance of the surface, as dot(heights, position) in cells

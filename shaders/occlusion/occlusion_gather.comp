@@ -51,7 +51,8 @@ ivec3 place(uint i, uint side)
     return ivec3(i % side, i / side % side, i / (side * side));
 }
 
-// Converts a position relative to the brick to one in the brick that holds it, in units of that brick's level.
+// Converts a position relative to the job's brick into a position in the brick that holds it, in voxels of that brick's
+// level.
 ivec3 in_brick_of(const OcclusionJob job, ivec3 voxel, int above)
 {
     return int(BRICK_SIZE) * ivec3(job.brick) + voxel >> above & int(BRICK_SIZE - 1u);

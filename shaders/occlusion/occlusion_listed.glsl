@@ -19,7 +19,7 @@ const uint IN_APRON = 1u << 15u;
 // Whether any of these voxels is in an occupied cell, or with `grow` within one voxel of such a cell.
 bool any_cell_is_occupied(const OcclusionJob job, ivec3 first_voxel, ivec3 last_voxel)
 {
-    const int grow = int(params.grow), side = 1 + 2 * grow;   // equal for all lanes, so that they stay together
+    const int grow = int(params.grow), side = 1 + 2 * grow;   // equal for all lanes, so that loops do not diverge
     const ivec3 first = first_voxel - grow >> 2, last = last_voxel + grow >> 2;
     bool found = false;
     for (int i = 0; i < side * side * side; ++i) {

@@ -44,8 +44,8 @@ Work no_work()
 #include "../library/sample.glsl"
 #include "../library/lattice.glsl"
 
-// Counts a sample if it is taken. The slot is carried, not set in a branch: SwiftShader loses what a
-// lane sets in a branch of a loop that it leaves before others.
+// Counts a sample if it is taken. The slot is carried, not set in a branch: SwiftShader loses values that a lane sets
+// in a branch of a loop that it leaves before other lanes.
 void note_sample(bool is_taken, const Place place, inout Work work)
 {
     work.samples += uint(is_taken);
@@ -113,7 +113,7 @@ void accumulate_compensated(inout vec4 sum, inout vec4 above, vec4 look)
 
 // A ray's accumulated state, and its position.
 struct March {
-    uint i;        // index of the next step: whole steps, then the rest; beyond that, none
+    uint i;        // index of the next step: whole steps, then the remaining part of a step, then no more
     vec4 sum;
     vec4 above;    // accumulate_compensated(), since the dispatch began
 #ifdef PICKS

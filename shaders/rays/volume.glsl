@@ -1,5 +1,5 @@
-// The volume that rays pass: its bindings, and what a position is in. Needs KEPT and COUNT_WORK. Macros decide on the
-// bindings:
+// The volume that rays pass: its bindings, and the brick and texel of a position. Needs KEPT and COUNT_WORK. Macros
+// decide on the bindings:
 //   FILTERED   the atlas is sampled by the device's filter instead of exact arithmetic
 //   MASKED     there is a segmentation mask; an unpainted volume binds and fetches none of it
 //   PAGED      paged bricks of several levels (pages.h), instead of a leap grid over resident bricks

@@ -1,5 +1,5 @@
-// One word per thread: converts bits from elsewhere (touch: of any level, from the device or the host) to a region's:
-// clears bits beyond the end of a row, and every run starts as its own root.
+// Prepares bits that were made elsewhere (for touch: bits of any level, from the device or the host) for the labelling
+// of a region: clears bits beyond the end of a row, and makes every run its own root. One word per thread.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

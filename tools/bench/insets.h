@@ -1,5 +1,5 @@
 #pragma once
-// Enlarged parts of pictures: where their errors are largest, and what they look like there. Pure; any thread.
+// Enlarged parts of pictures at their largest errors. Pure; any thread.
 
 #include "tools/bench/measure.h"
 

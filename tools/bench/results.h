@@ -108,7 +108,7 @@ struct Change {
     std::string scene, run, what;  ///< "rmse", "samples", "median_ms"
     double a = 0.0, b = 0.0, noise = 0.0;
     bool is_regression = false;
-    double machine = 1.0;  ///< for times: the ratio of the yardstick's time in `b` to that in `a`
+    double machine = 1.0;  ///< for comparing times: the ratio of the yardstick's time in `b` to that in `a`
 };
 struct Comparison {
     std::vector<Change> changes;      ///< all differences; regressions first

@@ -48,7 +48,7 @@ void add_version_option(CLI::App& command, std::optional<OmeZarrVersion>& versio
 void add_belief_option(CLI::App& command, Common& common);
 /// --outside, for commands that write the files that a session names.
 void add_outside_option(CLI::App& command, Common& common);
-/// Fails if the session would write outside its folder and --outside is not given. `path`: what was opened.
+/// Fails if the session would write outside its folder and --outside is not given. `path`: the opened file.
 void check_outside(const std::string& path, const Session& session, const Common& common);
 /// --allow-incomplete, for commands whose result needs all voxels.
 void add_incomplete_option(CLI::App& command, bool& allows_incomplete, const std::string& does);
@@ -59,7 +59,7 @@ void add_output_options(CLI::App& command, Common& common);
 /// Prints a line on standard error, unless --quiet.
 void say(const Common& common, const std::string& line);
 void warn(const std::vector<std::string>& warnings, const Common& common);
-/// Likewise for notices of opening work; losses are printed even with --quiet.
+/// Prints notices about opened work; losses are printed even with --quiet.
 void warn(const std::vector<Notice>& notices, const Common& common);
 /// Printed even with --quiet.
 void warn_of_losses(const std::vector<std::string>& losses);
@@ -82,7 +82,8 @@ struct Opened {
     std::unique_ptr<Renderer> renderer;
     std::unique_ptr<Annotator> annotator;
     std::filesystem::path project;     ///< path of its session's file; empty for a bare volume
-    std::shared_ptr<const Gaps> gaps;  ///< grows while bricks are read; null: the command needs every voxel
+    std::shared_ptr<const Gaps> gaps;  ///< unreadable parts found so far, while bricks are read; null: the command
+                                       ///< needs every voxel
     std::string gaps_told{};           ///< already printed by `warn_of_gaps`
 
     bool is_whole() const { return !gaps || gaps->empty(); }

@@ -40,7 +40,7 @@ std::vector<std::string> choices()
     return names;
 }
 
-/// Offsets and, if only some groups are felt, what is painted.
+/// Returns the offsets and, if only some groups are felt, the paint.
 Document felt_document(const ReplayCommandOptions& options, const UnmeasuredSession& opened, const VolumeInfo& info)
 {
     if (opened.session.probe.touch.groups.empty()) {

@@ -69,7 +69,7 @@ void cut(const std::vector<uint8_t>& scene, const glm::dvec3& point, int32_t sid
             }
 }
 
-/// A hand follows the tube at 20 mm/s and strays from it as hands do. A voxel is 0.25 mm in the hand.
+/// A hand follows the tube at 20 mm/s and strays from it like a human hand. A voxel is 0.25 mm in the hand.
 Trace make_trace(double radius_voxels, TouchMode mode, size_t ticks)
 {
     Trace trace;

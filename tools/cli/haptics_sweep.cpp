@@ -180,7 +180,7 @@ std::string plot_of(const std::vector<Row>& rows)
     for (const Row& row : rows)
         svg << "<circle cx=\"" << x_of(row.microseconds) << "\" cy=\"" << y_of(row.error) << "\" r=\""
             << 2.0 + row.radius / 6.0 << "\" fill=\"" << color_of(row.method) << "\" fill-opacity=\"0.7\"/>\n";
-    // Marks with the same number of points are close together, so the three share one label.
+    // The marks of the three methods with the same number of points are close together and share one label.
     for (const Row& row : rows)
         if (row.points > 0 && row.radius == RADII[std::size(RADII) - 1])
             text(x_of(row.microseconds) + 9.0, y_of(row.error) - 6.0, "start", std::to_string(row.points));

@@ -100,7 +100,7 @@ std::string while_doing()
 
 int report(const char* message, Exit status)
 {
-    // Arguments and files may hold what a terminal would act on.
+    // Arguments and files may contain escape sequences of terminals.
     std::fprintf(stderr, "shvr: %s\n", shvr::printable(message).c_str());
     return status;
 }

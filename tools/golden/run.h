@@ -1,6 +1,6 @@
 #pragma once
-// Draws goldens, compares them with the blessed ones, and writes what is needed to judge them: pictures, results.json,
-// junit.xml and report.html. No retries: a picture that differs only sometimes is a defect.
+// Draws goldens, compares them with the blessed ones, and writes the files needed to judge them: pictures,
+// results.json, junit.xml and report.html. No retries: a picture that differs only sometimes is a defect.
 
 #include <functional>
 

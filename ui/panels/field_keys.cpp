@@ -10,7 +10,7 @@ namespace {
 
 constexpr int FRAMES_TO_ANSWER = 2;
 constexpr int PATIENCE_FRAMES = 7;  ///< a field behind a dialog never gets the keyboard
-int awaited_in_frame = -1;          ///< last frame in which some field awaited it
+int awaited_in_frame = -1;          ///< last frame in which a field awaited the keyboard
 
 }  // namespace
 

@@ -103,7 +103,7 @@ std::vector<NrrdPair> segment_pairs(const std::filesystem::path& path, const Mas
     for (const NrrdSegment& segment : segments)
         if (segment.label_value > 0 && segment.label_value < 256)
             set(segment, "Extent", extent_of(boxes[size_t(segment.label_value)]));
-    // Segmentations of 3D Slicer may be cut to what is painted; a saved mask covers the whole volume.
+    // 3D Slicer may crop a segmentation to its painted part; a saved mask covers the whole volume.
     set_pair(pairs, "Segmentation_ReferenceImageExtentOffset", "0 0 0");
     if (is_new) {
         set_pair(pairs, "Segmentation_ContainedRepresentationNames", "Binary labelmap|");

@@ -13,8 +13,8 @@ public:
     MaskSource(const Mask& mask, const VolumeInfo& volume);
 };
 
-/// The records that turn an unpainted mask of the volume's size into the volume, ascending; at a cost of what the
-/// source stores. Fails, naming `file`, if its voxels are not uint8.
+/// The records that turn an unpainted mask of the volume's size into the volume, in ascending order. The cost is
+/// proportional to the amount that the source stores. Fails, naming `file`, if its voxels are not uint8.
 std::vector<MaskBrickChange> mask_changes(const VolumeSource& groups, const std::string& file);
 
 }  // namespace shvr

@@ -1,5 +1,5 @@
 #pragma once
-// Tells annotation from scans by what a file of voxels states. Any thread may call it.
+// Distinguishes annotation from scans by the metadata of a voxel file. Any thread may call it.
 
 #include <filesystem>
 #include <optional>

@@ -1,6 +1,6 @@
 // The topology of a mask, from runs of voxels along x. Only rows that cross painted bricks are read; everything else is
-// one unpainted set around them, so that cost follows what is painted. Union-find joins runs (Rosenfeld and Pfaltz
-// 1966; Wu, Otoo and Suzuki 2009 for the arrays).
+// one unpainted set around them, so that the cost depends on the painted part alone. Union-find joins runs (Rosenfeld
+// and Pfaltz 1966; Wu, Otoo and Suzuki 2009 for the arrays).
 //
 // The Euler characteristic needs the number of runs alone. A union of n voxels of a row in r runs has n + r planes
 // across x. With R a row, P and Q its union with the previous row along y or z, and A the union of all four, the cells
@@ -166,7 +166,7 @@ private:
 struct BrickRow {
     int64_t y = 0;
     std::vector<std::pair<int64_t, const MaskBrick*>> bricks;  ///< x of the first voxel
-    std::array<Row, BRICK_SIDE> rows, previous;                ///< of this slice, and of the slice before
+    std::array<Row, BRICK_SIDE> rows, previous;                ///< rows of this slice and of the previous one
 };
 /// Rows of bricks with the same z, ascending along y. Those after a painted one along y, z or both are in it.
 using Layer = std::vector<BrickRow>;

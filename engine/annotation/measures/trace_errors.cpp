@@ -71,7 +71,7 @@ bool TraceErrors::note_superfluous(size_t segment)
         ++superfluous_;
         return true;
     }
-    // A trace that goes on beyond an end of the truth, but not out of its ball, is only longer.
+    // A trace that continues beyond an end of the truth, but stays in its ball, is only longer: no error.
     if (degree(is_loose(front) ? back : front) < 3) return false;
     ++spurs_;
     return true;

@@ -99,7 +99,7 @@ bool TraceFollow::goes_over(size_t a, size_t b, const TraceSample& sample) const
     return false;
 }
 
-/// Records what a segment of the trace follows; false if it cannot follow the truth.
+/// Records the part of the truth that a segment of the trace follows; returns false if it follows none.
 bool TraceFollow::add_follower(size_t index)
 {
     const std::vector<TraceSample> samples = match_.samples_along(match_.segments()[index]);
@@ -143,7 +143,7 @@ void TraceFollow::note_doubled(std::vector<Follower>& followers)
 }
 
 /// Returns whether two segments overlap: they share more than the surroundings of their ends or, if they join the same
-/// two nodes, at least half of what the shorter one follows.
+/// two nodes, at least half of the stretch that the shorter one follows.
 bool TraceFollow::doubles(const Follower& a, const Follower& b) const
 {
     const double shared = shared_length(a.runs, b.runs);

@@ -14,7 +14,7 @@ namespace shvr {
 struct Follower {
     size_t segment;  ///< index in the trace
     bool is_partner;
-    std::vector<glm::dvec2> runs;  ///< from ... to along the truth's segment, ascending and disjoint
+    std::vector<glm::dvec2> runs;  ///< intervals of length along the truth's segment, ascending and disjoint
     double tolerance;              ///< length that two segments may share where they meet
 };
 

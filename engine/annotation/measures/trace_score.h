@@ -58,7 +58,8 @@ struct TraceComparison {
     /// Segments of the trace that leave the truth, or switch to a segment that does not begin there.
     int64_t wrong = 0;
     /// Segments that stand for none of the truth and follow a part of it that another one follows, too: for longer than
-    /// the surroundings of their ends or, if both join the same two nodes, for half of what one of them follows.
+    /// the surroundings of their ends or, if both join the same two nodes, for half of the stretch that one of them
+    /// follows.
     int64_t doubled = 0;
     /// Ends of the trace that lie near a traced branch of the truth, on the way to one with nothing traced in between,
     /// or at one that another segment passes, and are not joined there.

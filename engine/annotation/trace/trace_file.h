@@ -40,8 +40,8 @@ std::string trace_text(const std::filesystem::path& path, const TraceGraph& trac
 struct TraceFile {
     TraceGraph trace;
     std::optional<TraceSpace> space;  ///< if the file states all of it
-    /// What was read past in SWC, GraphML and RSML of other programs, one sentence a kind, and what was assumed. Such a
-    /// file may hold more than the trace: keep it before saving over it.
+    /// Oddities that were skipped in SWC, GraphML and RSML files of other programs, one sentence per kind, and
+    /// assumptions that were made. Such a file may hold more than the trace: keep it before saving over it.
     std::vector<std::string> warnings{};
 };
 /// Returns the trace in volume space. At most 256 MiB and 4 million nodes. Lengths are converted to the unit of

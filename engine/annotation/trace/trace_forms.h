@@ -44,8 +44,8 @@ std::string comments_of(const TraceWriting& writing);
 /// the two, and a place only after it.
 void read_space_comment(TraceReader& reader, const std::string& where, std::string_view comment);
 
-/// Collects nodes and internodes from a file, and refuses malformed traces or reads past what is odd. `where` begins
-/// every message.
+/// Collects nodes and internodes from a file, refuses malformed traces, and skips oddities. `where` begins every
+/// message.
 class TraceReader {
 public:
     explicit TraceReader(std::string file) : file_(std::move(file)) {}
@@ -67,10 +67,10 @@ public:
     /// file does not state it.
     void to_volume_space(const std::optional<TraceSpace>& expected);
 
-    /// Records an oddity that was read past, and what was done about it ("left out"). Oddities of one kind expected the
-    /// same; the first of a kind is kept, with the number of all.
+    /// Records an oddity that was skipped, and how it was handled ("left out"). Oddities are of one kind if their
+    /// messages state the same expectation; the first of a kind is kept, with the number of all.
     void read_past(const Error& odd, const std::string& done);
-    /// Runs `read`, and leaves out what it refuses.
+    /// Runs `read`; leaves out an element that it refuses.
     template <class Read>
     void leave_out_if_odd(const Read& read)
     {
@@ -91,7 +91,8 @@ public:
 
     StatedSpace stated{};
     TraceGraph trace{};
-    std::map<uint32_t, glm::dvec3> exact{};  ///< in volume space, for nodes whose file holds both; used if they agree
+    std::map<uint32_t, glm::dvec3> exact{};  ///< positions in volume space, for nodes whose file also holds physical
+                                             ///< ones; used if both agree
 
 private:
     struct Oddity {

@@ -69,7 +69,8 @@ private:
         keys_[id] = std::move(read);
     }
 
-    /// Maps the names of the keys to their values. `domain`: what a key must be for to have its default.
+    /// Maps the names of the keys to their values. Keys that are declared for `domain` ("node", "edge") start with
+    /// their defaults.
     Data data_of(const pugi::xml_node& node, std::string_view domain) const
     {
         Data data;

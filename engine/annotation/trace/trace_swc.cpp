@@ -20,7 +20,7 @@ struct Sample {
     std::optional<int64_t> parent;
 };
 
-/// "# unit um", as we write it, and "# SCALE 1 1 1", as archives do.
+/// Reads "# unit um", which SHVR writes, and "# SCALE 1 1 1", which archives of neurons write.
 void read_comment(TraceReader& reader, const std::string& where, std::string_view comment)
 {
     read_space_comment(reader, where, comment);
@@ -46,7 +46,7 @@ std::optional<int64_t> number_of_sample(TraceReader& reader, const std::string& 
     return int64_t(*number);
 }
 
-/// The type of a neurite may be any number; only those that are groups are kept.
+/// A neurite's type may be any number; types that are no groups are dropped.
 uint8_t group_of(TraceReader& reader, const std::string& where, std::string_view word)
 {
     try {

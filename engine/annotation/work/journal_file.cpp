@@ -100,8 +100,8 @@ JournalRecord fields_of(const Header& header, uint64_t at, uint64_t& label_bytes
             .is_compressed = (get(&header[4], 2) & COMPRESSED) != 0};
 }
 
-/// False if it has no header yet, as a power cut leaves a journal that has just begun: some or none of its bytes are
-/// present, and the rest is zero. Fails if it is not a journal.
+/// False if it has no header yet: a power cut may leave a journal that has just begun with some or none of its bytes,
+/// and zeros for the rest. Fails if it is not a journal.
 bool has_file_header(const FileDescriptor& file, const fs::path& path, const JournalScan& scan)
 {
     const uint64_t file_bytes = scan.file_bytes;

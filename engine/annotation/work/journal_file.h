@@ -31,7 +31,7 @@ enum class RecordKind : uint32_t {
     undo,
     redo,
     saving,  ///< start of a save: from here on each saved file may be the old or the new one
-    /// SavedFiles. `about`: the `kept` record up to which the session's file held the kept settings; 0: not known.
+    /// Has SavedFiles. `about`: number of the last `kept` record whose settings the session's file held; 0: unknown.
     saved,
     /// JournalSpace: from here on positions are in another spacing; earlier ones are converted when they are read.
     /// Older programs would mix the two, so this kind makes them refuse the journal.

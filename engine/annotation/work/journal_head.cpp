@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 using Bytes = std::span<const std::byte>;
 
-/// Of the 64 bits of "SHVRJRNL". Other texts differ in more.
+/// Number of flipped bits tolerated in the 64 bits of the magic "SHVRJRNL"; texts of other files differ in more.
 constexpr int MAX_DAMAGED_BITS = 8;
 
 int bits_between(Bytes a, Bytes b)
@@ -95,7 +95,8 @@ std::vector<std::byte> expected_head(Bytes begin, Bytes front, bool has_repetiti
     const std::vector<std::byte> repetition = second_record(front, checksum);
     const Bytes next = begin.subspan(std::min(begin.size(), head.size()));
     if (!has_repetition && !parse_record(next, checksum) && next.size() >= repetition.size()) {
-        // A damaged repetition, if what follows it continues it; otherwise something else ends here.
+        // The repetition is damaged if the records after it continue the journal; otherwise these bytes are not a
+        // repetition.
         const Bytes after = next.subspan(repetition.size());
         JournalRecord record{.kind = RecordKind::head};
         uint64_t seed = checksum;
@@ -143,7 +144,8 @@ std::vector<std::byte> repaired_head(std::span<const std::byte> begin, const fs:
         return differing(expected_head(begin, front, true));
     const bool is_like_header = bits_between(begin.first(MAGIC_BYTES), header) <= MAX_DAMAGED_BITS;
     if (!is_like_header || is_newer(begin)) return {};
-    // Of an older journal, or with a damaged repetition too: the first bytes follow from the first record.
+    // An older journal has no repetition, and this one may be damaged as well: then the first bytes are derived from
+    // the first record.
     std::vector<std::byte> front(begin.begin(), begin.end());
     std::ranges::copy(header, front.begin());
     if (const Bytes sound = sound_front(front); !sound.empty()) return differing(expected_head(front, sound, false));

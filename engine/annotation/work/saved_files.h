@@ -47,8 +47,8 @@ bool holds_any(const Document& document, Part part);
 
 bool is_there(const std::filesystem::path& path);
 
-/// Reads the file of a part into a document whose part is empty; returns what it read past, a sentence each. Fails if
-/// the file is malformed, or of another volume or image.
+/// Reads the file of a part into a document whose part is empty; returns the oddities that it skipped, one sentence
+/// each. Fails if the file is malformed, or of another volume or image.
 std::vector<std::string> load(Part part, const WorkFiles& files, Document& into);
 
 /// The changes that turn a part of one document into that of the other, both of one volume; none if they are equal. The
@@ -72,7 +72,7 @@ std::filesystem::path old_of(const std::filesystem::path& path);
 /// Renames a file or folder to its `old_of`, and returns that; null if another process has moved it meanwhile. Fails if
 /// it cannot.
 std::optional<std::filesystem::path> set_aside(const std::filesystem::path& path);
-/// The same for a file with another name.
+/// Renames a file that has another name likewise.
 std::optional<std::filesystem::path> rename_to_old(const std::filesystem::path& file,
                                                    const std::filesystem::path& path);
 

@@ -59,8 +59,8 @@ public:
     Work(const Work&) = delete;  // its history holds a pointer to it
 
     enum class Start {
-        as_left,  ///< with the contents of the journal or of the saved files
-        fresh,    ///< empty; an existing journal is set aside at the first command
+        as_left,  ///< starts with the contents of the journal or of the saved files
+        fresh,    ///< starts empty; an existing journal is set aside at the first command
     };
     struct Opening {
         Start start = Start::as_left;
@@ -82,7 +82,7 @@ public:
     /// Decisions to be made; empty: none.
     const std::vector<Dispute>& disputes() const { return disputes_; }
     /// Resolves all disputes: with the files, applied as one command, or with the journal as it is. Returns messages
-    /// about what was done, and the command, valid until the history changes.
+    /// about the choice, and the command, which is valid until the history changes.
     struct Choice {
         std::vector<Notice> notices;
         const Command* command = nullptr;
@@ -157,8 +157,8 @@ public:
     /// and new files are removed. If there is no history yet, the new journal begins with the first command.
     Saved save_as(const WorkFiles& to, std::vector<LabelImage::Color> looks, const std::filesystem::path& session = {},
                   const std::function<void()>& save_session = {});
-    /// The same in the background, as `begin_save`. Until `end_save_as`, commands are refused, since they would be in
-    /// only one of the journals.
+    /// save_as() in the background, like `begin_save`. Until `end_save_as`, commands are refused, since they would be
+    /// in only one of the journals.
     class SavingAs;
     std::unique_ptr<SavingAs> begin_save_as(const WorkFiles& to, std::vector<LabelImage::Color> looks,
                                             const std::filesystem::path& session = {});

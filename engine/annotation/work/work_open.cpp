@@ -93,7 +93,7 @@ std::vector<Notice> Work::open(const WorkFiles& files, const Opening& opening)
         opening.hold && plain(opening.hold->journal()) == plain(files.journal) && opening.hold->is_kept();
     if (!only_looks_) {
         hold_ = is_given ? opening.hold : Hold::take(files.journal, opening.program);
-        std::set<fs::path> folders;  // in which killed programs may have left the files of a save
+        std::set<fs::path> folders;  // folders in which killed programs may have left the files of a save
         for (const fs::path& file : {files.journal, files.mask, files.trace, files.density})
             if (!file.empty()) folders.insert(file.parent_path());
         for (const fs::path& folder : folders) collect_temporary_files(folder);
@@ -231,7 +231,7 @@ std::vector<Notice> Work::open_from_files(const std::string& damage)
         const fs::path& file = file_of(files_, part);
         if (is_there(file) || (part == Part::mask && is_in_archive(file)))
             for (const std::string& warning : load(part, files_, document_)) {
-                // The file holds more than what is kept of it.
+                // The file holds data that was not kept in memory.
                 seen_[size_t(part)].is_foreign = true;
                 notices.push_back(
                     {sentence(warning, "; the next save keeps this file as ", old_of(file).string()), true});

@@ -13,7 +13,8 @@ namespace shvr {
 
 namespace fs = std::filesystem;
 
-/// Another process has claimed the journal: what this one did stays under the name that the other gave it, or gets one.
+/// Another process has claimed the journal: the records of this process stay in the file that the other one renamed, or
+/// are renamed here.
 void Work::note_claim()
 {
     const std::optional<Holder> other = hold_->successor();
@@ -68,8 +69,8 @@ void Work::tell_doubtful(std::vector<Notice>& notices) const
              true});
 }
 
-/// Begins the journal at once if others may still write it. They keep nothing that they write after their marks are
-/// revoked; what they have written before is read again.
+/// Begins the journal at once if others may still write it. Records written after their marks are revoked are not kept;
+/// earlier ones are read again.
 void Work::take_over(std::vector<Notice>& notices)
 {
     constexpr int TRIES = 3;

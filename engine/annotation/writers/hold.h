@@ -50,8 +50,8 @@ public:
     Hold(const Hold&) = delete;
 
     const std::filesystem::path& journal() const { return journal_; }
-    /// False if another process has claimed the journal meanwhile: this one must not begin to write it, and what it
-    /// still writes to the file that it has open stays apart. Any thread.
+    /// False if another process has claimed the journal meanwhile: this one must not begin to write it, and the records
+    /// that it still writes into its open file stay separate. Any thread.
     bool is_kept() const;
     /// Another process that writes the journal now. Null if none does.
     std::optional<Holder> successor() const;

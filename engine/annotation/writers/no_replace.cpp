@@ -70,7 +70,8 @@ Renaming put_at_free(const fs::path& own, const fs::path& to)
     int error = rename_without_replacing(own, to);
     if (error == 0) return Renaming::done;
     if (!lacks_call(error)) return after_failure(own, to, error);
-    // Not over an own empty file: another process may already have moved that, and put its own one there.
+    // Links instead of renaming over an empty placeholder: another process may already have moved that and put its own
+    // file there.
     error = ::link(own.c_str(), to.c_str()) == 0 ? 0 : errno;
     if (error == 0) {
         ::unlink(own.c_str());  // no more than a second name

@@ -74,7 +74,7 @@ std::optional<Name> parse(std::string_view middle)
         parts.emplace_back(middle.substr(0, dot));
         middle.remove_prefix(std::min(dot + 1, middle.size()));
     }
-    constexpr size_t PARTS = 7;  // with the count, which only makes names unique
+    constexpr size_t PARTS = 7;  // parts of a mark's name, including a count that only makes names unique
     if (parts.size() != PARTS) return std::nullopt;
     for (const size_t number : {1u, 3u, 4u, 5u, 6u})
         if (!whole_of(parts[number])) return std::nullopt;

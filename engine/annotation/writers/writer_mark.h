@@ -26,7 +26,7 @@ struct WriterMark {
     };
     std::filesystem::path path;
     Owner owner = Owner::unknown;
-    Holder holder{};            ///< as the file says, or else its name and time
+    Holder holder{};            ///< as stated in the file, or else derived from its name and time
     bool is_described = false;  ///< false: its owner has not looked for others yet
 };
 

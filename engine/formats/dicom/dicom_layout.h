@@ -17,7 +17,8 @@ struct DicomLayout {
     int64_t pixel_bytes = 0;      ///< size of Pixel Data, as stored; 0 if there is none
     int64_t pixels_at = 0;        ///< offset of the pixels, if not encapsulated
     bool is_big_endian = false;
-    bool pixels_are_words = false;  ///< of type OW: 16-bit words in the file's byte order, even if a pixel is one byte
+    bool pixels_are_words = false;  ///< pixels have the type OW: 16-bit words in the file's byte order, even if a pixel
+                                    ///< is one byte
     bool is_encapsulated = false;
     enum class Numbers { whole, float32, float64 };
     Numbers numbers = Numbers::whole;  ///< Pixel Data, Float Pixel Data or Double Float Pixel Data

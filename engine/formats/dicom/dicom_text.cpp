@@ -43,7 +43,7 @@ bool is_utf8(std::string_view bytes)
 
 const char* encoding_of(std::string_view character_set)
 {
-    // Of several sets, the last one named is that of the characters beyond ASCII.
+    // If several character sets are named, the last one has the characters beyond ASCII.
     std::string term(trimmed(character_set.substr(character_set.rfind('\\') + 1)));
     term = std::string(trimmed(std::string_view(term).substr(0, term.find('\0'))));
     if (term.starts_with("ISO 2022 IR")) term = "ISO_IR" + term.substr(11);

@@ -194,7 +194,8 @@ bool is_node_centered(const HeaderFields& fields, const NrrdAxes& axes, size_t a
     return false;
 }
 
-/// The steps that "axis mins" and "axis maxs" state, NaN where they do not; null if the header lacks them.
+/// Returns the steps stated by "axis mins" and "axis maxs", NaN for an axis without them; null if the header lacks both
+/// fields.
 std::optional<std::vector<double>> steps_of_ends(const HeaderFields& fields, const NrrdAxes& axes, VolumeInfo& info)
 {
     const char* const mins_name = fields.has("axismins") ? "axismins" : "axis mins";

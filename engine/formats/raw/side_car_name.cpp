@@ -25,7 +25,7 @@ size_t size_in_name(std::string_view text, Size3& size)
     return at;
 }
 
-/// "16bit", "int16", "uint16le" ...: sets what it recognises.
+/// Reads words like "16bit", "int16" or "uint16le"; sets the recognised properties.
 void type_in_name(std::string word, std::optional<VoxelType>& type, std::optional<bool>& big_endian)
 {
     if (word == "little" || word == "big") big_endian = word == "big";

@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view FILE_SECTION = "[file1]", NEXT_FILE_SECTION = "[file2]";
 
-/// Adds the lines "name = value", inside the section that describes the voxel file, or outside of it. Of fields that
-/// repeat, the first counts.
+/// Adds the lines "name = value", inside the section that describes the voxel file, or outside of it. If a field
+/// repeats, the first one counts.
 void add_lines(std::string_view text, bool is_inside, HeaderFields& fields)
 {
     bool is_of_file = false;

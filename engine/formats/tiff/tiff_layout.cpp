@@ -35,7 +35,7 @@ constexpr Compression COMPRESSIONS[] = {
     {COMPRESSION_DEFLATE, "Deflate", 1032, true},
     {COMPRESSION_PACKBITS, "PackBits", 64, true},  // 2 bytes for 128
     {COMPRESSION_LZMA, "LZMA", 16384, true},       // measured on zeros: 6900
-    {COMPRESSION_ZSTD, "Zstandard", 65536, true},  // at least 4 bytes for a block of 128 KiB
+    {COMPRESSION_ZSTD, "Zstandard", 65536, true},  // limit of the ratio: at least 4 bytes for a block of 128 KiB
     {COMPRESSION_WEBP, "WebP", UNBOUNDED, true},
     {COMPRESSION_OJPEG, "old-style JPEG", 1, false},
     {COMPRESSION_SGILOG, "LogLuv", 1, false},

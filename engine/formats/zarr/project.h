@@ -23,7 +23,7 @@ namespace shvr {
 
 /// The content of volume.json.
 struct ProjectRecord {
-    VolumeInfo info{};  ///< without name and format; its warnings are those of the import
+    VolumeInfo info{};  ///< the volume, without name and format; its warnings are those of the import
     int levels = 1;
     VolumeStatistics statistics{};  ///< of level 0
     std::string content_hash{};     ///< of level 0; content_hash.h

@@ -41,7 +41,7 @@ std::string list_of(const std::vector<int64_t>& numbers)
     return list + "]";
 }
 
-/// Adds a warning for each array that differs from what the import wrote.
+/// Adds a warning for each array that differs from the one written by the import.
 void check_arrays(const fs::path& folder, const ProjectRecord& record, std::vector<std::string>& warnings)
 {
     for (int level = 0; level < record.levels; ++level) {

@@ -56,7 +56,8 @@ private:
         uint64_t offset, bytes;
     };
     static constexpr uint64_t ABSENT = ~uint64_t{0};
-    static constexpr uint64_t SHARED = ABSENT - 1;  ///< with 0 bytes: marks a chunk that shares bytes with another
+    static constexpr uint64_t SHARED = ABSENT - 1;  ///< offset of an entry of 0 bytes: the chunk shares its bytes with
+                                                    ///< another
 
     std::string key_of(std::span<const int64_t> chunk) const;
     std::vector<int64_t> numbers_of(std::string_view key) const;

@@ -50,7 +50,7 @@ struct LookAtFile {
     std::string settings{};      ///< as in Open
 };
 
-/// The use of a file: what its contents say, or what the user says.
+/// The use of a file, determined by its contents or stated by the user.
 enum class FileUse { by_contents, scan, mask, offsets, trace, look };
 inline constexpr Spelling<FileUse> FILE_USES[] = {
     {FileUse::by_contents, "by_contents"}, {FileUse::scan, "scan"},   {FileUse::mask, "mask"},
@@ -137,7 +137,7 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
     row<ExportTask, TaskRunner>(
         {"export", "Export", WORK_GROUP, "writes annotation in formats of other programs, and measurements"},
         TASK_FIELDS,
-        // Asked in each frame of its dialog, so by what is known without the disk; the task itself asks that.
+        // Evaluated in each frame of its dialog, hence without disk access; the task itself checks the disk.
         [](const auto& model, const ExportTask& task) -> std::string {
             if ((!task.trace.empty() || !task.mesh.empty()) && model.trace.nodes().empty())
                 return "nothing is traced yet, so there is neither a trace nor a mesh to write";

@@ -1,5 +1,5 @@
 #pragma once
-// The histogram of a volume as bars to draw, in bins that suit what its voxels can hold. Pure; any thread.
+// The histogram of a volume as bars to draw, in bins that suit the values of its voxel type. Pure; any thread.
 
 #include <vector>
 

@@ -44,8 +44,8 @@ public:
         double paint_threshold = 0.0, haptic_threshold = 0.0;
         glm::vec2 paint_word{0.0f}, haptic_word{0.0f};
     };
-    /// Hit distances. The mouse grabs points within `pixels`, then labels, whose rows are `label` high, then lines; of
-    /// two lines at one position the paint threshold, except in the row of the other line's label.
+    /// Hit distances. The mouse grabs points within `pixels`, then labels, whose rows are `label` high, then lines. If
+    /// two lines are at one position, it grabs the paint threshold, except in the row of the other line's label.
     struct Reach {
         float pixels = 9.0f, label = 17.0f;
     };
@@ -54,7 +54,7 @@ public:
         : points_(function.points().begin(), function.points().end())
     {}
     const Points& points() const { return points_; }
-    /// The edited function; values are clamped to what a transfer function takes.
+    /// The edited function, with values clamped to the range of a transfer function.
     TransferFunction function() const;
 
     /// Returns the item under the mouse: points before lines, the nearest first.

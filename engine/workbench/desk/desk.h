@@ -23,7 +23,7 @@ struct WorkbenchOptions {
     View::Options view{};
     bool has_servo = true;  ///< guidance and haptic devices run; false: guidance has no effect
     /// For scripts, which do exactly what they state: no setting becomes a step or is kept, saves write annotation
-    /// alone, to the files that the session names, and what is selected stays so.
+    /// alone, to the files that the session names, and the selection stays.
     bool is_script = false;
     bool saves_outside = false;           ///< sessions may write outside their folders without a question
     bool allow_force = false;             ///< lets a haptic device with a verified profile push the hand
@@ -58,8 +58,8 @@ struct Desk {
     std::function<Model()> model;
 
     void say(std::string text, Weight weight = Weight::done);
-    /// Logs these in place of the action under way: the point seen at a pixel depends on what is painted and loaded at
-    /// that time; its position does not.
+    /// Logs these in place of the action under way. The point seen at a pixel depends on the paint and the bricks of
+    /// that moment, so its position is logged instead.
     void log_instead(const Actions& actions);
     DocumentModel document_model() const;
     /// Objects that a model's references refer to while no document is open.

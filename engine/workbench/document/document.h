@@ -72,7 +72,8 @@ struct Document {
     /// Probe position at the end of its last stroke: until the probe moves, its ball does not cover the fresh paint.
     std::optional<glm::dvec3> painted_at;
 
-    /// Loads everything onto the device again with the current settings. Fails as load and create do.
+    /// Loads everything onto the device again with the current settings. Fails like Renderer::load and
+    /// Scene::show_surfaces.
     void load_again(Renderer& renderer);
     /// Shows it in the renderer's scene, a new one with its volume.
     void show_again(Renderer& renderer);
@@ -144,7 +145,7 @@ struct Document {
     enum class Parts { all, session, work };
     /// Fails if nothing can be saved; writes nothing. `end_save` must follow, whatever the result.
     std::shared_ptr<Saving> begin_save(Parts parts = Parts::all);
-    /// Returns what was written. After a save under another name the document has that name.
+    /// Returns the written parts. After a save under another name the document has that name.
     Work::Saved end_save(Saving& saving);
     /// Returns whether only the place changed, and the session has a file: saving it needs no message. So just looking
     /// at a volume creates no file.

@@ -78,8 +78,8 @@ std::shared_ptr<Document::Saving> Document::begin_save(Parts parts)
     return saving;
 }
 
-/// Projects of earlier versions keep a byte for every voxel; from their next save on they keep what is painted. The old
-/// files stay.
+/// Projects of earlier versions keep a byte for every voxel; from their next save on they keep painted bricks only. The
+/// old files stay.
 void Document::name_sparse_files(Parts parts, Saving& saving)
 {
     const bool is_named_here =

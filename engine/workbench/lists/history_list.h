@@ -25,8 +25,8 @@ HistoryList history_list(const Model& model);
 std::optional<Action> go_to_row(const HistoryList& list, size_t row);
 
 /// The bounding box, in voxels, of the changes in the step that leads to that row: paint and offsets, nodes and ends of
-/// internodes without their radii. Nothing if the step changes no place, as settings do. Fails
-/// if the journal cannot be read.
+/// internodes without their radii. Nothing if the step has no place, like a change of settings. Fails if the journal
+/// cannot be read.
 struct PlaceBox {
     glm::dvec3 lower{0.0}, upper{0.0};  ///< in voxels
     glm::dvec3 middle() const { return (lower + upper) * 0.5; }

@@ -39,8 +39,8 @@ public:
     bool is_frozen() const { return is_frozen_; }
     /// Returns the times last recorded.
     const std::vector<View::PassTime>& passes() const { return passes_; }
-    /// Returns the milliseconds of passes from one recorded frame to the next, oldest first: of one pass, or of all if
-    /// the name is empty.
+    /// Returns the milliseconds of a pass in each recorded frame, oldest first; the sum of all passes if the name is
+    /// empty.
     std::vector<float> graph(const std::string& pass = {}) const;
     /// Returns the time from the oldest frame to the newest.
     double seconds() const;

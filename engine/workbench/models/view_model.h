@@ -35,7 +35,8 @@ struct ReadingModel {
 /// Made by the prober.
 struct ProbeModel {
     glm::dvec3 probe_voxel{0.0};
-    glm::dvec3 tool_voxel{0.0};              ///< where tools act: the probe, or the touched structure (FeelSettings)
+    glm::dvec3 tool_voxel{0.0};              ///< position at which tools act: the probe, or the touched structure
+                                             ///< (FeelSettings)
     std::optional<uint32_t> tool_node;       ///< node that tools act at
     std::optional<uint32_t> tool_internode;  ///< internode that tools act on
 };

@@ -1,4 +1,4 @@
-// shvr profile: where a frame's time goes, pass by pass; shvr profile diff: what changed between two profiles.
+// shvr profile: the time of a frame, pass by pass; shvr profile diff: the differences between two profiles.
 
 #include <chrono>
 #include <iostream>

@@ -217,7 +217,7 @@ std::optional<fs::path> FileChooser::draw()
     return result;
 }
 
-/// Takes what the file system has answered since the last frame.
+/// Takes the file system's answers since the last frame.
 void FileChooser::take_answers()
 {
     list_.show(all_files_, hidden_);
