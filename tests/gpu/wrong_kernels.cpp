@@ -85,8 +85,8 @@ void add_included(const std::string& file, const fs::path& shaders, std::set<std
 std::vector<uint32_t> compiled(const fs::path& source, const std::string& macros, const fs::path& shaders)
 {
     const fs::path binary = shaders / "made.spv";
-    const std::string command = sentence("glslangValidator --quiet -V --target-env vulkan1.3 -I", shaders.string(),
-                                         macros, " ", source.string(), " -o ", binary.string());
+    const std::string command =
+        sentence("shaders/compile_kernel ", source.string(), " ", binary.string(), " -I", shaders.string(), macros);
     if (std::system(command.c_str()) != 0) fail(source.string(), " does not compile with the mistake: ", command);
     const std::vector<std::byte> bytes = read_file(binary, MAX_SHADER_BYTES * 16);
     std::vector<uint32_t> words(bytes.size() / 4);
