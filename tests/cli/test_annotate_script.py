@@ -31,6 +31,20 @@ class Script(CliTest):
         return subprocess.run([SHVR, "annotate", self.session, "--script", script], input=text, capture_output=True,
                               text=True, timeout=PATIENCE_S, env=ENVIRONMENT, **options)
 
+    def test_a_session_without_a_name_for_the_mask_is_refused_before_a_script_that_saves_does_anything(self):
+        session = self.write_session(name="scan.json", annotation={})
+        dab = {"op": "paint", "brush": "fill", "region": "ball", "path": [[12, 12, 12]], "radius": 3, "threshold": 0,
+               "group": 3}
+        script = self.write_script("s.jsonl", [dab, {"op": "save"}])
+        self.check_refused("annotate", session, "--script", script, says=[
+            "scan.json: names no file for the mask, which ", "s.jsonl:2 saves; expected the key annotation.mask, as in ",
+            "--set annotation.mask=scan.labels.zarr"])
+        self.assertFalse((self.folder / "scan.journal").exists())
+        self.check("annotate", session, "--script", script, "--set", "annotation.mask=scan.labels.zarr")
+        self.assertTrue((self.folder / "scan.labels.zarr" / ".zattrs").exists())
+        # Without a save nothing is missing.
+        self.check("annotate", session, "--script", self.write_script("t.jsonl", [dab]))
+
     def test_a_script_comes_from_standard_input_or_a_pipe(self):
         text = json.dumps(self.dab(1)) + "\n" + json.dumps({"op": "expect", "voxels_in_group": {"1": 1}}) + "\n"
         result = self.pipe(text)

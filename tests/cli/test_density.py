@@ -122,7 +122,7 @@ class Density(CliTest):
         session = self.write_session(volume={"path": "volume.nhdr"}, annotation={"trace": "paint.graphml"})
         script = self.write_script("script.jsonl", [density("fill", 0, 2, [[2, 2, 2]], offset=5), {"op": "save"}])
         self.check_refused("annotate", session, "--script", script, "--quiet",
-                           says=["script.jsonl:2", "annotation.density"])
+                           says=["script.jsonl:2 saves", "annotation.density"])
         self.assertFalse((self.folder / "paint.mask").exists())
 
     def test_offsets_of_another_volume_are_refused(self):

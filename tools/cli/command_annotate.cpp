@@ -143,6 +143,30 @@ void check_radii(const std::vector<ScriptLine>& script, const std::string& name,
             }
 }
 
+/// Checks before anything is done whether a script that saves has files to save to.
+void check_names(const std::vector<ScriptLine>& script, const std::string& name, const std::string& project,
+                 const Session& session)
+{
+    const ScriptLine* save = nullptr;
+    bool paints = false, raises = false;
+    for (const ScriptLine& line : script) {
+        if (!save && std::holds_alternative<SaveOp>(line.op)) save = &line;
+        const auto* const paint = std::get_if<PaintOp>(&line.op);
+        paints |= paint && paint->paints_group;
+        raises |= paint && paint->density;
+    }
+    if (!save) return;
+    const std::filesystem::path file = session_file_of(project);
+    const auto refuse = [&](const char* what, const char* key, const char* extension) {
+        const std::string suggested = file.stem().string() + extension;
+        fail(file.string(), ": names no file for the ", what, ", which ", name, ":", save->number,
+             " saves; expected the key annotation.", key, ", as in \"annotation\": {\"", key, "\": \"", suggested,
+             "\"}, or --set annotation.", key, "=", suggested);
+    };
+    if (session.mask_path.empty() && (session.trace_path.empty() || paints)) refuse("mask", "mask", ".labels.zarr");
+    if (session.density_path.empty() && raises) refuse("density offsets", "density", ".offsets.zarr");
+}
+
 /// Null if the project is a volume without a journal, or no lock can be kept there.
 std::shared_ptr<Hold> hold_of(const std::string& project, const Common& common)
 {
@@ -170,13 +194,16 @@ void run_annotate(const AnnotateCommandOptions& options)
     const std::string name = name_of_script(options.script);
     const std::vector<ScriptLine> script = read_script(options.script);
     LongWork work(options.common.quiet);
-    Opened opened = open(
-        options.project, options.common, work,
-        {.start = options.fresh ? Work::Start::fresh : Work::Start::as_left,
-         .takes_over = std::ranges::any_of(script, [](const ScriptLine& line) { return changes_work(line.op); }),
-         .hold = hold,
-         .program = "shvr annotate"},
-        [&](const Session& session, const VolumeInfo&) { check_outside(options.project, session, options.common); });
+    Opened opened =
+        open(options.project, options.common, work,
+             {.start = options.fresh ? Work::Start::fresh : Work::Start::as_left,
+              .takes_over = std::ranges::any_of(script, [](const ScriptLine& line) { return changes_work(line.op); }),
+              .hold = hold,
+              .program = "shvr annotate"},
+             [&](const Session& session, const VolumeInfo&) {
+                 check_outside(options.project, session, options.common);
+                 if (!session_file_of(options.project).empty()) check_names(script, name, options.project, session);
+             });
     if (opened.project.empty()) refuse_bare_volume(options.project);
     check_radii(script, name, opened.source->info());
     ui::Workbench bench(*opened.renderer, {.has_servo = false, .is_script = true});
