@@ -2,6 +2,7 @@
 // How a volume is traversed: which voxels statistics are computed from (all, the stored ones of a sparse volume, or a
 // sample), and a source that reports a reader's progress.
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -44,20 +45,31 @@ VoxelBox box_of_block(const StoredBlocks& stored, const glm::ivec3& block, const
 class ToldSource final : public VolumeSource {
 public:
     ToldSource(const VolumeSource& source, const Progress& progress)
-        : VolumeSource(source.info()), source_(source), progress_(progress)
+        : VolumeSource(source.info()), source_(source), progress_(progress), all_(double(voxel_count(source.info())))
     {}
     void read(const VoxelBox& box, std::span<std::byte> voxels) const override
     {
         source_.read(box, voxels);
-        const Size3 size = info().size, extent = box.size();
+        const Size3 extent = box.size();
         read_ += double(extent.x) * double(extent.y) * double(extent.z);
-        tell(progress_, read_ / (double(size.x) * double(size.y) * double(size.z)));
+        tell(progress_, std::min(1.0, read_ / all_));
     }
     Size3 block() const override { return source_.block(); }
+    /// Who asks for them reads nothing else.
+    std::optional<StoredBlocks> stored_blocks(int level, int64_t most) const override
+    {
+        std::optional<StoredBlocks> stored = source_.stored_blocks(level, most);
+        if (stored && level == 0) {
+            const Size3& block = stored->block;
+            all_ = std::min(all_, double(block.x) * double(block.y) * double(block.z) * double(stored->blocks.size()));
+        }
+        return stored;
+    }
 
 private:
     const VolumeSource& source_;
     const Progress& progress_;
+    mutable double all_;  ///< voxels to be read, about
     mutable double read_ = 0.0;
 };
 

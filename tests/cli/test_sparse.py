@@ -48,6 +48,12 @@ class Sparse(CliTest):
         self.assertIs(result["complete"], True)
         return read_png(picture)
 
+    # Kind (annotation files): label images of 2^20 voxels a side, compared.
+    def test_masks_of_any_size_are_compared_at_the_cost_of_what_they_store(self):
+        truth = write_sparse(self.folder / "truth.zarr", HUGE, [(1, 1, 1), (20000, 3, 4)], value=2)
+        mask = write_sparse(self.folder / "mask.zarr", HUGE, [(1, 1, 1), (9, 3, 4), (HUGE // CHUNK - 1, 0, 0)], value=2)
+        self.assertEqual(self.check_json("evaluate", "--truth-mask", truth, "--mask", mask)["dice"], 0.4)
+
     def test_one_chunk_of_any_side_is_described_labelled_and_drawn(self):
         for side, levels, separator in ((10 ** 4, 1, "."), (10 ** 6, 1, "/"), (HUGE, 3, "/"), (HUGE, 1, ".")):
             with self.subTest(side=side, levels=levels, separator=separator):
