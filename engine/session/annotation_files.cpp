@@ -63,12 +63,26 @@ bool is_within(const fs::path& path, const fs::path& folder)
     return !relative.empty() && *relative.begin() != "..";
 }
 
-/// The folder that a session owns.
+/// The folder that a session owns, as it is named.
 fs::path folder_of_session(const fs::path& session_file)
 {
     const fs::path folder = fs::absolute(session_file).lexically_normal().parent_path();
     const bool is_project = folder / session_file.filename() == folder.parent_path() / PROJECT_SESSION;
-    return fs::weakly_canonical(is_project ? folder.parent_path() : folder);
+    return is_project ? folder.parent_path() : folder;
+}
+
+/// The first symbolic link on the way from the folder to a path in it; empty: there is none.
+fs::path link_on_way(const fs::path& path, const fs::path& folder)
+{
+    const fs::path whole = fs::absolute(path).lexically_normal();
+    if (!is_within(whole, folder)) return {};
+    fs::path way = folder;
+    for (const fs::path& piece : whole.lexically_relative(folder)) {
+        way /= piece;
+        std::error_code ignored;
+        if (fs::is_symlink(way, ignored)) return way;
+    }
+    return {};
 }
 
 /// Whether the command line sets a key of the section "annotation", alone or with the whole section.
@@ -84,12 +98,15 @@ bool is_set(const std::vector<std::string>& settings, const std::string& key)
 std::string files_outside(const Session& session, const fs::path& session_file,
                           const std::vector<std::string>& settings)
 {
-    const fs::path folder = folder_of_session(session_file);
+    const fs::path named_folder = folder_of_session(session_file), folder = fs::weakly_canonical(named_folder);
     std::string words;
     const auto note = [&](const std::string& what, const fs::path& path) {
         if (path.empty()) return;
         const fs::path target = link_target(path);
-        if (!is_within(target, folder)) words += (words.empty() ? "" : ", ") + what + ", which is " + target.string();
+        if (is_within(target, folder)) return;
+        const fs::path link = link_on_way(path, named_folder);
+        words += (words.empty() ? "" : ", ") + what + ", which is " + target.string();
+        if (!link.empty()) words += ", since " + link.string() + " is a link";
     };
     // Unnamed files lie next to the mask.
     const bool is_mask_set = is_set(settings, "mask");

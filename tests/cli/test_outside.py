@@ -40,8 +40,8 @@ class Outside(CliTest):
         for annotation, named in (
                 ({"mask": str(self.precious)}, "annotation.mask, which is "),
                 ({"mask": "../../home/precious.mask"}, "annotation.mask, which is "),
-                ({"mask": "link.mask"}, "annotation.mask, which is "),
-                ({"mask": "far/new.mask"}, "annotation.mask, which is "),
+                ({"mask": "link.mask"}, f", since {self.project / 'link.mask'} is a link"),
+                ({"mask": "far/new.mask"}, f", since {self.project / 'far'} is a link"),
                 ({"mask": "a.mask", "trace": str(self.home / "t.swc")}, "annotation.trace, which is "),
                 ({"mask": "a.mask", "density": "../../home/d.offset"}, "annotation.density, which is ")):
             with self.subTest(annotation=annotation):
