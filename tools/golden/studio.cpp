@@ -6,17 +6,36 @@
 
 namespace shvr::golden {
 
+namespace {
+
+/// Whether `set_environment` has chosen the device, and not the user.
+bool is_default_device = false;
+
+/// Where the user has named no device, the message states why one is needed.
+Renderer make_renderer(const StudioOptions& options)
+{
+    try {
+        return Renderer({.device = {.device = options.device, .validation = options.validation},
+                         .budget = {options.budget_device, 0}});
+    } catch (const Error& error) {
+        if (!is_default_device) throw;
+        fail(error.what(),
+             "; goldens are drawn on lavapipe (llvmpipe), of the package mesa-vulkan-drivers, unless "
+             "--device names another device");
+    }
+}
+
+}  // namespace
+
 void set_environment(const std::string& device)
 {
     ::setenv("GALLIVM_PERF", "no_aos_sampling", 0);
-    if (device.empty()) ::setenv("SHVR_DEVICE", std::string(LAVAPIPE).c_str(), 0);
+    is_default_device = device.empty() && std::getenv("SHVR_DEVICE") == nullptr;
+    if (is_default_device) ::setenv("SHVR_DEVICE", std::string(LAVAPIPE).c_str(), 0);
 }
 
 Studio::Studio(const Golden& golden, const StudioOptions& options)
-    : golden_(golden),
-      opened_(golden.open()),
-      renderer_({.device = {.device = options.device, .validation = options.validation},
-                 .budget = {options.budget_device, 0}})
+    : golden_(golden), opened_(golden.open()), renderer_(make_renderer(options))
 {
     set_up();
 }
