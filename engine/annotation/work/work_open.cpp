@@ -422,13 +422,18 @@ RecordNumber Work::begin_of_save(const JournalScan& scan, RecordNumber saved)
 /// The states that a save may have written: the last completed one, and all that were begun since.
 std::vector<Document> Work::documents_at_saves() const
 {
-    constexpr size_t MAX_SAVES = 8;
+    constexpr size_t MAX_SAVES = 512;  // each is replayed
     std::vector<Document> documents{document_};
+    bool is_changed = false;  // since the state before
     for (RecordNumber number = scan_.records.size(); number > 0 && documents.size() < MAX_SAVES; --number) {
         const RecordKind kind = scan_.records[number - 1].kind;
-        if (kind != RecordKind::saving && kind != RecordKind::saved) continue;
-        RecordNumber at = 0;
         const bool was_finished = kind == RecordKind::saved;
+        if (kind != RecordKind::saving && !was_finished) {
+            is_changed |= uint32_t(kind) < FIRST_ADDITION;
+            continue;
+        }
+        if (!std::exchange(is_changed, false) && !was_finished) continue;
+        RecordNumber at = 0;
         documents.push_back(replayed(scan_, was_finished ? begin_of_save(scan_, number) : number, at).document);
         if (was_finished) break;
     }
