@@ -86,6 +86,26 @@ std::string free_name(const fs::path& folder)
 
 }  // namespace
 
+fs::path free_old_name(const fs::path& path)
+{
+    const fs::path plain = path.has_filename() ? path : path.parent_path();
+    for (int number = 1;; ++number) {
+        fs::path old = plain;
+        old += number == 1 ? ".old" : sentence(".old", number);
+        if (!is_occupied(old)) return old;
+    }
+}
+
+fs::path move_to_old_name(const fs::path& folder, const fs::path& path)
+{
+    for (;;) {
+        const fs::path old = free_old_name(path);
+        // A folder is never renamed over a file, nor over a folder that is not empty.
+        if (std::rename(folder.c_str(), old.c_str()) == 0) return old;
+        if (errno != EEXIST && errno != ENOTEMPTY && errno != ENOTDIR) refuse_folder(old, errno);
+    }
+}
+
 AtomicFolder::AtomicFolder(const fs::path& target)
     : target_(link_target(plain_path(target))),
       container_(target_.parent_path() / sentence(".", target_.filename().string(), ".shvr-part"))
@@ -107,21 +127,52 @@ AtomicFolder::~AtomicFolder()
     remove_remains();
 }
 
-void AtomicFolder::commit(const std::string& entry)
+void AtomicFolder::sync() const
 {
     if (::syncfs(lock_->number()) != 0) refuse_folder(target_, errno);
+}
+
+void AtomicFolder::commit(const std::string& entry)
+{
+    sync();
     if (inner_.empty())
-        exchange();
+        exchange(path_);
     else
         enter(entry);
     remove_remains();
 }
 
-void AtomicFolder::exchange()
+/// The new content gets the old one's future name before the exchange, so that a process killed in between leaves no
+/// old content in the hidden folder, which the next writer clears.
+fs::path AtomicFolder::commit_and_keep_old(const std::string& entry)
+{
+    fs::path old;
+    if (inner_.empty()) {
+        sync();
+        old = move_to_old_name(path_, target_);
+        exchange(old);
+    } else {
+        old = copy_old();
+        enter(entry);
+        std::error_code ignored;
+        for (const fs::directory_entry& left : fs::directory_iterator(target_, ignored))
+            if (left.path().filename() != inner_ && !fs::exists(path_ / left.path().filename(), ignored))
+                move_out(left.path());
+    }
+    remove_remains();
+    return old;
+}
+
+void AtomicFolder::exchange(const fs::path& with)
 {
     const int result =
-        is_occupied(target_) ? exchange_names(path_, target_) : std::rename(path_.c_str(), target_.c_str());
-    if (result != 0) refuse_folder(target_, errno);
+        is_occupied(target_) ? exchange_names(with, target_) : std::rename(with.c_str(), target_.c_str());
+    if (result != 0) {
+        const int reason = errno;
+        std::error_code ignored;
+        fs::remove_all(with, ignored);
+        refuse_folder(target_, reason);
+    }
     sync_folder(target_);
 }
 
@@ -136,7 +187,27 @@ void AtomicFolder::enter(const std::string& entry)
     collect_temporary_files(target_);
     std::error_code ignored;  // the next version removes what stays
     for (const fs::directory_entry& old : fs::directory_iterator(target_, ignored))
-        if (old.is_directory(ignored) && old.path() != moved) fs::remove_all(old.path(), ignored);
+        if (old.is_directory(ignored) && old.path() != moved) move_out(old.path());
+}
+
+fs::path AtomicFolder::copy_old() const
+{
+    const fs::path copy = container_ / "old";
+    std::error_code error;
+    fs::copy(target_, copy, fs::copy_options::recursive | fs::copy_options::copy_symlinks, error);
+    if (error) fail(target_.string(), ": cannot be copied, to keep what other programs added: ", error.message());
+    sync();
+    const fs::path old = move_to_old_name(copy, target_);
+    sync_folder(old);
+    return old;
+}
+
+/// Moves something inside the target into the hidden folder, which is removed: a process killed meanwhile leaves no
+/// half of it in the target.
+void AtomicFolder::move_out(const fs::path& inside) const
+{
+    std::error_code ignored;
+    fs::rename(inside, container_ / free_name(container_), ignored);
 }
 
 /// What cannot be removed is harmless, and is cleared by the next writer.

@@ -8,7 +8,7 @@
 //
 // Some network file systems cannot exchange names. There a folder that exists keeps its place: new content comes into
 // a folder inside it, under a free name (`inner`), and counts from the moment that one file, which names it, is
-// replaced.
+// replaced. Old content that is to be kept is copied first.
 //
 // Symbolic links are followed, and stay. Every failure is one sentence with the target's path and the system's reason.
 // One thread at a time.
@@ -38,15 +38,25 @@ public:
     /// Syncs the content, and puts it into the target's place; deletes the old content. `entry`: the file, directly in
     /// the folder, that leads readers to all other content.
     void commit(const std::string& entry);
+    /// The same, but keeps the old content under another name, which is returned (free_old_name).
+    std::filesystem::path commit_and_keep_old(const std::string& entry);
 
 private:
-    void exchange();
+    void sync() const;
+    void exchange(const std::filesystem::path& with);
     void enter(const std::string& entry);
+    std::filesystem::path copy_old() const;
+    void move_out(const std::filesystem::path& inside) const;
     void remove_remains();
 
     std::filesystem::path target_, container_, path_;
     std::string inner_;
     std::optional<FileDescriptor> lock_;
 };
+
+/// "paint.old", or "paint.old2" and so on: the first name that is free.
+std::filesystem::path free_old_name(const std::filesystem::path& path);
+/// Renames a folder of this process to the `free_old_name` of a path, and returns that.
+std::filesystem::path move_to_old_name(const std::filesystem::path& folder, const std::filesystem::path& path);
 
 }  // namespace shvr

@@ -78,6 +78,21 @@ Json listed_labels(const fs::path& folder)
     return node->version == 2 ? node->document.value() : node->document.value()["attributes"];
 }
 
+/// Fails if the list cannot be continued.
+void check_list_of_labels(const fs::path& folder)
+{
+    std::error_code ignored;
+    if (fs::exists(folder, ignored) && !fs::is_directory(folder, ignored))
+        fail(folder.string(),
+             ": is a file; expected the folder of the image's labels: move the file, and the next save "
+             "makes the folder");
+    try {
+        static_cast<void>(listed_labels(folder));
+    } catch (const Error& error) {
+        fail(error.what(), "; it lists the image's labels: repair it, or move it, and the next save writes a new list");
+    }
+}
+
 OmeZarrVersion version_of(const ZarrNode& node)
 {
     return node.version == 2 ? OmeZarrVersion::v0_4 : OmeZarrVersion::v0_5;
@@ -220,7 +235,7 @@ fs::path label_image_target(const fs::path& folder)
             fail(target.string(),
                  ": already exists and is not a label image; expected a new name, or a label image to replace");
     }
-    if (belongs_to_image(target)) static_cast<void>(listed_labels(target.parent_path()));
+    if (belongs_to_image(target)) check_list_of_labels(target.parent_path());
     fs::create_directories(target.parent_path(), error);
     if (error) fail(target.parent_path().string(), ": cannot be created: ", error.message());
     return target;

@@ -5,8 +5,10 @@
 #include <span>
 
 #include "engine/base/error.h"
+#include "engine/formats/zarr/consolidated.h"
 #include "engine/formats/zarr/zarr_codec.h"
 #include "engine/projects/atomic_folder.h"
+#include "engine/projects/foreign_content.h"
 #include "engine/projects/import_cube.h"
 #include "engine/projects/import_files.h"
 #include "engine/projects/part_folder.h"
@@ -173,15 +175,27 @@ int64_t write_text(const fs::path& path, const std::string& text)
     return int64_t(text.size());
 }
 
+struct WrittenImage {
+    ImportReport report;
+    std::string kept;  ///< as returned by save_label_image
+};
+
+std::string kept_in_words(const fs::path& image, const ForeignContent& content, const fs::path& old)
+{
+    return sentence(
+        image.string(), ": held ", in_words(content.names),
+        " of another program; expected only what SHVR writes, since a save replaces the folder: the old one "
+        "is kept as ",
+        old.string(), ", copy from there what is still needed");
+}
+
 /// An image as a whole. `attributes(folder)` are those of an image whose levels are in that folder.
-ImportReport write_image(const VolumeSource& source, const VolumeInfo& info, int levels, const fs::path& target,
+WrittenImage write_image(const VolumeSource& source, const VolumeInfo& info, int levels, const fs::path& target,
                          const std::vector<Size3>& chunks, const ImportOptions& options,
                          const std::function<std::string(const std::string& folder)>& attributes,
-                         const Progress& progress)
+                         const Progress& progress, Foreign foreign)
 {
-    if (const fs::path foreign = entry_foreign_to_zarr(target); !foreign.empty())
-        fail(foreign.string(), ": is no part of the image in ", target.string(),
-             "; expected nothing else there, since the folder is replaced as a whole: move it");
+    if (foreign == Foreign::refused) expect_no_foreign_content(target);
     const OmeZarrVersion version = options.version.value_or(OmeZarrVersion::v0_4);
     AtomicFolder folder(target);
     const std::string inner = folder.inner().empty() ? std::string() : folder.inner() + "/";
@@ -198,8 +212,23 @@ ImportReport write_image(const VolumeSource& source, const VolumeInfo& info, int
     for (const auto& [name, text] : files) report.bytes += write_text(folder.path() / name, text);
     if (!inner.empty())
         for (const auto& [name, text] : group_files(version, "{}")) write_text(folder.path() / inner / name, text);
-    folder.commit(files.back().first);
-    return report;
+    const auto& [entry, text] = files.back();
+    ForeignContent content;
+    switch (foreign) {
+        case Foreign::excluded: content = desktop_files_in(target); break;
+        case Foreign::kept: content = foreign_content(target, text); break;
+        case Foreign::refused:  // checked again: the work took a while
+            expect_no_foreign_content(target);
+            content = foreign_content(target);
+            break;
+    }
+    if (!content.names.empty()) {
+        std::string kept = kept_in_words(target, content, folder.commit_and_keep_old(entry));
+        return {std::move(report), std::move(kept)};
+    }
+    carry_over(content, target, folder.path(), folder.inner());
+    folder.commit(entry);
+    return {std::move(report), {}};
 }
 
 /// Calls `progress` of the options at most every 100 ms; throws where they say that it is cancelled.
@@ -261,8 +290,10 @@ bool are_few(const std::vector<Size3>& chunks, const Size3& size)
     return int64_t(chunks.size()) <= counts.x * counts.y * counts.z / MIN_GAIN;
 }
 
-ImportReport write_label_image(const VolumeSource& labels, const fs::path& target, const std::vector<Size3>& chunks,
-                               const ImportOptions& options)
+namespace {
+
+WrittenImage write_labels(const VolumeSource& labels, const fs::path& target, const std::vector<Size3>& chunks,
+                          const ImportOptions& options, Foreign foreign)
 {
     const VolumeInfo info = make_preparation(labels, {})->info();
     const int levels = level_count(info.size);
@@ -271,11 +302,19 @@ ImportReport write_label_image(const VolumeSource& labels, const fs::path& targe
         return import_attributes(options.version.value_or(OmeZarrVersion::v0_4), target.filename().string(), info,
                                  levels, Halving::label, &*options.label_image, folder);
     };
-    return write_image(labels, info, levels, target, chunks, options, attributes, std::ref(told));
+    return write_image(labels, info, levels, target, chunks, options, attributes, std::ref(told), foreign);
 }
 
-ImportReport save_label_image(const VolumeSource& labels, const fs::path& folder, const LabelImage& image,
-                              const ImportOptions& options)
+}  // namespace
+
+ImportReport write_label_image(const VolumeSource& labels, const fs::path& target, const std::vector<Size3>& chunks,
+                               const ImportOptions& options)
+{
+    return write_labels(labels, target, chunks, options, Foreign::refused).report;
+}
+
+std::string save_label_image(const VolumeSource& labels, const fs::path& folder, const LabelImage& image,
+                             const ImportOptions& options, Foreign foreign)
 {
     const fs::path target = label_image_target(folder);
     const bool belongs = belongs_to_image(target);
@@ -285,13 +324,14 @@ ImportReport save_label_image(const VolumeSource& labels, const fs::path& folder
     wanted.version = label_image_version(target, options.version);
     const std::optional<std::vector<Size3>> chunks = stored_chunks(labels);
     SHVR_CHECK(chunks, "the source does not know what it stores");
-    const ImportReport report = write_label_image(labels, target, *chunks, wanted);
+    std::string kept = write_labels(labels, target, *chunks, wanted, foreign).kept;
     if (belongs) list_label_image(target, *wanted.version);
-    return report;
+    renew_consolidated_metadata(target);
+    return kept;
 }
 
-ImportReport save_number_image(const VolumeSource& numbers, const fs::path& folder, const std::string& kind,
-                               const Progress& progress)
+std::string save_number_image(const VolumeSource& numbers, const fs::path& folder, const std::string& kind,
+                              const Progress& progress, Foreign foreign)
 {
     const fs::path target = number_image_target(folder, kind);
     const std::optional<std::vector<Size3>> chunks = stored_chunks(numbers);
@@ -301,7 +341,9 @@ ImportReport save_number_image(const VolumeSource& numbers, const fs::path& fold
         return number_attributes(target.filename().string(), info, kind, inner);
     };
     const ImportOptions options;
-    return write_image(numbers, info, 1, target, *chunks, options, attributes, progress);
+    std::string kept = write_image(numbers, info, 1, target, *chunks, options, attributes, progress, foreign).kept;
+    renew_consolidated_metadata(target);
+    return kept;
 }
 
 }  // namespace shvr

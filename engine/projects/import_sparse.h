@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "engine/projects/import_volume.h"
@@ -17,19 +18,26 @@ std::optional<std::vector<Size3>> stored_chunks(const VolumeSource& source);
 /// Whether writing these chunks alone takes less time than a dense import with all threads: up to an eighth of all.
 bool are_few(const std::vector<Size3>& chunks, const Size3& size);
 
+/// What is done with an image that is replaced and holds content of other programs (foreign_content.h).
+enum class Foreign {
+    refused,   ///< the write fails
+    kept,      ///< the old image gets another name (free_old_name)
+    excluded,  ///< there is none, since the image is as SHVR wrote it: nothing is compared
+};
+
 /// Writes a label image of these chunks; a voxel of a coarser level is the most frequent label of those below it.
 /// `target` and `options` are those of `export_label_image`, checked and completed.
 ImportReport write_label_image(const VolumeSource& labels, const std::filesystem::path& target,
                                const std::vector<Size3>& chunks, const ImportOptions& options);
 
 /// Like `export_label_image`, for a source that can list its stored blocks, at a cost proportional to these, on one
-/// thread.
-ImportReport save_label_image(const VolumeSource& labels, const std::filesystem::path& folder, const LabelImage& image,
-                              const ImportOptions& options = {});
+/// thread. Returns a sentence if the old image is kept under another name.
+std::string save_label_image(const VolumeSource& labels, const std::filesystem::path& folder, const LabelImage& image,
+                             const ImportOptions& options = {}, Foreign foreign = Foreign::refused);
 
 /// Saves numbers, from a source that can list its stored blocks, as an OME-Zarr 0.4 of level 0 alone, whose attribute
-/// "shvr" is {"shvr_KIND": 1}. Replaces an image of that kind; anything else at that path is refused.
-ImportReport save_number_image(const VolumeSource& numbers, const std::filesystem::path& folder,
-                               const std::string& kind, const Progress& progress = {});
+/// "shvr" is {"shvr_KIND": 1}. Replaces an image of that kind; anything else at that path is refused. Returns the same.
+std::string save_number_image(const VolumeSource& numbers, const std::filesystem::path& folder, const std::string& kind,
+                              const Progress& progress = {}, Foreign foreign = Foreign::refused);
 
 }  // namespace shvr

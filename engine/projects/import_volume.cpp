@@ -8,7 +8,9 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/formats/readers.h"
+#include "engine/formats/zarr/consolidated.h"
 #include "engine/formats/zarr/project.h"
+#include "engine/projects/foreign_content.h"
 #include "engine/projects/import_box.h"
 #include "engine/projects/import_chunks.h"
 #include "engine/projects/import_files.h"
@@ -337,6 +339,7 @@ private:
         report_.bricks = chunks_->all();
         report_.bricks_stored = chunks_->stored();
         report_.bytes = chunks_->bytes() + other_bytes_;
+        if (options_.label_image) expect_no_foreign_content(origin_);  // checked again: the work took a while
         folder_.finish();
         report_.project = folder_.path();
     }
@@ -458,6 +461,7 @@ ImportReport export_label_image(const VolumeSource& labels, const fs::path& fold
 {
     check_labels(labels.info(), {});
     const fs::path target = label_image_target(folder);
+    expect_no_foreign_content(target);
     LabelImage described = image;
     const bool belongs = belongs_to_image(target);
     if (belongs) described.source = "../../";
@@ -475,6 +479,7 @@ ImportReport export_label_image(const VolumeSource& labels, const fs::path& fold
     const ImportReport report =
         is_sparse ? write_label_image(labels, target, *chunks, wanted) : import_all(labels, target, wanted);
     if (belongs) list_label_image(target, version);
+    renew_consolidated_metadata(target);
     return report;
 }
 

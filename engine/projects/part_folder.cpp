@@ -10,6 +10,7 @@
 #include <cstdio>
 
 #include "engine/base/error.h"
+#include "engine/projects/foreign_content.h"
 
 namespace shvr {
 namespace {
@@ -77,6 +78,21 @@ bool is_temporary(const fs::path& path)
     return path.filename().string().starts_with(".shvr-");
 }
 
+/// Entries that are no part of a project or another Zarr folder, and that no file browser has left: they must not be
+/// deleted with the folder. At most MAX_FOREIGN_NAMES.
+std::vector<std::string> entries_foreign_to_zarr(const fs::path& folder)
+{
+    std::vector<std::string> names;
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+        if (belongs_to_zarr(entry.path()) || is_temporary(entry.path()) || is_desktop_file(entry.path())) continue;
+        names.push_back(entry.path().filename().string());
+        if (names.size() == MAX_FOREIGN_NAMES) break;
+    }
+    std::ranges::sort(names);
+    return names;
+}
+
 /// Removes everything in the folder.
 void remove_content(const fs::path& folder)
 {
@@ -118,10 +134,11 @@ void PartFolder::refuse_target() const
     if (!is_zarr(target_))
         fail(target_.string(),
              ": is not a project; expected one, since --overwrite replaces nothing else: choose a new name");
-    if (const fs::path foreign = entry_foreign_to_zarr(target_); !foreign.empty())
-        fail(foreign.string(),
-             ": is no part of a project; expected nothing else there, since --overwrite removes the whole folder: "
-             "move it, or choose a new name");
+    if (const std::vector<std::string> foreign = entries_foreign_to_zarr(target_); !foreign.empty())
+        fail(target_.string(), ": holds ", in_words(foreign),
+             ", no part of a project; expected nothing else there, since --overwrite removes the whole folder: move "
+             "that, "
+             "or choose a new name");
 }
 
 void PartFolder::clear() const
@@ -181,14 +198,6 @@ fs::path plain_path(const fs::path& path)
 {
     const fs::path whole = fs::absolute(path).lexically_normal();
     return whole.has_filename() ? whole : whole.parent_path();
-}
-
-fs::path entry_foreign_to_zarr(const fs::path& folder)
-{
-    std::error_code ignored;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
-        if (!belongs_to_zarr(entry.path()) && !is_temporary(entry.path())) return entry.path();
-    return {};
 }
 
 void write_part_file(const fs::path& path, std::span<const std::byte> content)

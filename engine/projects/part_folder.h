@@ -49,10 +49,6 @@ private:
 /// The path without dots and without a trailing slash, with which it would be its own parent.
 std::filesystem::path plain_path(const std::filesystem::path& path);
 
-/// The first entry that is no part of a project or another Zarr folder: a foreign file, which must not be deleted with
-/// it. Empty if there is none.
-std::filesystem::path entry_foreign_to_zarr(const std::filesystem::path& folder);
-
 /// Writes a whole file into a folder that is still being built: not synced, not atomic. Creates parent folders.
 void write_part_file(const std::filesystem::path& path, std::span<const std::byte> content);
 

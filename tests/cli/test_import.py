@@ -301,7 +301,7 @@ class Refusals(CliTest):
         self.assertEqual((self.folder / "mine/text").read_text(), "keep")
         # Nor does a project that holds foreign files.
         (project / "notes.txt").write_text("keep")
-        self.check_refused("import", header, project, "--overwrite", says=["notes.txt: is no part of a project"])
+        self.check_refused("import", header, project, "--overwrite", says=["holds notes.txt, no part of a project"])
         self.assertEqual((project / "notes.txt").read_text(), "keep")
         (project / "notes.txt").unlink()
         self.check("import", header, project, "--overwrite", "--quiet")

@@ -31,6 +31,36 @@ print(json.dumps({"shape": array.shape, "type": array.dtype.str, "fill": float(a
                   "levels": len(group.attrs["multiscales"][0]["datasets"])}))
 """
 
+# Adds an array and an attribute to each image.
+ADDS = """
+import sys
+import numpy, zarr
+for path in sys.argv[1:]:
+    group = zarr.open_group(path, mode="a")
+    group.create_dataset("scores", data=numpy.arange(4), chunks=2)
+    group.attrs["reviewer"] = ["Anna"]
+print("{}")
+"""
+SCORES = """
+import json, sys
+import zarr
+group = zarr.open_group(sys.argv[1], mode="r")
+print(json.dumps([group.attrs["reviewer"], group["scores"][:].tolist()]))
+"""
+# Consolidates the metadata of a group where asked to; all copies in it, and their originals.
+CONSOLIDATED = """
+import json, pathlib, sys
+import zarr
+folder = pathlib.Path(sys.argv[1])
+if sys.argv[2]:
+    zarr.consolidate_metadata(str(folder))
+copies = json.loads((folder / ".zmetadata").read_text())["metadata"]
+originals = {str(path.relative_to(folder)): json.loads(path.read_text())
+             for name in (".zgroup", ".zattrs", ".zarray") for path in folder.rglob(name)}
+found = "labels/paint/0/.zarray" in copies and zarr.open_consolidated(str(folder))["labels/paint/0"].shape == (40,) * 3
+print(json.dumps({"copies": copies, "originals": originals, "found": found}))
+"""
+
 
 def files_of(folder):
     return {str(path.relative_to(folder)): path.stat().st_size for path in Path(folder).rglob("*") if path.is_file()}
@@ -107,6 +137,83 @@ class SparseSaves(CliTest):
         self.annotate(self.project, [self.dab([20, 20, 20]), {"op": "save"}])
         self.assertEqual(files_of(self.project / "labels" / "cells"), before)
         self.assertEqual(json.loads((self.project / "labels" / ".zattrs").read_text()), {"labels": ["cells", "paint"]})
+
+    def python(self, program, *arguments):
+        python = python_with_zarr()
+        if python is None:
+            self.skipTest("no interpreter here has python3-zarr")
+        result = subprocess.run([python, "-c", program, *map(str, arguments)], capture_output=True, text=True,
+                                timeout=120)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return json.loads(result.stdout)
+
+    # Kind (annotation files): an array and attributes that python3-zarr added to the labels and to the offsets.
+    def test_what_python3_zarr_added_is_kept_with_a_warning(self):
+        self.check("import", Volume.noise((40, 40, 40), seed=4).write(self.folder), self.project)
+        raised = {"op": "density", "brush": "fill", "threshold": 0, "radius": 2, "offset": 5, "path": [[20, 20, 20]]}
+        self.annotate(self.project, [self.dab([20, 20, 20]), raised, {"op": "save"}])
+        labels, offsets = self.project / "labels" / "paint", self.project / "shvr" / "paint.offsets.zarr"
+        self.python(ADDS, labels, offsets)
+        again = [self.dab([9, 9, 9], 1, 2), {**raised, "path": [[9, 9, 9]]}, {"op": "save"}]
+        said = self.annotate(self.project, again, "--quiet").stderr
+        for image in (labels, offsets):
+            old = image.with_name(image.name + ".old")
+            self.assertIn(f"{image}: held ", said)
+            self.assertIn(f"kept as {old}", said)
+            self.assertEqual(self.python(SCORES, old), [["Anna"], [0, 1, 2, 3]])
+        self.assertEqual(self.by_zarr(labels)["counts"], self.groups(self.project))
+        before = sorted(files_of(self.project))
+        self.assertEqual(self.annotate(self.project, [{"op": "save"}], "--quiet").stderr, "")
+        self.assertEqual(sorted(files_of(self.project)), before)
+
+    def test_a_bare_session_keeps_what_was_added_too(self):
+        session = self.write_session(annotation={"mask": "scan.labels.zarr"})
+        self.annotate(session, [self.dab([12, 12, 12]), {"op": "save"}])
+        (self.folder / "scan.labels.zarr" / "notes.txt").write_text("mine")
+        self.assertIn("held notes.txt of another program", self.annotate(
+            session, [self.dab([9, 9, 9]), {"op": "save"}]).stderr)
+        self.assertEqual((self.folder / "scan.labels.zarr.old" / "notes.txt").read_text(), "mine")
+
+    def test_files_of_file_browsers_refuse_no_save_and_are_no_change_of_the_mask(self):
+        self.check("import", Volume.noise((40, 40, 40), seed=4).write(self.folder), self.project)
+        self.annotate(self.project, [self.dab([20, 20, 20]), {"op": "save"}])
+        labels = self.project / "labels" / "paint"
+        for name in (".DS_Store", "Thumbs.db", "0/.DS_Store"):
+            (labels / name).write_text("left by a browser")
+        said = self.annotate(self.project, [self.dab([9, 9, 9], 1, 2), {"op": "save"}], "--quiet").stderr
+        self.assertEqual(said, "")
+        self.assertTrue((labels / ".DS_Store").exists())
+        self.assertEqual([path.name for path in (self.project / "labels").iterdir() if path.is_dir()], ["paint"])
+
+    def test_a_list_of_labels_that_cannot_be_continued_says_what_to_do_about_it(self):
+        self.check("import", Volume.noise((40, 40, 40), seed=4).write(self.folder), self.project)
+        labels = self.project / "labels"
+        script = self.write_script("s.jsonl", [self.dab([20, 20, 20]), {"op": "save"}])
+        for content, made, says in (
+                ("{labels", labels / ".zattrs", [".zattrs: is not JSON", "repair it, or move it, and the next save"]),
+                ("text", labels, ["labels: is a file; expected the folder of the image's labels: move the file"])):
+            with self.subTest(made=made):
+                shutil.rmtree(labels, ignore_errors=True)
+                made.parent.mkdir(exist_ok=True)
+                made.write_text(content)
+                self.check_refused("annotate", self.project, "--script", script, says=says)
+                self.assertEqual(made.read_text(), content)
+                made.unlink()
+                self.check("annotate", self.project, "--script", script)
+                self.assertEqual(json.loads((labels / ".zattrs").read_text()), {"labels": ["paint"]})
+
+    def test_metadata_that_another_program_consolidated_follow_a_save(self):
+        self.check("import", Volume.noise((40, 40, 40), seed=4).write(self.folder), self.project)
+        self.assertFalse(self.python(CONSOLIDATED, self.project, "write")["found"])
+        self.annotate(self.project, [self.dab([20, 20, 20]), {"op": "save"}])
+        self.assertTrue(self.python(CONSOLIDATED, self.project, "")["found"])
+        found = self.python(CONSOLIDATED, self.project / "labels", "write")
+        self.annotate(self.project, [self.dab([9, 9, 9], 1, 2), {"op": "save"}])
+        for group in (self.project, self.project / "labels"):
+            now = self.python(CONSOLIDATED, group, "")
+            self.assertEqual(now["copies"], now["originals"])
+        self.assertNotEqual(now["copies"], found["copies"])  # the journal's record, at least
+        self.assertEqual([path.name for path in (self.project / "labels").iterdir() if path.is_dir()], ["paint"])
 
     def earlier(self):
         with tarfile.open(EARLIER) as packed:

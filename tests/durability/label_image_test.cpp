@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <fstream>
 
 #include <doctest/doctest.h>
 
@@ -113,6 +114,82 @@ TEST_CASE("a save into OME-Zarr that is killed at any call leaves the old or the
             check_folder(desk, copy);
         }
         CHECK(nth > 40);
+    }
+}
+
+// Kind (annotation files): a save killed at any call while it replaces a folder with an array of another program.
+TEST_CASE("an array that another program added is there after a save that was killed at any call, in old or new folder")
+{
+    const TemporaryFolder folder;
+    const Desk desk = make_desk(folder.path / "desk");
+    const std::string content(100, 's');
+    const fs::path mask = sparse_files_in(desk.folder).mask, field = sparse_files_in(desk.folder).density;
+    for (const fs::path& image : {mask, field}) {
+        fs::create_directory(image / "scores");
+        std::ofstream(image / "scores" / "0") << content;
+    }
+    for (const bool exchanges : {true, false}) {
+        CAPTURE(exchanges);
+        int nth = exchanges ? 0 : 3;
+        for (bool was_killed = true; was_killed; nth += repeats(7, 1)) {
+            CAPTURE(nth);
+            REQUIRE(nth < 1000);
+            const fs::path copy = folder.path / "copy";
+            fs::remove_all(copy);
+            fs::copy(desk.folder, copy, fs::copy_options::recursive);
+            const pid_t child = ::fork();
+            REQUIRE(child >= 0);
+            if (child == 0) save_until_killed(copy, nth, exchanges);
+            int status = 0;
+            REQUIRE(::waitpid(child, &status, 0) == child);
+            was_killed = WIFSIGNALED(status);
+            std::string said;
+            save(*open_work(sparse_files_in(copy), said));
+            CHECK(open_work(sparse_files_in(copy), said)->disputes().empty());
+            for (const fs::path& image : {mask, field}) {
+                const std::string name = image.filename().string();
+                size_t kept = 0;
+                for (const fs::directory_entry& entry : fs::directory_iterator(copy))
+                    kept += entry.path().filename().string().starts_with(name + ".old") &&
+                            bytes_of_file(entry.path() / "scores" / "0") == content;
+                // Killed after the copy, the next save makes another one.
+                CHECK((exchanges ? kept == 1 : kept >= 1));
+                CHECK_FALSE(fs::exists(copy / name / "scores"));
+            }
+        }
+        CHECK(nth > 40);
+    }
+}
+
+// Kind (annotation files): saves that are interrupted again and again, the first one after it has replaced the mask.
+TEST_CASE("a mask is that of its save, however many saves were interrupted since")
+{
+    const TemporaryFolder folder;
+    const Desk desk = make_desk(folder.path / "desk");
+    for (int round = 0; round < 15; ++round) {
+        const pid_t child = ::fork();
+        REQUIRE(child >= 0);
+        if (child == 0) {
+            std::string said;
+            const auto work = open_work(sparse_files_in(desk.folder), said);
+            std::mt19937 random(uint32_t(100 + round));
+            work->perform(random_painting(work->document(), random));
+            refuse_calls(desk.folder, [&, exchanges = 0](const FileCall& call) mutable {
+                const bool is_new = call.kind == FileCall::Kind::make_folder;
+                if (round == 0 ? exchanges == 2 : is_new) ::kill(::getpid(), SIGKILL);
+                exchanges += call.kind == FileCall::Kind::exchange;  // the first one is a trial
+                return 0;
+            });
+            save(*work);
+            ::_exit(0);
+        }
+        int status = 0;
+        REQUIRE(::waitpid(child, &status, 0) == child);
+        CHECK(WIFSIGNALED(status));
+        std::string said;
+        const auto work = open_work(sparse_files_in(desk.folder), said);
+        CHECK_FALSE(contains(said, "was changed"));
+        CHECK(work->disputes().empty());
     }
 }
 

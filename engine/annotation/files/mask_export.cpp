@@ -6,7 +6,6 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/formats/export/volume_export.h"
-#include "engine/projects/import_sparse.h"
 
 namespace shvr {
 
@@ -26,21 +25,24 @@ bool is_mask_export(const std::filesystem::path& path)
     return is_label_image(path) || is_volume_export(path) || lower_case(path.extension().string()) == ".mask";
 }
 
-void export_mask(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume, const LabelImage& image,
-                 std::optional<OmeZarrVersion> version, const Progress& progress)
+std::string export_mask(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
+                        const LabelImage& image, std::optional<OmeZarrVersion> version, const Progress& progress,
+                        Foreign foreign)
 {
     if (!is_mask_export(path))
         fail(path.string(), ": has the extension ", in_quotes(path.extension().string()),
              "; expected .mask, .nrrd, .tif or .zarr");
     const MaskSource groups(mask, volume);
     if (is_label_image(path))
-        static_cast<void>(save_label_image(
+        return save_label_image(
             groups, path, image,
-            {.version = version, .progress = [&](const ImportProgress& done) { tell(progress, done.fraction); }}));
-    else if (is_volume_export(path))
+            {.version = version, .progress = [&](const ImportProgress& done) { tell(progress, done.fraction); }},
+            foreign);
+    if (is_volume_export(path))
         export_volume(path, groups, progress, is_nrrd(path) ? segment_pairs(path, mask, image.colors) : NO_PAIRS);
     else
         save_mask(path, mask, progress);
+    return {};
 }
 
 }  // namespace shvr

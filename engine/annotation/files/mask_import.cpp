@@ -16,17 +16,18 @@ std::vector<MaskBrickChange> import_mask(const std::filesystem::path& path, cons
     return mask_changes(*source, path.string());
 }
 
-void save_mask_as(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
-                  const LabelImage& image)
+std::string save_mask_as(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
+                         const LabelImage& image, Foreign foreign)
 {
     if (is_in_archive(path))
         fail(path.string(),
              ": lies in an archive, which is only read; expected a path outside it that ends in .mask, .nrrd, .tif or "
              ".zarr");
-    if (is_mask_export(path)) return export_mask(path, mask, volume, image);
+    if (is_mask_export(path)) return export_mask(path, mask, volume, image, {}, {}, foreign);
     if (states_its_size(path))
         fail(path.string(), ": has a format in which masks are only read; expected .mask, .nrrd, .tif or .zarr");
     save_mask(path, mask);
+    return {};
 }
 
 }  // namespace shvr

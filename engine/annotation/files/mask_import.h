@@ -18,8 +18,8 @@ namespace shvr {
 /// both), or if its voxels are not unsigned bytes.
 std::vector<MaskBrickChange> import_mask(const std::filesystem::path& path, const TraceSpace& space);
 /// Saves in the format that the path names, or as raw bytes if `export_mask` does not support it. Fails for formats
-/// that can only be read. `image`: as for `export_mask`.
-void save_mask_as(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
-                  const LabelImage& image = {});
+/// that can only be read. `image`, `foreign` and the result: as for `export_mask`.
+std::string save_mask_as(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
+                         const LabelImage& image = {}, Foreign foreign = Foreign::refused);
 
 }  // namespace shvr

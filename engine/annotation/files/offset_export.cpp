@@ -8,7 +8,6 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/formats/export/volume_export.h"
-#include "engine/projects/import_sparse.h"
 
 namespace shvr {
 
@@ -56,16 +55,21 @@ bool is_offset_export(const std::filesystem::path& path)
     return is_bare(path) || is_sparse(path) || is_volume_export(path);
 }
 
-void export_offsets(const std::filesystem::path& path, const DensityField& field, const VolumeInfo& volume,
-                    const Progress& progress)
+std::string export_offsets(const std::filesystem::path& path, const DensityField& field, const VolumeInfo& volume,
+                           const Progress& progress, Foreign foreign)
 {
     if (!is_offset_export(path))
         fail(path.string(), ": has the extension ", in_quotes(path.extension().string()),
              "; expected .offset, .nrrd, .tif or .zarr");
-    if (is_bare(path)) return save_offsets(path, field, progress);
-    if (!is_sparse(path)) return export_volume(path, FieldSource(field, volume, exported_type(field.type())), progress);
-    const VoxelType type = is_float(field.type()) ? VoxelType::float32 : VoxelType::int32;
-    static_cast<void>(save_number_image(FieldSource(field, volume, type), path, "offsets", progress));
+    if (is_sparse(path)) {
+        const VoxelType type = is_float(field.type()) ? VoxelType::float32 : VoxelType::int32;
+        return save_number_image(FieldSource(field, volume, type), path, "offsets", progress, foreign);
+    }
+    if (is_bare(path))
+        save_offsets(path, field, progress);
+    else
+        export_volume(path, FieldSource(field, volume, exported_type(field.type())), progress);
+    return {};
 }
 
 }  // namespace shvr

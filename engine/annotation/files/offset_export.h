@@ -11,13 +11,16 @@
 
 #include "engine/annotation/density.h"
 #include "engine/base/progress.h"
+#include "engine/projects/import_sparse.h"
 
 namespace shvr {
 
 bool is_offset_export(const std::filesystem::path& path);
 
-/// Replaces an old file atomically. `volume`, of the field's size, gives the voxels' positions.
-void export_offsets(const std::filesystem::path& path, const DensityField& field, const VolumeInfo& volume,
-                    const Progress& progress = {});
+/// Replaces an old file atomically. `volume`, of the field's size, gives the voxels' positions. `foreign` and the
+/// result: as
+/// for `export_mask`.
+std::string export_offsets(const std::filesystem::path& path, const DensityField& field, const VolumeInfo& volume,
+                           const Progress& progress = {}, Foreign foreign = Foreign::refused);
 
 }  // namespace shvr

@@ -78,12 +78,14 @@ DensityField import_offsets(const std::filesystem::path& path, const TraceSpace&
     return OffsetReader(path, *source, type).read();
 }
 
-void save_offsets_as(const std::filesystem::path& path, const DensityField& field, const VolumeInfo& volume)
+std::string save_offsets_as(const std::filesystem::path& path, const DensityField& field, const VolumeInfo& volume,
+                            Foreign foreign)
 {
-    if (is_offset_export(path)) return export_offsets(path, field, volume);
+    if (is_offset_export(path)) return export_offsets(path, field, volume, {}, foreign);
     if (states_its_size(path))
         fail(path.string(), ": has a format in which offsets are only read; expected .offset, .nrrd, .tif or .zarr");
     save_offsets(path, field);
+    return {};
 }
 
 }  // namespace shvr

@@ -15,6 +15,7 @@
 
 #include "engine/annotation/work/journal_head.h"
 #include "engine/base/error.h"
+#include "engine/projects/foreign_content.h"
 
 namespace shvr {
 
@@ -277,7 +278,7 @@ std::optional<uint64_t> file_digest(const fs::path& path)
     }
     std::vector<fs::path> files;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path))
-        if (entry.is_regular_file()) files.push_back(entry.path());
+        if (entry.is_regular_file() && !is_desktop_file(entry.path())) files.push_back(entry.path());
     std::ranges::sort(files);
     for (const fs::path& file : files) {
         const std::string name = file.lexically_relative(path).string();

@@ -11,6 +11,7 @@
 #include "engine/annotation/work/journal_file.h"
 #include "engine/annotation/writers/no_replace.h"
 #include "engine/base/atomic_writer.h"
+#include "engine/projects/atomic_folder.h"
 
 namespace shvr {
 
@@ -174,13 +175,7 @@ std::optional<FileStamp> stamp_of(const fs::path& path)
 
 fs::path old_of(const fs::path& path)
 {
-    fs::path plain = path.has_filename() ? path : path.parent_path();
-    for (int number = 1;; ++number) {
-        fs::path old = plain;
-        old += number == 1 ? ".old" : sentence(".old", number);
-        std::error_code ignored;
-        if (!fs::exists(fs::symlink_status(old, ignored))) return old;
-    }
+    return free_old_name(path);
 }
 
 std::optional<fs::path> set_aside(const fs::path& path)

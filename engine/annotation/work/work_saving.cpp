@@ -5,6 +5,7 @@
 #include "engine/annotation/files/mask_image.h"
 #include "engine/annotation/files/mask_import.h"
 #include "engine/annotation/files/offset_import.h"
+#include "engine/annotation/work/part_writer.h"
 #include "engine/annotation/work/work.h"
 
 namespace shvr {
@@ -52,9 +53,8 @@ void Work::note_file(const fs::path& file, Seen& seen)
     seen = seen_at(file);
 }
 
-/// `journal`: the one that the mask names, in addition to `files`; null if there is none.
-void Work::write(Part part, const Document& document, const WorkFiles& files,
-                 const std::vector<LabelImage::Color>& looks, const Journal* journal)
+std::string write_part(Part part, const Document& document, const WorkFiles& files,
+                       const std::vector<LabelImage::Color>& looks, const Journal* journal, Foreign foreign)
 {
     switch (part) {
         case Part::mask: {
@@ -62,14 +62,23 @@ void Work::write(Part part, const Document& document, const WorkFiles& files,
             if (const auto [number, checksum] = journal ? journal->last_durable() : std::pair<RecordNumber, uint64_t>();
                 number > 0)
                 named = {files.journal.filename().string(), number, checksum};
-            save_mask_as(files.mask, document.mask, files.volume,
-                         {.colors = looks, .painted_on = files.volume_hash, .journal = named});
+            std::string kept =
+                save_mask_as(files.mask, document.mask, files.volume,
+                             {.colors = looks, .painted_on = files.volume_hash, .journal = named}, foreign);
             save_mask_image(files.mask, files.volume_hash, named);
-            return;
+            return kept;
         }
-        case Part::trace: save_trace(files.trace, document.trace, space_of(files.volume)); return;
-        case Part::offsets: save_offsets_as(files.density, document.density, files.volume); return;
+        case Part::trace: save_trace(files.trace, document.trace, space_of(files.volume)); return {};
+        case Part::offsets: return save_offsets_as(files.density, document.density, files.volume, foreign);
     }
+    return {};
+}
+
+/// To files that do not exist yet.
+void Work::write(Part part, const Document& document, const WorkFiles& files,
+                 const std::vector<LabelImage::Color>& looks, const Journal* journal)
+{
+    write_part(part, document, files, looks, journal, Foreign::refused);
 }
 
 std::function<void(const WorkFiles&)> Work::copier(std::vector<LabelImage::Color> looks) const
@@ -147,8 +156,12 @@ void Work::Saving::write(Part part)
                                                name_of(part), " as this one knows it; it is kept as ", old->string(),
                                                ", and what is saved is this program's"),
                                       true});
+    // Otherwise written by an interrupted save, or by another program with the same content.
+    const bool is_last_save = seen.digest && seen.digest == digest_of(known_, part);
     try {
-        Work::write(part, document_, files_, looks_, journal_.get());
+        std::string kept = write_part(part, document_, files_, looks_, journal_.get(),
+                                      is_last_save ? Foreign::excluded : Foreign::kept);
+        if (!kept.empty()) saved_.notices.push_back({std::move(kept), true});
     } catch (const Error&) {
         note_file(file, seen);  // even a partial write is this process's
         throw;

@@ -124,24 +124,6 @@ bool ZarrChunks::is_missing(std::span<const int64_t> chunk) const
 }
 
 /// Returns the indices of the chunk or shard with this key; empty if it is not the key of a chunk or shard.
-std::vector<int64_t> ZarrChunks::numbers_of(std::string_view key) const
-{
-    const std::vector<int64_t>& side = metadata_.sharding ? metadata_.sharding->shape : metadata_.chunks;
-    std::string_view rest = key;
-    if (metadata_.has_prefix) rest.remove_prefix(std::min<size_t>(rest.size(), 2));
-    std::vector<int64_t> numbers;
-    while (numbers.size() < side.size()) {
-        const size_t end = std::min(rest.size(), rest.find(metadata_.separator));
-        const std::optional<int64_t> number = whole_of(rest.substr(0, end));
-        const size_t axis = numbers.size();
-        if (!number || *number < 0 || *number > (metadata_.shape[axis] - 1) / side[axis]) return {};
-        numbers.push_back(*number);
-        rest.remove_prefix(std::min(rest.size(), end + 1));
-    }
-    // A key with another spelling of the same numbers, as in "00", is a different key.
-    return metadata_.key_of(numbers) == key ? numbers : std::vector<int64_t>();
-}
-
 /// Visits each chunk of a shard that lies in the array.
 template <class Take>
 bool ZarrChunks::list_shard(std::span<const int64_t> shard, const Take& take) const
@@ -188,7 +170,7 @@ bool ZarrChunks::list(std::span<const std::optional<int64_t>> at, int64_t most,
     int64_t names_left = 8 * std::min(most, int64_t{1} << 48) + (1 << 16);
     return array_.store->list(array_.key(folder), [&](std::string_view name) {
         if (--names_left < 0) return false;
-        const std::vector<int64_t> numbers = numbers_of(folder + std::string(name));
+        const std::vector<int64_t> numbers = chunk_numbers(metadata_, folder + std::string(name));
         if (numbers.empty()) return true;
         return metadata_.sharding ? list_shard(numbers, counted) : counted(numbers);
     });
@@ -200,7 +182,8 @@ std::string ZarrChunks::stray() const
     int64_t left = MAX_NAMES_LOOKED_AT;
     try {
         array_.store->list(array_.key(""), [&](std::string_view key) {
-            if (is_like_chunk(key) && numbers_of(key).empty()) found = array_.path_of(std::string(key)).string();
+            if (is_like_chunk(key) && chunk_numbers(metadata_, key).empty())
+                found = array_.path_of(std::string(key)).string();
             return found.empty() && --left > 0;
         });
     } catch (const Error&) {
@@ -268,6 +251,24 @@ Block ZarrChunks::index_of(const std::string& shard) const
     }
     std::memcpy(index.data(), entries.data(), index.size());
     return index;
+}
+
+std::vector<int64_t> chunk_numbers(const ZarrMetadata& metadata, std::string_view key)
+{
+    const std::vector<int64_t>& side = metadata.sharding ? metadata.sharding->shape : metadata.chunks;
+    std::string_view rest = key;
+    if (metadata.has_prefix) rest.remove_prefix(std::min<size_t>(rest.size(), 2));
+    std::vector<int64_t> numbers;
+    while (numbers.size() < side.size()) {
+        const size_t end = std::min(rest.size(), rest.find(metadata.separator));
+        const std::optional<int64_t> number = whole_of(rest.substr(0, end));
+        const size_t axis = numbers.size();
+        if (!number || *number < 0 || *number > (metadata.shape[axis] - 1) / side[axis]) return {};
+        numbers.push_back(*number);
+        rest.remove_prefix(std::min(rest.size(), end + 1));
+    }
+    // A key with another spelling of the same numbers, as in "00", is a different key.
+    return metadata.key_of(numbers) == key ? numbers : std::vector<int64_t>();
 }
 
 }  // namespace shvr

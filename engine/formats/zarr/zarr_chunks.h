@@ -60,7 +60,6 @@ private:
                                                     ///< another
 
     std::string key_of(std::span<const int64_t> chunk) const;
-    std::vector<int64_t> numbers_of(std::string_view key) const;
     template <class Take>
     bool list_shard(std::span<const int64_t> shard, const Take& take) const;
     Part part_of(std::span<const int64_t> chunk, const std::string& shard) const;
@@ -70,5 +69,8 @@ private:
     ZarrMetadata metadata_;
     mutable ChunkCache indices_;
 };
+
+/// The index of the chunk or shard with that name within an array; empty if it is none of this array.
+std::vector<int64_t> chunk_numbers(const ZarrMetadata& metadata, std::string_view key);
 
 }  // namespace shvr

@@ -186,7 +186,7 @@ TEST_CASE("anything but an image of offsets is not replaced by offsets")
     }
 }
 
-TEST_CASE("a file of other programs in a label image is not deleted with it: the save is refused")
+TEST_CASE("a file of other programs in a label image is not deleted with it: an export is refused")
 {
     const TemporaryFolder folder;
     const VolumeInfo volume = volume_of({5, 4, 3});
@@ -194,7 +194,7 @@ TEST_CASE("a file of other programs in a label image is not deleted with it: the
     save_mask_as(path, Mask(volume.size), volume);
     folder.write("m.zarr/notes.txt", "mine");
     CHECK(contains(error_of([&] { save_mask_as(path, Mask(volume.size), volume); }),
-                   "notes.txt: is no part of the image"));
+                   "m.zarr: holds notes.txt of another program"));
     CHECK(bytes_of_file(path / "notes.txt") == "mine");
 }
 

@@ -1,0 +1,18 @@
+#pragma once
+// Writes one part of a document to its file. Any thread may call it.
+
+#include <string>
+#include <vector>
+
+#include "engine/annotation/work/journal.h"
+#include "engine/annotation/work/saved_files.h"
+#include "engine/projects/import_sparse.h"
+
+namespace shvr {
+
+/// `journal`: the one that the mask names, in addition to `files`; null if there is none. Returns a sentence if the old
+/// image is kept under another name, as `foreign` demands.
+std::string write_part(Part part, const Document& document, const WorkFiles& files,
+                       const std::vector<LabelImage::Color>& looks, const Journal* journal, Foreign foreign);
+
+}  // namespace shvr
