@@ -198,7 +198,10 @@ void Viewport::begin_drag(const Model& model, Actions& actions)
         return;
     }
     gesture_ = Gesture::node;
-    actions.emplace_back(SelectOp{.near = {}, .number = pressed_node_, .within_voxels = {}});
+    // A node of a selected segment takes the segment along.
+    const std::vector<uint32_t>& selected = model.trace.selection().nodes;
+    if (selected.size() < 2 || std::ranges::find(selected, *pressed_node_) == selected.end())
+        actions.emplace_back(SelectOp{.near = {}, .number = pressed_node_, .within_voxels = {}});
     actions.emplace_back(PlaceProbe{model.trace.node(*pressed_node_).position / model.volume.spacing});
     actions.emplace_back(DragNode{true});
 }

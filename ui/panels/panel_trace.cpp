@@ -137,9 +137,11 @@ void buttons(const Model& model, Actions& actions)
             .c_str(),
         SelectSegmentOp{}, actions);
     ImGui::SameLine();
-    button("Move here", selected.node().has_value(),
-           ("Moves the selected node to the probe. " + name_with_key("drag_node", model.keymap) + ".").c_str(),
-           MoveOp{model.probe_voxel}, actions);
+    button("Move here", !selected.empty(),
+           ("Moves the selected node to the probe, or a whole segment, its nearest node to the probe. " +
+            name_with_key("drag_node", model.keymap) + ".")
+               .c_str(),
+           move_to_probe(model), actions);
     ImGui::SameLine();
     button("Delete", !selected.empty(),
            ("Deletes the selection" + key_in_brackets("delete_selected", model.keymap) +

@@ -234,8 +234,10 @@ Op read_bare(const JsonNode& line)
 
 MoveOp read_move(const JsonNode& line)
 {
-    allow(line, {"to"});
-    return {line["to"].vector(COORDINATE)};
+    allow(line, {"to", "from"});
+    MoveOp op{.to = line["to"].vector(COORDINATE)};
+    if (const JsonNode from = line["from"]; from.exists()) op.from = from.vector(COORDINATE);
+    return op;
 }
 
 GroupOp read_group_op(const JsonNode& line)

@@ -121,7 +121,10 @@ std::string line(const DeselectOp&)
 }
 std::string line(const MoveOp& op)
 {
-    return Line("move").point("to", op.to);
+    Line line("move");
+    line.point("to", op.to);
+    if (op.from) line.point("from", *op.from);
+    return line;
 }
 std::string line(const DeleteOp&)
 {

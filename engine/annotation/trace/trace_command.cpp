@@ -58,6 +58,14 @@ public:
     }
     TraceEffect operator()(const MoveOp& op) const
     {
+        if (op.from) {
+            const glm::dvec3 by = op.to - *op.from;
+            for (const uint32_t number : nodes_of_selection(trace_)) {
+                const TraceNode& node = trace_.node(number);
+                check_place(node.position / defaults_.spacing + by, node.radius);
+            }
+            return {"move", shift_selected(trace_, at(by)), {}};
+        }
         const std::optional<uint32_t> moved = trace_.selection().node();
         if (moved) check_place(op.to, trace_.node(*moved).radius);
         return {"move", move_selected(trace_, at(op.to)), {}};

@@ -99,6 +99,30 @@ std::vector<TraceChange> move_selected(const TraceGraph& trace, const glm::dvec3
     return {TraceNodeChange{number, trace.node(number), after}};
 }
 
+std::set<uint32_t> nodes_of_selection(const TraceGraph& trace)
+{
+    const TraceSelection& selection = trace.selection();
+    std::set<uint32_t> nodes(selection.nodes.begin(), selection.nodes.end());
+    if (!nodes.empty()) return nodes;
+    for (const uint32_t number : selection.internodes) {
+        nodes.insert(trace.internode(number).a);
+        nodes.insert(trace.internode(number).b);
+    }
+    return nodes;
+}
+
+std::vector<TraceChange> shift_selected(const TraceGraph& trace, const glm::dvec3& by)
+{
+    static_cast<void>(selected(trace));
+    std::vector<TraceChange> changes;
+    for (const uint32_t number : nodes_of_selection(trace)) {
+        TraceNode after = trace.node(number);
+        after.position += by;
+        if (after != trace.node(number)) changes.emplace_back(TraceNodeChange{number, trace.node(number), after});
+    }
+    return changes;
+}
+
 std::vector<TraceChange> delete_selected(const TraceGraph& trace)
 {
     const TraceSelection& selection = selected(trace);

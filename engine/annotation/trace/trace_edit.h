@@ -6,6 +6,7 @@
 // An edit that is not possible fails with a sentence ("nothing is selected; expected a node"). Any thread may call
 // these.
 
+#include <set>
 #include <vector>
 
 #include "engine/annotation/trace/trace_segments.h"
@@ -20,6 +21,11 @@ std::vector<TraceChange> divide_internode(const TraceGraph& trace, uint32_t inte
 /// Joins the selected node to another by an internode of the selected node's group. The node stays selected.
 std::vector<TraceChange> link_selected(const TraceGraph& trace, uint32_t to);
 std::vector<TraceChange> move_selected(const TraceGraph& trace, const glm::dvec3& position);
+/// The selected nodes or, if there are none, the ends of the selected internodes. Branches at the ends of a selected
+/// segment are not among them: they belong to other segments, too, and stay where they are.
+std::set<uint32_t> nodes_of_selection(const TraceGraph& trace);
+/// Moves them by the same distance.
+std::vector<TraceChange> shift_selected(const TraceGraph& trace, const glm::dvec3& by);
 /// Deletes the selected node with its internodes, the selected internode, or the segment: its internodes, and its nodes
 /// that are not branches.
 std::vector<TraceChange> delete_selected(const TraceGraph& trace);

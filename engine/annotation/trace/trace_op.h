@@ -33,6 +33,9 @@ struct LinkOp {
 };
 struct MoveOp {
     glm::dvec3 to{0.0};
+    /// With it, all selected nodes move by `to` - `from` or, where only internodes are selected, their ends. Without
+    /// it, the selected node moves to `to`.
+    std::optional<glm::dvec3> from{};
 };
 struct DeleteOp {};
 struct GroupOp {

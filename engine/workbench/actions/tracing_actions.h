@@ -11,7 +11,7 @@ class Tracer;
 /// Maximum distance of a node that counts as near the probe, in radii of the probe.
 inline constexpr double NEARBY_RADII = 4.0;
 
-struct DragNode {  ///< the selected node follows the probe until released, as one step of the history
+struct DragNode {  ///< the selection moves with the probe until released, as one step of the history
     bool on = false;
 };
 
@@ -41,10 +41,11 @@ inline constexpr const char* TRACING_GROUP = "Tracing";
 
 inline constexpr auto TRACING_ACTIONS = std::tuple{
     row<DragNode, Tracer>(
-        {"drag_node", "Move the selected node", TRACING_GROUP, "moves the selected node with the probe until released"},
+        {"drag_node", "Move the selection", TRACING_GROUP,
+         "moves the selected node or segment with the probe until released"},
         [](auto& f, DragNode& a) { f.flag("on", a.on, {.is_required = true}); },
         [](const auto& model, const DragNode& action) -> std::string {
-            return action.on ? why_without_node(model) : std::string();
+            return action.on ? why_without_selection(model) : std::string();
         }),
     row<NodeOp, Tracer>({"node", "Add a node", TRACING_GROUP, "adds a node, linked with the selected one"}, NO_FIELDS,
                         [](const auto& model, const NodeOp& action) -> std::string {
@@ -72,8 +73,12 @@ inline constexpr auto TRACING_ACTIONS = std::tuple{
                             }),
     row<LinkOp, Tracer>({"link", "Link", TRACING_GROUP, "links the selected node with another"}, NO_FIELDS,
                         [](const auto& model, const LinkOp&) -> std::string { return why_without_node(model); }),
-    row<MoveOp, Tracer>({"move", "Move to", TRACING_GROUP, "moves the selected node to a voxel"}, NO_FIELDS,
-                        [](const auto& model, const MoveOp&) -> std::string { return why_without_node(model); }),
+    row<MoveOp, Tracer>(
+        {"move", "Move to", TRACING_GROUP,
+         "moves the selected node to a voxel, or all that is selected by `to` - `from`"},
+        NO_FIELDS,
+        [](const auto& model, const MoveOp& action)
+            -> std::string { return action.from ? why_without_selection(model) : why_without_node(model); }),
     row<DeleteOp, Tracer>(
         {"delete", "Delete", TRACING_GROUP, "deletes the selection"}, NO_FIELDS,
         [](const auto& model, const DeleteOp&) -> std::string { return why_without_selection(model); }),

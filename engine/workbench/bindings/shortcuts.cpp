@@ -444,8 +444,7 @@ constexpr Shortcut SHORTCUTS[] = {
     both(
         "add_node", TRACING_KEYS, "Add a node, linked with the selected one", Mode::tap,
         [](const Model& model, double) -> Action { return node_or_link_at_probe(model); }, "N"),
-    both("drag_node", TRACING_KEYS, "Move the selected node while held", Mode::while_held, begin_and_end<DragNode>,
-         "M"),
+    both("drag_node", TRACING_KEYS, "Move the selection while held", Mode::while_held, begin_and_end<DragNode>, "M"),
     both(
         "link_nearest", TRACING_KEYS, "Link the selected node with the nearest", Mode::tap,
         [](const Model& model, double) -> Action { return link_with_nearest(model); }, ","),

@@ -331,9 +331,23 @@ TraceMarks Document::trace_marks() const
     const double least = 0.5 * std::min({spacing.x, spacing.y, spacing.z});
     const bool is_traced = session.probe.tool == Tool::trace;
     constexpr size_t SHOWN_LINKS = 64;  // about what fits on a screen
-    return shvr::trace_marks(annotator.document().trace, is_traced ? nearby_node() : std::nullopt, least,
-                             drags_node ? std::optional(tool_place().point) : std::nullopt,
+    const TraceGraph& trace = annotator.document().trace;
+    std::optional<glm::dvec3> moved_by;
+    if (drags_node) {
+        const MoveOp move = drag_move();
+        const std::optional<uint32_t> node = trace.selection().node();
+        const glm::dvec3 to = move.to * spacing;
+        moved_by = to - (move.from ? *move.from * spacing : node ? trace.node(*node).position : to);
+    }
+    return shvr::trace_marks(trace, is_traced ? nearby_node() : std::nullopt, least, moved_by,
                              is_traced ? SHOWN_LINKS : 0);
+}
+
+MoveOp Document::drag_move() const
+{
+    MoveOp move{.to = tool_voxel()};
+    if (!annotator.document().trace.selection().node()) move.from = drag_from;
+    return move;
 }
 
 }  // namespace shvr::ui

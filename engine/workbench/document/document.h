@@ -63,7 +63,9 @@ struct Document {
     std::string holder;                 ///< another process that writes the work, in words; empty: none
     std::string outside;                ///< files that the session would write outside its folder, which the user has
                                         ///< not agreed to (annotation_files.h); empty: none
-    bool drags_node = false;            ///< the selected node follows the probe
+    bool drags_node = false;            ///< the selection follows the probe
+    glm::dvec3 drag_from{0.0};          ///< where tools acted as that began, voxels: a selected node goes to the probe,
+                                        ///< several parts keep their distance from it
 
     // State of the open document that is no part of the work
     std::optional<glm::dvec3> measuring_from;               ///< first end of a measurement without a second end
@@ -98,6 +100,8 @@ struct Document {
     /// Returns the node to select or link with: the nearest unselected one within reach.
     std::optional<uint32_t> nearby_node() const;
     TraceMarks trace_marks() const;
+    /// Returns how the selection is moved if the drag ends now.
+    MoveOp drag_move() const;
     TraceDefaults trace_defaults() const;
     /// Returns whether the cut can still be mended: both of its ends exist, and nothing links them.
     bool is_cut() const;

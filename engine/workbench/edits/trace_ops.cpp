@@ -1,5 +1,8 @@
 #include "engine/workbench/edits/trace_ops.h"
 
+#include <algorithm>
+#include <vector>
+
 namespace shvr::ui {
 
 namespace {
@@ -70,6 +73,24 @@ SelectOp nearest_selection(const Model& model)
 LinkOp link_with_nearest(const Model& model)
 {
     return LinkOp{.near = model.probe_voxel, .node = {}, .within_voxels = within_voxels(model)};
+}
+
+MoveOp move_to_probe(const Model& model)
+{
+    MoveOp op{.to = model.probe_voxel};
+    if (model.trace.selection().empty() || model.trace.selection().node()) return op;
+    const glm::dvec3& spacing = model.volume.spacing;
+    const auto distance_of = [&](uint32_t node) {
+        return glm::distance(model.trace.node(node).position, model.probe_voxel * spacing);
+    };
+    std::vector<uint32_t> nodes = model.trace.selection().nodes;
+    if (nodes.empty())
+        for (const uint32_t number : model.trace.selection().internodes) {
+            const TraceInternode& internode = model.trace.internode(number);
+            nodes.insert(nodes.end(), {internode.a, internode.b});
+        }
+    op.from = model.trace.node(*std::ranges::min_element(nodes, {}, distance_of)).position / spacing;
+    return op;
 }
 
 RadiusOp scaled(const Model& model, double factor)

@@ -20,6 +20,9 @@ SelectOp nearest_selection(const Model& model);
 /// Links the selected node with the nearest other one.
 LinkOp link_with_nearest(const Model& model);
 
+/// Moves the selected node to the probe; several parts together, so that the nearest of their nodes is at the probe.
+MoveOp move_to_probe(const Model& model);
+
 /// Scales the radii of the selected nodes or, if none is selected, of all internodes of the chosen group, which then no
 /// longer taper.
 RadiusOp scaled(const Model& model, double factor);

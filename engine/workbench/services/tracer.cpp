@@ -276,11 +276,13 @@ void Tracer::act(const DragNode& action)
         const std::optional<uint32_t> node = trace.selection().node();
         if (document_->annotator.stroke_is_running())
             fail("The trace cannot be edited while a stroke is being painted");
-        if (!node) fail("No node is selected; select one to move it");
+        if (trace.selection().empty()) fail("Nothing is selected; select a node or a segment to move it");
         document_->drags_node = true;
-        return say(sentence("Node ", *node, " follows the probe until the key or the button is released"));
+        document_->drag_from = document_->tool_voxel();  // which nothing attracts while that is set
+        return say(sentence(node ? sentence("Node ", *node, " follows") : "What is selected moves with",
+                            " the probe until the key or the button is released"));
     }
-    if (document_->drags_node) this->trace(MoveOp{document_->tool_voxel()});
+    if (document_->drags_node) this->trace(document_->drag_move());
 }
 
 /// If a node attracts the tool, it is linked and selected instead of adding a new one.

@@ -38,7 +38,8 @@ constexpr const char *NODE = R"({"op":"node","at":[10,12,14],"radius":2,"group":
                      *CUT = R"({"op":"move_cut","axis":0,"share":0.25})", *BEGIN = R"({"op":"paint_here","on":true})",
                      *DRAG = R"({"op":"drag_node","on":true})", *UNDO = R"({"op":"undo"})", *SAVE = R"({"op":"save"})",
                      *TO_NODE = R"({"op":"step_node"})", *DESELECT = R"({"op":"deselect"})",
-                     *SELECT_1 = R"({"op":"select","node":1})", *MEASURE = R"({"op":"measure_at","pixel":[48,40]})",
+                     *SELECT_1 = R"({"op":"select","node":1})", *SEGMENT = R"({"op":"select_segment"})",
+                     *MEASURE = R"({"op":"measure_at","pixel":[48,40]})",
                      *DARK = R"({"op":"set","values":{"view":{"slices":{"white":900}}}})",
                      *STROKE_5 =
                          R"({"op":"paint","brush":"fill","group":5,"threshold":90,"radius":4,"path":[[9,18,16]]})";
@@ -115,6 +116,7 @@ const Row ROWS[] = {
     {R"({"op":"deselect"})", "selection", {NODE, NEXT_NODE}},
     {R"({"op":"link","node":0})", "saved, trace, undo", {NODE, NEXT_NODE, LAST_NODE}},
     {R"({"op":"move","to":[22,14,15]})", "saved, trace, undo", {NODE, NEXT_NODE}},
+    {R"({"op":"move","to":[24,12,15],"from":[22,12,14]})", "saved, trace, undo", {NODE, NEXT_NODE, SEGMENT}},
     {R"({"op":"delete"})", "saved, selection, trace, undo", {NODE, NEXT_NODE}},
     {R"({"op":"group","group":5})", "saved, trace, undo", {NODE, NEXT_NODE}},
     {R"({"op":"radius","radius":3.5})", "saved, trace, undo", {NODE, NEXT_NODE}},

@@ -45,13 +45,21 @@ TEST_CASE("the selected node is marked yellow where it is or where it is dragged
     CHECK(marks.balls[1].color == SELECTED_COLOR);
     CHECK(marks.balls[1].center == work.trace().node(2).position);
     CHECK(marks.lines.empty());
-    const TraceMarks dragged = trace_marks(work.trace(), std::nullopt, 1.0, glm::dvec3(1, 2, 3));
+    const glm::dvec3 by(1, 2, 3);
+    const TraceMarks dragged = trace_marks(work.trace(), std::nullopt, 1.0, by);
     REQUIRE(dragged.balls.size() == 1);
-    CHECK(dragged.balls[0].center == glm::dvec3(1, 2, 3));
+    CHECK(dragged.balls[0].center == work.trace().node(2).position + by);
     REQUIRE(dragged.lines.size() == 1);
-    CHECK(dragged.lines[0].to == work.trace().node(1).position);
+    CHECK(dragged.lines[0].from == work.trace().node(1).position);
+    CHECK(dragged.lines[0].to == work.trace().node(2).position + by);
     work.perform(SelectSegmentOp{});
     CHECK(trace_marks(work.trace(), std::nullopt, 1.0).lines.size() == 2);
+    // A segment is dragged as a whole.
+    const TraceMarks segment = trace_marks(work.trace(), std::nullopt, 1.0, by);
+    REQUIRE(segment.balls.size() == 3);
+    CHECK(segment.balls[0].center == work.trace().node(0).position + by);
+    REQUIRE(segment.lines.size() == 2);
+    CHECK(segment.lines[1].to == work.trace().node(2).position + by);
 }
 
 TEST_CASE("internodes about the selected node are lines over the picture, nearest first, where that is wanted")

@@ -67,6 +67,7 @@ std::vector<Action> samples()
             LinkOp{.near = {}, .node = 9},
             LinkOp{.near = glm::dvec3(1), .node = {}, .within_voxels = 2.0},
             MoveOp{{7, 8, 9}},
+            MoveOp{{7, 8, 9}, glm::dvec3(1, 2, 3)},
             DeleteOp{},
             GroupOp{200},
             RadiusOp{.radius_voxels = 1.5},

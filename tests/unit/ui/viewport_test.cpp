@@ -171,6 +171,13 @@ TEST_CASE("Clicks trace, select and measure; a press that moves is none")
     CHECK(trace.said == "select");
     CHECK(std::get<SelectOp>(trace.last[0]).number == 0u);
     CHECK(trace.drag(LEFT, 200.0, 152.0) == "select place_probe drag_node probe_to drag_node");
+    // A node of a selected segment takes the segment along.
+    TraceGraph& graph = trace.world.trace;
+    graph.apply(TraceNodeChange{1, {}, TraceNode{{80.0, 50.0, 50.0}, 2.0, 1}}, Direction::forwards);
+    graph.apply(TraceInternodeChange{0, {}, TraceInternode{0, 1}}, Direction::forwards);
+    graph.select({{0, 1}, {0}});
+    trace.said.clear();
+    CHECK(trace.drag(LEFT, 200.0, 152.0) == "place_probe drag_node probe_to drag_node");
 
     Mouse select(Tool::select);
     select.click(40.0, 40.0);

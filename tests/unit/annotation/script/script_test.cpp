@@ -262,6 +262,8 @@ TEST_CASE("lines of tracing are read with every key")
     CHECK(op_of<LinkOp>(R"({"op":"link","near":[4,5,6],"within":2.5})").within_voxels == 2.5);
     CHECK(op_of<LinkOp>(R"({"op":"link","node":9})").node == 9u);
     CHECK(op_of<MoveOp>(R"({"op":"move","to":[7,8,9]})").to == glm::dvec3(7, 8, 9));
+    CHECK(!op_of<MoveOp>(R"({"op":"move","to":[7,8,9]})").from);
+    CHECK(op_of<MoveOp>(R"({"op":"move","to":[7,8,9],"from":[1,2,3]})").from == glm::dvec3(1, 2, 3));
     CHECK(op_of<GroupOp>(R"({"op":"group","group":200})").group == 200);
 
     const auto selected = op_of<RadiusOp>(R"({"op":"radius","radius":2})");

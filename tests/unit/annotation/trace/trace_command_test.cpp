@@ -4,6 +4,7 @@
 #include "engine/annotation/trace/trace_command.h"
 
 #include <algorithm>
+#include <map>
 #include <random>
 
 #include <doctest/doctest.h>
@@ -158,6 +159,63 @@ TEST_CASE("selecting is no step of the history, and what is too far away is not 
     CHECK(refusal(work, SelectOp{.near = {}, .number = 9, .is_internode = false, .within_voxels = {}}) ==
           "node 9 does not exist; expected one of the trace");
     CHECK(refusal(work, DeleteOp{}) == "nothing is selected; expected a node, an internode or a segment");
+}
+
+namespace {
+
+std::map<uint32_t, TraceNode> nodes_of(const TraceGraph& trace)
+{
+    std::map<uint32_t, TraceNode> nodes;
+    for (const auto& [number, node] : trace.nodes()) nodes[number] = node;
+    return nodes;
+}
+
+}  // namespace
+
+// Kind (Touch): a segment that is moved
+TEST_CASE("a selected segment moves as a whole in one step, is undone exactly, and stays where it may not go")
+{
+    Tracing work;
+    // The branch at node 1 belongs to three segments, and stays.
+    for (const double x : {10.0, 20.0, 30.0, 40.0}) work.perform(work.node_at({x, 10, 10}));
+    work.perform(SelectOp{.near = {}, .number = 1, .within_voxels = {}});
+    work.perform(work.node_at({20, 20, 10}));
+    work.perform(SelectOp{.near = {}, .number = 2, .is_internode = true, .within_voxels = {}});
+    work.perform(SelectSegmentOp{});
+    const TraceSelection segment = work.trace().selection();
+    REQUIRE(segment.nodes == std::vector<uint32_t>{2, 3});
+    const TraceGraph before = work.trace();
+    const glm::dvec3 by(1, -2, 3);
+    const size_t steps = work.history.undoable();
+    work.perform(MoveOp{.to = glm::dvec3(5, 5, 5) + by, .from = glm::dvec3(5, 5, 5)});
+    CHECK(work.history.undoable() == steps + 1);
+    const TraceGraph after = work.trace();
+    for (const auto& [number, node] : before.nodes()) {
+        const bool is_moved = number == 2 || number == 3;
+        const glm::dvec3 expected = node.position + (is_moved ? by * TRACE_DEFAULTS.spacing : glm::dvec3(0.0));
+        CHECK(glm::distance(after.node(number).position, expected) < 1e-12);
+        CHECK(after.node(number).radius == node.radius);
+    }
+    CHECK(after.internodes().size() == before.internodes().size());
+    CHECK(after.selection() == segment);
+    CHECK(work.history.undo(work.document) != nullptr);
+    CHECK(nodes_of(work.trace()) == nodes_of(before));
+    CHECK(work.history.redo(work.document) != nullptr);
+    CHECK(nodes_of(work.trace()) == nodes_of(after));
+    // The ends of a lone internode move with it.
+    work.perform(SelectOp{.near = {}, .number = 0, .is_internode = true, .within_voxels = {}});
+    work.perform(MoveOp{.to = glm::dvec3(0, 1, 0), .from = glm::dvec3(0.0)});
+    CHECK(work.trace().node(0).position.y == doctest::Approx(11.0 * TRACE_DEFAULTS.spacing.y));
+    CHECK(work.trace().node(1).position.y == doctest::Approx(11.0 * TRACE_DEFAULTS.spacing.y));
+    // No part of it is moved where one node would be outside.
+    const TraceGraph last = work.trace();
+    TraceDefaults inside = TRACE_DEFAULTS;
+    inside.size = Size3(64);
+    CHECK_THROWS_AS(effect_of(MoveOp{.to = glm::dvec3(-30, 0, 0), .from = glm::dvec3(0.0)}, last, inside), Error);
+    CHECK(effect_of(MoveOp{.to = glm::dvec3(-5, 0, 0), .from = glm::dvec3(0.0)}, last, inside).changes.size() == 2);
+    work.perform(DeselectOp{});
+    CHECK(refusal(work, MoveOp{.to = glm::dvec3(1.0), .from = glm::dvec3(0.0)}) ==
+          "nothing is selected; expected a node, an internode or a segment");
 }
 
 TEST_CASE("link, move, size, group and delete are one step each, and undone they leave what was")
