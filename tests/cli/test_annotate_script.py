@@ -85,6 +85,7 @@ class Script(CliTest):
             self.annotate([{"op": "expect", "voxels_in_group": {"1": painted, "2": painted}}, {"op": what, "count": 2},
                            {"op": "expect", "voxels_in_group": {"1": 1 - painted}}, {"op": back, "count": 2}])
 
+    # Kind (Values): painting next to fill values of any share
     def test_fill_values_of_any_share_take_no_voxel_from_paint_and_are_told(self):
         random = [(i * 7919) % 200 for i in range(20 * 20 * 20)]
         for voxel_type, fill, every in [("int32", -2147483648, 12), ("float", -3.4e38, 3), ("float", 1e7, 500)]:

@@ -15,6 +15,7 @@ def node(x, y, z, radius=2, group=1):
 
 
 class Help(CliTest):
+    # Kind (Traces): the origin of exported coordinates
     def test_the_origin_of_each_space_is_said(self):
         text = " ".join(self.check("export", "--help").stdout.split())
         self.assertIn("the origin at the centre of voxel 0", text)

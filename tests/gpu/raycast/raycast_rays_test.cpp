@@ -164,6 +164,7 @@ TEST_CASE_FIXTURE(OnDevice, "an eye inside the volume, and at its borders, sees 
     }
 }
 
+// Kind (Light): an eye inside the volume
 TEST_CASE_FIXTURE(OnDevice, "rays of an eye inside the volume begin at the eye")
 {
     constexpr double OPACITY = 0.17;  // of a voxel's length

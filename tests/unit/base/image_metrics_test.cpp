@@ -150,6 +150,7 @@ TEST_CASE("pixel metrics are what their definitions say")
     }
 }
 
+// Kind (Instruments): an opaque picture, whose alpha is no error
 TEST_CASE("black and white differ by the whole range")
 {
     const PixelDifference difference = compare_pixels(plain(BLACK), plain(WHITE));

@@ -116,6 +116,7 @@ TEST_CASE("a device that has less is refused by what it lacks")
           "R32_UINT storage images cannot be read and written; expected a driver that can do so");
 }
 
+// Kind (Drivers): an unfit device that ranks above a fit one, no driver, and names in other letters
 TEST_CASE("of several devices the best is taken that can show the window, and what is named if it can do all")
 {
     constexpr auto DISCRETE = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU, INTEGRATED = VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU,

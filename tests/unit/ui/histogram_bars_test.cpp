@@ -53,6 +53,7 @@ TEST_CASE("a smooth histogram is drawn smooth, whatever the values are multiples
     }
 }
 
+// Kind (Values): a fill value in the histogram
 TEST_CASE("a fill value has a bar of its own, apart from all others")
 {
     VolumeStatistics statistics = hill(300, 1);

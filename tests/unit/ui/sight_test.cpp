@@ -34,6 +34,7 @@ TEST_CASE("Lengths have four digits and their unit")
     CHECK(length_in_words(-0.0, "mm") == "0 mm");
 }
 
+// Kind (Window): integers of five digits and more
 TEST_CASE("A reading is the place, the value and the group, in one line")
 {
     const VolumeInfo info = scan({0.5, 0.5, 2.0}, "mm");
