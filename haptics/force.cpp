@@ -143,14 +143,16 @@ struct Moment {
     bool is_fresh = false;
 };
 
-/// Cross-fades from the pull of one mode, law or object to that of the next without a step.
-glm::dvec3 cross_faded(const ForceSettings& settings, const ModePull& pull, const glm::dvec3& wanted, uint64_t dt_ns,
-                       ForceMemory& memory)
+/// Cross-fades from the pull of one mode, law, object or cut to that of the next without a step.
+glm::dvec3 cross_faded(const ForceSettings& settings, const ModePull& pull, uint32_t limits, const glm::dvec3& wanted,
+                       uint64_t dt_ns, ForceMemory& memory)
 {
-    if (settings.mode != memory.mode || settings.law != memory.law || pull.object != memory.object) {
+    if (settings.mode != memory.mode || settings.law != memory.law || pull.object != memory.object ||
+        limits != memory.limits) {
         memory.mode = settings.mode;
         memory.law = settings.law;
         memory.object = pull.object;
+        memory.limits = limits;
         memory.cross = 0.0;
         memory.crossed_n = memory.spring_n;
     }
@@ -218,7 +220,7 @@ ForceStep feel(const ForceSettings& settings, const DeviceCaps& caps, const Rele
     if (pull.has_lost) memory.flags |= FORCE_OFF_OBJECT;
 
     const double fade = box * memory.strength * memory.engagement * memory.relevance_fade;
-    const glm::dvec3 pulled = fade * cross_faded(settings, pull, wanted, moment.dt_ns, memory);
+    const glm::dvec3 pulled = fade * cross_faded(settings, pull, patch.limits, wanted, moment.dt_ns, memory);
     if (caps.outputs_force && moment.is_fresh) {
         const SentForce effect = force_in_effect(caps, memory.last, moment.now_ns, memory.sent);
         observe_energy(memory.last.position_m, pulled, effect.force_n, memory.energy);

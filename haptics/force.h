@@ -71,10 +71,11 @@ struct ForceMemory {
     uint32_t flags = 0;          ///< FORCE_FAULT is latched
     uint32_t reset = 0;          ///< ForceSettings::reset, last seen
 
-    // Cross-fade between two pulls: after a change of mode, law or object
+    // Cross-fade between two pulls: after a change of mode, law, object or limits
     TouchMode mode = TouchMode::proximity;
     ProxyLaw law = ProxyLaw::potential;
     uint32_t object = 0;
+    uint32_t limits = 0;        ///< RelevancePatch::limits
     double cross = 1.0;         ///< 0 ... 1: weight of the present pull; the rest is that of the previous one
     glm::dvec3 spring_n{0.0};   ///< last value
     glm::dvec3 crossed_n{0.0};  ///< the pull that fades out

@@ -23,6 +23,7 @@ void RelevancePatch::take_place_of(const RelevancePatch& other)
     volume_size = other.volume_size;
     level = other.level;
     settings = other.settings;
+    limits = other.limits;
 }
 
 bool RelevancePatch::covers(const glm::dvec3& centre, double radius) const

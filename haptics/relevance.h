@@ -34,6 +34,7 @@ struct RelevancePatch {
     int32_t level = 0;          ///< level l voxels cover 2^l of the volume's along each axis; coarse levels are for
                                 ///< large probes
     uint32_t settings = 0;      ///< the ForceSettings::relevance_settings used; if they differ, the patch is unusable
+    uint32_t limits = 0;        ///< counts changes of what is left out (cuts, hidden groups): the pull fades over
     std::array<uint32_t, MAX_WORDS> words{};  ///< index of a word: word + words_per_row * (y + size.y * z)
 
     uint32_t row_word(int32_t word, int32_t y, int32_t z) const

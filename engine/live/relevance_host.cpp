@@ -120,7 +120,28 @@ void limit_to_groups(const Mask& mask, const std::bitset<256>& groups, Relevance
             }
 }
 
-RelevanceBits relevance_on_host(const VolumeSource& source, int level, const VoxelBox& box, double threshold)
+namespace {
+
+VoxelBox covered_by(const Size3& voxel, int level, const Size3& volume_size)
+{
+    const int64_t step = int64_t{1} << level;
+    return {voxel * step, glm::min(voxel * step + step, volume_size)};
+}
+
+bool is_mostly_painted(const Mask& mask, const VoxelBox& box)
+{
+    int64_t painted = 0, voxels = 0;
+    for (int64_t z = box.lower.z; z < box.upper.z; ++z)
+        for (int64_t y = box.lower.y; y < box.upper.y; ++y)
+            for (int64_t x = box.lower.x; x < box.upper.x; ++x, ++voxels) painted += mask.at({x, y, z}) != 0;
+    return painted > 0 && 2 * painted >= voxels;
+}
+
+/// Calls `visit(voxel in the box, intensity)` for each voxel at or above the threshold, and sets its bit if that
+/// returns true.
+template <class Visit>
+RelevanceBits bits_where(const VolumeSource& source, int level, const VoxelBox& box, double threshold,
+                         const Visit& visit)
 {
     const Size3 size = box.size();
     std::vector<double> values(size_t(size.x * size.y * size.z));
@@ -130,10 +151,29 @@ RelevanceBits relevance_on_host(const VolumeSource& source, int level, const Vox
     RelevanceBits bits{.box = box, .words_per_row = (size.x + 31) / 32, .words = {}, .level = level};
     bits.words.assign(size_t(bits.words_per_row * size.y * size.z), 0u);
     for (int64_t row = 0; row < size.y * size.z; ++row)
-        for (int64_t x = 0; x < size.x; ++x)
-            if (values[size_t(row * size.x + x)] >= threshold)
+        for (int64_t x = 0; x < size.x; ++x) {
+            const double value = values[size_t(row * size.x + x)];
+            if (value >= threshold && visit(Size3(x, row % size.y, row / size.y), value))
                 bits.words[size_t(row * bits.words_per_row + x / 32)] |= 1u << (x % 32);
+        }
     return bits;
+}
+
+}  // namespace
+
+RelevanceBits relevance_on_host(const VolumeSource& source, int level, const VoxelBox& box, double threshold)
+{
+    return bits_where(source, level, box, threshold, [](const Size3&, double) { return true; });
+}
+
+RelevanceBits relevance_on_host(const VolumeSource& source, int level, const VoxelBox& box, double threshold,
+                                const FeltLimits& limits, const Mask* mask)
+{
+    if (!limits.unpainted) return relevance_on_host(source, level, box, threshold);
+    return bits_where(source, level, box, threshold, [&](const Size3& at, double value) {
+        return contains(*limits.unpainted, value) ||
+               (mask && is_mostly_painted(*mask, covered_by(box.lower + at, level, mask->size())));
+    });
 }
 
 }  // namespace shvr

@@ -5,6 +5,7 @@
 #include <bitset>
 
 #include "engine/annotation/mask.h"
+#include "engine/live/felt_limits.h"
 #include "engine/live/relevance.h"
 #include "engine/touch/region_wish.h"
 #include "engine/volume/source.h"
@@ -20,6 +21,10 @@ RelevancePlace relevance_place(const VolumeSource& source, const RegionWish& wis
 
 /// Which voxels of a box of a level are at or above the threshold. `source` already includes density offsets.
 RelevanceBits relevance_on_host(const VolumeSource& source, int level, const VoxelBox& box, double threshold);
+/// Likewise, without unpainted voxels whose intensities are not felt; apply_limits does the rest. A voxel of a coarser
+/// level is painted if at least half of the voxels that it covers are. `mask`: null: nothing is painted.
+RelevanceBits relevance_on_host(const VolumeSource& source, int level, const VoxelBox& box, double threshold,
+                                const FeltLimits& limits, const Mask* mask);
 
 /// Clears the bits of voxels outside these groups. A voxel of a coarser level counts by the painted voxels that it
 /// covers: it stays if at least half of them, and at least one, are in these groups. Unpainted voxels count only if

@@ -108,16 +108,24 @@ bool RelevanceMirror::is_of(const Wanted& wanted) const
 
 void RelevanceMirror::hold(const Wanted& wanted, RelevanceBits bits, bool is_from_host)
 {
-    if (now_->groups && now_->mask) limit_to_groups(*now_->mask, *now_->groups, bits);
     held_.place = wanted.place;
-    held_.bits = std::move(bits);
-    ++held_.sequence;
+    unlimited_ = std::move(bits);
+    limit();
     held_.settings = wanted.settings;
     held_.voxels = wanted.voxels;
     held_.threshold = wanted.threshold;
     held_.is_from_host = is_from_host;
     measure_latency();
     waiting_for_.reset();
+}
+
+void RelevanceMirror::limit()
+{
+    held_.bits = unlimited_;
+    apply_limits(now_->limits, now_->source->info().spacing, now_->mask.get(), held_.bits);
+    held_.limits += held_.sequence > 0 && now_->limits != limits_;
+    limits_ = now_->limits;
+    ++held_.sequence;
 }
 
 void RelevanceMirror::measure_latency()
@@ -175,7 +183,7 @@ void RelevanceMirror::turn(uint64_t now_ns)
             if (!waiting_for_) waiting_since_ns_ = now_ns;
             waiting_for_ = best;
         }
-        const bool asks_device = now_->has_device && best.place.level == 0;
+        const bool asks_device = now_->has_device && best.place.level == 0 && !now_->limits.unpainted;
         set_wanted(asks_device ? waiting_for_ : std::nullopt);
         const bool is_declined = [&] {
             const std::scoped_lock lock(mutex_);
@@ -189,6 +197,7 @@ void RelevanceMirror::turn(uint64_t now_ns)
             make_on_host(best, now_ns);
     }
     if (held_.sequence == 0) return;
+    if (now_->limits != limits_) limit();
     if (held_.settings == now_->settings && held_.voxels == now_->voxels && held_.threshold == now_->threshold)
         held_.true_at_ns = now_ns;
     ends_.publish(held_);
@@ -198,7 +207,9 @@ void RelevanceMirror::make_on_host(const Wanted& wanted, uint64_t now_ns)
 {
     std::string trouble;
     try {
-        hold(wanted, relevance_on_host(*source_with_offsets(), wanted.place.level, wanted.place.box, wanted.threshold),
+        hold(wanted,
+             relevance_on_host(*source_with_offsets(), wanted.place.level, wanted.place.box, wanted.threshold,
+                               now_->limits, now_->mask.get()),
              true);
         failed_ns_ = 0;
     } catch (const std::exception& failure) {

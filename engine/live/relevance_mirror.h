@@ -6,9 +6,11 @@
 //   device (a frame or so later):   +-> bits of one cube ---+   again each iteration, with the time up to which
 //     wanted() -> Relevance -> offer()   or the host's own      they are known to be true
 //
-// Bits stay valid until the user changes threshold, groups or voxels, so the thread updates their time stamp in each
-// iteration. When the ball comes near the cube's border or will be beyond it before an answer arrives (region_wish.h),
-// or something changed, wanted() names a new cube for the device's compute pass. The latency of answers is measured.
+// Bits stay valid until the user changes threshold or voxels, so the thread updates their time stamp in each
+// iteration. Limits of what is felt (felt_limits.h) are applied to a copy of the bits, again as soon as they change: a
+// cut that moves needs no new answer. Where intensities decide, the host makes the bits. When the ball comes near the
+// cube's border or will be beyond it before an answer arrives (region_wish.h), or something changed, wanted() names a
+// new cube for the device's compute pass. The latency of answers is measured.
 // If no answer came within DEVICE_NS (four times that while the held bits still suffice), or the cube is of a coarser
 // level, or the device declined, the thread reads the voxels itself. The bits are the same (relevance_host.h).
 //
@@ -31,12 +33,12 @@ namespace shvr {
 struct RelevanceChoice {
     std::shared_ptr<const VolumeSource> source;     ///< without offsets; null: nothing is mirrored
     std::shared_ptr<const DensityField> offsets{};  ///< null: none
-    std::shared_ptr<const Mask> mask{};             ///< with `groups`
-    std::optional<std::bitset<256>> groups{};       ///< limits touch to these painted groups
+    std::shared_ptr<const Mask> mask{};             ///< if `limits` need it
+    FeltLimits limits{};                            ///< which of the voxels at or above the threshold are felt
     double threshold = 0.0;                         ///< intensity
     double radius = 1.0;                            ///< radius of the ball, physical units
-    uint32_t settings = 0;                          ///< counts changes of threshold and groups
-    uint64_t voxels = 0;                            ///< counts changes of offsets and mask
+    uint32_t settings = 0;                          ///< counts changes of the threshold
+    uint64_t voxels = 0;                            ///< counts changes of offsets, mask and `limits.unpainted`
     bool has_device = true;                         ///< a caller polls wanted() and offers answers
 };
 
@@ -53,6 +55,7 @@ struct MirroredRelevance {
     uint64_t true_at_ns = 0;
     uint32_t settings = 0;
     uint64_t voxels = 0;
+    uint32_t limits = 0;  ///< counts changes of the limits of what is felt
     double threshold = 0.0;
     bool is_from_host = false;
 };
@@ -107,6 +110,7 @@ private:
     bool is_of(const Wanted& wanted) const;
     void measure_latency();
     void hold(const Wanted& wanted, RelevanceBits bits, bool is_from_host);
+    void limit();
     void make_on_host(const Wanted& wanted, uint64_t now_ns);
     void set_wanted(const std::optional<Wanted>& wanted);
     std::shared_ptr<const VolumeSource> source_with_offsets();
@@ -126,6 +130,8 @@ private:
     // Owned by the thread
     std::shared_ptr<const RelevanceChoice> now_;
     MirroredRelevance held_;
+    RelevanceBits unlimited_;            ///< the bits in `held_` before limits were applied; empty while there are none
+    FeltLimits limits_;                  ///< those applied
     std::optional<Wanted> waiting_for_;  ///< requested from the device
     uint64_t waiting_since_ns_ = 0, failed_ns_ = 0;
     double latency_s_ = WINDOW_LATENCY_S;  ///< measured: from wanting a cube until it is held, smoothed

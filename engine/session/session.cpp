@@ -72,15 +72,20 @@ TransferFunction multiplied(const TransferFunction& function, double factor)
 
 }  // namespace
 
+Groups Session::shown_groups() const
+{
+    Groups shown = groups;
+    for (int group = 1; view.solo && group < 256; ++group)
+        if (*view.solo == 0 || !is_within(groups, uint8_t(group), *view.solo)) shown[uint8_t(group)].visible = false;
+    return shown;
+}
+
 Look Session::look() const
 {
-    Look look{transfer_function, groups, light, blend, cut, render, view.slices, view.meshes};
+    Look look{transfer_function, shown_groups(), light, blend, cut, render, view.slices, view.meshes};
     const bool shows_unpainted = unpainted.visible && view.solo.value_or(0) == 0;
     const double factor = shows_unpainted ? unpainted.opacity : 0.0;
     if (factor != 1.0) look.transfer_function = multiplied(transfer_function, factor);
-    for (int group = 1; view.solo && group < 256; ++group)
-        if (*view.solo == 0 || !is_within(groups, uint8_t(group), *view.solo))
-            look.groups[uint8_t(group)].visible = false;
     // Everything is cut away except slices, which ignore cuts, and surfaces.
     if (!view.volume) look.cut.upper = look.cut.lower;
     return look;

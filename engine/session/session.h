@@ -93,6 +93,8 @@ struct FeelSettings {
     bool to_lines = false;        ///< tools act at the nearest point of a centre line that passes through the ball
     bool clicks = false;          ///< a short pulse of the device when contact begins
     TouchPlane plane = TouchPlane::none;
+    /// What pictures do not show is felt, too: what is cut away, transparent, or in hidden groups.
+    bool feels_hidden = false;
     bool operator==(const FeelSettings&) const = default;
 };
 inline constexpr double MAX_STIFFNESS = 1000.0, MAX_FELT_DAMPING = 1.2;
@@ -170,6 +172,8 @@ struct Session {
 
     /// The part that pictures depend on.
     Look look() const;
+    /// The groups as pictures show them: with `view.solo`, all others are hidden.
+    Groups shown_groups() const;
 };
 
 /// `path`: a session file (.json), a project folder (its shvr/session.json), or a volume file (a session is made for

@@ -357,6 +357,9 @@ void fields(Fields& f, FeelSettings& touch)
            {"tools act at the nearest point of a centre line inside the probe's ball, where a new node divides it"});
     f.flag("clicks", touch.clicks, {"a haptic device gives a short pulse when the probe begins to touch something"});
     f.choice("plane", touch.plane, {"axis across which the probe stays in its plane of voxels"});
+    f.flag("feels_hidden", touch.feels_hidden,
+           {"true: what the picture does not show is felt, too, and tools act at nodes that are not drawn: what is cut "
+            "away or transparent, and hidden groups; false: what is seen is what is felt"});
 }
 
 void fields(Fields& f, ProbeSettings& probe)

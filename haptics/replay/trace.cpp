@@ -119,7 +119,8 @@ glm::ivec3 voxels_of(const JsonNode& node, int32_t least)
 
 TraceRelevance relevance_of(const JsonNode& node)
 {
-    node.allow({"sequence", "origin", "size", "words_per_row", "spacing", "volume_size", "level", "settings", "runs"});
+    node.allow({"sequence", "origin", "size", "words_per_row", "spacing", "volume_size", "level", "settings", "limits",
+                "runs"});
     TraceRelevance noted;
     noted.sequence = uint64_t(node["sequence"].whole(1, MAX_TIME_NS));
     noted.origin = voxels_of(node["origin"], 0);
@@ -129,6 +130,7 @@ TraceRelevance relevance_of(const JsonNode& node)
     noted.volume_size = voxels_of(node["volume_size"], 1);
     noted.level = int32_t(node["level"].whole(0, 0, 30));
     noted.settings = number_32(node["settings"], 0);
+    noted.limits = number_32(node["limits"], 0);
     noted.runs = node["runs"].text();
     return noted;
 }
@@ -164,7 +166,7 @@ TraceTick read_tick(const JsonNode& node, const TraceTick* before, uint64_t peri
 /// Whether the file must have an end line.
 bool read_head(const JsonNode& node, Trace& trace)
 {
-    node.allow({"shvr_stylus_trace", "holds_relevance", "unit", "rate_hz", "caps"});
+    node.allow({"shvr_stylus_trace", "holds_relevance", "feels_seen", "unit", "rate_hz", "caps"});
     const JsonNode version = node.required("shvr_stylus_trace", "1, 2 or 3, the version of the format");
     const std::string number = version.is_number() ? version.dump() : "";
     if (number != "1" && number != "2" && number != "3")
@@ -172,6 +174,7 @@ bool read_head(const JsonNode& node, Trace& trace)
     const JsonNode holds = node["holds_relevance"];
     if (holds.exists() && number != "3") holds.refuse_because("is of version 3; expected that version");
     trace.holds_relevance = holds.flag(number != "1");
+    trace.feels_seen = node["feels_seen"].flag(false);
     if (node["unit"].exists()) trace.unit = node["unit"].any_text();
     trace.rate_hz = uint32_t(node["rate_hz"].whole(trace.rate_hz, 1, 100'000));
     if (node["caps"].exists()) read_caps(node["caps"], trace.caps);

@@ -51,6 +51,9 @@ struct Trace {
     /// entry. Otherwise the replaying code computes it.
     bool holds_relevance = false;
     std::vector<TraceRelevance> relevance;
+    /// Whether relevance that is computed is limited to what the session shows, as its settings say; in traces of older
+    /// programs, which felt everything, it is not.
+    bool feels_seen = false;
     std::vector<TraceTick> ticks;
 };
 

@@ -76,6 +76,7 @@ TraceRelevance note_relevance(const RelevancePatch& patch, const RelevancePatch&
                          .volume_size = patch.volume_size,
                          .level = patch.level,
                          .settings = patch.settings,
+                         .limits = patch.limits,
                          .runs = {}};
     uint32_t length = 0;
     bool differs = false;
@@ -107,6 +108,7 @@ bool read_relevance(const TraceRelevance& noted, const RelevancePatch& before, R
     patch.volume_size = noted.volume_size;
     patch.level = noted.level;
     patch.settings = noted.settings;
+    patch.limits = noted.limits;
     if (!has_place(patch)) return false;
     std::string_view runs = noted.runs;
     uint32_t length = 0;

@@ -24,6 +24,7 @@ struct TraceRelevance {
     glm::ivec3 volume_size{0};
     int32_t level = 0;
     uint32_t settings = 0;
+    uint32_t limits = 0;
     std::string runs;
 };
 

@@ -79,6 +79,7 @@ std::string head_of(const Trace& trace)
     Line head;
     head.add("shvr_stylus_trace", VERSION);
     head.add("holds_relevance", trace.holds_relevance);
+    if (trace.feels_seen) head.add("feels_seen", true);
     head.add("unit", std::string_view(in_json(trace.unit)));
     head.add("rate_hz", trace.rate_hz);
     head.key("caps");
@@ -123,6 +124,7 @@ std::string line_of(const TraceRelevance& noted)
     line.add("volume_size", whole(noted.volume_size));
     line.add("level", uint32_t(noted.level));
     line.add("settings", noted.settings);
+    if (noted.limits != 0) line.add("limits", noted.limits);
     line.add("runs", std::string_view(noted.runs));
     return "{\"relevance\":" + line.end() + "}";
 }

@@ -78,6 +78,7 @@ class Haptics(CliTest):
         trace = self.trace()
         self.assertEqual(self.replay(trace, "--threshold", "250")["max_force_n"], 0)
 
+    # Kind (Touch): a replay in which only some groups are felt
     def test_only_the_chosen_groups_are_felt(self):
         trace = self.trace(ticks=600)
         self.assertEqual(self.replay(trace)["contact_ticks"] > 500, True)
@@ -92,6 +93,29 @@ class Haptics(CliTest):
         self.assertGreater(felt[5], 500)
         self.assertEqual(felt[6], 0)
 
+    # Kind (Touch): a trace without relevance, of a scan whose session hides what it touches
+    def test_what_the_session_hides_is_not_felt_except_by_older_traces(self):
+        older = self.trace(ticks=600)
+        whole = self.replay(older)
+        seen = self.folder / "seen.trace"
+        head, rest = older.read_text().split("\n", 1)
+        seen.write_text(json.dumps({**json.loads(head), "feels_seen": True}) + "\n" + rest)
+        self.assertEqual(self.replay(seen)["forces_hash"], whole["forces_hash"])
+        hidden = (["cut.lower=[0,0,50]"], ["unpainted.visible=false"], ["view.solo=3"],
+                  ['transfer_function.points=[{"intensity":210,"opacity":0},{"intensity":220,"opacity":1}]'])
+        for settings in hidden:
+            arguments = [argument for setting in settings for argument in ("--set", setting)]
+            with self.subTest(settings=settings):
+                self.assertEqual(self.replay(seen, *arguments)["contact_ticks"], 0)
+                self.assertEqual(self.replay(older, *arguments)["forces_hash"], whole["forces_hash"])
+                felt = self.replay(seen, *arguments, "--set", "probe.touch.feels_hidden=true")
+                self.assertEqual(felt["forces_hash"], whole["forces_hash"])
+        # Half of the tube is felt where the other half is cut away.
+        half = self.replay(seen, "--set", "cut.lower=[0,0,32]")
+        self.assertGreater(half["contact_ticks"], 500)
+        self.assertNotEqual(half["forces_hash"], whole["forces_hash"])
+
+    # Kind (Touch): a replay with a ball that needs coarser levels
     def test_a_ball_of_seventy_voxels_is_felt_on_coarser_levels(self):
         side = 160
         voxels = bytearray(side**3)

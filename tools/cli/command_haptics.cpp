@@ -40,10 +40,27 @@ std::vector<std::string> choices()
     return names;
 }
 
-/// Returns the offsets and, if only some groups are felt, the paint.
-Document felt_document(const ReplayCommandOptions& options, const UnmeasuredSession& opened, const VolumeInfo& info)
+/// Returns which voxels are felt, by the session's settings; a trace of an older program felt what was hidden, too.
+FeltLimits limits_of(const ReplayCommandOptions& options, const Trace& trace, const UnmeasuredSession& opened,
+                     LongWork& work)
 {
-    if (opened.session.probe.touch.groups.empty()) {
+    const FeelSettings& touch = opened.session.probe.touch;
+    if (!trace.feels_seen || touch.feels_hidden) return limits_of_groups(touch.groups);
+    // What intensities look like may depend on all of them.
+    OpenedSession measured = open_session(options.volume, options.common.settings,
+                                          {.measure = {.progress = work.begin("measuring " + options.volume)}});
+    const VolumeInfo& info = measured.source->info();
+    const auto lowest = std::ranges::min_element(trace.settings, {}, &TraceSettings::threshold);
+    measured.session.probe.haptic_threshold = lowest->threshold;
+    return ui::felt_limits(measured.session, camera_named(measured.session, measured.session.camera_name, info), info,
+                           window_for(info.type, measured.statistics));
+}
+
+/// Returns the offsets and, if that decides what is felt, the paint.
+Document felt_document(const ReplayCommandOptions& options, const UnmeasuredSession& opened, const VolumeInfo& info,
+                       const FeltLimits& limits)
+{
+    if (!limits.need_mask()) {
         std::vector<Notice> notices;
         DensityField offsets = offsets_of(work_files(opened.session, info), options.common.belief, notices);
         warn(notices, options.common);
@@ -80,13 +97,13 @@ MakeRelevance relevance_of(const ReplayCommandOptions& options, Trace& trace, Lo
         fail(options.trace, ": key unit is ", in_quotes(trace.unit), ", and lengths of ", options.volume, " are in ",
              in_quotes(info.unit), "; expected a trace of this volume");
     trace.unit = info.unit;
-    const auto document = std::make_shared<const Document>(felt_document(options, opened, info));
+    const FeltLimits limits = limits_of(options, trace, opened, work);
+    const auto document = std::make_shared<const Document>(felt_document(options, opened, info, limits));
     const std::shared_ptr<const VolumeSource> source =
         with_offsets(with_levels_for(trace, opened.source, work), document->density);
-    const std::vector<uint8_t> groups = opened.session.probe.touch.groups;
-    return [source, document, groups, &work](const RegionWish& wish, double threshold, RelevancePatch& patch) {
+    return [source, document, limits, &work](const RegionWish& wish, double threshold, RelevancePatch& patch) {
         work.stop_if_asked();
-        ui::host_relevance(*source, &document->mask, groups, wish, threshold, patch);
+        ui::host_relevance(*source, &document->mask, limits, wish, threshold, patch);
     };
 }
 

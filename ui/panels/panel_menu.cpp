@@ -282,6 +282,7 @@ void hand_menu(const Model& model, Actions& actions)
     shortcut_item("overlap_radius", model, actions, touch.overlap_radius);
     shortcut_item("to_nodes", model, actions, touch.to_nodes);
     shortcut_item("to_lines", model, actions, touch.to_lines);
+    shortcut_item("feels_hidden", model, actions, touch.feels_hidden);
     shortcut_item("clicks", model, actions, touch.clicks);
     shortcut_item("next_plane", model, actions);
     ImGui::Separator();

@@ -69,14 +69,15 @@ double share_along(const TraceGraph& trace, const TraceInternode& internode, con
 }
 
 std::optional<PlaceOnTrace> nearest_place(const TraceGraph& trace, const glm::dvec3& position, double reach,
-                                          std::optional<uint32_t> except_of)
+                                          std::optional<uint32_t> except_of, const std::bitset<256>& groups)
 {
     std::optional<PlaceOnTrace> nearest;
     double least = reach;
     for (const uint32_t node : trace.nodes_within(position, reach + 0.5 * trace.longest_at_most())) {
         for (const uint32_t number : trace.internodes_of(node)) {
             const TraceInternode& internode = trace.internode(number);
-            if (except_of && (internode.a == *except_of || internode.b == *except_of)) continue;
+            const bool is_excepted = except_of && (internode.a == *except_of || internode.b == *except_of);
+            if (is_excepted || !groups[internode.group]) continue;
             const double share = share_along(trace, internode, position);
             const glm::dvec3 place =
                 glm::mix(trace.node(internode.a).position, trace.node(internode.b).position, share);

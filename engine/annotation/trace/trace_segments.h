@@ -3,6 +3,7 @@
 // (three or more internodes) or ends (one), and loops without such nodes. Every
 // internode belongs to exactly one segment. Any thread may call these.
 
+#include <bitset>
 #include <set>
 #include <vector>
 
@@ -32,11 +33,12 @@ struct PlaceOnTrace {
     double share = 0.0;        ///< fraction along it
     glm::dvec3 position{0.0};  ///< volume space
 };
-/// The position nearest to a point, within `reach`, on any internode except those of the node `except_of`; the smallest
-/// number in case of a tie. Only checks internodes of nodes within `reach` plus half the longest internode: no others
-/// can be within reach.
+/// The position nearest to a point, within `reach`, on any internode of these groups except those of the node
+/// `except_of`; the smallest number in case of a tie. Only checks internodes of nodes within `reach` plus half the
+/// longest internode: no others can be within reach.
 std::optional<PlaceOnTrace> nearest_place(const TraceGraph& trace, const glm::dvec3& position, double reach,
-                                          std::optional<uint32_t> except_of = {});
+                                          std::optional<uint32_t> except_of = {},
+                                          const std::bitset<256>& groups = std::bitset<256>().set());
 
 /// The distance of a point from an internode.
 double distance_to(const TraceGraph& trace, const TraceInternode& internode, const glm::dvec3& position);

@@ -564,6 +564,8 @@ constexpr Shortcut SHORTCUTS[] = {
          ""),
     both("to_lines", HAND_KEYS, "Act on centre lines in the probe's ball", Mode::tap,
          toggle_feel<&FeelSettings::to_lines>, ""),
+    both("feels_hidden", HAND_KEYS, "Feel what the picture does not show", Mode::tap,
+         toggle_feel<&FeelSettings::feels_hidden>, ""),
     both("clicks", HAND_KEYS, "Click where contact begins", Mode::tap, toggle_feel<&FeelSettings::clicks>, ""),
     both("record_stylus", HAND_KEYS, "Record the stylus, or end it", Mode::tap, toggle_recording, ""),
     both("find_devices", HAND_KEYS, "Look for devices", Mode::tap, plain<FindDevices>, ""),

@@ -12,6 +12,7 @@
 #include "engine/session/kept_settings.h"
 #include "engine/session/label_looks.h"
 #include "engine/session/lasting_settings.h"
+#include "engine/workbench/touch/felt_relevance.h"
 
 namespace shvr::ui {
 
@@ -176,13 +177,25 @@ ProbeLook Document::probe_look() const
     return look;
 }
 
+FeltLimits Document::felt_limits() const
+{
+    return ui::felt_limits(session, camera, volume(), window_for(volume().type, statistics));
+}
+
 ToolPlace Document::tool_place_at(const glm::dvec3& point) const
 {
     if (drags_node) return {point, {}, {}};
     const TraceGraph& trace = annotator.document().trace;
     const bool is_brush = session.probe.tool == Tool::paint || session.probe.tool == Tool::erase;
-    return ui::tool_place(session.probe.touch, trace, point, probe_radius(),
-                          is_brush ? std::nullopt : trace.selection().node());
+    const FeelSettings& feel = session.probe.touch;
+    std::bitset<256> drawn;
+    if (!feel.to_nodes && !feel.to_lines) return {point, {}, {}};
+    if (feel.feels_hidden)
+        drawn.set();
+    else if (session.view.meshes)
+        drawn = drawn_groups(session.shown_groups(), false);
+    return ui::tool_place(feel, trace, point, probe_radius(), is_brush ? std::nullopt : trace.selection().node(),
+                          drawn);
 }
 
 ToolPlace Document::tool_place() const

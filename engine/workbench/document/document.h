@@ -88,6 +88,8 @@ struct Document {
     glm::dvec3 tool_voxel() const { return tool_place().point / volume().spacing; }
     /// Returns where tools would act with the probe at `point` and nothing touched.
     ToolPlace tool_place_at(const glm::dvec3& point) const;
+    /// Returns which voxels can be felt: by default those that the view shows.
+    FeltLimits felt_limits() const;
     const BrushSettings& brush() const { return session.probe.brush; }
     /// Chooses missing thresholds for the volume; likewise the size of nodes and the slices' contrast.
     void choose_thresholds(Session& of) const;

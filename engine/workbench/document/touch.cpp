@@ -174,21 +174,25 @@ void Touch::send_settings(const TouchSettings& settings)
 void Touch::choose(const TouchSettings& settings)
 {
     const GuideSettings& guide = settings.guide;
-    const std::optional<std::bitset<256>> groups = felt_groups(guide.feel.groups);
     const std::shared_ptr<const VolumeSource> source = guide.assists ? settings.source : nullptr;
-    const bool is_same = chosen_.threshold == guide.threshold && chosen_.groups == groups;
-    const bool has_new_voxels = chosen_.voxels != settings.voxels || chosen_.source != source;
-    chosen_.settings += !is_same;
+    const bool has_new_voxels = annotation_ != settings.voxels || chosen_.source != source;
+    const bool needs_mask = guide.limits.need_mask() && settings.mask;
+    chosen_.settings += chosen_.threshold != guide.threshold;
+    chosen_.voxels += has_new_voxels || chosen_.limits.unpainted != guide.limits.unpainted;
     chosen_.threshold = guide.threshold;
     chosen_.radius = guide.probe_radius;
-    if (has_new_voxels || !is_same) {  // copies share their bricks
+    // Copies share their bricks.
+    if (has_new_voxels) {
         const bool has_offsets = settings.offsets && settings.offsets->voxels() > 0;
         chosen_.offsets = has_offsets ? std::make_shared<const DensityField>(*settings.offsets) : nullptr;
-        chosen_.mask = groups && settings.mask ? std::make_shared<const Mask>(*settings.mask) : nullptr;
     }
-    chosen_.groups = groups;
+    if (!needs_mask)
+        chosen_.mask = nullptr;
+    else if (has_new_voxels || !chosen_.mask)
+        chosen_.mask = std::make_shared<const Mask>(*settings.mask);
+    chosen_.limits = guide.limits;
     chosen_.source = source;
-    chosen_.voxels = settings.voxels;
+    annotation_ = settings.voxels;
     mirror_->choose(chosen_);
 }
 

@@ -97,6 +97,7 @@ private:
     std::unique_ptr<TappedServo> servo_, puck_;
     std::unique_ptr<RelevanceMirror> mirror_;  ///< the running servo's; ends before it
     RelevanceChoice chosen_;
+    uint64_t annotation_ = 0;                       ///< TouchSettings::voxels in `chosen_`
     std::optional<RelevanceMirror::Wanted> asked_;  ///< pending request to the graphics device
     SimulatedDevice* mouse_ = nullptr;              ///< the servo's device while the mouse moves the probe
     std::unique_ptr<StylusRecorder> recorder_;

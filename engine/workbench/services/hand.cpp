@@ -46,7 +46,8 @@ TouchSettings Hand::touch_settings() const
 {
     const Document& document = *document_;
     TouchSettings settings{
-        .guide = guide_settings(document.session, document.probe_radius()),
+        .guide = guide_settings(document.session, document.probe_radius(),
+                                document.session.probe.guided ? document.felt_limits() : FeltLimits{}),
         .camera = document.camera,
         .view_height = pixel_size(document.camera, {1, 1}, glm::distance(document.camera.eye, document.camera.target)),
         .scale = document.session.interaction.workspace_scale,
@@ -192,7 +193,8 @@ void Hand::act(const FollowStylus& action)
         with_offsets(document.source, document.annotator.document().density);
     jobs_.start(
         "following " + short_name(action.path),
-        [this, action, source, guide = guide_settings(document.session, document.probe_radius()),
+        [this, action, source,
+         guide = guide_settings(document.session, document.probe_radius(), document.felt_limits()),
          mask = document.annotator.document().mask, of = desk_.openings](ProgressReporter&) -> Jobs::Completion {
             auto points = std::make_shared<std::vector<StylusPoint>>(
                 play_stylus(read_trace(action.path), guide, action.by_hand, source, mask));

@@ -21,22 +21,25 @@ void put_mirrored(const MirroredRelevance& mirrored, RelevancePatch& patch)
     patch.sequence = mirrored.sequence;
     patch.time_ns = mirrored.true_at_ns;
     patch.settings = mirrored.settings;
+    patch.limits = mirrored.limits;
 }
 
-std::optional<std::bitset<256>> felt_groups(const std::vector<uint8_t>& groups)
+FeltLimits felt_limits(const Session& session, const Camera& camera, const VolumeInfo& volume,
+                       const IntensityWindow& window)
 {
-    if (groups.empty()) return std::nullopt;
-    std::bitset<256> set;
-    for (const uint8_t group : groups) set.set(group);
-    return set;
+    const ProbeSettings& probe = session.probe;
+    FeltLimits limits = limits_of_groups(probe.touch.groups);
+    if (!probe.touch.feels_hidden)
+        limit_to_seen(session.look(), camera, volume, window, probe.haptic_threshold.value_or(0.0), limits);
+    return limits;
 }
 
-void host_relevance(const VolumeSource& source, const Mask* mask, const std::vector<uint8_t>& groups,
-                    const RegionWish& wish, double threshold, RelevancePatch& patch)
+void host_relevance(const VolumeSource& source, const Mask* mask, const FeltLimits& limits, const RegionWish& wish,
+                    double threshold, RelevancePatch& patch)
 {
     const RelevancePlace place = relevance_place(source, wish);
-    RelevanceBits bits = relevance_on_host(source, place.level, place.box, threshold);
-    if (const auto felt = felt_groups(groups); felt && mask) limit_to_groups(*mask, *felt, bits);
+    RelevanceBits bits = relevance_on_host(source, place.level, place.box, threshold, limits, mask);
+    apply_limits(limits, source.info().spacing, mask, bits);
     put_bits(place, bits, patch);
 }
 

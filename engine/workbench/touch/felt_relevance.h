@@ -1,11 +1,8 @@
 #pragma once
 // Passes relevance bits to the servo, and computes them from a volume if no mirror does. Any thread.
 
-#include <bitset>
-#include <optional>
-#include <vector>
-
 #include "engine/live/relevance_mirror.h"
+#include "engine/session/session.h"
 #include "haptics/relevance.h"
 
 namespace shvr::ui {
@@ -14,12 +11,14 @@ namespace shvr::ui {
 void put_bits(const RelevancePlace& place, const RelevanceBits& bits, RelevancePatch& patch);
 void put_mirrored(const MirroredRelevance& mirrored, RelevancePatch& patch);
 
-/// Returns the groups that are felt; without names: all, painted or not.
-std::optional<std::bitset<256>> felt_groups(const std::vector<uint8_t>& groups);
+/// Returns which voxels the session lets a hand feel: those in its groups and, unless it feels what is hidden, only
+/// those that its picture shows.
+FeltLimits felt_limits(const Session& session, const Camera& camera, const VolumeInfo& volume,
+                       const IntensityWindow& window);
 
 /// Computes the relevance around a probe as the window mirrors it. `source` includes density offsets already; `mask`
-/// may be null if no groups are named.
-void host_relevance(const VolumeSource& source, const Mask* mask, const std::vector<uint8_t>& groups,
-                    const RegionWish& wish, double threshold, RelevancePatch& patch);
+/// may be null if the limits do not need it, or nothing is painted.
+void host_relevance(const VolumeSource& source, const Mask* mask, const FeltLimits& limits, const RegionWish& wish,
+                    double threshold, RelevancePatch& patch);
 
 }  // namespace shvr::ui

@@ -48,7 +48,8 @@ struct ToolPlace {
 };
 /// Returns the point, or the part of the trace within `reach` that attracts tools, as `feel` selects: the nearest
 /// node, or the nearest point of a centre line, except on internodes of `except_of`, from which the user continues.
+/// Parts of the trace in other than the `drawn` groups attract nothing.
 ToolPlace tool_place(const FeelSettings& feel, const TraceGraph& trace, const glm::dvec3& point, double reach,
-                     std::optional<uint32_t> except_of);
+                     std::optional<uint32_t> except_of, const std::bitset<256>& drawn = std::bitset<256>().set());
 
 }  // namespace shvr::ui

@@ -1,11 +1,13 @@
 #include "engine/workbench/touch/stylus_player.h"
 
+#include <utility>
+
 #include "engine/base/error.h"
 #include "engine/workbench/touch/felt_relevance.h"
 
 namespace shvr::ui {
 
-GuideSettings guide_settings(const Session& session, double probe_radius)
+GuideSettings guide_settings(const Session& session, double probe_radius, FeltLimits limits)
 {
     const ProbeSettings& probe = session.probe;
     return {.assists = probe.guided,
@@ -13,7 +15,8 @@ GuideSettings guide_settings(const Session& session, double probe_radius)
             .mode = probe.touch.mode,
             .threshold = probe.haptic_threshold.value_or(0.0),
             .probe_radius = probe_radius,
-            .feel = probe.touch};
+            .feel = probe.touch,
+            .limits = std::move(limits)};
 }
 
 std::vector<StylusPoint> play_stylus(const Trace& trace, const GuideSettings& guide, bool by_hand,
@@ -41,8 +44,9 @@ std::vector<StylusPoint> play_stylus(const Trace& trace, const GuideSettings& gu
     ReplayOptions how;
     how.relevance_anew = true;  // of the present threshold, groups and voxels
     if (by_hand) how.touch = TouchModel{};
+    const FeltLimits limits = trace.feels_seen ? guide.limits : limits_of_groups(guide.feel.groups);
     const MakeRelevance make = [&](const RegionWish& wish, double threshold, RelevancePatch& patch) {
-        host_relevance(*source, &mask, guide.feel.groups, wish, threshold, patch);
+        host_relevance(*source, &mask, limits, wish, threshold, patch);
     };
     const ReplayResult result = replay_trace(led, how, make, true);
     std::vector<StylusPoint> points;

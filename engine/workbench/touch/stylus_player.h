@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/annotation/work/work.h"
+#include "engine/live/felt_limits.h"
 #include "engine/session/session.h"
 #include "haptics/replay/replay.h"
 
@@ -18,8 +19,9 @@ struct GuideSettings {
     double threshold = 0.0;     ///< intensity
     double probe_radius = 1.0;  ///< physical units
     FeelSettings feel;
+    FeltLimits limits;  ///< which voxels at or above the threshold are felt
 };
-GuideSettings guide_settings(const Session& session, double probe_radius);
+GuideSettings guide_settings(const Session& session, double probe_radius, FeltLimits limits);
 
 struct StylusPoint {
     glm::dvec3 probe{0.0}, middle{0.0};  ///< physical units; equal without contact or `at_proxy`
@@ -27,8 +29,8 @@ struct StylusPoint {
     double relevant_share = 0.0;
     bool is_pressed = false;  ///< state of the first button
 };
-/// `by_hand`: a modelled hand and stylus are pulled along the recording; otherwise the probe follows it. `source`
-/// includes density offsets already.
+/// A recording of an older program feels what is hidden, too, as it did then. `by_hand`: a modelled hand and stylus are
+/// pulled along the recording; otherwise the probe follows it. `source` includes density offsets already.
 std::vector<StylusPoint> play_stylus(const Trace& trace, const GuideSettings& guide, bool by_hand,
                                      std::shared_ptr<const VolumeSource> source, const Mask& mask);
 

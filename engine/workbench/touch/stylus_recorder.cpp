@@ -9,6 +9,7 @@ StylusRecorder::StylusRecorder(std::filesystem::path path, std::string unit, uin
 {
     trace_.unit = std::move(unit);
     trace_.holds_relevance = true;
+    trace_.feels_seen = true;
     trace_.settings.emplace_back();  // settings of a servo that has not received any
 }
 

@@ -100,6 +100,9 @@ std::string sentence_about(const FeelSettings& was, const FeelSettings& is)
     if (was.to_lines != is.to_lines)
         return is.to_lines ? "Tools act on a centre line in the probe's ball, and a new node divides it"
                            : "Centre lines draw no tool";
+    if (was.feels_hidden != is.feels_hidden)
+        return is.feels_hidden ? "What is cut away, hidden or transparent is felt, too"
+                               : "Only what the picture shows is felt";
     if (was.clicks != is.clicks)
         return is.clicks ? "A haptic device clicks where contact begins" : "Contact begins without a click";
     return {};

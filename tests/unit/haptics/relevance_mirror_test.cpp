@@ -139,8 +139,9 @@ struct World {
     std::shared_ptr<RodSource> source = std::make_shared<RodSource>();
     Turns turns;
     RelevanceChoice choice;
-    int blind = 0;         ///< ticks whose relevance was missing, too old or of other settings
-    double least_n = 1e9;  ///< force
+    int blind = 0;                              ///< ticks whose relevance was missing, too old or of other settings
+    double least_n = 1e9;                       ///< force
+    double last_n = 0.0, largest_step_n = 0.0;  ///< force in the last tick, and its largest change between two
     int device_answers = 0;
     std::unique_ptr<Servo> servo;
     std::unique_ptr<RelevanceMirror> mirror;
@@ -188,7 +189,10 @@ struct World {
         if (!servo->state().take()) return;
         const ServoState& state = servo->state().value();
         blind += (state.step.flags & FORCE_NO_REGION) != 0;
-        least_n = std::min(least_n, glm::length(state.step.force_n));
+        const double now_n = glm::length(state.step.force_n);
+        least_n = std::min(least_n, now_n);
+        largest_step_n = std::max(largest_step_n, std::abs(now_n - last_n));
+        last_n = now_n;
     }
     /// Answers like a device, sixty times a second, `late_ticks` after each request.
     void answer(int late_ticks)
@@ -301,6 +305,67 @@ TEST_CASE("voxels that cannot be read fade out with a sentence, and are read aga
     world.turns.run(300);
     CHECK(world.blind == 0);
     CHECK(world.mirror->trouble().empty());
+}
+
+// Kind (Touch): a cutting plane that moves through what is touched
+TEST_CASE("a cut through what is touched is felt at once, without another answer, a blind tick or a jolt")
+{
+    World world(0.0, TouchMode::proximity);
+    world.begin();
+    world.turns.run(200);
+    const double whole_n = world.last_n;
+    CHECK(whole_n > 0.05);
+    const uint64_t made = world.mirror->made_on_host();
+    const auto cut_at = [&](double x) {
+        world.choice.limits.cut = {{x, 0.0, 0.0}, {double(LENGTH), 64.0, 64.0}};
+        world.mirror->choose(world.choice);
+    };
+    // All that is touched goes at once, and comes back.
+    for (const bool is_cut : {true, false}) {
+        CAPTURE(is_cut);
+        world.largest_step_n = 0.0;
+        cut_at(is_cut ? double(LENGTH) : 0.0);
+        world.turns.run(20);
+        CHECK(world.last_n > 0.1 * whole_n);
+        CHECK(world.last_n < 0.9 * whole_n);
+        world.turns.run(180);
+        if (is_cut) CHECK(world.last_n < 1e-6);
+        if (!is_cut) CHECK(world.last_n == doctest::Approx(whole_n));
+        CHECK(world.largest_step_n < 0.02 * whole_n);
+    }
+    // A plane is dragged over the ball, a quarter of a voxel every 16 ms.
+    world.largest_step_n = 0.0;
+    for (double x = 24.0; x < 56.0; x += 0.25) {
+        cut_at(x);
+        world.turns.run(16);
+    }
+    world.turns.run(150);
+    CHECK(world.last_n < 1e-6);
+    CHECK(world.largest_step_n < 0.05);
+    CHECK(world.blind == 0);
+    CHECK(world.mirror->made_on_host() == made);
+}
+
+TEST_CASE("intensities that are not shown are not felt: the host reads them, whatever the device offers")
+{
+    World world(0.0, TouchMode::proximity);
+    world.answer(2);
+    world.begin();
+    CHECK(world.last_n > 0.05);
+    world.choice.limits.unpainted = IntensityIntervals{{220.0, 255.0}};  // the rod is 200
+    ++world.choice.voxels;
+    world.mirror->choose(world.choice);
+    const uint64_t made = world.mirror->made_on_host();
+    world.turns.run(300);
+    CHECK(world.last_n < 1e-6);
+    CHECK(world.mirror->made_on_host() == made + 1);
+    CHECK(world.blind == 0);
+    world.choice.limits.unpainted.reset();
+    ++world.choice.voxels;
+    world.mirror->choose(world.choice);
+    world.turns.run(300);
+    CHECK(world.last_n > 0.05);
+    CHECK(world.mirror->made_on_host() == made + 1);
 }
 
 TEST_CASE("offsets that a person paints are felt once the choice tells of them")

@@ -83,6 +83,17 @@ TEST_CASE("a trace is read as it was written, bit for bit")
     CHECK(!again.settings[0].force.clicks);
 }
 
+// Kind (Touch): a recording of a program that felt what was hidden
+TEST_CASE("a trace states that it feels only what is seen, and one without that feels all")
+{
+    Trace trace = wandering(10);
+    CHECK(!parse_trace(text_of(trace), "t").feels_seen);
+    CHECK(text_of(trace).find("feels_seen") == std::string::npos);
+    trace.feels_seen = true;
+    CHECK(parse_trace(text_of(trace), "t").feels_seen);
+    CHECK(!parse_trace(HEAD + "{\"at\":[0.001,0,0]}\n", "t").feels_seen);
+}
+
 TEST_CASE("what a tick leaves out follows from the one before")
 {
     const Trace trace = parse_trace(HEAD + "{\"at\":[0.001,0,0]}\n{\"read\":\"stale\"}\n{\"buttons\":1}\n", "t");
@@ -93,6 +104,7 @@ TEST_CASE("what a tick leaves out follows from the one before")
     CHECK(trace.ticks[2].state.position_m.x == 0.001);
 }
 
+// Kind (Touch): a trace with a sheared workspace or a direction without length
 TEST_CASE("what is no trace is refused in a sentence with its line")
 {
     CHECK(refusal("") == "t.trace is empty; expected a line {\"shvr_stylus_trace\":1}");

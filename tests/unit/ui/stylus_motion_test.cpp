@@ -162,6 +162,37 @@ TEST_CASE(
     CHECK(at(glm::dvec3(5, 1, 0)).internode == 0u);
 }
 
+// Kind (Touch): nodes and centre lines of hidden groups
+TEST_CASE("nodes and centre lines in groups that are not drawn draw no tool, even where they are nearest")
+{
+    TraceGraph trace;
+    const auto apply = [&](const TraceChange& change) { trace.apply(change, Direction::forwards); };
+    apply(TraceNodeChange{0, {}, TraceNode{{0, 0, 0}, 1.0, 7}});
+    apply(TraceNodeChange{1, {}, TraceNode{{10, 0, 0}, 1.0, 7}});
+    apply(TraceInternodeChange{0, {}, TraceInternode{0, 1, 7}});
+    apply(TraceNodeChange{2, {}, TraceNode{{0, 2, 0}, 1.0, 8}});
+    apply(TraceNodeChange{3, {}, TraceNode{{10, 2, 0}, 1.0, 8}});
+    apply(TraceInternodeChange{1, {}, TraceInternode{2, 3, 8}});
+    FeelSettings feel;
+    std::bitset<256> drawn;
+    drawn.set();
+    const auto at = [&](const glm::dvec3& point) { return tool_place(feel, trace, point, 3.5, {}, drawn); };
+    feel.to_lines = true;
+    CHECK(at({4, 0.5, 0}).internode == 0u);
+    drawn.reset(7);
+    CHECK(at({4, 0.5, 0}).internode == 1u);
+    CHECK(at({4, 0.5, 0}).point == glm::dvec3(4, 2, 0));
+    drawn.reset(8);
+    CHECK(at({4, 0.5, 0}).point == glm::dvec3(4, 0.5, 0));
+    feel.to_nodes = true;
+    drawn.set();
+    CHECK(at({1, 0.5, 0}).node == 0u);
+    drawn.reset(7);
+    CHECK(at({1, 0.5, 0}).node == 2u);
+    drawn.reset(8);
+    CHECK(!at({1, 0.5, 0}).node);
+}
+
 TEST_CASE("groups that are not felt are no part of what is felt")
 {
     Mask mask(Size3(70, 40, 33));
@@ -191,7 +222,7 @@ TEST_CASE("groups that are not felt are no part of what is felt")
     for (const std::vector<uint8_t>& felt :
          {std::vector<uint8_t>{}, std::vector<uint8_t>{2}, std::vector<uint8_t>{0, 3}}) {
         RelevanceBits bits{.box = box, .words_per_row = words_per_row, .words = words};
-        if (const auto groups = felt_groups(felt)) limit_to_groups(mask, *groups, bits);
+        apply_limits(limits_of_groups(felt), glm::dvec3(1.0), &mask, bits);
         const std::vector<uint32_t>& kept = bits.words;
         int wrong = 0;
         for (int64_t z = 0; z < size.z; ++z)

@@ -128,6 +128,10 @@ void tools(const Model& model, Actions& actions)
          actions, &FeelSettings::to_nodes);
     flag("To centre lines", "Where a centre line passes through the probe, tools act on it, and a new node divides it.",
          model, actions, &FeelSettings::to_lines);
+    flag("Feel hidden parts",
+         "Feels what the picture does not show, too: what is cut away or transparent, and hidden groups. Off: what is "
+         "seen is what is felt.",
+         model, actions, &FeelSettings::feels_hidden);
     flag("Click at contact",
          "A short push against your hand where the probe begins to touch something. Only for devices with motors.",
          model, actions, &FeelSettings::clicks);
