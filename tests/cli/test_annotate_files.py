@@ -3,7 +3,9 @@
 Each file is tried in every state beside each journal, and all files together in states such that every pair occurs,
 through the program. What is found is compared with the table in engine/annotation/work/README.md, which `believed`
 below states once more. Both for a project, whose mask and offsets are folders, and for a session with a `.mask`.
-SHVR_SLOW=1 answers questions that are not asked, too, and tries more states together.
+Every day the table is tried file by file for the session alone: of the project, every pair of a journal and a state of a
+file is among those that are tried together. SHVR_SLOW=1 tries it for both, answers questions that are not asked, too,
+and tries more states together.
 """
 import itertools
 import json
@@ -192,7 +194,7 @@ class Files:
 
     JOURNALS = STATES + ["stub"]
 
-    def test_each_file_in_each_state_beside_each_journal(self):
+    def check_each_file_in_each_state_beside_each_journal(self):
         tried = set()
         for journal, part, state in itertools.product(self.JOURNALS, self.KINDS, STATES):
             states = {"journal": journal, "mask": "as saved", "trace": "as saved", "offsets": "as saved",
@@ -348,6 +350,9 @@ class OfProject(Files, CliTest):
     def cut_in(name):
         return name if name.endswith((".graphml", ".journal")) else name + "/0/0/0/0"
 
+    if IS_SLOW:
+        test_each_file_in_each_state_beside_each_journal = Files.check_each_file_in_each_state_beside_each_journal
+
     def test_a_project_without_its_session_has_its_annotation(self):
         project = self.left()
         session = project / self.SESSION
@@ -386,6 +391,8 @@ class OfSession(Files, CliTest):
     @staticmethod
     def image_in(states):
         return states["image"]
+
+    test_each_file_in_each_state_beside_each_journal = Files.check_each_file_in_each_state_beside_each_journal
 
     def test_without_journal_and_side_file_the_files_are_taken_in_silence(self):
         project = self.left(journal="missing", image="missing")
