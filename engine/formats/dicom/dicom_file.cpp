@@ -62,20 +62,12 @@ public:
         return numbers.size() == 1 ? std::optional(numbers[0]) : std::nullopt;
     }
     int64_t whole(const Tag& tag) const { return whole_of(text(tag)).value_or(0); }
-    /// A value of type US.
-    int64_t short_number(const Tag& tag, int64_t fallback) const
+    /// A binary value: uint16_t for type US, uint32_t for UL.
+    template <class Number>
+    int64_t number(const Tag& tag, int64_t fallback) const
     {
         const gdcm::ByteValue* value = find(tag);
-        uint16_t number = 0;
-        if (value == nullptr || value->GetLength() < sizeof(number)) return fallback;
-        std::memcpy(&number, value->GetPointer(), sizeof(number));
-        return number;
-    }
-    /// A value of type UL.
-    int64_t long_number(const Tag& tag, int64_t fallback) const
-    {
-        const gdcm::ByteValue* value = find(tag);
-        uint32_t number = 0;
+        Number number = 0;
         if (value == nullptr || value->GetLength() < sizeof(number)) return fallback;
         std::memcpy(&number, value->GetPointer(), sizeof(number));
         return number;
@@ -169,16 +161,16 @@ VoxelType read_float_type(DicomFile& file, int64_t allocated, std::optional<Valu
 
 VoxelType read_type(DicomFile& file, const Values& values, std::optional<ValueRange>& stored)
 {
-    const int64_t allocated = values.short_number(Tag(0x0028, 0x0100), 0);
-    const int64_t bits = values.short_number(Tag(0x0028, 0x0101), allocated);
-    const bool is_signed = values.short_number(Tag(0x0028, 0x0103), 0) == 1;
+    const int64_t allocated = values.number<uint16_t>(Tag(0x0028, 0x0100), 0);
+    const int64_t bits = values.number<uint16_t>(Tag(0x0028, 0x0101), allocated);
+    const bool is_signed = values.number<uint16_t>(Tag(0x0028, 0x0103), 0) == 1;
     if (allocated != 8 && allocated != 16 && allocated != 32 &&
         file.stored.layout.numbers == DicomLayout::Numbers::whole) {
         refuse(file, "Bits Allocated", std::to_string(allocated), "8, 16 or 32");
     }
     if (file.stored.layout.numbers != DicomLayout::Numbers::whole) return read_float_type(file, allocated, stored);
     if (bits < 1 || bits > allocated) refuse(file, "Bits Stored", std::to_string(bits), "1 to Bits Allocated");
-    const int64_t high = values.short_number(Tag(0x0028, 0x0102), bits - 1);
+    const int64_t high = values.number<uint16_t>(Tag(0x0028, 0x0102), bits - 1);
     if (high < bits - 1 || high >= allocated)
         refuse(file, "High Bit", std::to_string(high), sentence(bits - 1, ", to Bits Allocated - 1").c_str());
     file.stored.bits = int(bits);
@@ -236,7 +228,7 @@ DicomFrame read_frame(const Values& values, DicomFile& file, const ValueRange& s
     // The first number is the distance from row to row, along y.
     if (spacing.size() == 2 && spacing[0] > 0.0 && spacing[1] > 0.0) frame.spacing = glm::dvec2(spacing[1], spacing[0]);
     frame.distance = read_distance(values);
-    frame.time_number = values.long_number(Tag(0x0020, 0x9128), 0);
+    frame.time_number = values.number<uint32_t>(Tag(0x0020, 0x9128), 0);
     frame.stack = values.text(Tag(0x0020, 0x9056));
     frame.rescale = read_rescale(file, values, stored);
     return frame;
@@ -274,10 +266,10 @@ void read_values(const DataSet& set, const DicomLayout& layout, DicomFile& file)
     file.instance_number = values.whole(Tag(0x0020, 0x0013));
     file.time_number = values.whole(Tag(0x0020, 0x0100));
     if (file.time_number == 0) file.time_number = values.whole(Tag(0x0020, 0x0012));
-    file.columns = values.short_number(Tag(0x0028, 0x0011), 0);
-    file.rows = values.short_number(Tag(0x0028, 0x0010), 0);
+    file.columns = values.number<uint16_t>(Tag(0x0028, 0x0011), 0);
+    file.rows = values.number<uint16_t>(Tag(0x0028, 0x0010), 0);
     if (file.columns == 0 || file.rows == 0) refuse(file, "Rows or Columns", "missing or 0", "1 to 65535");
-    const int64_t samples = values.short_number(Tag(0x0028, 0x0002), 1);
+    const int64_t samples = values.number<uint16_t>(Tag(0x0028, 0x0002), 1);
     const std::string colors = values.text(Tag(0x0028, 0x0004));
     if (samples != 1 || (!colors.empty() && colors != "MONOCHROME1" && colors != "MONOCHROME2")) {
         refuse(file, "Photometric Interpretation", in_quotes(colors),
