@@ -44,8 +44,8 @@ MAY_INCLUDE = {
     "engine/annotation/writers": "engine/base",
     "engine/annotation/work": "engine/base engine/volume engine/annotation engine/annotation/files "
     "engine/annotation/trace engine/annotation/writers engine/projects",
-    "engine/session": "engine/base engine/touch engine/volume engine/look engine/annotation engine/annotation/trace engine/formats "
-    "engine/formats/zarr engine/projects",
+    "engine/session": "engine/base engine/touch engine/volume engine/look engine/annotation engine/annotation/files "
+    "engine/annotation/trace engine/formats engine/formats/zarr engine/projects",
     "engine/jobs": "engine/base",
     "engine/tasks": "engine/base engine/volume engine/look engine/components engine/formats/export engine/annotation "
     "engine/annotation/trace engine/annotation/measures engine/annotation/files engine/annotation/writers "

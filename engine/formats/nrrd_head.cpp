@@ -1,6 +1,8 @@
 #include "engine/formats/nrrd_head.h"
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "engine/base/text.h"
 #include "engine/formats/header_fields.h"
@@ -48,6 +50,19 @@ std::optional<std::pair<int64_t, std::string_view>> segment_key(std::string_view
     const std::optional<int64_t> number = whole_of(key.substr(0, line));
     if (!number || *number < 0 || *number > MAX_SEGMENTS) return std::nullopt;
     return std::pair(*number, key.substr(line + 1));
+}
+
+void assign_groups(std::vector<NrrdSegment>& segments)
+{
+    int64_t last = 0;
+    for (const NrrdSegment& segment : segments) last = std::max(last, segment.label_value);
+    std::map<int64_t, int64_t> layers;                      // of each group
+    std::map<std::pair<int64_t, int64_t>, int64_t> groups;  // by layer and label value
+    for (NrrdSegment& segment : segments) {
+        const auto [known, is_new] = groups.try_emplace({segment.layer, segment.label_value}, segment.label_value);
+        if (is_new && !layers.try_emplace(segment.label_value, segment.layer).second) known->second = ++last;
+        segment.group = known->second;
+    }
 }
 
 }  // namespace
@@ -105,7 +120,9 @@ std::vector<NrrdSegment> segments_of(const NrrdHead& head)
         if (key->second == "Name") found->name = pair.value;
         if (key->second == "Color") found->color = pair.value;
         if (key->second == "LabelValue") found->label_value = whole_of(trimmed(pair.value)).value_or(0);
+        if (key->second == "Layer") found->layer = whole_of(trimmed(pair.value)).value_or(0);
     }
+    assign_groups(segments);
     return segments;
 }
 

@@ -34,7 +34,11 @@ void set_pair(std::vector<NrrdPair>& pairs, std::string_view key, std::string va
 /// A segment: "Segment3_Name", "Segment3_LabelValue" and so on.
 struct NrrdSegment {
     int64_t number = 0;       ///< 3
-    int64_t label_value = 0;  ///< value of its voxels; unstated: one more than its number
+    int64_t label_value = 0;  ///< value of its voxels in its layer; unstated: one more than its number
+    int64_t layer = 0;        ///< overlapping segments lie in several layers, the first axis of the file
+    /// Group of its voxels in a mask: its label value; if a segment of another layer has that too, the next free one
+    /// above all label values.
+    int64_t group = 0;
     std::string name{};
     std::string color{};  ///< "0.5 0.68 0.5": shares of sRGB; empty: not stated
 };

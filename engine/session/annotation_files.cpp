@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/annotation/files/mask_import.h"
 #include "engine/base/atomic_writer.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
@@ -113,7 +114,7 @@ std::string files_outside(const Session& session, const fs::path& session_file,
     const auto goes_with_mask = [&](const fs::path& path) {
         return is_mask_set && (path == trace_beside(session.mask_path) || path == offsets_beside(session.mask_path));
     };
-    if (!is_mask_set) note("annotation.mask", session.mask_path);
+    if (!is_mask_set) note("annotation.mask", saved_mask_path(session.mask_path));
     if (!is_set(settings, "trace") && !goes_with_mask(session.trace_path)) note("annotation.trace", session.trace_path);
     if (!is_set(settings, "density") && !goes_with_mask(session.density_path))
         note("annotation.density", session.density_path);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/annotation/files/mask_import.h"
 #include "engine/base/error.h"
 #include "engine/base/image.h"
 #include "engine/base/text.h"
@@ -41,7 +42,7 @@ LabelLooks looks_in_segments(const std::filesystem::path& file, const NrrdHead& 
 {
     LabelLooks read;
     for (const NrrdSegment& segment : segments_of(head)) {
-        LabelLook look{.value = segment.label_value, .name = segment.name};
+        LabelLook look{.value = segment.group, .name = segment.name};
         const std::vector<std::string_view> words = words_of(segment.color);
         // Opacity is not stated: the default one stays.
         std::array<uint8_t, 4> rgba = rgba_of(default_group(uint8_t(std::clamp<int64_t>(look.value, 1, 255))));
@@ -77,9 +78,12 @@ std::vector<LabelImage::Color> label_looks(const Groups& groups, const Mask& mas
     return looks;
 }
 
-std::vector<std::string> take_label_looks(const std::filesystem::path& mask, Groups& groups)
+std::vector<std::string> take_label_looks(const std::filesystem::path& stated, Groups& groups)
 {
-    if (mask.empty()) return {};
+    if (stated.empty()) return {};
+    std::error_code ignored;
+    const std::filesystem::path saved = saved_mask_path(stated);
+    const std::filesystem::path& mask = std::filesystem::exists(saved, ignored) ? saved : stated;
     LabelLooks read;
     try {
         const std::optional<NrrdHead> head = read_nrrd_head(mask);

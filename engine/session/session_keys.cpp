@@ -268,9 +268,11 @@ void density_fields(Fields& f, DensityBrush& density)
 void annotation_fields(Fields& f, Session& session)
 {
     f.path("mask", session.mask_path,
-           {.meaning = "label image of the mask, created when first saved: OME-Zarr (`NAME.zarr`, or `labels/NAME` in "
-                       "a project), which holds only what is painted, and also names and colours groups that `groups` "
-                       "does not list; or a file of every voxel: `.nrrd`, `.tif`, or raw bytes (`.mask`)",
+           {.meaning =
+                "label image of the mask, created when first saved: OME-Zarr (`NAME.zarr`, or `labels/NAME` in "
+                "a project), which holds only what is painted, and also names and colours groups that `groups` "
+                "does not list; or a file of every voxel: `.nrrd`, `.tif`, or raw bytes (`.mask`). A mask in a format "
+                "that is only read, as `m.nii.gz`, is kept in `m.labels.zarr` next to it, and read from there",
             .allowed = "path",
             .standard = "none"});
     f.path("trace", session.trace_path,

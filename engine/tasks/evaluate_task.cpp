@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "engine/annotation/files/mask_file.h"
+#include "engine/annotation/files/mask_place.h"
 #include "engine/annotation/files/mask_source.h"
 #include "engine/annotation/trace/trace_file.h"
 #include "engine/base/text.h"
@@ -124,15 +125,20 @@ private:
         if (!is_bare_mask(path)) {
             expect_no_annotated_project(path);
             const std::unique_ptr<VolumeSource> source = open_volume(path);
-            const Size3 size = source->info().size;
-            if (space && size != space->size)
-                fail(path.string(), ": size is ", in_words(size), " voxels; expected ", in_words(space->size));
-            const std::string elsewhere = space ? why_elsewhere(space_of(source->info()), *space) : std::string();
-            if (!elsewhere.empty())
-                fail(path.string(), ": is a mask of a volume with ", elsewhere, ", where the others lie");
+            const std::optional<GridPlace> place =
+                space ? place_of_mask(path, source->info(), *space) : std::optional<GridPlace>();
             Gaps gaps = gaps_of(task_.allows_incomplete, task_.names);
             const GapSource readable(*source, gaps);
-            Mask mask = mask_of(size, mask_changes(ToldSource(readable, progress), path.string()));
+            std::optional<PlacedSource> placed;
+            if (place) {
+                placed.emplace(readable, *place, *space);
+                placed->expect_nothing_outside(path);
+                result_.warnings.push_back(
+                    sentence(path.string(), ": ", in_words(*place, source->info().size, *space)));
+            }
+            const VolumeSource& on_grid = placed ? static_cast<const VolumeSource&>(*placed) : readable;
+            const Size3 size = on_grid.info().size;
+            Mask mask = mask_of(size, mask_changes(ToldSource(on_grid, progress), path.string()));
             result_.voxels_not_read += gaps.voxels();
             if (!gaps.empty())
                 result_.warnings.push_back(sentence(path.string(), ": ", gaps.in_words(), " and count as unpainted"));

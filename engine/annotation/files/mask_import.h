@@ -4,8 +4,7 @@
 //
 //   a folder                       an OME-Zarr label image, or another OME-Zarr image of uint8
 //   .ozx .zip, and paths inside    the same, in an archive
-//   .nrrd .nhdr .mhd .mha .nii     volumes of uint8 in these formats, as read by engine/formats
-//   .tif .tiff
+//   files that state their size    volumes of whole numbers from 0 to 255 of any type, as read by engine/formats
 //   anything else                  the thesis's raw bytes (mask_file.h)
 
 #include <filesystem>
@@ -14,9 +13,21 @@
 
 namespace shvr {
 
-/// The records that turn an unpainted mask into this one. Fails if its size or stated spacing or place differs (naming
-/// both), or if its voxels are not unsigned bytes.
-std::vector<MaskBrickChange> import_mask(const std::filesystem::path& path, const TraceSpace& space);
+struct ImportedMask {
+    std::vector<MaskBrickChange> changes{};  ///< turn an unpainted mask into this one
+    std::vector<std::string> losses{};       ///< what the file holds and a mask cannot, one sentence each
+    std::vector<std::string> remarks{};      ///< how it was placed, and which groups its segments became
+};
+/// A mask of another size or place is placed on the volume's grid (mask_place.h), and the layers of a segmentation are
+/// merged (mask_segments.h). Fails if its stated spacing or place does not fit (naming both), or if a voxel is not a
+/// whole number from 0 to 255, of any type.
+ImportedMask import_mask(const std::filesystem::path& path, const TraceSpace& space);
+
+/// Whether `save_mask_as` can write to the path; if not, its format is only read.
+bool is_mask_writable(const std::filesystem::path& path);
+/// Where a mask that was read from this path is saved: itself, or NAME.labels.zarr next to it if its format is only
+/// read. Masks in archives have no such place.
+std::filesystem::path saved_mask_path(const std::filesystem::path& mask);
 /// Saves in the format that the path names, or as raw bytes if `export_mask` does not support it. Fails for formats
 /// that can only be read. `image`, `foreign` and the result: as for `export_mask`.
 std::string save_mask_as(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
+#include "engine/annotation/files/mask_source.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/formats/open_volume.h"
 #include "engine/volume/grid.h"
 
 namespace shvr {
@@ -63,6 +66,18 @@ std::string color_text(const std::array<uint8_t, 4>& rgba)
     return share(0) + " " + share(1) + " " + share(2);
 }
 
+std::unique_ptr<VolumeSource> open_layer(const std::filesystem::path& path, int64_t layer)
+{
+    return open_volume(path, {.channel = std::to_string(layer + 1)});
+}
+
+VolumeInfo info_of_groups(const std::filesystem::path& path)
+{
+    VolumeInfo info = open_layer(path, 0)->info();
+    info.type = VoxelType::uint8;
+    return info;
+}
+
 }  // namespace
 
 std::vector<NrrdPair> segment_pairs(const std::filesystem::path& path, const Mask& mask,
@@ -79,9 +94,9 @@ std::vector<NrrdPair> segment_pairs(const std::filesystem::path& path, const Mas
     int64_t next = 0;
     for (const NrrdSegment& segment : segments) next = std::max(next, segment.number + 1);
     for (const LabelImage::Color& look : looks) {
-        const auto found = std::ranges::find(segments, look.value, &NrrdSegment::label_value);
+        const auto found = std::ranges::find(segments, look.value, &NrrdSegment::group);
         if (found == segments.end()) {
-            const NrrdSegment added{.number = next++, .label_value = look.value};
+            const NrrdSegment added{.number = next++, .label_value = look.value, .group = look.value};
             set(added, "ID", sentence("Segment_", look.value));
             set(added, "LabelValue", std::to_string(look.value));
             set(added, "Layer", "0");
@@ -100,9 +115,12 @@ std::vector<NrrdPair> segment_pairs(const std::filesystem::path& path, const Mas
         }
     }
     const std::array<VoxelBox, 256> boxes = boxes_of(mask);
-    for (const NrrdSegment& segment : segments)
-        if (segment.label_value > 0 && segment.label_value < 256)
-            set(segment, "Extent", extent_of(boxes[size_t(segment.label_value)]));
+    for (const NrrdSegment& segment : segments) {
+        if (segment.group > 0 && segment.group < 256) set(segment, "Extent", extent_of(boxes[size_t(segment.group)]));
+        // A saved mask has one layer.
+        if (segment.layer != 0) set(segment, "Layer", "0");
+        if (segment.group != segment.label_value) set(segment, "LabelValue", std::to_string(segment.group));
+    }
     // 3D Slicer may crop a segmentation to its painted part; a saved mask covers the whole volume.
     set_pair(pairs, "Segmentation_ReferenceImageExtentOffset", "0 0 0");
     if (is_new) {
@@ -110,6 +128,38 @@ std::vector<NrrdPair> segment_pairs(const std::filesystem::path& path, const Mas
         set_pair(pairs, "Segmentation_MasterRepresentation", "Binary labelmap");
     }
     return pairs;
+}
+
+LayeredMask::LayeredMask(const std::filesystem::path& path, int64_t layers, const std::vector<NrrdSegment>& segments)
+    : VolumeSource(info_of_groups(path)), file_(path.string())
+{
+    for (int64_t layer = 0; layer < layers; ++layer) {
+        layers_.push_back(open_layer(path, layer));
+        std::array<uint8_t, 256>& groups = groups_.emplace_back();
+        std::iota(groups.begin(), groups.end(), uint8_t{0});
+        for (const NrrdSegment& segment : segments) {
+            if (segment.layer != layer || segment.label_value < 1 || segment.label_value > 255) continue;
+            if (segment.group > 255)
+                fail(file_, ": its segments ", segment.number, " and others in several layers need ", segment.group,
+                     " groups; expected at most 255: remove some of them");
+            groups[size_t(segment.label_value)] = uint8_t(segment.group);
+        }
+    }
+}
+
+void LayeredMask::read(const VoxelBox& box, std::span<std::byte> voxels) const
+{
+    std::ranges::fill(voxels, std::byte{0});
+    int64_t overlaps = 0;
+    for (size_t layer = 0; layer < layers_.size(); ++layer) {
+        const std::vector<uint8_t> values = groups_in(*layers_[layer], box, file_);
+        for (size_t i = 0; i < values.size(); ++i) {
+            if (values[i] == 0) continue;
+            if (voxels[i] != std::byte{0}) ++overlaps;
+            voxels[i] = std::byte{groups_[layer][values[i]]};
+        }
+    }
+    overlaps_ += overlaps;
 }
 
 }  // namespace shvr

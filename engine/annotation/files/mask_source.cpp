@@ -1,10 +1,13 @@
 #include "engine/annotation/files/mask_source.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "engine/annotation/files/brick_boxes.h"
 #include "engine/annotation/files/volume_place.h"
+#include "engine/base/text.h"
+#include "engine/volume/voxel_numbers.h"
 
 namespace shvr {
 
@@ -12,19 +15,39 @@ MaskSource::MaskSource(const Mask& mask, const VolumeInfo& volume)
     : SparseSource(mask, info_beside(volume, "mask", VoxelType::uint8))
 {}
 
+std::vector<uint8_t> groups_in(const VolumeSource& mask, const VoxelBox& box, const std::string& file)
+{
+    const VoxelType type = mask.info().type;
+    const Size3 size = box.size();
+    std::vector<uint8_t> groups(size_t(size.x * size.y * size.z));
+    if (type == VoxelType::uint8) {
+        mask.read(box, std::as_writable_bytes(std::span(groups)));
+        return groups;
+    }
+    std::vector<std::byte> voxels(groups.size() * bytes_of(type));
+    mask.read(box, voxels);
+    std::vector<double> row(size_t(size.x));
+    for (size_t first = 0; first < groups.size(); first += row.size()) {
+        load_voxels(type, voxels.data() + first * bytes_of(type), row);
+        for (size_t x = 0; x < row.size(); ++x) {
+            if (row[x] >= 0.0 && row[x] <= 255.0 && row[x] == std::trunc(row[x])) {
+                groups[first + x] = uint8_t(row[x]);
+                continue;
+            }
+            fail(file, ": holds ", row[x], " in voxel ", digits_of(box.lower + position_of(int64_t(first + x), size)),
+                 ", of type ", name_of(type), "; expected whole numbers from 0 to 255, the groups of a mask");
+        }
+    }
+    return groups;
+}
+
 std::vector<MaskBrickChange> mask_changes(const VolumeSource& groups, const std::string& file)
 {
-    const VolumeInfo& info = groups.info();
-    if (info.type != VoxelType::uint8)
-        fail(file, ": holds voxels of type ", name_of(info.type), "; expected uint8, colour groups");
     std::vector<MaskBrickChange> changes;
-    std::vector<uint8_t> voxels;
     for_each_brick_box(groups, [&](const VoxelBox& box) {
-        const Size3 size = box.size();
-        voxels.resize(size_t(size.x * size.y * size.z));
-        groups.read(box, std::as_writable_bytes(std::span(voxels)));
+        const std::vector<uint8_t> voxels = groups_in(groups, box, file);
         if (std::ranges::all_of(voxels, [](uint8_t group) { return group == 0; })) return;
-        for_each_brick(box, info.size, [&](const BrickOfBox& brick) {
+        for_each_brick(box, groups.info().size, [&](const BrickOfBox& brick) {
             MaskBrickChange change{brick.index, {}};
             for (int64_t z = 0; z < brick.extent.z; ++z)
                 for (int64_t y = 0; y < brick.extent.y; ++y)

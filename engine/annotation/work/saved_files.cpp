@@ -124,21 +124,28 @@ bool is_there(const fs::path& path)
     return !path.empty() && fs::exists(path, ignored);
 }
 
-std::vector<std::string> load(Part part, const WorkFiles& files, Document& into)
+const fs::path& file_to_read(const WorkFiles& files, Part part)
+{
+    const bool is_saved = part != Part::mask || files.mask_to_read.empty() || is_there(files.mask);
+    return is_saved ? file_of(files, part) : files.mask_to_read;
+}
+
+LoadNotes load(Part part, const WorkFiles& files, Document& into)
 {
     const TraceSpace space = space_of(files.volume);
     switch (part) {
         case Part::mask: {
             // Reported first: a mask of another size is also of another image, but the size makes the better message.
-            const std::vector<MaskBrickChange> changes = import_mask(files.mask, space);
-            check_mask_image(files.mask, files.volume_hash);
-            for (const MaskBrickChange& change : changes) into.mask.apply(change, Direction::forwards);
-            return {};
+            const fs::path& file = file_to_read(files, part);
+            ImportedMask mask = import_mask(file, space);
+            check_mask_image(file, files.volume_hash);
+            for (const MaskBrickChange& change : mask.changes) into.mask.apply(change, Direction::forwards);
+            return {std::move(mask.losses), std::move(mask.remarks)};
         }
         case Part::trace: {
             TraceFile file = load_trace(files.trace, space);
             into.trace = std::move(file.trace);
-            return std::move(file.warnings);
+            return {.losses = std::move(file.warnings)};
         }
         case Part::offsets: into.density = import_offsets(files.density, space, into.density.type()); return {};
     }

@@ -19,9 +19,12 @@ namespace shvr {
 struct WorkFiles {
     std::filesystem::path journal{};                   ///< empty: work is kept in memory only
     std::filesystem::path mask{}, trace{}, density{};  ///< empty: not saved
-    std::string volume_hash{};                         ///< Session::volume_hash
-    VolumeInfo volume{};                               ///< the annotated volume
-    SettingValues settings{};                          ///< the session's, as read from its file
+    /// A mask in a format that is only read, with which the work begins until `mask` is saved; empty: none. Set by
+    /// `Work`, which renames `mask` then (saved_mask_path).
+    std::filesystem::path mask_to_read{};
+    std::string volume_hash{};  ///< Session::volume_hash
+    VolumeInfo volume{};        ///< the annotated volume
+    SettingValues settings{};   ///< the session's, as read from its file
     /// Settings as this version writes them, so that files and journals of different versions can be compared. Fails if
     /// it cannot read them.
     std::function<SettingValues(const SettingValues&)> normalized{};
@@ -47,9 +50,16 @@ bool holds_any(const Document& document, Part part);
 
 bool is_there(const std::filesystem::path& path);
 
-/// Reads the file of a part into a document whose part is empty; returns the oddities that it skipped, one sentence
-/// each. Fails if the file is malformed, or of another volume or image.
-std::vector<std::string> load(Part part, const WorkFiles& files, Document& into);
+/// Sentences about a file that was read.
+struct LoadNotes {
+    std::vector<std::string> losses{};   ///< the file holds more than the document: keep it before saving over it
+    std::vector<std::string> remarks{};  ///< how it was read
+};
+/// The file from which a part is read: `mask_to_read` for the mask, until that has been saved.
+const std::filesystem::path& file_to_read(const WorkFiles& files, Part part);
+/// Reads the file of a part into a document whose part is empty. Fails if the file is malformed, or of another volume
+/// or image.
+LoadNotes load(Part part, const WorkFiles& files, Document& into);
 
 /// The changes that turn a part of one document into that of the other, both of one volume; none if they are equal. The
 /// selection is ignored.

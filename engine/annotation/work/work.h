@@ -214,6 +214,8 @@ private:
     void set_journal_aside();
 
     // Opening
+    void name_mask(const std::filesystem::path& stated);
+    void tell_mask_to_read(std::vector<Notice>& notices) const;
     std::vector<Notice> read();
     std::vector<Notice> open_once();
     void read_journal();

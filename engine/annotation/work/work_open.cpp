@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "engine/annotation/files/mask_image.h"
+#include "engine/annotation/files/mask_import.h"
 #include "engine/annotation/files/volume_place.h"
 #include "engine/annotation/work/journal_head.h"
 #include "engine/annotation/work/work.h"
@@ -84,6 +85,7 @@ std::vector<Notice> Work::open(const WorkFiles& files, const Opening& opening)
     constexpr std::chrono::milliseconds TURN(50);
     SHVR_CHECK(!journal_ && history_.undoable() == 0, "work has begun");
     files_ = files;
+    name_mask(files.mask);
     only_looks_ = opening.only_look;
     opening_progress_ = opening.progress;
     program_ = opening.program;
@@ -107,12 +109,39 @@ std::vector<Notice> Work::open(const WorkFiles& files, const Opening& opening)
         notices = read();
     }
     std::vector<Notice> told;
+    if (!only_looks_) tell_mask_to_read(told);
     tell_doubtful(told);
     if (opening.takes_over && !only_looks_) take_over(notices);
     opening_progress_ = {};
     notices.insert(notices.end(), told.begin(), told.end());
     for (Notice& notice : choose(opening.belief).notices) notices.push_back(std::move(notice));
     return notices;
+}
+
+/// A mask in a format that is only read is kept as a label image next to it.
+void Work::name_mask(const fs::path& stated)
+{
+    files_.mask = saved_mask_path(stated);
+    files_.mask_to_read = files_.mask == stated ? fs::path() : stated;
+}
+
+/// Told at opening, before anything is painted.
+void Work::tell_mask_to_read(std::vector<Notice>& notices) const
+{
+    if (is_in_archive(files_.mask))
+        notices.push_back({sentence(files_.mask.string(),
+                                    ": lies in an archive, which is only read; to save what is "
+                                    "painted, name a mask outside it, or save under another "
+                                    "name")});
+    if (files_.mask_to_read.empty()) return;
+    const std::string name = files_.mask_to_read.string();
+    if (is_there(files_.mask))
+        notices.push_back({sentence(name, ": has a format in which masks are only read; ", files_.mask.string(),
+                                    " next to it, where the mask is kept, is taken instead")});
+    else
+        notices.push_back(
+            {sentence(name, ": has a format in which masks are only read; what is painted will be kept in ",
+                      files_.mask.string(), ", and this file stays as it is")});
 }
 
 std::vector<Notice> Work::read()
@@ -228,14 +257,17 @@ std::vector<Notice> Work::open_from_files(const std::string& damage)
     for (const Part part : PARTS) {
         note_file(part);
         // A mask may be a label image in an archive; the files next to it by default cannot be.
-        const fs::path& file = file_of(files_, part);
-        if (is_there(file) || (part == Part::mask && is_in_archive(file)))
-            for (const std::string& warning : load(part, files_, document_)) {
+        const fs::path &file = file_to_read(files_, part), &saved = file_of(files_, part);
+        if (is_there(file) || (part == Part::mask && is_in_archive(file))) {
+            const LoadNotes notes = load(part, files_, document_);
+            for (const std::string& loss : notes.losses) {
                 // The file holds data that was not kept in memory.
-                seen_[size_t(part)].is_foreign = true;
-                notices.push_back(
-                    {sentence(warning, "; the next save keeps this file as ", old_of(file).string()), true});
+                seen_[size_t(part)].is_foreign = file == saved;
+                const std::string how_kept = "; the next save keeps this file as " + old_of(saved).string();
+                notices.push_back({sentence(loss, file == saved ? how_kept : std::string()), true});
             }
+            for (const std::string& remark : notes.remarks) notices.push_back({remark});
+        }
         digest_of(known_, part) = seen_[size_t(part)].digest;
     }
     return notices;
@@ -385,7 +417,9 @@ void Work::look_at_file(Part part, std::vector<Notice>& notices)
     }
     Document found = empty_document();
     try {
-        for (const std::string& warning : load(part, files_, found)) notices.push_back({warning, true});
+        const LoadNotes notes = load(part, files_, found);
+        for (const std::string& loss : notes.losses) notices.push_back({loss, true});
+        for (const std::string& remark : notes.remarks) notices.push_back({remark});
     } catch (const Error& error) {
         return keep_unreadable(error);
     }

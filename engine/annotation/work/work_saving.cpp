@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 void Work::name_files(const fs::path& mask, const fs::path& trace, const fs::path& density)
 {
     const WorkFiles before = files_;
-    files_.mask = mask;
+    name_mask(mask);
     files_.trace = trace;
     files_.density = density;
     for (const Part part : PARTS) {

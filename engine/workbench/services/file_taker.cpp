@@ -255,10 +255,10 @@ void FileTaker::take_annotation(Part part, const std::filesystem::path& path)
     jobs_.start("reading " + short_name(path), [this, part, path, volume, files, opening, groups](ProgressReporter&) {
         const auto found = std::make_shared<shvr::Document>(
             shvr::Document{.mask = Mask(volume.size), .trace = {}, .density = DensityField(volume.size, volume.type)});
-        const std::vector<std::string> warnings = load(part, files, *found);
+        const LoadNotes notes = load(part, files, *found);
         Groups looks = groups;
         if (part == Part::mask) static_cast<void>(take_label_looks(path, looks));
-        return Jobs::Completion([this, part, path, found, opening, groups, looks, warnings] {
+        return Jobs::Completion([this, part, path, found, opening, groups, looks, notes] {
             if (!document_ || desk_.openings != opening)
                 fail(path.string(), ": belongs to a volume that is no longer open");
             Annotator& annotator = document_->annotator;
@@ -277,7 +277,8 @@ void FileTaker::take_annotation(Part part, const std::filesystem::path& path)
                 annotator.perform(sentence(name_of(part), " of ", short_name(path)), std::move(changes));
             if (!command) return say(path.string() + ": its " + name_of(part) + " is already in use");
             others_.show_changes(*command);
-            for (const std::string& warning : warnings) say(warning, Weight::warning);
+            for (const std::string& loss : notes.losses) say(loss, Weight::warning);
+            for (const std::string& remark : notes.remarks) say(remark);
             say(sentence("The ", name_of(part), " of ", path.string(), " is taken; undo takes it back"));
         });
     });

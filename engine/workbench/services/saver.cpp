@@ -153,8 +153,9 @@ void Saver::end_save(const Jobs::Finished& job)
     const Session& session = document_->session;
     const bool has_trace = !session.trace_path.empty() && !document_->annotator.document().trace.nodes().empty();
     const bool is_behind = document_->annotator.work().unsaved() > 0;
-    say("Saved " + session.mask_path.string() + (has_trace ? ", " + session.trace_path.string() : std::string()) +
-        " and " + document_->session_path.string() + unpainted + kept +
+    const std::filesystem::path& mask = saved_.files.empty() ? session.mask_path : saved_.files.front();
+    say("Saved " + mask.string() + (has_trace ? ", " + session.trace_path.string() : std::string()) + " and " +
+        document_->session_path.string() + unpainted + kept +
         (is_behind ? "; what was done since the save began is not in it" : ""));
 }
 

@@ -90,7 +90,7 @@ TEST_CASE("a save over a segmentation keeps names, colours, identifiers, termino
         CHECK_MESSAGE(has_line(header, written), written);
     CHECK_FALSE(contains(header, "Segment6"));
     Mask again({4, 3, 2});
-    for (const MaskBrickChange& change : import_mask(file, space_of(volume())))
+    for (const MaskBrickChange& change : import_mask(file, space_of(volume())).changes)
         again.apply(change, Direction::forwards);
     CHECK(again.voxels_by_group() == mask.voxels_by_group());
     const std::string bytes = bytes_of_file(file);

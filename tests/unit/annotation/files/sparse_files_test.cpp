@@ -71,7 +71,8 @@ Mask mask_with_cubes(const Size3& size, const std::vector<Size3>& positions)
 Mask read_mask(const fs::path& path, const VolumeInfo& volume)
 {
     Mask mask(volume.size);
-    for (const MaskBrickChange& change : import_mask(path, space_of(volume))) mask.apply(change, Direction::forwards);
+    for (const MaskBrickChange& change : import_mask(path, space_of(volume)).changes)
+        mask.apply(change, Direction::forwards);
     return mask;
 }
 

@@ -1,0 +1,51 @@
+#pragma once
+// Masks that other programs cut or turned: places their voxels on the grid of the annotated volume by their own
+// origin, directions and spacing. Any thread may call these.
+
+#include <array>
+#include <filesystem>
+#include <optional>
+
+#include "engine/annotation/trace/trace_space.h"
+#include "engine/volume/source.h"
+
+namespace shvr {
+
+/// Voxel v of a mask is voxel `first` + the sum over its axes a of sign[a] * v[a] along axis[a] of the volume.
+struct GridPlace {
+    std::array<int, 3> axis{0, 1, 2};
+    std::array<int, 3> sign{1, 1, 1};
+    Size3 first{0};
+    bool operator==(const GridPlace&) const = default;
+};
+
+/// Null if the mask covers the volume voxel by voxel: equal sizes, and equal places where both state one. Otherwise
+/// the place that the mask states. Fails, with the reason, if that is not on the volume's grid: another spacing or
+/// direction, a shift by parts of a voxel, no position stated, or no voxel in common.
+std::optional<GridPlace> place_of_mask(const std::filesystem::path& path, const VolumeInfo& mask,
+                                       const TraceSpace& volume);
+/// "its 13, 13, 13 voxels are placed at 2, 2, 2 of this volume, with x in reverse order"
+std::string in_words(const GridPlace& place, const Size3& mask, const TraceSpace& volume);
+
+/// The mask on the volume's grid, 0 around it. It costs what the mask has, not what the volume has.
+class PlacedSource final : public VolumeSource {
+public:
+    /// `mask` must outlive this object.
+    PlacedSource(const VolumeSource& mask, const GridPlace& place, const TraceSpace& volume);
+
+    void read(const VoxelBox& box, std::span<std::byte> voxels) const override;
+    std::optional<StoredBlocks> stored_blocks(int level, int64_t most) const override;
+
+    /// Fails, naming the first one, if a voxel of the mask outside the volume is not 0.
+    void expect_nothing_outside(const std::filesystem::path& path) const;
+
+private:
+    VoxelBox on_volume(const VoxelBox& of_mask) const;
+    VoxelBox on_mask(const VoxelBox& of_volume) const;
+
+    const VolumeSource& mask_;
+    GridPlace place_;
+    VoxelBox covered_;  ///< in voxels of the volume, perhaps beyond it
+};
+
+}  // namespace shvr
