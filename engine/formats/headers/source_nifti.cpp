@@ -11,6 +11,7 @@
 #include "engine/formats/raw/source_raw.h"
 #include "engine/formats/readers.h"
 #include "engine/formats/rescaled.h"
+#include "engine/formats/stored_numbers.h"
 #include "engine/volume/grid.h"
 
 namespace shvr {
@@ -22,15 +23,24 @@ struct Datatype {
     int code;
     VoxelType type;
     int64_t channels;
+    StoredNumber number = StoredNumber::plain;
 };
 constexpr Datatype DATATYPES[] = {
-    {2, VoxelType::uint8, 1},    {256, VoxelType::int8, 1},   {512, VoxelType::uint16, 1}, {4, VoxelType::int16, 1},
-    {768, VoxelType::uint32, 1}, {8, VoxelType::int32, 1},    {16, VoxelType::float32, 1}, {64, VoxelType::float64, 1},
-    {128, VoxelType::uint8, 3},  {2304, VoxelType::uint8, 4},
+    {2, VoxelType::uint8, 1},
+    {256, VoxelType::int8, 1},
+    {512, VoxelType::uint16, 1},
+    {4, VoxelType::int16, 1},
+    {768, VoxelType::uint32, 1},
+    {8, VoxelType::int32, 1},
+    {16, VoxelType::float32, 1},
+    {64, VoxelType::float64, 1},
+    {128, VoxelType::uint8, 3},
+    {2304, VoxelType::uint8, 4},
+    {1024, VoxelType::float64, 1, StoredNumber::int64},
+    {1280, VoxelType::float64, 1, StoredNumber::uint64},
 };
-constexpr std::pair<int, const char*> REFUSED[] = {{0, "unknown"},       {1, "bits"},         {32, "complex64"},
-                                                   {1024, "int64"},      {1280, "uint64"},    {1536, "float128"},
-                                                   {1792, "complex128"}, {2048, "complex256"}};
+constexpr std::pair<int, const char*> REFUSED[] = {{0, "unknown"},     {1, "bits"},          {32, "complex64"},
+                                                   {1536, "float128"}, {1792, "complex128"}, {2048, "complex256"}};
 
 Datatype datatype_of(const std::string& file, int code)
 {
@@ -42,7 +52,7 @@ Datatype datatype_of(const std::string& file, int code)
         if (refused == code) name = its_name;
     }
     fail(file, ": datatype is ", code, ", which is ", name,
-         "; expected integers of 8, 16 or 32 bits, floats of 32 or 64, RGB24 or RGBA32");
+         "; expected integers of 8, 16, 32 or 64 bits, floats of 32 or 64, RGB24 or RGBA32");
 }
 
 /// The first bytes, decompressed if necessary.
@@ -240,7 +250,8 @@ std::unique_ptr<VolumeSource> open_nifti(const fs::path& path, const OpenOptions
     (voxels.is_deflated ? voxels.skip_bytes : voxels.offset_bytes) = voxels_at(file, *header);
     choose_volume(file, options, shape, datatype, info, voxels);
     const Rescale rescale = rescale_of(*header, datatype, info);
-    return rescaled(right_handed(open_raw_voxels(std::move(info), voxels)), rescale);
+    std::unique_ptr<VolumeSource> source = widened(open_raw_voxels(std::move(info), voxels), datatype.number, file);
+    return rescaled(right_handed(std::move(source)), rescale);
 }
 
 }  // namespace shvr

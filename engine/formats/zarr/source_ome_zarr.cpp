@@ -200,6 +200,8 @@ std::string objection(const OmeImage& image, const ZarrMetadata& first, size_t d
     if (metadata.shape.size() != image.axes) return "has another number of axes";
     if (metadata.type != first.type)
         return sentence("holds ", name_of(metadata.type), ", level 0 ", name_of(first.type));
+    if (metadata.stored != first.stored)
+        return sentence("holds ", name_of(metadata.stored), " numbers, level 0 ", name_of(first.stored));
     for (const auto& axis : {image.channel, image.time}) {
         if (axis && metadata.shape[*axis] != first.shape[*axis]) return "has other channels or time points";
     }
@@ -309,7 +311,9 @@ std::unique_ptr<VolumeSource> open_image(const ZarrPlace& place, const ZarrNode&
     info.warnings.insert(info.warnings.end(), left_out.begin(), left_out.end());
     if (node.ome()["image-label"].exists())
         info.warnings.emplace_back("the image holds labels: pictures blend neighbours, and imports need --labels");
-    return std::make_unique<OmeZarrSource>(std::move(info), std::move(volumes), std::move(knowledge));
+    const StoredNumber number = volumes[0].metadata().stored;
+    return widened(std::make_unique<OmeZarrSource>(std::move(info), std::move(volumes), std::move(knowledge)), number,
+                   folder.string());
 }
 
 /// The axes called x, y and z; null unless each exists exactly once.
@@ -349,8 +353,10 @@ std::unique_ptr<VolumeSource> open_array(const ZarrPlace& place, int version, co
     apply_spacing(info, std::nullopt, std::nullopt, "um");
     std::vector<ZarrVolume> volumes;
     const ZarrView view = view_of(folder, image, metadata, options);
+    const StoredNumber number = metadata.stored;
     volumes.emplace_back(place, std::move(metadata), view);
-    return std::make_unique<OmeZarrSource>(std::move(info), std::move(volumes), ProjectKnowledge{});
+    return widened(std::make_unique<OmeZarrSource>(std::move(info), std::move(volumes), ProjectKnowledge{}), number,
+                   folder.string());
 }
 
 /// The images in a group that is not an image itself: bioformats2raw puts them into 0, 1, ... or lists them.

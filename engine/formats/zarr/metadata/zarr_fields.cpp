@@ -78,6 +78,19 @@ void read_zarr_fill(const JsonNode& node, ZarrMetadata& metadata)
 {
     // null leaves such voxels undefined; other readers return 0.
     if (!node.exists() || node.is_null()) return;
+    switch (metadata.stored) {
+        case StoredNumber::int64: return put_whole<int64_t>(node, metadata);
+        case StoredNumber::uint64: return put(uint64_t(node.whole(0, std::numeric_limits<int64_t>::max())), metadata);
+        case StoredNumber::float16: {
+            if (put_bits<uint16_t>(node, metadata)) return;
+            const std::optional<uint16_t> half = half_of(float_fill(node, metadata));
+            if (!half) node.refuse("a number that 16-bit floats hold");
+            return put(*half, metadata);
+        }
+        case StoredNumber::plain: break;
+    }
+    if (const std::string text = node.dump(); text == "true" || text == "false")  // of arrays of bool
+        if (metadata.type == VoxelType::uint8) return put(uint8_t(text == "true"), metadata);
     switch (metadata.type) {
         case VoxelType::uint8: return put_whole<uint8_t>(node, metadata);
         case VoxelType::int8: return put_whole<int8_t>(node, metadata);

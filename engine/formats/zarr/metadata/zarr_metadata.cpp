@@ -1,5 +1,6 @@
 #include "engine/formats/zarr/metadata/zarr_metadata.h"
 
+#include <algorithm>
 #include <bit>
 
 #include <nlohmann/json.hpp>
@@ -19,10 +20,20 @@ static_assert(std::endian::native == std::endian::little, "byte order '<' is tak
 struct DataType {
     const char* code;  ///< without byte order
     VoxelType type;
+    StoredNumber number = StoredNumber::plain;
 };
-constexpr DataType DATA_TYPES[] = {{"u1", VoxelType::uint8},   {"i1", VoxelType::int8},   {"u2", VoxelType::uint16},
-                                   {"i2", VoxelType::int16},   {"u4", VoxelType::uint32}, {"i4", VoxelType::int32},
-                                   {"f4", VoxelType::float32}, {"f8", VoxelType::float64}};
+constexpr DataType DATA_TYPES[] = {{"u1", VoxelType::uint8},
+                                   {"i1", VoxelType::int8},
+                                   {"u2", VoxelType::uint16},
+                                   {"i2", VoxelType::int16},
+                                   {"u4", VoxelType::uint32},
+                                   {"i4", VoxelType::int32},
+                                   {"f4", VoxelType::float32},
+                                   {"f8", VoxelType::float64},
+                                   {"b1", VoxelType::uint8},
+                                   {"i8", VoxelType::float64, StoredNumber::int64},
+                                   {"u8", VoxelType::float64, StoredNumber::uint64},
+                                   {"f2", VoxelType::uint16, StoredNumber::float16}};
 
 using Kind = ZarrCompressor::Kind;
 constexpr Spelling<Kind> COMPRESSORS[] = {
@@ -34,12 +45,14 @@ void read_data_type(const JsonNode& node, ZarrMetadata& metadata)
     for (const DataType& known : DATA_TYPES) {
         if (text.size() != 3 || text.substr(1) != known.code) continue;
         metadata.type = known.type;
+        metadata.stored = known.number;
         metadata.big_endian = text[0] == '>';
         const bool is_order = text[0] == '<' || text[0] == '>' || (text[0] == '|' && bytes_of(known.type) == 1);
         if (is_order) return;
     }
     node.refuse(
-        "a number type such as \"|u1\", \"<u2\", \">i2\" or \"<f4\": integers of 8, 16 or 32 bits, floats of 32 or 64");
+        "a number type such as \"|u1\", \"<u2\", \">i2\" or \"<f4\": integers of 8 to 64 bits, floats of 16 to 64, or "
+        "bool");
 }
 
 std::vector<ZarrCompressor> read_compressor(const JsonNode& node)
@@ -145,9 +158,10 @@ std::string to_text(const ZarrMetadata& metadata)
 {
     if (metadata.version == 3) return zarr_v3_text(metadata);
     std::string type(1, bytes_of(metadata.type) == 1 ? '|' : metadata.big_endian ? '>' : '<');
-    for (const DataType& known : DATA_TYPES) {
-        if (known.type == metadata.type) type += known.code;
-    }
+    const auto is_type = [&](const DataType& known) {  // bool comes after uint8
+        return known.type == metadata.type && known.number == metadata.stored;
+    };
+    type += std::ranges::find_if(DATA_TYPES, is_type)->code;
     const Json document = {{"chunks", metadata.chunks},
                            {"compressor", compressor_of(metadata.codecs)},
                            {"dimension_separator", std::string(1, metadata.separator)},

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/formats/stored_numbers.h"
 #include "engine/formats/zarr/store/zarr_store.h"
 #include "engine/volume/volume.h"
 
@@ -44,6 +45,7 @@ struct ZarrMetadata {
     std::vector<int64_t> shape{};   ///< voxels along each axis of the array, slowest first
     std::vector<int64_t> chunks{};  ///< the same for a chunk; chunks at the end of an axis have the full size too
     VoxelType type = VoxelType::uint8;
+    StoredNumber stored = StoredNumber::plain;  ///< if no voxel type holds its values, `type` is bits_type(stored)
     bool big_endian = false;
     /// The array's axes as stored inside a chunk, slowest first; empty: in the array's order.
     std::vector<size_t> order{};

@@ -42,13 +42,21 @@ std::string name_of_extension(const JsonNode& node, const char* expected)
 
 void read_type(const JsonNode& node, ZarrMetadata& metadata)
 {
-    const std::string name = name_of_extension(node, VOXEL_TYPE_NAMES);
+    static const std::string expected = sentence("bool, int64, uint64, float16, ", VOXEL_TYPE_NAMES);
+    const std::string name = name_of_extension(node, expected.c_str());
+    if (name == "bool") return;  // bytes of 0 and 1
+    for (const StoredNumber number : {StoredNumber::int64, StoredNumber::uint64, StoredNumber::float16}) {
+        if (name != name_of(number)) continue;
+        metadata.stored = number;
+        metadata.type = bits_type(number);
+        return;
+    }
     for (const VoxelType type : VOXEL_TYPES) {
         if (name != name_of(type)) continue;
         metadata.type = type;
         return;
     }
-    node.refuse(VOXEL_TYPE_NAMES);
+    node.refuse(expected);
 }
 
 const JsonNode grid_of(const JsonNode& root)

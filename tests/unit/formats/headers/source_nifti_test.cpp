@@ -117,7 +117,7 @@ TEST_CASE("hostile numbers in a NIfTI header are refused by field, at once")
     CHECK(contains(Nifti().dim({7, 5, 4, 3, 1, 1, 2, 1}).refusal(), "dim[6] is 2; expected 1"));
     CHECK(contains(Nifti().dim({5, 32767, 32767, 32767, 32767, 32767}).refusal({.channel = "1", .frame = "1"}),
                    "dim states voxels of more than 2^62 bytes"));
-    CHECK(contains(Nifti().datatype(1024).refusal(), "datatype is 1024, which is int64; expected"));
+    CHECK(contains(Nifti().datatype(1536).refusal(), "datatype is 1536, which is float128; expected"));
     CHECK(contains(Nifti().datatype(32).refusal(), "datatype is 32, which is complex64; expected"));
     CHECK(contains(Nifti().datatype(-7).refusal(), "datatype is -7, which is no type known here; expected"));
     for (const float offset : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -352.0f,
