@@ -44,7 +44,7 @@ inline bool is_volume_name(std::string_view name)
 
 /// Whether files of that name, gzipped or not, state the size of their volume, which raw voxels do not. Reads nothing.
 bool name_states_size(std::string_view name);
-/// The formats that state it, for dialogs: "OME-Zarr, TIFF, NRRD, MetaImage, NIfTI and DICOM" (`conjunction`: "and").
+/// The formats that state it, for dialogs: "OME-Zarr, TIFF, ... and JPEG" (`conjunction`: "and").
 std::string format_names(std::string_view conjunction);
 
 /// Fails if no reader knows the file (listing the formats tried), or if a reader knows it and finds it broken.

@@ -24,6 +24,11 @@ std::unique_ptr<VolumeSource> open_nifti(const std::filesystem::path& path, cons
 /// DICOM: a folder of slices, one slice of a series, or one file of many frames.
 std::unique_ptr<VolumeSource> open_dicom(const std::filesystem::path& path, const OpenOptions& options);
 
+/// PNG, BMP and JPEG: a folder of such slices, or one file as one slice, by their first bytes.
+std::unique_ptr<VolumeSource> open_png(const std::filesystem::path& path, const OpenOptions& options);
+std::unique_ptr<VolumeSource> open_bmp(const std::filesystem::path& path, const OpenOptions& options);
+std::unique_ptr<VolumeSource> open_jpeg(const std::filesystem::path& path, const OpenOptions& options);
+
 /// Raw voxels described by a file next to them, or that side-car itself (source_side_car.cpp lists the known ones).
 std::unique_ptr<VolumeSource> open_raw_with_side_car(const std::filesystem::path& path, const OpenOptions& options);
 

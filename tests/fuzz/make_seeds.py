@@ -103,6 +103,16 @@ def make_raw():
     seed("raw_side_car", "claims_offset", '{"size": [5, 4, 3], "type": "uint8", "offset": 9223372036854775807}', raw)
     seed("raw_side_car", "claims_nsi", "Resolution: 1048576 1048576 1048576\nFormat: DOUBLE\nObjectFileName: scan.raw\n",
          raw)
+    seed("raw_side_car", "scanner.vgi", "{volume1}\n[representation]\nsize = 5 4 3\ndatatype = unsigned integer\n"
+         "bitsperelement = 16\n[file1]\nRegionOfInterestStart = 0 0 0\nFileFormat = raw\nSize = 5 4 3\n"
+         "Name = C:\\scans\\scan.raw\nDatatype = unsigned integer\nBitsPerElement = 16\n{volumeprimitive12}\n"
+         "[geometry]\nresolution = 0.02 0.02 0.03\nunit = mm\n", raw)
+    seed("raw_side_car", "scanner.xtekct", "[XTekCT]\nName=scan\nVoxelsX=5\nVoxelSizeX=0.025\nVoxelsY=4\n"
+         "VoxelSizeY=0.025\nVoxelsZ=3\nVoxelSizeZ=0.025\n", raw)
+    seed("raw_side_car", "scanner.info", "! PyHST_SLAVE VOLUME INFO FILE\nNUM_X =  5\nNUM_Y =  4\nNUM_Z =  3\n"
+         "voxelSize =  1.4\nBYTEORDER = HIGHBYTEFIRST\n", ("scan.raw", "v" * 240))
+    seed("raw_side_car", "claims_vgi", "{volume1}\n[file1]\nFileFormat = raw\nSize = 1048576 1048576 1048576\n"
+         "Name = scan.raw\nDatatype = float\nBitsPerElement = 32\n", raw)
     for name in ["named_5x4x3_int16le.raw", "scan_5x4x3_16bit.raw", "scan_5x4x6.raw", "5x4x3x2.raw", "head.1"]:
         seed("raw_name", name, name)
     for number, text in enumerate(["5x4x3:int16:big:0", "5x4x3:uint8", "3x4x5:int16:0", "2x2x2:float64:little:8"]):
@@ -237,12 +247,12 @@ def make_tiff():
     for name, content in files.items():
         seed("tiff", name, content)
     slices = [(f"slice{z}.tif", tiff([page(z, **resolution)])) for z in (1, 2, 10)]
-    seed("tiff_folder", "three", *slices)
-    seed("tiff_folder", "two_sizes", *slices, ("slice3.tif", tiff([page(0, width=6)])))
-    seed("tiff_folder", "bare", plain)
-    seed("tiff_folder", "series", *((f"s{z}_c{c}.tif", tiff([page(z)])) for z in range(2) for c in range(2)))
-    seed("tiff_folder", "claims_side", files["claims_side"])
-    seed("tiff_folder", "lzw", files["lzw"])
+    seed("slices", "three", *slices)
+    seed("slices", "two_sizes", *slices, ("slice3.tif", tiff([page(0, width=6)])))
+    seed("slices", "bare", plain)
+    seed("slices", "series", *((f"s{z}_c{c}.tif", tiff([page(z)])) for z in range(2) for c in range(2)))
+    seed("slices", "claims_side", files["claims_side"])
+    seed("slices", "lzw", files["lzw"])
 
 
 # ---- DICOM ----------------------------------------------------------------------------------------------------------
@@ -298,6 +308,7 @@ def item(data):
 def make_dicom():
     seed("dicom", "one", dicom_slice(0).file())
     seed("dicom", "implicit", dicom_slice(0, "1.2.840.10008.1.2").file())
+    seed("dicom", "no_preamble", dicom_slice(0).file()[132:])
     seed("dicom", "three", *((f"{z}.dcm", dicom_slice(z).file()) for z in range(3)))
     frames = dicom_slice(0, pixels=struct.pack("<60h", *range(60))).text(0x00280008, "IS", "3")
     frames.text(0x00180050, "DS", "1.25")
@@ -319,6 +330,55 @@ def make_dicom():
     at = whole.rindex(item(rle)[:8])
     whole[at + 4:at + 8] = struct.pack("<I", 0x7ffffff0)
     seed("dicom", "claims_fragment", bytes(whole))
+
+
+# ---- Slices as pictures ---------------------------------------------------------------------------------------------
+
+
+def png_slice(width, height, rows, bits=8, kind=0, palette=b"", interlaced=0):
+    def chunk(name, data):
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, bits, kind, 0, 0, interlaced)) +
+            (chunk(b"PLTE", palette) if palette else b"") +
+            chunk(b"IDAT", zlib.compress(b"".join(b"\0" + row for row in rows))) + chunk(b"IEND", b""))
+
+
+def bmp_slice(width, bits, palette, rows):
+    pixels = b"".join(row + bytes(-len(row) % 4) for row in reversed(rows))
+    offset = 54 + len(palette)
+    return (b"BM" + struct.pack("<IIIIiiHHIIIIII", offset + len(pixels), 0, offset, 40, width, len(rows), 1, bits, 0,
+                                len(pixels), 0, 0, len(palette) // 4, 0) + palette + pixels)
+
+
+def jpeg_slice(width, height, scan=b"\x3f"):
+    """One grey block of 8 x 8 pixels, of code lengths 1: no difference, end of block."""
+    table = b"\1" + bytes(15) + b"\0"
+    return (b"\xff\xd8\xff\xdb\0\x43\0" + b"\1" * 64 + b"\xff\xc0\0\x0b\x08" + struct.pack(">HH", height, width) +
+            b"\1\1\x11\0" + b"\xff\xc4\0\x14\0" + table + b"\xff\xc4\0\x14\x10" + table +
+            b"\xff\xda\0\x08\1\1\0\0\x3f\0" + scan + b"\xff\xd9")
+
+
+def make_pictures():
+    rows = [bytes(range(10 * y, 10 * y + 5)) for y in range(4)]
+    wide = [bytes(range(10 * y, 10 * y + 10)) for y in range(4)]
+    grey = b"".join(bytes([i, i, i, 0]) for i in range(64))
+    seed("slices", "grey.png", png_slice(5, 4, rows))
+    seed("slices", "sixteen.png", png_slice(5, 4, wide, bits=16))
+    seed("slices", "one_bit.png", png_slice(5, 4, [bytes([0xa8])] * 4, bits=1))
+    seed("slices", "palette.png", png_slice(5, 4, rows, kind=3, palette=bytes(range(192))))
+    seed("slices", "alpha.png", png_slice(5, 4, wide, kind=4))
+    seed("slices", "color.png", png_slice(1, 4, [row[:3] for row in rows], kind=2))
+    seed("slices", "interlaced.png", png_slice(1, 1, [b"a"], interlaced=1))
+    seed("slices", "grey.bmp", bmp_slice(5, 8, grey, rows))
+    seed("slices", "color.bmp", bmp_slice(1, 24, b"", [row[:3] for row in rows]))
+    seed("slices", "grey.jpg", jpeg_slice(8, 8))
+    seed("slices", "folder", ("scan_8.5.png", png_slice(5, 4, rows)), ("scan_9.0.png", png_slice(5, 4, rows)),
+         ("scan_spr.png", png_slice(1, 1, [b"a"])), ("scan.log", "[Reconstruction]\nPixel Size (um)=17.5\n"
+                                               "Section to Section Step=2\nResult Image Width (pixels)=5\n"))
+    seed("slices", "claims_png", png_slice(1 << 20, 1 << 20, rows))
+    seed("slices", "claims_interlaced", png_slice(20000, 20000, rows, interlaced=1))
+    seed("slices", "claims_bmp", bmp_slice(1 << 20, 8, grey, rows))
+    seed("slices", "claims_jpeg", jpeg_slice(65535, 65535))
 
 
 # ---- Zarr and projects ----------------------------------------------------------------------------------------------
@@ -674,6 +734,7 @@ def main():
     make_raw()
     make_tiff()
     make_dicom()
+    make_pictures()
     make_zarr()
     make_zarr3()
     make_ozx()

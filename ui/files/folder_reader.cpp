@@ -39,17 +39,18 @@ FileKind kind_of_folder(const fs::path& folder)
     if (fs::exists(folder / "shvr" / "session.json", ignored)) return FileKind::project;
     for (const char* name : {".zattrs", "zarr.json", ".zgroup", ".zarray"})
         if (fs::exists(folder / name, ignored)) return FileKind::zarr;
-    int seen = 0, tiffs = 0, dicoms = 0;
+    int seen = 0, slices = 0, dicoms = 0;
     std::error_code error;
     for (fs::directory_iterator each(folder, error); !error && each != fs::directory_iterator();
          each.increment(error)) {
         const std::string name = lower_case(each->path().filename().string());
-        tiffs += name.ends_with(".tif") || name.ends_with(".tiff");
+        const std::string_view format = format_of_name(name);
+        slices += format == "TIFF" || format == "PNG" || format == "BMP" || format == "JPEG";
         dicoms += name.ends_with(".dcm");
         if (++seen == SAMPLED_NAMES) break;
     }
     if (2 * dicoms > seen) return FileKind::dicom_series;
-    return tiffs >= 2 && 2 * tiffs > seen ? FileKind::tiff_series : FileKind::folder;
+    return slices >= 2 && 2 * slices > seen ? FileKind::slices : FileKind::folder;
 }
 
 const char* text_of(FileKind kind)
@@ -58,7 +59,7 @@ const char* text_of(FileKind kind)
         case FileKind::project: return "SHVR project";
         case FileKind::zarr: return "OME-Zarr volume";
         case FileKind::dicom_series: return "DICOM series";
-        case FileKind::tiff_series: return "TIFF slices";
+        case FileKind::slices: return "slices";
         case FileKind::folder: return "folder";
         case FileKind::volume: return "volume";
         case FileKind::session: return "SHVR session";

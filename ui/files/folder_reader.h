@@ -15,7 +15,7 @@
 namespace shvr::ui {
 
 /// The kinds before `folder` are opened as a whole, as a volume or a project.
-enum class FileKind { project, zarr, dicom_series, tiff_series, folder, volume, session, annotation, other };
+enum class FileKind { project, zarr, dicom_series, slices, folder, volume, session, annotation, other };
 inline bool is_opened_whole(FileKind kind)
 {
     return kind < FileKind::folder;

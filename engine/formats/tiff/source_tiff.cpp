@@ -9,6 +9,7 @@
 #include <tiffio.h>
 
 #include <algorithm>
+#include <map>
 
 #include "engine/base/error.h"
 #include "engine/formats/header_fields.h"
@@ -52,6 +53,9 @@ public:
             const std::span<std::byte> slice_voxels = voxels.first(slice_bytes);
             voxels = voxels.subspan(slice_bytes);
             const TiffSlice& slice = slices_[size_t(z)];
+            if (slice.page == 0)
+                fail(files_.front().string(), ": lacks the page of slice ", z + 1,
+                     ", which its OME-XML names; expected a complete file: it is truncated, or was aborted");
             if (file_) {
                 read_rectangle(*file_, slice, layout_, recipe_, rectangle, cache_, slice_voxels);
             } else {
@@ -101,7 +105,10 @@ public:
         description_ = read_description(*file_, first_page.text(TIFFTAG_IMAGEDESCRIPTION),
                                         layout_of_page(first).samples, TiffRole::whole);
         take_many_channels_as_slices();
-        if (description_.writer == TiffDescription::Writer::ome) {
+        take_frames_as_slices();
+        if (!description_.files.empty()) {
+            check_planes_in_files();
+        } else if (description_.writer == TiffDescription::Writer::ome) {
             check_planes();
         } else {
             shown_ = main_series(pages_to_show(directories_));
@@ -117,7 +124,9 @@ public:
             channels_of_pixel(page, volume_.layout, description_, volume_.info.warnings);
         const OpenOptions wanted =
             description_.channels == 1 ? with_usual_channel(options_, of_pixel, volume_.info.warnings) : options_;
-        const TiffChoice choice = choose(name_, wanted, names_of_channels(of_pixel), description_.frames);
+        const TiffChoice choice =
+            choose(name_, wanted, names_of_channels(of_pixel), description_.frames,
+                   description_.slices == 1 && (description_.channels > 1 || description_.frames > 1));
         const size_t colors = of_pixel.size();
         take_slices(int64_t(choice.channel / colors), choice.frame);
         volume_.info.name = file_->path().filename().string();
@@ -125,8 +134,12 @@ public:
         volume_.info.size = {volume_.layout.width, volume_.layout.height, description_.slices};
         apply_recipe(volume_, page, of_pixel[choice.channel % colors], description_);
         apply_tiff_spacing(volume_.info, description_, *file_, directories_.pages.front().offset, first_page);
-        volume_.files = {file_->path()};
         static_cast<void>(voxel_count(volume_.info));
+        if (!description_.files.empty()) {
+            volume_.files = std::move(description_.files);
+            return make_tiff_source(std::move(volume_), nullptr);
+        }
+        volume_.files = {file_->path()};
         return make_tiff_source(std::move(volume_), std::move(file_));
     }
 
@@ -151,6 +164,38 @@ private:
         volume_.info.warnings.push_back(sentence("the description counts ", description_.channels,
                                                  " channels of one slice each; they were taken as slices"));
         std::swap(description_.channels, description_.slices);
+    }
+
+    /// A stack that was recorded as time points or channels of one slice each: time points of one channel are taken as
+    /// slices unless one of them is chosen; others by the choice "slices".
+    void take_frames_as_slices()
+    {
+        TiffDescription& description = description_;
+        if (description.slices > 1) return;
+        const bool is_asked = options_.frame == AS_SLICES;
+        if (description.frames > 1 && (is_asked || (options_.frame.empty() && description.channels == 1))) {
+            if (!is_asked)
+                volume_.info.warnings.push_back(sentence("the description counts ", description.frames,
+                                                         " time points of one slice each; they were taken as slices; "
+                                                         "--frame 1 to ",
+                                                         description.frames, " takes one of them"));
+            put_frames_first(description.pages);
+            put_frames_first(description.file_of_page);
+            std::swap(description.frames, description.slices);
+            options_.frame.clear();
+        } else if (description.channels > 1 && description.frames == 1 && options_.channel == AS_SLICES) {
+            std::swap(description.channels, description.slices);
+            description.channel_names.clear();
+            options_.channel.clear();
+        }
+    }
+
+    /// From "channels fastest" to "time points fastest", as slices are.
+    void put_frames_first(std::vector<uint32_t>& of_pages) const
+    {
+        const std::vector<uint32_t> before = of_pages;
+        const auto channels = size_t(description_.channels), frames = size_t(description_.frames);
+        for (size_t i = 0; i < before.size(); ++i) of_pages[i / channels + frames * (i % channels)] = before[i];
     }
 
     /// Checks pages of different kinds. Their pictures may be equal all the same, but stored in different ways.
@@ -263,14 +308,17 @@ private:
         is_contiguous_ = true;
     }
 
-    /// Checks that the pages that OME-XML names exist and are alike.
+    /// Checks that the pages that OME-XML names are alike. Pages at the end of a file that was aborted are missing:
+    /// their slices cannot be read, the others can.
     void check_planes()
     {
+        uint32_t lacking = 0;
         for (uint32_t& plane : description_.pages) {
             if (plane == TiffDescription::NO_PAGE) continue;
             if (plane >= directories_.pages.size()) {
-                fail(name_, ": its OME-XML names page ", plane + 1, "; expected at most the ",
-                     directories_.pages.size(), " pages the file holds: it is truncated, or one of several files");
+                ++lacking;
+                plane = LACKING_PAGE;
+                continue;
             }
             if (shown_.empty() || is_like(plane, shown_.front())) {
                 shown_.push_back(plane);
@@ -280,7 +328,46 @@ private:
             fail(name_, ": page ", plane + 1, " has ", in_words(layout_of_page(plane)), "; expected ",
                  in_words(layout_of_page(shown_.front())), ", as the others of its image");
         }
-        if (shown_.empty()) fail(name_, ": its OME-XML names no page; expected one for each slice");
+        if (shown_.empty()) fail(name_, ": its OME-XML names no page of the file; expected one for each slice");
+        if (lacking > 0)
+            volume_.info.warnings.push_back(sentence("its OME-XML names ", lacking, " pages more than the ",
+                                                     directories_.pages.size(),
+                                                     " that the file holds: it is truncated, or its writing was "
+                                                     "aborted; their slices cannot be read"));
+    }
+
+    /// The same for pages in several files.
+    void check_planes_in_files()
+    {
+        std::map<std::pair<uint32_t, uint32_t>, TiffLayout> layouts;  // by file and kind
+        std::vector<std::optional<TiffDirectories>> directories(description_.files.size());
+        std::optional<TiffLayout> first;
+        slices_in_files_.resize(description_.pages.size());
+        for (size_t i = 0; i < description_.pages.size(); ++i) {
+            const uint32_t number = description_.file_of_page[i], plane = description_.pages[i];
+            if (plane == TiffDescription::NO_PAGE) continue;
+            const TiffFile file(description_.files[number]);
+            std::optional<TiffDirectories>& of_file = directories[number];
+            if (!of_file) of_file = read_directories(file);
+            if (plane >= of_file->pages.size())
+                fail(file.path().string(), ": holds ", of_file->pages.size(), " pages; expected page ", plane + 1,
+                     ", which the OME-XML of ", name_, " names");
+            const TiffDirectory& directory = of_file->pages[plane];
+            const auto [known, is_new] = layouts.try_emplace({number, directory.kind});
+            if (is_new) {
+                const TiffPage page(file, directory.offset, plane + 1);
+                known->second = layout_of(page);
+                if (!first) first = known->second;
+                if (!show_the_same(known->second, *first))
+                    fail(file.path().string(), ": has ", in_words(known->second), "; expected ", in_words(*first),
+                         ", as the first page of ", name_);
+                check_is_supported(page, known->second);
+                check_blocks(file, page, known->second);
+            }
+            slices_in_files_[i] = {number, plane + 1, directory.offset, 0};
+            if (number == 0) shown_.push_back(plane);
+        }
+        if (shown_.empty()) fail(name_, ": its OME-XML names no page of this file; expected some");
     }
 
     std::vector<std::string> names_of_channels(const std::vector<TiffPixelChannel>& of_pixel) const
@@ -311,27 +398,37 @@ private:
             auto place = size_t(in_order);
             if (!description_.pages.empty()) {
                 const int64_t at = z + description_.slices * (channel + description_.channels * frame);
-                place = description_.pages[size_t(at)];
-                if (place == TiffDescription::NO_PAGE) {
+                const uint32_t stated = description_.pages[size_t(at)];
+                if (stated == TiffDescription::NO_PAGE) {
                     fail(name_, ": its OME-XML names no page for slice ", z + 1, "; expected one for each slice");
                 }
+                if (stated == LACKING_PAGE || !slices_in_files_.empty()) {
+                    volume_.slices.push_back(stated == LACKING_PAGE ? TiffSlice{.page = 0}
+                                                                    : slices_in_files_[size_t(at)]);
+                    continue;
+                }
+                place = stated;
             }
             const uint32_t page = shown_[place];
             volume_.slices.push_back({0, page + 1, directories_.pages[page].offset, 0});
         }
         // A truncated file lacks its end.
         const TiffSlice& last = volume_.slices.back();
+        if (last.page == 0 || !slices_in_files_.empty()) return;
         const TiffPage page(*file_, last.directory, last.page);
         check_blocks(*file_, page, layout_of(page));
     }
 
-    const OpenOptions& options_;
+    static constexpr uint32_t LACKING_PAGE = TiffDescription::NO_PAGE - 1;
+
+    OpenOptions options_;
     std::unique_ptr<const TiffFile> file_;
     std::string name_;
     TiffDirectories directories_;
     std::vector<std::optional<TiffLayout>> layouts_;  ///< by kind; filled on first use
     TiffDescription description_;
-    std::vector<uint32_t> shown_;  ///< pages
+    std::vector<uint32_t> shown_;             ///< pages
+    std::vector<TiffSlice> slices_in_files_;  ///< by index into the description's `pages`
     bool is_contiguous_ = false;
     TiffVolume volume_;
 };
@@ -389,7 +486,9 @@ void apply_recipe(TiffVolume& volume, const TiffPage& page, const TiffPixelChann
 
 std::unique_ptr<VolumeSource> make_tiff_source(TiffVolume volume, std::unique_ptr<const TiffFile> file)
 {
-    return std::make_unique<TiffSource>(std::move(volume), std::move(file));
+    const StoredNumber number = stored_number_of(volume.layout);
+    const std::string name = volume.files.front().string();
+    return widened(std::make_unique<TiffSource>(std::move(volume), std::move(file)), number, name);
 }
 
 std::unique_ptr<VolumeSource> open_tiff_file(const fs::path& path, const OpenOptions& options)

@@ -13,7 +13,7 @@ namespace shvr {
 /// Place of a slice of a volume in its file.
 struct TiffSlice {
     uint32_t file = 0;       ///< index into the volume's files
-    uint32_t page = 1;       ///< in that file, for messages
+    uint32_t page = 1;       ///< in that file, for messages; 0: the file lacks it
     uint64_t directory = 0;  ///< in that file
     /// ImageJ's long stacks have one directory; the voxels of later slices follow those that it names at this distance.
     int64_t shift_bytes = 0;

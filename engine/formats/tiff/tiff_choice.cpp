@@ -155,27 +155,34 @@ OpenOptions with_usual_channel(const OpenOptions& options, const std::vector<Tif
 }
 
 TiffChoice choose(const std::string& subject, const OpenOptions& options, const std::vector<std::string>& names,
-                  int64_t frames)
+                  int64_t frames, bool may_be_slices)
 {
     const bool needs_channel = names.size() > 1 && options.channel.empty();
     const bool needs_frame = frames > 1 && options.frame.empty();
-    const Choice channels = Choice::numbered("channel", int64_t(names.size()), names);
-    const Choice times = Choice::numbered("frame", frames);
+    Choice channels = Choice::numbered("channel", int64_t(names.size()), names);
+    Choice times = Choice::numbered("frame", frames);
+    std::string or_slices;
+    if (may_be_slices) {
+        Choice& taken = frames > 1 ? times : channels;
+        taken.values.emplace_back(AS_SLICES);
+        taken.titles.emplace_back("all of them, as the slices of one volume");
+        or_slices = sentence("; --", taken.key, " ", AS_SLICES, " takes all of them as the slices of one volume");
+    }
     if (needs_channel && needs_frame) {
         throw ChoiceNeeded(sentence(subject, ": has ", names.size(), " channels (", channel_names(names), ") and ",
                                     frames, " time points; expected one of each: choose with --channel ",
-                                    channel_choices(names), " and ", frame_choices(frames)),
+                                    channel_choices(names), " and ", frame_choices(frames), or_slices),
                            {channels, times});
     }
     if (needs_channel) {
         throw ChoiceNeeded(sentence(subject, ": has ", names.size(), " channels (", channel_names(names),
-                                    "); expected one: choose with --channel ", channel_choices(names)),
+                                    "); expected one: choose with --channel ", channel_choices(names), or_slices),
                            {channels});
     }
     if (needs_frame) {
-        throw ChoiceNeeded(
-            sentence(subject, ": has ", frames, " time points; expected one: choose with ", frame_choices(frames)),
-            {times});
+        throw ChoiceNeeded(sentence(subject, ": has ", frames, " time points; expected one: choose with ",
+                                    frame_choices(frames), or_slices),
+                           {times});
     }
     TiffChoice choice;
     if (!options.channel.empty()) choice.channel = chosen_channel(subject, options.channel, names);

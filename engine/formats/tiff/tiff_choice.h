@@ -28,8 +28,11 @@ struct TiffChoice {
     int64_t frame = 0;   ///< from 0
 };
 
+/// The choice of a channel or a time point that takes all of them as the slices of one volume.
+inline constexpr const char* AS_SLICES = "slices";
 /// Fails, listing the choices, if there are several and none is chosen, or if the chosen one does not exist.
+/// `may_be_slices`: AS_SLICES, which the caller applies, is one of the choices.
 TiffChoice choose(const std::string& subject, const OpenOptions& options, const std::vector<std::string>& names,
-                  int64_t frames);
+                  int64_t frames, bool may_be_slices = false);
 
 }  // namespace shvr

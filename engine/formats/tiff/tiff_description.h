@@ -22,6 +22,10 @@ struct TiffDescription {
     /// ImageJ's order, channels fastest, then slices, then frames.
     static constexpr uint32_t NO_PAGE = UINT32_MAX;
     std::vector<uint32_t> pages{};
+    /// A stack of OME in several files: the files, and for each of `pages` the index of the file that holds it. Empty:
+    /// all pages are in the one file that states it.
+    std::vector<std::filesystem::path> files{};
+    std::vector<uint32_t> file_of_page{};
     std::vector<std::string> channel_names{};  ///< may be fewer than channels; names may be ""
 
     std::optional<double> spacing[3]{};  ///< ImageJ: only z

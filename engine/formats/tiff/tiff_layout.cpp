@@ -147,12 +147,20 @@ bool show_the_same(const TiffLayout& a, const TiffLayout& b)
 std::string in_words(const TiffLayout& layout)
 {
     const std::optional<VoxelType> type = voxel_type_of(layout);
-    const std::string sample = type && bytes_of(*type) * 8 == size_t(layout.bits)
+    const StoredNumber number = stored_number_of(layout);
+    const std::string sample = number != StoredNumber::plain ? name_of(number)
+                               : type && bytes_of(*type) * 8 == size_t(layout.bits)
                                    ? name_of(*type)
                                    : sentence(layout.bits, " bit", layout.bits == 1 ? "" : "s",
                                               layout.sample_format == SAMPLEFORMAT_INT ? " with sign" : "");
     return sentence(layout.width, "x", layout.height, " pixels of ",
                     layout.samples > 1 ? sentence(layout.samples, " times ") : std::string(), sample);
+}
+
+StoredNumber stored_number_of(const TiffLayout& layout)
+{
+    if (layout.bits != 64 || layout.sample_format == SAMPLEFORMAT_IEEEFP) return StoredNumber::plain;
+    return layout.sample_format == SAMPLEFORMAT_INT ? StoredNumber::int64 : StoredNumber::uint64;
 }
 
 std::optional<VoxelType> voxel_type_of(const TiffLayout& layout)
@@ -164,11 +172,13 @@ std::optional<VoxelType> voxel_type_of(const TiffLayout& layout)
             if (bits <= 8) return VoxelType::uint8;
             if (bits <= 16) return VoxelType::uint16;
             if (bits == 32) return VoxelType::uint32;
+            if (bits == 64) return bits_type(StoredNumber::uint64);
             break;
         case SAMPLEFORMAT_INT:
             if (bits == 8) return VoxelType::int8;
             if (bits == 16) return VoxelType::int16;
             if (bits == 32) return VoxelType::int32;
+            if (bits == 64) return bits_type(StoredNumber::int64);
             break;
         case SAMPLEFORMAT_IEEEFP:
             if (bits == 16 || bits == 32) return VoxelType::float32;
@@ -195,7 +205,8 @@ void check_is_supported(const TiffPage& page, const TiffLayout& layout)
                                  : layout.sample_format == SAMPLEFORMAT_IEEEFP ? "floats"
                                                                                : "numbers of unknown kind";
         fail(page.subject(), ": its samples are ", kind, " of ", layout.bits,
-             " bits; expected integers of 8, 16 or 32 bits, unsigned ones of 1 to 16 bits, or floats of 16, 32 or 64 "
+             " bits; expected integers of 8, 16, 32 or 64 bits, unsigned ones of 1 to 16 bits, or floats of 16, 32 or "
+             "64 "
              "bits");
     }
     // Their one bit per row means one for the few pixels of a fax, not for thousands of channels.

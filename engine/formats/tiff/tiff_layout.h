@@ -3,6 +3,7 @@
 // states about its blocks is checked against the file before memory is allocated for them. Any thread may call these; a
 // TiffPage belongs to one thread at a time.
 
+#include "engine/formats/stored_numbers.h"
 #include "engine/formats/tiff/tiff_page.h"
 #include "engine/volume/volume.h"
 
@@ -46,7 +47,9 @@ bool show_the_same(const TiffLayout& a, const TiffLayout& b);
 /// "512x512 pixels of uint16", "512x512 pixels of 3 samples of 8 bits".
 std::string in_words(const TiffLayout& layout);
 
-/// The type that holds the samples exactly; null if there is none.
+/// Integers of 64 bits are no voxel type: their bits are read as float64.
+StoredNumber stored_number_of(const TiffLayout& layout);
+/// The type that holds the samples exactly, or their bits; null if there is none.
 std::optional<VoxelType> voxel_type_of(const TiffLayout& layout);
 
 /// Fails, stating what is expected instead, if the page's kind of picture or its compression is not supported.

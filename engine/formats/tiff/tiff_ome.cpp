@@ -1,12 +1,15 @@
 // OME-XML (https://docs.openmicroscopy.org/ome-model/): Pixels states the size of the stack, the spacing of its voxels
 // and the order of its planes; TiffData maps planes to pages.
 
+#include <tiffio.h>
+
 #include <cmath>
+#include <map>
 #include <pugixml.hpp>
-#include <set>
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/formats/header_fields.h"
 #include "engine/formats/tiff/tiff_description.h"
 
 namespace shvr {
@@ -41,7 +44,7 @@ pugi::xml_node first_child(const pugi::xml_node& node, std::string_view name)
 class OmeReader {
 public:
     OmeReader(const TiffFile& file, int samples, TiffRole role)
-        : subject_(file.path().string() + ": its OME-XML"), samples_(samples), role_(role)
+        : path_(file.path()), subject_(path_.string() + ": its OME-XML"), samples_(samples), role_(role)
     {}
 
     TiffDescription read(std::string_view text)
@@ -55,11 +58,8 @@ public:
             fail(subject_, " cannot be read: ", result ? "it has no element OME" : result.description(),
                  "; expected a complete XML document");
         }
-        if (const pugi::xml_node elsewhere = first_child(root, "BinaryOnly")) {
-            fail(subject_, " is in another file, ", in_quotes(elsewhere.attribute("MetadataFile").value()),
-                 "; expected it in this one: data sets of several files are not supported: save it as one file, for "
-                 "example from Fiji");
-        }
+        if (!is_companion_) own_uuid_ = root.attribute("UUID").value();
+        if (const pugi::xml_node elsewhere = first_child(root, "BinaryOnly")) return read_companion(elsewhere);
         const pugi::xml_node pixels = largest_pixels(root);
         read_sizes(pixels);
         read_planes(pixels);
@@ -81,6 +81,28 @@ public:
     }
 
 private:
+    /// The XML of the whole data set in another file next to this one: "x.companion.ome", or a TIFF.
+    TiffDescription read_companion(const pugi::xml_node& elsewhere)
+    {
+        const std::string stated = elsewhere.attribute("MetadataFile").value();
+        if (is_companion_ || stated.empty() || has_controls(stated))
+            fail(subject_, " is in another file, ", in_quotes(stated), "; expected the XML with the images",
+                 is_companion_ ? " there" : ", or the name of its file");
+        const std::filesystem::path companion = file_stated(path_, stated);
+        std::error_code ignored;
+        if (!std::filesystem::is_regular_file(companion, ignored))
+            fail(subject_, " is in another file, ", in_quotes(stated),
+                 ", which is missing; expected it next to this one");
+        std::string text = read_head(companion, MAX_XML_BYTES + 1);
+        if (TiffFile::begins(text)) {
+            const TiffFile tiff(companion);
+            text = TiffPage(tiff, read_directories(tiff).pages.front().offset, 1).text(TIFFTAG_IMAGEDESCRIPTION);
+        }
+        subject_ = companion.string() + ": its OME-XML";
+        is_companion_ = true;
+        return read(text);
+    }
+
     int64_t side(const pugi::xml_node& pixels, const char* name) const
     {
         const char* const stated = pixels.attribute(name).value();
@@ -196,18 +218,21 @@ private:
     void read_planes(const pugi::xml_node& pixels)
     {
         const auto planes = int64_t(result_.pages.size());
-        std::set<std::string> files;
+        std::map<std::string, uint32_t> files;  // by the name that is stated; number 0 is this file
+        std::vector<uint32_t> file_of_page(result_.pages.size());
         int64_t stated = 0;
         bool is_stated = false;
         for_each_child(pixels, "TiffData", [&](const pugi::xml_node& data) {
             is_stated = true;
+            uint32_t number = 0;
             if (const pugi::xml_node file = first_child(data, "UUID"); file.attribute("FileName")) {
-                files.insert(file.attribute("FileName").value());
-            }
-            if (files.size() > 1 && role_ == TiffRole::whole) {
-                fail(subject_, " describes a stack in several files, ", in_quotes(*files.begin()), " and ",
-                     in_quotes(*files.rbegin()), " among them; expected one: save it as one file, for example from ",
-                     "Fiji");
+                const std::string name = file.attribute("FileName").value();
+                const bool is_this = name == path_.filename().string() ||
+                                     (!own_uuid_.empty() && own_uuid_ == trimmed(file.child_value()));
+                const auto next = uint32_t(files.size() + 1);
+                number = files.try_emplace(name, is_this ? 0 : next).first->second;
+                if (files.size() > MAX_FILES)
+                    fail(subject_, " names more than ", MAX_FILES, " files; expected at most that many");
             }
             const int64_t page = whole(data, "IFD", 0);
             const int64_t first = first_plane(data);
@@ -218,12 +243,36 @@ private:
             }
             for (int64_t i = 0; i < std::min(count, planes - first); ++i) {
                 result_.pages[place_of(first + i)] = uint32_t(page + i);
+                file_of_page[place_of(first + i)] = number;
             }
         });
+        name_files(files, std::move(file_of_page));
         for (int64_t i = 0; i < planes && !is_stated; ++i) result_.pages[place_of(i)] = uint32_t(i);
     }
 
+    /// A single file that has been renamed is this one.
+    void name_files(const std::map<std::string, uint32_t>& files, std::vector<uint32_t> file_of_page)
+    {
+        if (files.size() < 2 || role_ != TiffRole::whole) return;
+        result_.files.assign(files.size() + 1, path_);
+        for (const auto& [name, number] : files) {
+            if (number == 0) continue;
+            if (has_controls(name)) fail(subject_, " names a file ", in_quotes(name), "; expected the name of a file");
+            result_.files[number] = file_stated(path_, name);
+            std::error_code ignored;
+            if (!std::filesystem::is_regular_file(result_.files[number], ignored))
+                fail(subject_, " describes a stack in several files; ", in_quotes(name),
+                     " is missing; expected it next to this one");
+        }
+        result_.file_of_page = std::move(file_of_page);
+    }
+
+    static constexpr size_t MAX_FILES = 65536;
+
+    std::filesystem::path path_;
     std::string subject_;
+    std::string own_uuid_{};     ///< of this file
+    bool is_companion_ = false;  ///< the XML that is read now is in another file
     int samples_;
     TiffRole role_;
     std::string order_;

@@ -23,16 +23,6 @@ uint32_t packed_sample(std::span<const std::byte> row, int64_t index, int bits)
     return taken >> (have - first_bit % 8 - bits) & ((uint32_t{1} << bits) - 1);
 }
 
-float float_of_half(uint16_t half)
-{
-    const int exponent = half >> 10 & 31;
-    const int fraction = half & 1023;
-    const float sign = (half & 0x8000) != 0 ? -1.0F : 1.0F;
-    if (exponent == 31) return fraction == 0 ? sign * INFINITY : NAN;
-    if (exponent == 0) return sign * std::ldexp(float(fraction), -24);
-    return sign * std::ldexp(float(fraction + 1024), exponent - 25);
-}
-
 template <class Voxel, class Value>
 void store_each(std::span<std::byte> voxels, const Value& value)
 {
@@ -148,6 +138,7 @@ void exchange_bits(const TiffRecipe& recipe, std::span<std::byte> voxels)
     switch (bytes_of(recipe.type)) {
         case 1: return exchange_each<uint8_t>(recipe.exchanged_bits, voxels);
         case 2: return exchange_each<uint16_t>(recipe.exchanged_bits, voxels);
+        case 8: return exchange_each<uint64_t>(recipe.exchanged_bits, voxels);
         default: return exchange_each<uint32_t>(recipe.exchanged_bits, voxels);
     }
 }

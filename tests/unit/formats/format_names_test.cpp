@@ -8,10 +8,10 @@ using namespace shvr;
 TEST_CASE("the names of formats are those of one list")
 {
     const std::string names = format_names("and");
-    CHECK(names == "OME-Zarr, TIFF, NRRD, MetaImage, NIfTI and DICOM");
-    CHECK(format_names("or") == "OME-Zarr, TIFF, NRRD, MetaImage, NIfTI or DICOM");
-    for (const char* name :
-         {"a.tif", "a.TIFF", "a.nrrd", "a.nhdr", "a.mhd", "a.mha", "a.nii", "a.nii.gz", "a.hdr", "a.dcm", "a.ozx"})
+    CHECK(names == "OME-Zarr, TIFF, NRRD, MetaImage, NIfTI, DICOM, PNG, BMP and JPEG");
+    CHECK(format_names("or") == "OME-Zarr, TIFF, NRRD, MetaImage, NIfTI, DICOM, PNG, BMP or JPEG");
+    for (const char* name : {"a.tif", "a.TIFF", "a.nrrd", "a.nhdr", "a.mhd", "a.mha", "a.nii", "a.nii.gz", "a.hdr",
+                             "a.dcm", "a.ozx", "a.png", "a.BMP", "a.jpg", "a.jpeg"})
         CHECK_MESSAGE(names.find(format_of_name(name)) != std::string::npos, name);
 }
 

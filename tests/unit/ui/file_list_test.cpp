@@ -124,14 +124,14 @@ TEST_CASE("what a file is, is told by its name, and for folders and .json by a l
     CHECK(kind("tree.SWC") == FileKind::annotation);
     CHECK(kind("notes.txt") == FileKind::other);
     CHECK(kind("series") == FileKind::dicom_series);
-    CHECK(kind("slices") == FileKind::tiff_series);
+    CHECK(kind("slices") == FileKind::slices);
     CHECK(kind("one") == FileKind::folder);
     CHECK(kind("scan.zarr") == FileKind::zarr);
     CHECK(kind("v3") == FileKind::zarr);
     CHECK(kind("project") == FileKind::project);
     CHECK(text("project") == "SHVR project");
     CHECK_FALSE(details_of(folder.path / "project").bytes);
-    CHECK(is_opened_whole(FileKind::tiff_series));
+    CHECK(is_opened_whole(FileKind::slices));
     CHECK_FALSE(is_opened_whole(FileKind::folder));
     CHECK(size_text(999) == "999 B");
     CHECK(size_text(1'400'000'000) == "1.4 GB");

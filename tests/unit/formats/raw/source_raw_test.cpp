@@ -326,9 +326,8 @@ TEST_CASE("a raw file with nothing beside it says how to open it")
     const fs::path other = folder.write("a.xyz", marked_bytes());
     CHECK(refusal(other) ==
           other.string() +
-              ": is in no format known here; expected OME-Zarr, TIFF, NRRD, MetaImage, NIfTI, DICOM, RAW "
-              "with a side-car, or bare "
-              "voxels with --raw WxHxD:TYPE");
+              ": is in no format known here; expected OME-Zarr, TIFF, NRRD, MetaImage, NIfTI, DICOM, PNG, BMP, JPEG, "
+              "RAW with a side-car, or bare voxels with --raw WxHxD:TYPE");
 }
 
 TEST_CASE("a raw file opens by the JSON beside it, and the JSON opens the raw file")

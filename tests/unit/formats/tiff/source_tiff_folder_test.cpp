@@ -130,11 +130,27 @@ TEST_CASE("two series in one folder are not mixed")
     same.add("brain.tif", 'a');
     same.add("brain.tiff", 'b');
     CHECK(contains(same.refusal(), "differ only in their extension; expected one of them"));
-    const Slices stray;
-    stray.add("s1.tif", 'a');
-    stray.add("s2.tif", 'b');
-    stray.add("overview.tif", 'c');
-    CHECK(contains(stray.refusal(), "holds 2 series of slices, from \"overview.tif\" on and from \"s1.tif\" on"));
+}
+
+// Kind (Slices): TIFF slices with decimal numbers, a preview and a log next to them
+TEST_CASE("a preview next to slices is left out, decimal numbers count, and the log states the spacing")
+{
+    const Slices slices;
+    slices.add("bone_rec0001.tif", 'a');
+    slices.add("bone_rec0002.tif", 'b');
+    slices.add("bone_rec_spr.tif", 'c');
+    slices.write("bone_rec.log", "[Reconstruction]\r\nPixel Size (um)=17.5\r\nSection to Section Step=1\r\n");
+    CHECK(slices.order() == "ab");
+    const auto source = open_volume(slices.path);
+    CHECK(warns_of(*source, "\"bone_rec_spr.tif\" is not numbered like the slices or of another size, and left out"));
+    CHECK(source->info().spacing == glm::dvec3(17.5));
+    CHECK(source->info().unit == "um");
+
+    const Slices decimals;
+    for (const char* name : {"z_10.0.tif", "z_8.05.tif", "z_8.5.tif", "z_9.0.tif"})
+        decimals.add(name, name[2] == '1' ? 'd' : name[2] == '9' ? 'c' : name[4] == '0' ? 'a' : 'b');
+    CHECK(decimals.order() == "abcd");
+    CHECK(warns_of(*open_volume(decimals.path), "slices may be missing"));
 }
 
 TEST_CASE("slices of another size or type are refused by name")

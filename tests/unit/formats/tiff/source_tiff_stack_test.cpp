@@ -102,6 +102,28 @@ TEST_CASE("ImageJ's stacks above 4 GiB, one directory for all slices, are read w
                    "counts 5 images, but it holds one page that is compressed; expected a page for each image"));
 }
 
+// Kind (Slices): a z-stack that was recorded as time points or channels
+TEST_CASE("time points of one slice each are slices, and channels on request")
+{
+    const TemporaryFolder folder;
+    const fs::path times =
+        numbered(folder.path / "t.tif", 4, "ImageJ=1.11a\nimages=4\nframes=4\nhyperstack=true\nmode=grayscale\n");
+    CHECK(pages_of(times, {}) == std::vector<uint8_t>{1, 2, 3, 4});
+    CHECK(pages_of(times, {"", "slices"}) == std::vector<uint8_t>{1, 2, 3, 4});
+    CHECK(pages_of(times, {"", "3"}) == std::vector<uint8_t>{3});
+    CHECK(warns_of(*open_volume(times),
+                   "the description counts 4 time points of one slice each; they were taken as "
+                   "slices; --frame 1 to 4 takes one of them"));
+    const fs::path channels = numbered(folder.path / "c.tif", 3, "ImageJ=1.53t\nimages=3\nchannels=3\n");
+    CHECK(refusal(channels) ==
+          ": has 3 channels (1, 2, 3); expected one: choose with --channel 1, 2 or 3; --channel "
+          "slices takes all of them as the slices of one volume");
+    CHECK(pages_of(channels, {"slices"}) == std::vector<uint8_t>{1, 2, 3});
+    const fs::path both = numbered(folder.path / "b.tif", 6, "ImageJ=1.53t\nimages=6\nchannels=2\nframes=3\n");
+    CHECK(contains(refusal(both), "--frame slices takes all of them as the slices of one volume"));
+    CHECK(pages_of(both, {"2", "slices"}) == std::vector<uint8_t>{2, 4, 6});
+}
+
 TEST_CASE("channels and time points of an ImageJ hyperstack are chosen")
 {
     const TemporaryFolder folder;
@@ -288,6 +310,56 @@ TEST_CASE("planes of an OME-TIFF follow its DimensionOrder or its TiffData")
     CHECK(pages_of(path, {"GFP 2", "1"}) == std::vector<uint8_t>{3, 4});
 }
 
+// Kind (TIFF): OME-XML in a companion file, and a stack in several files
+TEST_CASE("a stack of OME in several files is opened by any of them, with its XML in a companion")
+{
+    const TemporaryFolder folder;
+    const std::string planes =
+        R"(<TiffData FirstZ="0" IFD="1"><UUID FileName="a.ome.tif">urn:uuid:a</UUID></TiffData>)"
+        R"(<TiffData FirstZ="1" IFD="0"><UUID FileName="b.ome.tif">urn:uuid:b</UUID></TiffData>)"
+        R"(<TiffData FirstZ="2" IFD="0"><UUID FileName="a.ome.tif">urn:uuid:a</UUID></TiffData>)";
+    const std::string whole = ome(R"(SizeZ="3" SizeC="1" SizeT="1" DimensionOrder="XYZCT" PhysicalSizeX="2")", planes);
+    const auto binary_only = [](const std::string& name) {
+        return R"(<OME UUID="urn:uuid:)" + name + R"("><BinaryOnly MetadataFile="x.companion.ome" UUID="u"/></OME>)";
+    };
+    folder.write("x.companion.ome", whole);
+    const fs::path a = numbered(folder.path / "a.ome.tif", 2, binary_only("a"));
+    const fs::path b = numbered(folder.path / "b.ome.tif", 1, binary_only("b"));
+    CHECK(pages_of(a) == std::vector<uint8_t>{2, 1, 1});
+    CHECK(pages_of(b) == std::vector<uint8_t>{2, 1, 1});
+    CHECK(open_volume(b)->info().spacing.x == 2.0);
+    // A renamed file is found by its identifier.
+    fs::rename(b, folder.path / "c.ome.tif");
+    CHECK(contains(refusal(a), "\"b.ome.tif\" is missing; expected it next to this one"));
+    CHECK(pages_of(folder.path / "c.ome.tif") == std::vector<uint8_t>{2, 1, 1});
+    numbered(folder.path / "b.ome.tif", 0 + 1, whole);
+    CHECK(pages_of(folder.path / "b.ome.tif") == std::vector<uint8_t>{2, 1, 1});
+    // The companion of a companion, and one that is itself a TIFF.
+    folder.write("x.companion.ome", binary_only("x"));
+    CHECK(contains(refusal(a), "x.companion.ome: its OME-XML is in another file"));
+    numbered(folder.path / "x.companion.ome", 1, whole);
+    CHECK(pages_of(a) == std::vector<uint8_t>{2, 1, 1});
+}
+
+// Kind (TIFF): an OME-TIFF whose writing was aborted
+TEST_CASE("of an aborted OME-TIFF the slices that it lacks cannot be read, the others can")
+{
+    const TemporaryFolder folder;
+    const fs::path path =
+        numbered(folder.path / "a.tif", 3, ome(R"(SizeZ="5" SizeC="1" SizeT="1" DimensionOrder="XYZCT")"));
+    const auto source = open_volume(path);
+    CHECK(source->info().size == Size3(1, 1, 5));
+    CHECK(warns_of(*source, "its OME-XML names 2 pages more than the 3 that the file holds"));
+    uint8_t voxel = 0;
+    const auto read = [&](int64_t z) {
+        source->read({{0, 0, z}, {1, 1, z + 1}}, std::as_writable_bytes(std::span(&voxel, 1)));
+    };
+    read(2);
+    CHECK(voxel == 3);
+    CHECK(contains(error_of([&] { read(3); }),
+                   "lacks the page of slice 4, which its OME-XML names; expected a complete"));
+}
+
 TEST_CASE("an OME-TIFF that is not whole says so")
 {
     const TemporaryFolder folder;
@@ -296,13 +368,10 @@ TEST_CASE("an OME-TIFF that is not whole says so")
     const auto refused = [&](const std::string& description) { return refusal(numbered(path, 3, description)); };
     CHECK(refused(ome(one, R"(<TiffData IFD="0"><UUID FileName="a.ome.tif">1</UUID></TiffData>)"
                            R"(<TiffData FirstZ="1" IFD="0"><UUID FileName="b.ome.tif">2</UUID></TiffData>)")) ==
-          ": its OME-XML describes a stack in several files, \"a.ome.tif\" and \"b.ome.tif\" among them; expected one: "
-          "save it as one file, for example from Fiji");
-    CHECK(contains(refused(R"(<OME><BinaryOnly MetadataFile="a.companion.ome" UUID="u"/></OME>)"),
-                   ": its OME-XML is in another file, \"a.companion.ome\"; expected it in this one"));
-    CHECK(refused(ome(R"(SizeZ="4" SizeC="1" SizeT="1" DimensionOrder="XYZCT")")) ==
-          ": its OME-XML names page 4; expected at most the 3 pages the file holds: it is truncated, or one of several "
-          "files");
+          ": its OME-XML describes a stack in several files; \"a.ome.tif\" is missing; expected it next to this one");
+    CHECK(contains(
+        refused(R"(<OME><BinaryOnly MetadataFile="a.companion.ome" UUID="u"/></OME>)"),
+        ": its OME-XML is in another file, \"a.companion.ome\", which is missing; expected it next to this one"));
     CHECK(refused(ome(one, R"(<TiffData IFD="0"/>)")) ==
           ": its OME-XML names no page for slice 2; expected one for each slice");
     CHECK(refused(ome(R"(SizeZ="0" SizeC="1" SizeT="1" DimensionOrder="XYZCT")")) ==

@@ -389,10 +389,9 @@ TEST_CASE("what libtiff decodes but this reader does not is refused in words")
         const fs::path path = write_tiff(folder.path / "a.tif", spec, {std::string(spec.page_bytes(), 'x')});
         return error_of([&] { open_volume(path); }).substr(path.string().size());
     };
-    CHECK(refused({.bits = 64}) ==
-          ": page 1: its samples are unsigned integers of 64 bits; expected integers of 8, 16 or 32 bits, unsigned "
+    CHECK(refused({.bits = 24}) ==
+          ": page 1: its samples are unsigned integers of 24 bits; expected integers of 8, 16, 32 or 64 bits, unsigned "
           "ones of 1 to 16 bits, or floats of 16, 32 or 64 bits");
-    CHECK(contains(refused({.bits = 24}), "unsigned integers of 24 bits; expected"));
     CHECK(contains(refused({.bits = 4, .format = SAMPLEFORMAT_INT}), "signed integers of 4 bits; expected"));
     CHECK(contains(refused({.bits = 32, .format = SAMPLEFORMAT_COMPLEXIEEEFP}), "numbers of unknown kind"));
     CHECK(contains(refused({.bits = 8, .samples = 3, .photometric = PHOTOMETRIC_CIELAB}),

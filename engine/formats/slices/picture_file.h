@@ -1,0 +1,67 @@
+#pragma once
+// PNG, BMP and JPEG files as slices: their size and samples, and their rows. libpng and libjpeg decode; BMP needs no
+// library. Sizes are checked against the file before memory is taken; rows are decoded one at a time. Any
+// thread may call these.
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/formats/slices/slice_names.h"
+#include "engine/volume/volume.h"
+
+namespace shvr {
+
+/// The maximum memory for a whole picture: PNGs and JPEGs that are stored in several passes cannot be read row by row.
+inline constexpr int64_t MAX_WHOLE_PICTURE_BYTES = int64_t{256} << 20;
+
+struct PictureLayout {
+    int64_t width = 0, height = 0;
+    VoxelType type = VoxelType::uint8;
+    int samples = 1;            ///< per pixel, as rows hold them
+    bool has_alpha = false;     ///< the last sample
+    bool is_sliceable() const;  ///< one value for each pixel, besides alpha
+    bool operator==(const PictureLayout&) const = default;
+};
+/// "512x512 pixels of uint8", "512x512 pixels of 3 samples of uint8"
+std::string in_words(const PictureLayout& layout);
+
+/// Takes row `y` of a picture: `samples` values per pixel, in native byte order.
+using TakeRow = std::function<void(int64_t y, std::span<const std::byte> row)>;
+
+class PictureFile {
+public:
+    virtual ~PictureFile() = default;
+    virtual const PictureLayout& layout() const = 0;
+    /// Calls `take` for rows from 0 up to `end_row`, or only from `first_row` on. Once only.
+    virtual void read(int64_t first_row, int64_t end_row, const TakeRow& take) = 0;
+};
+
+/// The format by the file's first bytes; null: none of them, as for TIFF.
+std::optional<SliceFormat> picture_format(const std::filesystem::path& path);
+/// Reads the header. Fails, naming the file, if it is not a sound one of that format, or not supported.
+std::unique_ptr<PictureFile> open_picture(const std::filesystem::path& path, SliceFormat format);
+
+// One for each format, for open_picture.
+std::unique_ptr<PictureFile> open_png_picture(const std::filesystem::path& path);
+std::unique_ptr<PictureFile> open_bmp_picture(const std::filesystem::path& path);
+std::unique_ptr<PictureFile> open_jpeg_picture(const std::filesystem::path& path);
+
+/// Fails unless each side is 1 to 2^20.
+void check_picture_size(const std::filesystem::path& path, int64_t width, int64_t height);
+/// Fails if the pixels have more bytes than a file of `file_bytes` can expand to, by the factor that its compression
+/// allows at most: then it is truncated, or made to exhaust memory.
+void check_expansion(const std::filesystem::path& path, int64_t pixel_bytes, int64_t file_bytes, int64_t factor);
+
+/// A file for the C libraries, closed at the end.
+struct CloseFile {
+    void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
+};
+using CFile = std::unique_ptr<std::FILE, CloseFile>;
+/// Fails for folders, pipes and devices. Sets the file's size.
+CFile open_c_file(const std::filesystem::path& path, int64_t& bytes);
+
+}  // namespace shvr
