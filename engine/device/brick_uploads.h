@@ -24,7 +24,8 @@ public:
     struct Target {
         const gpu::Storage* codes;
         glm::uvec3 code;  ///< texel of its first code
-        /// The box of codes to write, in voxels from the brick's first. Codes outside its apron repeat the apron's.
+        /// The box of codes to write, in voxels relative to the brick's first voxel. Codes outside the apron repeat the
+        /// nearest code of the apron.
         glm::ivec3 begin, end;
         const gpu::Storage* cells;
         glm::uvec3 cell;

@@ -52,7 +52,8 @@ public:
     /// Whether the first pane has something to show.
     bool shows_anything() const { return !parts_.empty() && parts_[0].view->shown_camera() != nullptr; }
 
-    /// The picture as shown, with the lines over maps and slices but without the probe's; waits for the device.
+    /// Returns the picture as shown, with the lines over maps and slices but without those of the probe; waits for the
+    /// device.
     Image8 read_back();
 
     // Of all panes together

@@ -25,8 +25,8 @@ std::vector<std::pair<std::string, std::string>> group_files(OmeZarrVersion vers
 /// PROJECT/shvr/session.json.
 std::string import_session();
 
-/// `folder` without dots. Fails if it exists and is not a replaceable label image, or if it belongs to an image's
-/// labels and that image's list of labels cannot be read. Creates the parent folder.
+/// Returns `folder` without "." and "..". Fails if it exists and is not a replaceable label image, or if it belongs to
+/// an image's labels and that image's list of labels cannot be read. Creates the parent folder.
 std::filesystem::path label_image_target(const std::filesystem::path& folder);
 /// `folder` without dots. Fails if it exists and is no image of numbers of that kind (`number_attributes`).
 std::filesystem::path number_image_target(const std::filesystem::path& folder, const std::string& kind);

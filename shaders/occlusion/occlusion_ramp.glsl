@@ -1,9 +1,9 @@
 // Makes ramps (occlusion.h). Needs occlusion_opacity.glsl.
 
-// Found by optimization, like those of occlusion_bake.comp. A ramp is complete if the variance of the opacity, for a
-// top of 1, is above one of these fractions; ...
+// Constants found by optimization, like those of occlusion_bake.comp. A ramp is complete if the variance of the
+// opacity, for a top of 1, is above 1 / RAMP_UNEVEN.
 const float RAMP_UNEVEN = 230.0;
-// ... this is its maximum steepness across the cube.
+// Maximum steepness of a ramp across the cube.
 const float STEEPEST_OF_VOXELS = 3.3, STEEPEST_OF_CELLS = 2.6;
 
 // `level`, `squares`: the means of the opacity in the cube and of its square, for a `top` of 1. `direction`: in which

@@ -168,7 +168,8 @@ struct BrickRow {
     std::vector<std::pair<int64_t, const MaskBrick*>> bricks;  ///< x of the first voxel
     std::array<Row, BRICK_SIDE> rows, previous;                ///< rows of this slice and of the previous one
 };
-/// Rows of bricks with the same z, ascending along y. Those after a painted one along y, z or both are in it.
+/// Rows of bricks with the same z, ascending along y: painted ones, and those that follow a painted one along y, z or
+/// both.
 using Layer = std::vector<BrickRow>;
 
 class Counter {

@@ -77,7 +77,8 @@ bool TraceErrors::note_superfluous(size_t segment)
     return true;
 }
 
-/// Returns whether a segment alone follows a part of the truth, or joins others that follow the same.
+/// Returns whether a segment is the only one that follows a part of the truth, or joins others that follow the same
+/// segment of the truth.
 bool TraceErrors::is_needed(size_t segment) const
 {
     double alone = 0.0;

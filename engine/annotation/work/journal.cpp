@@ -161,7 +161,7 @@ void Journal::put_in_place(const fs::path& own, const JournalScan& before)
 }
 
 /// Removes the file that this process created at the journal's path, in which there is no record yet. Another process
-/// may just put its own file there, so that it is moved first, and removed only if it is this one.
+/// may be replacing it by its own file, so the file is moved first, and removed only if it is this process's.
 void Journal::remove_new() noexcept
 {
     try {

@@ -63,13 +63,15 @@ double roughness(const std::vector<int64_t>& values, const std::vector<int64_t>&
 Lattice lattice_of(int64_t span, const std::vector<int64_t>& counts)
 {
     const double bin_width = double(span) / double(counts.size());
-    // Steps wider than a bin: other bins would not be empty. A rounded value may lie in two, so most others must be.
+    // Steps wider than a bin leave bins without values empty. A rounded value may fall into either of two bins, so
+    // most, not all, of the other bins must be empty.
     for (int64_t intervals = 1; double(span) > bin_width * double(intervals); ++intervals) {
         const Lattice lattice{span, intervals};
         const bool is_apart = span % intervals == 0 || lattice.step() >= std::max(4.0 * bin_width, 3.0);
         if (is_apart && !is_refuted(values_in_bins(lattice, counts.size()), counts)) return lattice;
     }
-    // For narrower steps: bins hold one value more or less, which shows as a comb that the right step makes smooth.
+    // With narrower steps, bins differ by one value, which shows as a comb; counting with the right step makes it
+    // smooth.
     constexpr double CLEARLY = 0.6;
     Lattice best{span, span};
     double least = CLEARLY * roughness(values_in_bins(best, counts.size()), counts);

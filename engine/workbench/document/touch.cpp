@@ -96,7 +96,7 @@ Workspace Touch::workspace(const TouchSettings& settings) const
     return {.to_volume = glm::dmat3(finest / VOXEL_M), .origin = 0.5 * glm::dvec3(info.size) * info.spacing};
 }
 
-/// A plane goes through the position where the probe is put.
+/// The plane that holds the probe then goes through the probe's new position.
 void Touch::place(const glm::dvec3& point)
 {
     if (plane_ != TouchPlane::none) on_plane_ = point;

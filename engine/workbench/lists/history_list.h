@@ -12,7 +12,7 @@ namespace shvr::ui {
 /// Row N is the state after N steps: row 0 is the start, row `rows - 1` the newest.
 struct HistoryList {
     const History* history = nullptr;
-    size_t done = 0;        ///< index of the present row, unless a setting is not a step yet
+    size_t done = 0;        ///< number of steps done, not counting a changed setting
     bool is_ahead = false;  ///< a changed setting is not a step yet: it is shown as the last and present row
 
     size_t rows() const;

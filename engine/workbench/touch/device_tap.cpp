@@ -38,7 +38,7 @@ void TapLink::begin_tick() noexcept
     }
 }
 
-/// The time of a tick is the first one that is requested in it.
+/// Records the first time requested in a tick as the tick's time.
 void TapLink::note_now(uint64_t now_ns) noexcept
 {
     if (!std::exchange(is_new_tick_, false)) return;

@@ -34,7 +34,7 @@ struct ZarrSharding {
     std::vector<size_t> order{};   ///< order of the axes of the index, the slowest first
     bool is_index_first = false;   ///< whether the index is at the start of a shard, not at its end
     bool is_big_endian = false;    ///< the index
-    int checksums = 0;             ///< number of CRC-32C that follow the index, each over everything before it
+    int checksums = 0;             ///< number of CRC-32C checksums after the index, each over all bytes before it
 
     int64_t chunks(const std::vector<int64_t>& chunk) const;  ///< chunks per shard
     int64_t index_bytes(const std::vector<int64_t>& chunk) const { return 16 * chunks(chunk) + 4 * checksums; }
