@@ -63,7 +63,7 @@ TEST_CASE_FIXTURE(TracerAlone, "tracer: stepping from node to node looks at each
 
 TEST_CASE_FIXTURE(TracerAlone, "tracer: a dragged node moves to the probe when it is let go")
 {
-    CHECK(contains(error_of([&] { tracer.act(DragNode{true}); }), "No node is selected"));
+    CHECK(contains(error_of([&] { tracer.act(DragNode{true}); }), "is selected; select a node"));
     add(8.0);
     tracer.act(DragNode{true});
     CHECK(tracer.model().drags_node);
