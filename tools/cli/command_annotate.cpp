@@ -8,6 +8,7 @@
 #include "engine/base/text.h"
 #include "engine/workbench/workbench.h"
 #include "tools/cli/cli.h"
+#include "tools/cli/rest.h"
 
 namespace shvr::cli {
 
@@ -254,7 +255,10 @@ void perform_to_end(ui::Workbench& bench, const ui::Action& action)
     bench.perform(action);
     if (!bench.document().annotator.stroke_is_open()) {
         if (const std::string unpainted = bench.finish_stroke(); !unpainted.empty()) fail(unpainted);
-        while (bench.has_work()) bench.advance();
+        for (uint64_t turn = 0; bench.has_work(); ++turn) {
+            rest(turn);
+            bench.advance();
+        }
     }
     if (const ui::Message* error = bench.messages().first_after(told_before, ui::Weight::error)) fail(error->text);
 }

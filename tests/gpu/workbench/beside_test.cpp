@@ -10,6 +10,7 @@
 #include "engine/formats/open_volume.h"
 #include "tests/gpu/workbench/slow_disk.h"
 #include "tests/support/gpu.h"
+#include "tests/support/nap.h"
 #include "tests/support/volume_files.h"
 #include "tests/support/workbench_state.h"
 
@@ -384,6 +385,7 @@ TEST_CASE("where the device has no room for both, what is open is put away, and 
     bench.perform(Open{folder.path / "b.json"});
     bool was_away = false;
     for (int turn = 0; bench.has_work() || turn < 3; ++turn) {
+        nap(turn);
         bench.advance();
         was_away = was_away || !bench.is_open();
     }

@@ -6,6 +6,7 @@
 #include "engine/annotation/script/script.h"
 #include "engine/workbench/workbench.h"
 #include "tools/cli/profile/temporary_folder.h"
+#include "tools/cli/rest.h"
 
 namespace shvr::cli {
 
@@ -40,7 +41,7 @@ void settle(ui::Workbench& bench, ProfiledAction& action, const std::function<do
 {
     const auto& annotator = bench.document().annotator;
     const uint64_t told_before = bench.messages().count();
-    for (;;) {
+    for (uint64_t turn = 0;; ++turn) {
         const double since = now_ms() - action.begin_ms;
         if (!action.paint_ms && !annotator.stroke_is_running()) action.paint_ms = since;
         if (action.paint_ms && !action.sketch_ms && shows_at_least_a_sketch(bench)) action.sketch_ms = since;
@@ -48,6 +49,7 @@ void settle(ui::Workbench& bench, ProfiledAction& action, const std::function<do
             action.sharp_ms = since;
         if (!bench.has_work() || annotator.stroke_is_open()) return;
         poll();
+        rest(turn);
         bench.advance();
         if (const ui::Message* error = bench.messages().first_after(told_before, ui::Weight::error)) fail(error->text);
     }
