@@ -108,6 +108,15 @@ class Golden(CliTest):
         self.assertEqual({one["status"] for one in result["goldens"]}, {"missing"})
         self.assertEqual(list((self.folder / "golden").glob("*.png")), [])
 
+    def test_without_lavapipe_the_reason_says_what_needs_it(self):
+        for chosen, says in (({}, "goldens are drawn on lavapipe"), ({"SHVR_DEVICE": "llvmpipe"}, "no Vulkan device")):
+            with self.subTest(chosen=chosen):
+                result = self.golden("run", "spheres", status=3, VK_DRIVER_FILES="/nonexistent",
+                                     VK_ICD_FILENAMES="/nonexistent", **chosen)
+                reason = result["goldens"][0]["reason"]
+                self.assertIn(says, reason)
+                self.assertEqual("goldens are drawn" in reason, not chosen)
+
     def test_a_picture_without_its_side_car_fails(self):
         self.begin_blessed()
         shutil.copy(self.folder / "golden/overview.png", self.folder / "golden/spheres.png")
