@@ -94,7 +94,7 @@ std::string plural(const std::string& unit)
 
 void print_line(const char* what, const std::string& value)
 {
-    std::cout << std::left << std::setw(14) << what << value << '\n';
+    std::cout << std::left << std::setw(14) << what << printable(value) << '\n';
 }
 
 void print_text(const DescribeResult& described)
