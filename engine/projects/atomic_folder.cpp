@@ -127,8 +127,26 @@ AtomicFolder::~AtomicFolder()
     remove_remains();
 }
 
-void AtomicFolder::sync() const
+/// Writing into a folder that was moved has made new folders at its old place, unless it failed.
+void AtomicFolder::expect_in_place()
 {
+    struct stat held {
+    }, found{};
+    const bool is_held = ::fstat(lock_->number(), &held) == 0;
+    const bool is_found = ::stat(container_.c_str(), &found) == 0;
+    if (is_held && is_found && held.st_dev == found.st_dev && held.st_ino == found.st_ino) return;
+    remove_remains();
+    // Only empty ones: that of the labels, and that of the project.
+    ::rmdir(target_.parent_path().c_str());
+    ::rmdir(target_.parent_path().parent_path().c_str());
+    fail(target_.string(),
+         ": was moved or removed while it was written; expected it to stay: open it where it is now, or "
+         "move it back");
+}
+
+void AtomicFolder::sync()
+{
+    expect_in_place();
     if (::syncfs(lock_->number()) != 0) refuse_folder(target_, errno);
 }
 
@@ -190,7 +208,7 @@ void AtomicFolder::enter(const std::string& entry)
         if (old.is_directory(ignored) && old.path() != moved) move_out(old.path());
 }
 
-fs::path AtomicFolder::copy_old() const
+fs::path AtomicFolder::copy_old()
 {
     const fs::path copy = container_ / "old";
     std::error_code error;

@@ -3,6 +3,9 @@
 // place at the end, in one exchange of names. At every moment a reader finds either the old or the new folder, even if
 // the program is killed. Without `commit` the target stays as it was.
 //
+// A folder that was moved away while it was written, with the folders around it, is not made again at its old place:
+// `commit` fails, and what is there then is left as it is.
+//
 // The hidden folder `.NAME.shvr-part` has no content of its own that readers of Zarr would list. It is locked while
 // a process works on it; what a killed process left there is cleared by the next one.
 //
@@ -42,10 +45,11 @@ public:
     std::filesystem::path commit_and_keep_old(const std::string& entry);
 
 private:
-    void sync() const;
+    void expect_in_place();
+    void sync();
     void exchange(const std::filesystem::path& with);
     void enter(const std::string& entry);
-    std::filesystem::path copy_old() const;
+    std::filesystem::path copy_old();
     void move_out(const std::filesystem::path& inside) const;
     void remove_remains();
 

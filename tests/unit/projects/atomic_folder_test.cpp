@@ -83,6 +83,33 @@ TEST_CASE("a link to a folder stays, and the folder that it leads to is replaced
     CHECK(names_in(target.parent_path()) == "a.zarr");
 }
 
+// Kind (annotation files): a project that is moved while it is saved.
+TEST_CASE("a folder that was moved while it was written is not made again at its old place")
+{
+    const TemporaryFolder folder;
+    const fs::path target = folder.path / "project" / "labels" / "a.zarr", moved = folder.path / "elsewhere";
+    fs::create_directory(folder.path / "project");
+    {
+        AtomicFolder first(target);
+        write(first, "one", "1");
+        first.commit("one");
+    }
+    {
+        AtomicFolder second(target);
+        write(second, "two", "2");
+        fs::rename(folder.path / "project", moved);
+        write(second, "0/three", "3");
+        CHECK(contains(error_of([&] { second.commit("two"); }), target.string() + ": was moved or removed while"));
+    }
+    CHECK(names_in(folder.path) == "elsewhere");
+    CHECK(names_in(moved / "labels" / "a.zarr") == "one");
+    // The same before anything was written at the old place.
+    AtomicFolder third(moved / "labels" / "a.zarr");
+    fs::rename(moved, folder.path / "project");
+    CHECK(contains(error_of([&] { third.commit("two"); }), "was moved or removed"));
+    CHECK(names_in(folder.path) == "project");
+}
+
 TEST_CASE("two writers of one folder: the second is refused, and the first goes on")
 {
     const TemporaryFolder folder;
