@@ -139,9 +139,8 @@ FrameResult Submission::Frame::collect()
         for (size_t query = 0; query < counted_steps.size() && !prepared[i].is_counted_in_part; ++query)
             if (counted_steps[query] == i) report.invocations = report.invocations.value_or(0) + invocations[query];
         // On a device without timestamps a pass takes at most the host time of all passes up to it. A frame that merely
-        // was not timed teaches nothing: it may have waited long, in the queue and after. Nor does a pass whose number
-        // of threads is known only to the device.
-        if (prepared[i].kernel && !data.is_counted && (is_timed || traits.timestamp_bits == 0))
+        // was not timed teaches nothing: it may have waited long, in the queue and after.
+        if (prepared[i].kernel && (is_timed || traits.timestamp_bits == 0))
             executor.costs_.learn(data.kernel, threads_of(data, *prepared[i].kernel),
                                   is_timed ? report.gpu_ms : result.wall_ms);
         for (const Binding& binding : data.bindings) report.bytes += graph.resources()[binding.resource].desc.bytes;

@@ -27,7 +27,6 @@ VkPipelineStageFlags2 vulkan_stages(Stages stages)
     if (stages & STAGE_COMPUTE) flags |= VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
     if (stages & STAGE_TRANSFER) flags |= VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
     if (stages & STAGE_HOST) flags |= VK_PIPELINE_STAGE_2_HOST_BIT;
-    if (stages & STAGE_COUNTS) flags |= VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
     return flags;
 }
 
@@ -37,7 +36,6 @@ VkAccessFlags2 touched_by(Stages stages)
     if (stages & STAGE_COMPUTE) flags |= VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
     if (stages & STAGE_TRANSFER) flags |= VK_ACCESS_2_TRANSFER_READ_BIT;
     if (stages & STAGE_HOST) flags |= VK_ACCESS_2_HOST_READ_BIT;
-    if (stages & STAGE_COUNTS) flags |= VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT;
     return flags;
 }
 
@@ -165,8 +163,7 @@ void Submission::Frame::record()
         const Step& step = compiled.steps[i];
         prepared[i].recorded = std::chrono::steady_clock::now();
         if (options.serialize)
-            record_barrier(chunks.back(), {STAGE_COMPUTE | STAGE_TRANSFER | STAGE_COUNTS,
-                                           STAGE_COMPUTE | STAGE_TRANSFER | STAGE_COUNTS, true});
+            record_barrier(chunks.back(), {STAGE_COMPUTE | STAGE_TRANSFER, STAGE_COMPUTE | STAGE_TRANSFER, true});
         else if (step.barrier)
             record_barrier(chunks.back(), *step.barrier);
         // Written once all earlier submissions have completed: otherwise their remaining work would count as this
@@ -214,14 +211,9 @@ void Submission::Frame::record_dispatches(const PassData& data, Prepared& state)
     const glm::uvec3 tile =
         tiled ? glm::max(groups_for(data.tile, local), glm::uvec3(1)) : slab_of(groups, cost_ms(groups));
     const auto& limit = executor.device_.traits().limits.maxComputeWorkGroupCount;
-    const glm::uvec3 counted = data.is_counted ? tile : groups;  // for a counted dispatch, the count is known only to
-                                                                 // the device
-    if (glm::any(glm::greaterThan(counted, glm::uvec3(limit[0], limit[1], limit[2]))))
-        fail("pass '", data.name, "' dispatches ", counted.x, " x ", counted.y, " x ", counted.z,
+    if (glm::any(glm::greaterThan(groups, glm::uvec3(limit[0], limit[1], limit[2]))))
+        fail("pass '", data.name, "' dispatches ", groups.x, " x ", groups.y, " x ", groups.z,
              " groups; the device allows ", limit[0], " x ", limit[1], " x ", limit[2]);
-    VkBuffer counts = VK_NULL_HANDLE;
-    for (const Binding& binding : data.bindings)
-        if (binding.is_count) counts = object(binding.resource).buffer;
 
     glm::uvec3 at;
     for (at.z = 0; at.z < groups.z; at.z += tile.z)
@@ -235,14 +227,8 @@ void Submission::Frame::record_dispatches(const PassData& data, Prepared& state)
                 executor.device_.begin_label(commands, data.name);
                 bind(data, state);
                 // Validation of hazards treats images as a whole, though each dispatch writes texels of its own. It
-                // ignores dispatches with a base, so the first tile stands for all; counted ones have none.
-                if (data.is_counted) {
-                    if (executor.device_.is_validated() && at.x > 0)
-                        record_barrier(commands, {STAGE_COMPUTE, STAGE_COMPUTE, true});
-                    constexpr VkDeviceSize COUNTS = sizeof(VkDispatchIndirectCommand);
-                    vkCmdPushConstants(commands, kernel.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof at.x, &at.x);
-                    vkCmdDispatchIndirect(commands, counts, COUNTS * (at.x / tile.x));
-                } else if (at == glm::uvec3(0))
+                // ignores dispatches with a base, so the first tile stands for all.
+                if (at == glm::uvec3(0))
                     vkCmdDispatch(commands, count.x, count.y, count.z);
                 else
                     vkCmdDispatchBase(commands, at.x, at.y, at.z, count.x, count.y, count.z);

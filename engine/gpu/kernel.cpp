@@ -35,7 +35,6 @@ void check_bindings(const PassData& pass, const KernelInterface& interface,
         return slot;
     };
     for (const Binding& binding : pass.bindings) {
-        if (binding.is_count) continue;
         const KernelInterface::Slot* slot = declared(binding.name);
         const ResourceDesc& desc = resources[binding.resource].desc;
         const bool is_buffer = slot->type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;

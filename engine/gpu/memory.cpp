@@ -217,7 +217,7 @@ void Memory::create_buffer(Object& object, const char* purpose)
     const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
                                   .size = object.desc.bytes,
                                   .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
-                                           VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT};
+                                           VK_BUFFER_USAGE_TRANSFER_DST_BIT};
     SHVR_VK(vkCreateBuffer(device_.handle(), &info, nullptr, &object.buffer));
     device_.set_name(VK_OBJECT_TYPE_BUFFER, reinterpret_cast<uint64_t>(object.buffer), object.name);
     VkMemoryRequirements needs{};

@@ -14,9 +14,8 @@ std::string place(const PassData& pass)
                     ":", pass.declared_at.line(), ")");
 }
 
-Stages stages_of(const PassData& pass, const Binding& binding)
+Stages stages_of(const PassData& pass)
 {
-    if (binding.is_count) return STAGE_COUNTS;
     return pass.kind == PassData::Kind::compute ? STAGE_COMPUTE : STAGE_TRANSFER;
 }
 
@@ -85,7 +84,7 @@ std::string names_of(Stages stages)
 {
     std::string names;
     const std::pair<Stages, const char*> all[] = {
-        {STAGE_COMPUTE, "compute"}, {STAGE_TRANSFER, "transfer"}, {STAGE_HOST, "host"}, {STAGE_COUNTS, "counts"}};
+        {STAGE_COMPUTE, "compute"}, {STAGE_TRANSFER, "transfer"}, {STAGE_HOST, "host"}};
     for (const auto& [stage, name] : all)
         if (stages & stage) names += (names.empty() ? "" : "+") + std::string(name);
     return names.empty() ? "nothing" : names;
@@ -130,18 +129,6 @@ void Pass::dispatch(const glm::uvec3& threads, const glm::uvec3& tile)
 {
     graph_.passes_[index_].threads = threads;
     graph_.passes_[index_].tile = tile;
-}
-
-void Pass::dispatch_counted(Resource counts, const glm::uvec3& threads, const glm::uvec3& tile)
-{
-    dispatch(threads, tile);
-    if (counts.index < graph_.resources().size() && graph_.resources()[counts.index].imported)
-        fail(place(graph_.passes_[index_]), " counts groups by '", graph_.resources()[counts.index].name,
-             "', which outlives the frame; expected a buffer of the frame alone");
-    static_cast<void>(use("counts of groups", counts, true, false));
-    PassData& pass = graph_.passes_[index_];
-    pass.bindings.back().is_count = pass.is_counted = true;
-    push(uint32_t{0});
 }
 
 struct FrameGraph::Undo {
@@ -306,7 +293,7 @@ std::optional<Barrier> barrier_before(const PassData& pass, const std::vector<Re
 {
     Barrier barrier;
     for (const Binding& binding : pass.bindings) {
-        const Stages stages = stages_of(pass, binding);
+        const Stages stages = stages_of(pass);
         const ResourceState& state = states[binding.resource];
         if (state.written_by && (stages & ~state.visible_to)) {  // read or write after write
             barrier.from |= state.written_by;
@@ -334,7 +321,7 @@ void settle(const Barrier& barrier, std::vector<ResourceState>& states)
 void record_use(const PassData& pass, std::vector<ResourceState>& states)
 {
     for (const Binding& binding : pass.bindings) {
-        const Stages stages = stages_of(pass, binding);
+        const Stages stages = stages_of(pass);
         ResourceState& state = states[binding.resource];
         if (binding.writes) {
             state = {.written_by = stages};

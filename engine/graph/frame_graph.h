@@ -61,7 +61,6 @@ using Stages = uint8_t;
 inline constexpr Stages STAGE_COMPUTE = 1;
 inline constexpr Stages STAGE_TRANSFER = 2;
 inline constexpr Stages STAGE_HOST = 4;
-inline constexpr Stages STAGE_COUNTS = 8;  ///< a dispatch reads its group counts (indirect dispatch)
 std::string names_of(Stages stages);
 
 /// Accesses in flight on a resource. Carried from frame to frame for imported resources.
@@ -94,7 +93,6 @@ struct Binding {
     uint32_t resource = 0;
     bool reads = false;
     bool writes = false;
-    bool is_count = false;  ///< the buffer of group counts (Pass::dispatch_counted); the kernel does not see it
 };
 
 struct ImageRegion {
@@ -118,8 +116,7 @@ struct PassData {
     std::vector<std::byte> push;                                         ///< push constants
     std::vector<std::pair<std::string, std::vector<std::byte>>> blocks;  ///< small read-only buffers by block name
     glm::uvec3 threads{0};
-    glm::uvec3 tile{0};       ///< threads per dispatch, 0 = all at once; limits the time of one dispatch
-    bool is_counted = false;  ///< `threads` and `tile` are upper bounds along x
+    glm::uvec3 tile{0};  ///< threads per dispatch, 0 = all at once; limits the time of one dispatch
     uint32_t fill_value = 0;
     uint32_t read_back = 0;  ///< index into FrameResult::read_backs
     std::vector<ImageRegion> image_regions;
@@ -154,11 +151,6 @@ public:
     /// `threads` counts threads, not groups: the group size comes from the kernel. A tile splits the work into several
     /// dispatches, and into several short submissions. Tiles must be multiples of the group size.
     void dispatch(const glm::uvec3& threads, const glm::uvec3& tile = glm::uvec3(0));
-    /// Runs, along x, as many groups as a buffer states after the earlier passes have run: three words per dispatch,
-    /// the group counts along each axis. `threads` and `tile` are upper bounds, for the whole pass and for one
-    /// dispatch. The kernel's push constant is one word: the upper bound of the groups in the preceding dispatches. The
-    /// buffer must be a transient resource of this frame.
-    void dispatch_counted(Resource counts, const glm::uvec3& threads, const glm::uvec3& tile);
 
 private:
     friend class FrameGraph;

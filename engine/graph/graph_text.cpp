@@ -99,8 +99,7 @@ std::string pass_node(size_t index, const PassData& pass, std::optional<size_t> 
         lines.emplace_back(name_of(pass.kind));
     else if (pass.kernel != pass.name)
         lines.push_back("kernel " + pass.kernel);
-    if (pass.kind == PassData::Kind::compute)
-        lines.push_back(extent_text(pass.threads) + (pass.is_counted ? " threads at most" : " threads"));
+    if (pass.kind == PassData::Kind::compute) lines.push_back(extent_text(pass.threads) + " threads");
     if (pass.tile != glm::uvec3(0)) lines.push_back("in tiles of " + extent_text(pass.tile));
     if (barrier) lines.push_back("barrier " + to_text(*barrier));
     return sentence("    pass", index, " [shape=box, label=", quoted(lines), ", ",

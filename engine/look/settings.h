@@ -98,10 +98,6 @@ struct RenderSettings {
     /// Smooth borders of painted groups: between voxels, the label with the largest weight among the eight around a
     /// sample, instead of the nearest voxel's. Slices and occlusion use the nearest voxel.
     bool smooth_borders = false;
-    /// Above 0: traces rays through every second pixel of every second row, and through the others only if the
-    /// surrounding ones differ by more than this in square roots of linear light; other pixels are interpolated
-    /// (engine/passes/adaptive.h).
-    double adaptive_tolerance = 0.0;
     double saturation = 1.0;  ///< saturation of everything drawn, before lines over it; 0: greys of the same luminance
     bool operator==(const RenderSettings&) const = default;
 };

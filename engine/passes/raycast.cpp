@@ -67,7 +67,7 @@ struct Choice {
     bool is_paged, is_filtered, is_masked, is_occluded, is_surfaced;
     std::vector<std::pair<std::string, uint32_t>> of_codes;  ///< constants
     uint32_t shell = gpu::SHELL_NONE;
-    bool feedback, has_sample_bits, is_shaded, picks, blocks_alone;
+    bool feedback, has_sample_bits, is_shaded, picks;
     uint32_t kept = gpu::KEPT_NOTHING;
 };
 
@@ -99,7 +99,6 @@ Choice choice_of(const VolumeBinding& volume, const RaycastInput& input, bool is
             .has_sample_bits = volume.sample_bits && finds_sample_bits(input.params),
             .is_shaded = input.shaded,
             .picks = input.pick,
-            .blocks_alone = input.blocks.has_value(),
             .kept = input.waiting ? gpu::KEPT_ALL
                     : keeps_rays  ? gpu::KEPT_SHELL
                                   : gpu::KEPT_NOTHING};
@@ -163,7 +162,6 @@ KernelVariant kernel_of(const Choice& choice, const RaycastInput& input)
     constant("SHADED", choice.is_shaded);
     if (choice.is_shaded) constant("SHININESS_SQUARINGS", shininess_squarings(input.params.shininess));
     constant("COUNT_WORK", input.count_work);
-    constant("BLOCKS_ALONE", choice.blocks_alone);
     if (is_shelled) constant("SHELL", choice.shell);
     if (choice.is_occluded) constant("OCCLUSION_MAPPED", !input.occlusion->segments.empty());
     constant("DISTANCE_BLEND", input.params.blend_size > 0.0f);
@@ -191,7 +189,7 @@ void expect_next(FrameGraph& graph, const Choice& now, const RaycastInput& input
             });
     expect([](Choice& next) {
         next.picks = true;
-        next.is_shaded = next.feedback = next.blocks_alone = false;
+        next.is_shaded = next.feedback = false;
         next.shell = gpu::SHELL_NONE;
         next.kept = gpu::KEPT_NOTHING;
     });
@@ -209,7 +207,7 @@ struct Area {
 std::vector<Area> areas_of(const RaycastInput& input, bool is_shelled)
 {
     const glm::uvec2 size = input.params.pixel_end - input.params.pixel_begin;
-    if (!is_shelled || input.blocks) return {{{0, 0}, size, is_shelled}};
+    if (!is_shelled) return {{{0, 0}, size, is_shelled}};
     const ShellPixels pixels = shell_pixels(input.params);
     const Area shell{pixels.begin, pixels.end, true};
     if (shell.is_empty()) return {{{0, 0}, size}};
@@ -283,8 +281,7 @@ Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastIn
         pass.block("occlusion_look", std::span(look));
     }
     if (!input.pick && (volume.pages || is_shelled)) bind_rays(graph, pass, input, rays, is_begun);
-    if (!input.blocks) pixel_groups(pass, pixels, input.pixel_groups);
-    if (is_lit) listed_groups(pass, input.blocks);
+    pixel_groups(pass, pixels, input.pixel_groups);
     // Waiting rays keep their accumulated values elsewhere.
     const bool continues = input.params.first_step > 0 && !input.waiting;
     return continues || is_begun ? pass.modify("color", target) : pass.write("color", target);
@@ -332,7 +329,7 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
     const uint64_t before = input.waiting && input.waiting->have_begun ? 1 : 0;
     std::optional<Resource> waiting_rays;
     if (input.waiting) waiting_rays = input.waiting->state;
-    bool is_begun = input.blocks.has_value();
+    bool is_begun = false;
     for (const Area& area : areas_of(input, is_shelled)) {
         const uint64_t steps_each = steps_of_block(volume, input, area.is_shelled);
         const uint64_t blocks = std::min((steps + steps_each - 1) / steps_each, MAX_BLOCKS);

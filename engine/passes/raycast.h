@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "engine/passes/adaptive.h"
 #include "engine/passes/pixel_groups.h"
 #include "engine/passes/volume_binding.h"
 #include "shaders/counters.h"
@@ -47,9 +46,6 @@ struct RaycastInput {
     bool slice = false;                ///< draws a slice: the voxels half-way along the rays, with params.slice_*
     bool smooth_borders = false;       ///< smooth borders of painted groups; with Visibility::params.paint_reach 1
     bool pick = false;                 ///< positions instead of colours, see the kernel
-    std::optional<ListedBlocks>
-        blocks;                        ///< blocks to which drawing is limited; the target already has the other pixels.
-                                       ///< Not with `waiting`
     RaysInWaiting* waiting = nullptr;  ///< paged bricks only; null: rays do not wait
 };
 

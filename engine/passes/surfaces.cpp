@@ -37,9 +37,7 @@ Resource surfaces_block(FrameGraph& graph, const SurfacesInput& input, Resource 
     pass.constant("SHININESS_SQUARINGS", shininess_squarings(input.params.shininess));
     pass.constant("DISTANCE_BLEND", input.params.blend_size > 0.0f);
     pass.constant("PROBE", input.probe);
-    pass.constant("BLOCKS_ALONE", input.blocks.has_value());
-    if (!input.blocks) pixel_groups(pass, pixels, input.pixel_groups);
-    listed_groups(pass, input.blocks);
+    pixel_groups(pass, pixels, input.pixel_groups);
     return input.scene.first_node > 0 ? pass.modify("surfaces", target) : pass.write("surfaces", target);
 }
 

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "engine/graph/frame_graph.h"
-#include "engine/passes/adaptive.h"
 #include "engine/passes/pixel_groups.h"
 #include "shaders/raycast.h"
 #include "shaders/surfaces.h"
@@ -29,7 +28,6 @@ struct SurfacesInput {
     std::optional<SurfaceList> listed;
     bool probe = false;  ///< scene.probe_* are set
     PixelGroups pixel_groups;
-    std::optional<ListedBlocks> blocks{};            ///< limits drawing to these blocks
     uint32_t nodes_in_dispatch = NODES_IN_DISPATCH;  ///< other values are for tests
 };
 

@@ -60,7 +60,6 @@ struct Prepared {
     VolumeBinding volume;
     RaycastInput input;  ///< complete except for the surfaces
     std::optional<SurfaceList> listed;
-    double adaptive_tolerance = 0.0;  ///< 0: every pixel has a ray
 };
 
 /// Adds the passes in the first half of the list at the top of frame.h.
@@ -85,7 +84,6 @@ Prepared prepare(FrameGraph& graph, Scene& scene, const Look& look, const Shot& 
     input.smooth_borders = look.render.smooth_borders && !shot.is_slice;
     input.preintegrated = look.render.preintegration && !shot.is_slice;
     input.pixel_groups = pixel_groups_of(scene.traits());
-    if (!shot.is_slice) prepared.adaptive_tolerance = look.render.adaptive_tolerance;
     if (shot.is_slice) set_slice(input.params, look, scene);
     if (part.probe && !shot.is_slice) set_shell(input, *part.probe, scene);
     return prepared;
@@ -101,8 +99,7 @@ std::optional<Resource> draw_surfaces(FrameGraph& graph, Scene& scene, const Pre
                          .scene = scene.surfaces().params(planes, part.pixels, scene.info()),
                          .listed = prepared.listed,
                          .probe = has_ball,
-                         .pixel_groups = input.pixel_groups,
-                         .blocks = input.blocks};
+                         .pixel_groups = input.pixel_groups};
     if (has_ball) set_ball(wanted.scene, *part.probe, scene.info());
     return surfaces(graph, wanted);
 }
@@ -143,32 +140,6 @@ PreviewSeen draw_preview(FrameGraph& graph, const RaycastInput& input, const Ray
     return preview(graph, wanted);
 }
 
-/// Draws a coarse picture and interpolates between its similar pixels; the blocks of all others are listed.
-Adapted draw_adaptively(FrameGraph& graph, Scene& scene, Prepared& prepared, const RaycastInput& input,
-                        const RayPlanes& planes, const PicturePart& part, Resource target)
-{
-    const AdaptiveInput wanted{.pixel_begin = part.begin,
-                               .pixel_end = part.end,
-                               .target = input.params.target,
-                               .tolerance = prepared.adaptive_tolerance,
-                               .pixel_groups = input.pixel_groups};
-    const RayPlanes apart = coarse_planes(planes);
-    RaycastInput coarse = input;
-    coarse.name = "raycast coarse";
-    set_planes(coarse.params, apart);
-    coarse.params.pixel_begin = coarse_begin(wanted);
-    coarse.params.pixel_end = coarse_begin(wanted) + coarse_size(wanted);
-    coarse.params.target = glm::uvec2(0);
-    PicturePart coarse_part = part;
-    coarse_part.pixels = part.pixels / 2u + 1u;
-    coarse.surfaces = draw_surfaces(graph, scene, prepared, coarse, apart, coarse_part);
-    if (has_preview(part)) coarse.surfaces = draw_preview(graph, coarse, apart, part).surfaces;
-    const Resource picture =
-        raycast(graph, prepared.volume, coarse,
-                graph.create("coarse picture", picture_desc(Format::rgba32_float, coarse_size(wanted))));
-    return adaptive(graph, picture, target, wanted);
-}
-
 /// Draws the volume and its contents. A preview is computed before the rays, so that they end at it, and then drawn
 /// over the picture.
 Resource draw_contents(FrameGraph& graph, Scene& scene, Prepared& prepared, RaycastInput input, const Camera& camera,
@@ -176,26 +147,18 @@ Resource draw_contents(FrameGraph& graph, Scene& scene, Prepared& prepared, Rayc
 {
     const RayPlanes planes = ray_planes(camera, part.pixels, scene.info());
     RaysInWaiting waiting;
-    std::optional<ListedBlocks> blocks;
     if (rays) {
         waiting = rays->import(graph, which);
         input.waiting = &waiting;
-    } else if (prepared.adaptive_tolerance > 0.0) {
-        const Adapted adapted = draw_adaptively(graph, scene, prepared, input, planes, part, target);
-        target = adapted.target;
-        blocks = adapted.blocks;
     }
     if (!has_preview(part)) {
-        input.blocks = blocks;
         input.surfaces = draw_surfaces(graph, scene, prepared, input, planes, part);
         expect_preview(graph, preview_input(input));
         return raycast(graph, prepared.volume, input, target);
     }
-    // A preview is drawn in full, and so are the surfaces before it.
     input.surfaces = draw_surfaces(graph, scene, prepared, input, planes, part);
     const PreviewSeen made = draw_preview(graph, input, planes, part);
     input.surfaces = made.surfaces;
-    input.blocks = blocks;
     const Resource picture = raycast(graph, prepared.volume, input, target);
     return preview_over(graph, made.seen, picture,
                         {.target = input.params.target,

@@ -6,14 +6,13 @@
 //              [leap_occupancy -> leap_distance x, y, z; or leap_bound, leap_occupancy] [sample_bits] (resident volume)
 //   occlusion  [start occlusion -> reset occlusion values, clear occlusion cells]
 //   tables     [upload transfer function] [upload groups] [upload surface nodes, upload surface list]
-//   adaptive   [surfaces, preview and raycast of a coarse picture, clear blocks, clear groups, adaptive]
 //   surfaces   [surface_tiles] [surfaces]                              (a trace, the probe's ball)
 //   preview    [preview]                                               (what a brush would change)
-//   rays       raycast, one thread per pixel, or only the blocks that adaptive has listed
+//   rays       raycast, one thread per pixel
 //   preview    [preview_over]
-//   ball       [adaptive to preview_over again, without the probe's ball, then mix]     (a translucent one)
+//   ball       [surfaces to preview_over again, without the probe's ball, then mix]     (a translucent one)
 //   colours    [saturation]
-//   anaglyph   [adaptive to colours once per eye, then anaglyph]
+//   anaglyph   [surfaces to colours once per eye, then anaglyph]
 //
 // Not part of a picture: next_preparation and next_refinement (the leap grid's stages, one at a time), next_occlusion
 // (occlusion_cells, occlusion_gather, occlusion_bake). One thread, the one that owns the device.

@@ -46,8 +46,7 @@ constexpr uint64_t BESIDE_PARTS = uint64_t{8} << 20;
 constexpr uint64_t MAX_WAITING_PIXELS = 64 * 64;
 
 /// Device bytes per pixel of a part, as frame.cpp allocates images.
-uint64_t device_bytes_per_pixel(const Scene& scene, const Shot& shot, const std::optional<ProbeLook>& probe,
-                                bool is_adaptive)
+uint64_t device_bytes_per_pixel(const Scene& scene, const Shot& shot, const std::optional<ProbeLook>& probe)
 {
     constexpr uint64_t LISTED_BYTES = SURFACE_TILE_BYTES / (gpu::SURFACE_TILE * gpu::SURFACE_TILE);
     uint64_t of_eye = 0;
@@ -56,7 +55,6 @@ uint64_t device_bytes_per_pixel(const Scene& scene, const Shot& shot, const std:
     else if (!shot.is_slice && probe && probe->ball_share > 0.0)
         of_eye += PIXEL_BYTES;
     if (probe && probe->preview) of_eye += 2 * PIXEL_BYTES;
-    if (!shot.is_slice && is_adaptive) of_eye += (PIXEL_BYTES + of_eye) / 4 + LISTED_BLOCKS_BYTES;
     const int pictures = pictures_of(shot, probe), eyes = shot.right_eye ? 2 : 1;
     if (pictures > eyes) of_eye = 2 * of_eye + PIXEL_BYTES;
     return PIXEL_BYTES + (shot.right_eye ? 2 * (PIXEL_BYTES + of_eye) : of_eye);
@@ -173,8 +171,7 @@ void PictureJob::begin_parts()
 uint32_t PictureJob::part_side()
 {
     gpu::Memory& memory = renderer_.memory();
-    const uint64_t of_pixel =
-        device_bytes_per_pixel(scene(), pane().shot, options_.probe, look_.render.adaptive_tolerance > 0.0);
+    const uint64_t of_pixel = device_bytes_per_pixel(scene(), pane().shot, options_.probe);
     uint64_t side = options_.part_pixels;
     const auto fits = [&](uint64_t spare) {
         const uint64_t left = memory.device_bytes_left();

@@ -39,15 +39,6 @@ glm::dvec3 preview_color(const ProbeLook& probe)
 
 }  // namespace
 
-RayPlanes coarse_planes(const RayPlanes& planes)
-{
-    RayPlanes coarse = planes;
-    coarse.near_corner -= 0.5 * (planes.near_dx + planes.near_dy);
-    coarse.far_corner -= 0.5 * (planes.far_dx + planes.far_dy);
-    for (glm::dvec3* apart : {&coarse.near_dx, &coarse.near_dy, &coarse.far_dx, &coarse.far_dy}) *apart *= 2.0;
-    return coarse;
-}
-
 void set_planes(gpu::RaycastParams& params, const RayPlanes& planes)
 {
     params.near_corner = planes.near_corner;

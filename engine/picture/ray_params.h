@@ -21,8 +21,6 @@ void set_shell(RaycastInput& input, const ProbeLook& probe, Scene& scene);
 void set_ball(gpu::SurfaceParams& params, const ProbeLook& probe, const VolumeInfo& info);
 gpu::PreviewParams preview_params(const ProbeLook& probe, const RayPlanes& planes);
 
-/// The rays of a coarse picture (shaders/adaptive.h).
-RayPlanes coarse_planes(const RayPlanes& planes);
 void set_planes(gpu::RaycastParams& params, const RayPlanes& planes);
 
 }  // namespace shvr

@@ -114,6 +114,8 @@ public:
     virtual bool has(std::string_view name, bool is_set) = 0;
     /// A key that is valid here, but not visited this time.
     virtual void mention(std::string_view name, const About& about) = 0;
+    /// A key of earlier versions: reading ignores its value, and nothing writes it.
+    virtual void retired(std::string_view /*name*/) {}
     /// Refuses the input unless the condition holds; an empty `name` means the section itself.
     virtual void check(std::string_view /*name*/, bool /*holds*/, const std::string& /*expected*/) {}
     /// Runs a check that throws its own errors; prefixes their messages with the section's key.

@@ -30,8 +30,8 @@ constexpr Quality QUALITIES[] = {
      .preintegration = true},
 };
 
-constexpr std::string_view KEYS[] = {"step_voxels",      "opacity_limit",  "sampling",          "detail",
-                                     "skip_empty_space", "preintegration", "adaptive_tolerance"};
+constexpr std::string_view KEYS[] = {"step_voxels", "opacity_limit",    "sampling",
+                                     "detail",      "skip_empty_space", "preintegration"};
 
 }  // namespace
 
@@ -48,7 +48,6 @@ void take(RenderSettings& render, const Quality& quality)
     render.detail = quality.detail;
     render.skip_empty_space = quality.skip_empty_space;
     render.preintegration = quality.preintegration;
-    render.adaptive_tolerance = quality.adaptive_tolerance;
 }
 
 std::optional<Quality> quality_of(const RenderSettings& render)

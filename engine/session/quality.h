@@ -19,7 +19,6 @@ struct Quality {
     double detail = 1.0;
     bool skip_empty_space = true;
     bool preintegration = false;
-    double adaptive_tolerance = 0.0;
 };
 
 /// From the fastest to the most exact.

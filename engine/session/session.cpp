@@ -162,7 +162,9 @@ std::pair<JsonDocument, UnmeasuredSession> open_unmeasured(const fs::path& path,
                                 ? session_document(read_text(file, MAX_SESSION_BYTES), file.string())
                                 : document_for_project(file, opened.losses);
     check_replaced_settings(document, settings, fs::absolute(file).parent_path());
+    opened.removed = removed_keys_in(document, document.origin());
     apply_settings(document, settings);
+    if (opened.removed.empty()) opened.removed = removed_keys_in(document, "--set");
     Session& session = opened.session;
     session = read_session(document, fs::absolute(file).parent_path());
     if (!session_file.empty()) session.journal_path = journal_beside(session_file);
@@ -209,8 +211,13 @@ OpenedSession open_session(const fs::path& path, const std::vector<std::string>&
 {
     auto [document, unmeasured] = open_unmeasured(path, settings);
     if (options.before_reading) options.before_reading(unmeasured.session, *unmeasured.source);
-    OpenedSession opened{
-        std::move(unmeasured.session), std::move(unmeasured.source), {}, {}, unmeasured.losses, unmeasured.pictured};
+    OpenedSession opened{std::move(unmeasured.session),
+                         std::move(unmeasured.source),
+                         {},
+                         {},
+                         unmeasured.losses,
+                         unmeasured.pictured,
+                         unmeasured.removed};
     const HashedSource hashed(*opened.source);
     opened.statistics = measure(hashed, options.measure);
     if (opened.session.volume_hash.empty()) opened.session.volume_hash = hashed.hash();

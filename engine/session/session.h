@@ -186,10 +186,11 @@ struct OpenedSession {
     Session session;
     std::shared_ptr<const VolumeSource> source;
     VolumeStatistics statistics;
-    std::vector<std::string> warnings;  ///< about the session; those about the volume are in `source->info().warnings`
-    std::vector<std::string> losses;    ///< saved data that is missing
-    std::filesystem::path pictured{};   ///< for a picture: the session or project from which it was made; else
-                                        ///< empty
+    std::vector<std::string> warnings;   ///< about the session; those about the volume are in `source->info().warnings`
+    std::vector<std::string> losses;     ///< saved data that is missing
+    std::filesystem::path pictured{};    ///< for a picture: the session or project from which it was made; else
+                                         ///< empty
+    std::vector<std::string> removed{};  ///< settings of earlier versions, which are ignored (removed_keys_in)
 };
 struct OpeningOptions {
     MeasureOptions measure{};
@@ -205,6 +206,7 @@ struct UnmeasuredSession {
     std::shared_ptr<const VolumeSource> source;
     std::vector<std::string> losses;  ///< as in OpenedSession
     std::filesystem::path pictured{};
+    std::vector<std::string> removed{};  ///< as in OpenedSession
 };
 UnmeasuredSession open_unmeasured_session(const std::filesystem::path& path,
                                           const std::vector<std::string>& settings = {});

@@ -71,6 +71,8 @@ inline const NumberRange INTENSITY{-3.4e38, 3.4e38};
 // session_read.cpp
 JsonDocument session_document(std::string_view text, const std::string& origin);
 Session read_session(const JsonDocument& document, const std::filesystem::path& folder);
+/// A sentence for each key of earlier versions that `document` states and that reading ignores (Fields::retired).
+std::vector<std::string> removed_keys_in(const JsonDocument& document, const std::string& origin);
 CameraSpec read_camera(const JsonNode& node);
 /// An object with these sections as JSON.
 std::string text_of_sections(const SettingValues& values);

@@ -98,8 +98,8 @@ namespace {
 void quality_fields(Fields& f, RenderSettings& render)
 {
     const About about{.meaning =
-                          "preset of `step_voxels`, `opacity_limit`, `sampling`, `detail`, `skip_empty_space`, "
-                          "`preintegration` and `adaptive_tolerance`, for those not given (quality.h)",
+                          "preset of `step_voxels`, `opacity_limit`, `sampling`, `detail`, `skip_empty_space` "
+                          "and `preintegration`, for those not given (quality.h)",
                       .allowed = "`\"draft\"`, `\"interactive\"`, `\"good\"`, `\"reference\"`",
                       .standard = "none"};
     if (!f.has("quality", false)) return f.mention("quality", about);
@@ -141,11 +141,7 @@ void way_fields(Fields& f, RenderSettings& render)
     f.flag("preintegration", render.preintegration,
            {"true: integrates the transfer function over all densities between the ends of a step, for narrow peaks "
             "and steep edges; needs steps of at most 1"});
-    f.number("adaptive_tolerance", render.adaptive_tolerance, SHARE,
-             {"colour difference up to which pixels are interpolated: rays go through every second pixel of every "
-              "second row, and through all pixels where colours differ by more. Structures thinner than two pixels may "
-              "be missed; 0: off. Not applied in slices, nor if bricks must alternate in device memory",
-              "square roots of linear light"});
+    f.retired("adaptive_tolerance");
     f.check("preintegration", !render.preintegration || render.step_voxels <= 1.0,
             sentence("false, because render.step_voxels is ", render.step_voxels, ", above 1"));
 }

@@ -63,6 +63,10 @@ public:
     }
     bool has(std::string_view name, bool) override { return node_[name].exists(); }
     void mention(std::string_view name, const About&) override { know(name); }
+    void retired(std::string_view name) override
+    {
+        if (node_[name].exists()) know(name);  // otherwise refusals would offer it
+    }
 
 private:
     void know(std::string_view name) { names_.push_back(name); }
@@ -241,6 +245,14 @@ Session read_session(const JsonDocument& document, const std::filesystem::path& 
     Session session;
     Reader::read(document.root(), folder, [&](Fields& f) { fields(f, session); });
     return session;
+}
+
+std::vector<std::string> removed_keys_in(const JsonDocument& document, const std::string& origin)
+{
+    if (!document.root()["render"]["adaptive_tolerance"].exists()) return {};
+    return {sentence(origin,
+                     ": render.adaptive_tolerance is ignored, as the option was removed and every pixel has a ray of "
+                     "its own; leave it out")};
 }
 
 Session read_lasting(const JsonDocument& document)

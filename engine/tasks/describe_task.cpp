@@ -26,8 +26,13 @@ DescribeResult run(const DescribeTask& task, ProgressReporter& reporter)
                                              .gaps = &gaps}};
     // Opening a session would compute an unneeded transfer function for a bare volume and report it.
     if (is_bare) {
-        opened.source =
-            task.settings.empty() ? open_volume(task.input) : open_unmeasured_session(task.input, task.settings).source;
+        if (task.settings.empty()) {
+            opened.source = open_volume(task.input);
+        } else {
+            UnmeasuredSession set = open_unmeasured_session(task.input, task.settings);
+            opened.source = std::move(set.source);
+            opened.removed = std::move(set.removed);
+        }
         opened.statistics = measure(*opened.source, opening.measure);
         opened.warnings = warnings_of(opened.statistics);
         if (std::string archived = archived_project(task.input); !archived.empty())
@@ -42,6 +47,7 @@ DescribeResult run(const DescribeTask& task, ProgressReporter& reporter)
                           .mask = opened.session.mask_path,
                           .warnings = std::move(opened.warnings),
                           .losses = std::move(opened.losses)};
+    for (std::string& removed : opened.removed) result.warnings.push_back(std::move(removed));
     for (const std::string& warning : result.info.warnings) result.warnings.push_back(warning);
     if (!gaps.empty()) result.warnings.push_back(gaps.in_words() + " and are left out of every number");
     return result;

@@ -17,7 +17,6 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_control_flow_attributes : require
 #include "../raycast.h"
-#include "../adaptive.h"
 #ifdef OCCLUDED
 #include "../occlusion/occlusion.h"
 #endif
@@ -41,7 +40,6 @@ layout(constant_id = 10) const uint KEPT = KEPT_NOTHING;
 // Assigns a sample to the group with the largest weight among the eight voxels around it, instead of the nearest
 // voxel's.
 layout(constant_id = 11) const uint SMOOTH_BORDERS = 0u;
-layout(constant_id = 16) const uint BLOCKS_ALONE = 0u;   // draws only listed blocks of pixels (adaptive.h)
 #ifdef SHELLED
 layout(constant_id = 8) const uint SHELL = SHELL_BALL;   // the region's shape
 layout(binding = 19, r32ui) uniform readonly uimage3D cell_ranges;   // minimum | maximum << 16
@@ -59,8 +57,6 @@ layout(binding = 11, scalar) readonly buffer Look { OcclusionLook data; Occlusio
 layout(binding = 12, rgba32f) uniform readonly image2D surfaces;   // linear RGB, length along the ray
 #endif
 
-#define LISTED_BLOCKS_BINDING 20
-#include "../library/listed_blocks.glsl"
 #include "../library/counters.glsl"
 #include "volume.glsl"
 #include "ray.glsl"
@@ -157,8 +153,7 @@ void count_work(const RaycastParams params, const Ray ray, const Lattice lattice
 void main()
 {
     const RaycastParams params = params_block.data;
-    const uvec2 in_part = BLOCKS_ALONE != 0u ? listed_in_part(params.pixel_begin, params.pixel_end)
-                                             : params.drawn_begin + thread_in_part();
+    const uvec2 in_part = params.drawn_begin + thread_in_part();
     if (any(greaterThanEqual(in_part, params.drawn_end))) return;
     Span span;
     Ray ray = ray_of(params, params.pixel_begin + in_part, span);

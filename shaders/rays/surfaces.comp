@@ -16,7 +16,6 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "../raycast.h"
-#include "../adaptive.h"
 #include "../surfaces.h"
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
@@ -24,7 +23,6 @@ layout(constant_id = 0) const uint GROUP_WIDTH = 8u;
 layout(constant_id = 1) const uint SHININESS_SQUARINGS = NOT_A_POWER_OF_TWO;
 layout(constant_id = 2) const uint DISTANCE_BLEND = 0u;
 layout(constant_id = 3) const uint PROBE = 0u;
-layout(constant_id = 4) const uint BLOCKS_ALONE = 0u;   // draws only listed blocks of pixels (adaptive.h)
 
 layout(binding = 0, scalar) readonly buffer Params { RaycastParams data; } params_block;
 layout(binding = 1, scalar) readonly buffer Scene { SurfaceParams data; } surface_params;
@@ -36,8 +34,6 @@ layout(binding = 5, r32ui) uniform readonly uimage2D surface_tiles;
 
 #include "../library/counters.glsl"
 #include "../library/rays.glsl"
-#define LISTED_BLOCKS_BINDING 20
-#include "../library/listed_blocks.glsl"
 #include "../library/round_cone.glsl"
 #include "../library/shade.glsl"
 
@@ -172,8 +168,7 @@ void main()
 {
     const RaycastParams params = params_block.data;
     const SurfaceParams scene = surface_params.data;
-    const uvec2 in_part =
-        BLOCKS_ALONE != 0u ? listed_in_part(params.pixel_begin, params.pixel_end) : thread_in_part();
+    const uvec2 in_part = thread_in_part();
     const uvec2 pixel = params.pixel_begin + in_part;
     if (any(greaterThanEqual(in_part, params.pixel_end - params.pixel_begin))) return;
 

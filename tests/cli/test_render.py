@@ -89,6 +89,20 @@ class Render(CliTest):
         written, _ = self.render(self.write_json("other.json", document), "c.png")
         self.assertEqual(fine.read_bytes(), written.read_bytes())
 
+    def test_a_setting_that_was_removed_is_ignored_with_a_warning(self):
+        session = self.write_session()
+        plain, _ = self.render(session, "plain.png")
+        with_it, result = self.render(session, "with.png", "--set", "render.adaptive_tolerance=0.2")
+        self.assertEqual(with_it.read_bytes(), plain.read_bytes())
+        said = ": render.adaptive_tolerance is ignored, as the option was removed"
+        self.assertEqual([one for one in result["warnings"] if "adaptive" in one][0].split(" and ")[0], "--set" + said)
+        old = json.loads(session.read_text())
+        old.setdefault("render", {})["adaptive_tolerance"] = 0.2
+        session.write_text(json.dumps(old))
+        of_file = self.check("render", session, "-o", self.folder / "old.png")
+        self.assertIn(f"warning: {session}{said}", of_file.stderr)
+        self.assertEqual((self.folder / "old.png").read_bytes(), plain.read_bytes())
+
     def test_size_is_a_shorthand(self):
         session = self.write_session()
         short, _ = self.render(session, "a.png", "--size", "31x17")

@@ -6,7 +6,6 @@
 
 #include "engine/gpu/embedded_kernels.h"
 #include "engine/gpu/kernel.h"
-#include "shaders/adaptive.h"
 #include "shaders/brick_unpack.h"
 #include "shaders/mix.h"
 #include "shaders/occlusion/occlusion_bake.h"
@@ -209,10 +208,6 @@ TEST_CASE("members of shared structs lie where C++ puts them")
     check_members(
         "saturation", "push",
         {MEMBER(SaturationParams, target), MEMBER(SaturationParams, size), MEMBER(SaturationParams, saturation)});
-    check_members(
-        "adaptive", "push",
-        {MEMBER(AdaptiveParams, pixel_begin), MEMBER(AdaptiveParams, pixel_end), MEMBER(AdaptiveParams, target),
-         MEMBER(AdaptiveParams, tolerance), MEMBER(AdaptiveParams, groups_in_dispatch)});
     for (const char* kernel : {"brick_leap", "brick_leap_masked"}) {
         check_members(kernel, "push", brick_leap_params());
         check_members(kernel, "jobs", brick_leap_jobs());

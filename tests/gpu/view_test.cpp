@@ -134,17 +134,6 @@ TEST_CASE_FIXTURE(Seen, "a view with less colour comes to rest on the direct pic
     }
 }
 
-TEST_CASE_FIXTURE(Seen, "an adaptive view comes to rest on the direct picture, tile by tile")
-{
-    View view(renderer(), CRAWLING);
-    for (const double tolerance : {0.05, 0.0, 0.2}) {
-        session.render.adaptive_tolerance = tolerance;
-        view.look(session, camera({1, 2, 3}), pixels());
-        settle(view);
-        CHECK(shown(view) == direct(camera({1, 2, 3})));
-    }
-}
-
 namespace {
 
 /// Pixels of sharp tiles that are shown.

@@ -134,11 +134,6 @@ struct Shuffle {
         const auto call = next<PFN_vkCmdDispatchBase>(commands, "vkCmdDispatchBase");
         dispatch(commands, [=] { call(commands, at_x, at_y, at_z, x, y, z); });
     }
-    static VKAPI_ATTR void VKAPI_CALL dispatch_counted(VkCommandBuffer commands, VkBuffer counts, VkDeviceSize offset)
-    {
-        const auto call = next<PFN_vkCmdDispatchIndirect>(commands, "vkCmdDispatchIndirect");
-        dispatch(commands, [=] { call(commands, counts, offset); });
-    }
     static VKAPI_ATTR void VKAPI_CALL copy_buffer(VkCommandBuffer commands, VkBuffer from, VkBuffer to, uint32_t count,
                                                   const VkBufferCopy* regions)
     {
@@ -201,7 +196,6 @@ struct Shuffle {
         SHVR_HOOK(vkCmdPushConstants, push)
         SHVR_HOOK(vkCmdDispatch, dispatch_all)
         SHVR_HOOK(vkCmdDispatchBase, dispatch_part)
-        SHVR_HOOK(vkCmdDispatchIndirect, dispatch_counted)
         SHVR_HOOK(vkCmdCopyBuffer, copy_buffer)
         SHVR_HOOK(vkCmdCopyBufferToImage, copy_to_image)
         SHVR_HOOK(vkCmdCopyImageToBuffer, copy_to_buffer)

@@ -21,7 +21,6 @@ struct Speed : layers::Unobtrusive {
     if (std::strcmp(name, #call) == 0) return nothing_for(PFN_##call(nullptr));
         SHVR_LEAVE_OUT(vkCmdDispatch)
         SHVR_LEAVE_OUT(vkCmdDispatchBase)
-        SHVR_LEAVE_OUT(vkCmdDispatchIndirect)
         SHVR_LEAVE_OUT(vkCmdCopyBuffer)
         SHVR_LEAVE_OUT(vkCmdCopyBufferToImage)
         SHVR_LEAVE_OUT(vkCmdCopyImageToBuffer)

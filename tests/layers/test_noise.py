@@ -11,7 +11,6 @@ FEATURES = {   # of whole keys of a session
     "occluded": {"light": {"shaded": True, "occlusion": {"strength": 0.8, "radius": 6}}},
     "preintegrated": {"render": {"preintegration": True}},
     "filtered": {"render": {"sampling": "hardware"}},
-    "adaptive": {"render": {"adaptive_tolerance": 0.03}},
     "gray": {"render": {"saturation": 0.3}},
     "with surfaces": {"surfaces": [{"from": [8, 8, 8], "to": [50, 45, 40], "radius": 4, "color": "#ff4020"}]},
     "with a shell": {"probe": {"shell": True, "radius_voxels": 14, "paint_threshold": 70}},

@@ -19,9 +19,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* FAMILIES[] = {"quality",    "step",   "pre-integrated", "opacity limit", "sampling",
-                                    "resolution", "coarse", "adaptive",       "skipping",      "occlusion rays",
-                                    "budget",     "detail", "mixed",          "VTK",           "VTK OpenGL"};
+constexpr const char* FAMILIES[] = {"quality", "step",      "pre-integrated", "opacity limit", "sampling", "resolution",
+                                    "coarse",  "skipping",  "occlusion rays", "budget",        "detail",   "mixed",
+                                    "VTK",     "VTK OpenGL"};
 constexpr int64_t MAX_SESSION_BYTES = 1 << 20;
 /// Shading without highlights that does not fade where there is no surface: other programs define it in the same way.
 Json matt()
@@ -273,17 +273,6 @@ std::vector<Run> runs_of(const Scene& scene, bool quick)
             if (scale != 0.5) coarse(scale, 2.0, false);
             if (scale != 0.7) coarse(scale, 1.0, false);
         }
-    const auto adaptive = [&](double tolerance, double step) {
-        runs.push_back({sentence("adaptive ", digits_of(tolerance), ", step ", digits_of(step)),
-                        "adaptive",
-                        {sentence("render.adaptive_tolerance=", digits_of(tolerance)),
-                         sentence("render.step_voxels=", digits_of(step))}});
-    };
-    adaptive(0.05, 0.5);
-    if (!quick)
-        for (const double step : {2.0, 1.0, 0.85, 0.7, 0.5})
-            for (const double tolerance : {0.02, 0.05, 0.1, 0.2})
-                if (step != 0.5 || tolerance != 0.05) adaptive(tolerance, step);
     runs.push_back({"skipping off", "skipping", {"render.skip_empty_space=false"}});
     const std::string& text = scene.drawn.session_text;
     if (text.find("\"occlusion\"") != std::string::npos)

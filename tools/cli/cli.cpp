@@ -302,6 +302,7 @@ Opened open(const std::string& path, const Common& common, LongWork& work, Work:
                   nullptr,
                   {},
                   gaps};
+    for (std::string& removed : session.removed) opened.warnings.push_back(std::move(removed));
     for (const std::string& warning : opened.source->info().warnings) opened.warnings.push_back(warning);
     warn(opened.warnings, common);
     warn_of_losses(session.losses);

@@ -60,6 +60,7 @@ void run_export(const ExportCommandOptions& options)
     const OpenedSession opened =
         open_session(options.project, options.common.settings,
                      {.measure = {.progress = long_work.begin("measuring " + options.project), .gaps = &gaps}});
+    warn(opened.removed, options.common);
     warn(opened.source->info().warnings, options.common);
     if (!gaps.empty())
         warn({sentence(options.project, ": ", gaps.in_words(),

@@ -93,6 +93,7 @@ void FileTaker::act(const LookAtFile& action)
             found.volume = opened.source->info();
             found.levels = opened.source->levels();
             found.warnings = opened.losses;
+            for (const std::string& setting : opened.removed) found.warnings.push_back(setting);
             for (const std::string& warning : found.volume.warnings) found.warnings.push_back(warning);
             const SceneEstimate estimate =
                 renderer.estimate(*opened.source, session.render, shows_occlusion(session.light));

@@ -207,7 +207,7 @@ void Opener::finish()
     if (document_) document_->screen.clear();
     std::unique_ptr<Scene> before = renderer_.show(std::move(opening->scene));
     if (opening->comes_back) return show_again();
-    const std::vector<std::string> losses = opening->read->opened.losses;
+    const std::vector<std::string> losses = opening->read->opened.losses, removed = opening->read->opened.removed;
     std::unique_ptr<Document> next;
     try {
         next = std::make_unique<Document>(renderer_, std::move(*opening->read), options_.view);
@@ -220,7 +220,7 @@ void Opener::finish()
     before.reset();
     away_.reset();
     begin_document(*opening);
-    welcome(opening->path, losses);
+    welcome(opening->path, losses, removed);
     if (opening->pictured) show_picture(*opening->pictured);
     for (const std::filesystem::path& taken : opening->taken_into_it) others_.take_file(TakeFile{.path = taken});
 }
@@ -258,7 +258,8 @@ void Opener::take(Document::Read read)
 }
 
 /// Reports the opening, and differences from the last save; the latter are shown until dismissed.
-void Opener::welcome(const std::filesystem::path& path, const std::vector<std::string>& losses)
+void Opener::welcome(const std::filesystem::path& path, const std::vector<std::string>& losses,
+                     const std::vector<std::string>& removed)
 {
     recovered_ = losses;
     for (const Notice& notice : document_->messages) recovered_.push_back(notice.text);
@@ -268,9 +269,10 @@ void Opener::welcome(const std::filesystem::path& path, const std::vector<std::s
         status += ", and goes on with " + session.filename().string();
     if (document_->only_looks()) status += "; read only, for " + document_->why_only_looks();
     for (const std::string& loss : losses) status += "; " + loss;
+    for (const std::string& setting : removed) status += "; " + setting;
     for (const std::string& warning : document_->volume().warnings) status += "; " + warning;
     for (const Notice& notice : document_->messages) status += "; " + notice.text;
-    const bool is_as_left = recovered_.empty() && !document_->only_looks();
+    const bool is_as_left = recovered_.empty() && removed.empty() && !document_->only_looks();
     say(status, is_as_left ? Weight::done : Weight::warning);
 }
 

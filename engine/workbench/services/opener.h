@@ -81,7 +81,8 @@ private:
     void finish();
     void show_again();
     void begin_document(const Opening& opening);
-    void welcome(const std::filesystem::path& path, const std::vector<std::string>& losses);
+    void welcome(const std::filesystem::path& path, const std::vector<std::string>& losses,
+                 const std::vector<std::string>& removed);
     void show_picture(const Session& pictured);
     void end(std::exception_ptr failure);
     void load_again();

@@ -56,6 +56,8 @@ void SettingsEditor::act(const Set& action)
     std::string said = special_sentence(since, document_->session);
     if (said.empty()) said = difference_in_words(since, document_->session);
     if (!said.empty()) say(std::move(said));
+    for (std::string& removed : removed_keys_in(session_document(action.patch, "settings"), "settings"))
+        say(std::move(removed), Weight::warning);
 }
 
 void SettingsEditor::act(const NewGroup&)

@@ -35,7 +35,7 @@ class SwiftShader(CliTest):
 
     # Kind (Drivers): no lavapipe where the user names no device
     def test_that_lavapipe_is_missing_is_said_in_words_of_the_user(self):
-        said = self.golden("adaptive", status=3)[0]["reason"]
+        said = self.golden("anaglyph", status=3)[0]["reason"]
         self.assertIn("found 0: SwiftShader", said)
         self.assertIn("goldens are drawn on lavapipe (llvmpipe)", said)
         self.assertIn("unless --device names another device", said)

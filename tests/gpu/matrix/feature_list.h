@@ -116,10 +116,6 @@ inline const std::vector<Feature> FEATURES{
      {"surfaces", "raycast_surfaced", "mix"},
      {"surfaces"}},  // and the picture without the probe, in the same memory
     {"saturation", [](Scenery& s) { s.session.render.saturation = 0.3; }, {"saturation"}},
-    {"adaptive rays",
-     [](Scenery& s) { s.session.render.adaptive_tolerance = 0.03; },
-     {"raycast coarse", "adaptive", "clear blocks", "clear groups"},
-     {"coarse picture", "listed blocks", "groups of listed blocks"}},
     {"no leaps", [](Scenery& s) { s.session.render.skip_empty_space = false; }, {}},
     {"smooth borders", [](Scenery& s) { s.session.render.smooth_borders = true; }, {}},
     {"bricks that come and go",

@@ -1,5 +1,7 @@
 // Settings of the workbench: the message about a change, and whether the change redraws the picture.
 
+#include <algorithm>
+
 #include <doctest/doctest.h>
 
 #include "tests/support/gpu.h"
@@ -77,4 +79,28 @@ TEST_CASE_FIXTURE(Settings, "how the picture looks is a step of the history, how
     expected.step_voxels = 0.375;
     CHECK(bench.model().session.render == expected);
     CHECK(bench.messages().last() == "Undone: picture: background #ffffff to #000000");
+}
+
+TEST_CASE_FIXTURE(Settings, "a recorded change of an option that was removed draws nothing, and warns")
+{
+    CHECK(set(R"({"render":{"adaptive_tolerance":0.05}})") == 0);
+    const Message& said = bench.messages().all().back();
+    CHECK(said.weight == Weight::warning);
+    CHECK(said.text.starts_with("settings: render.adaptive_tolerance is ignored, as the option was removed"));
+}
+
+TEST_CASE_FIXTURE(Settings, "a session with an option that was removed opens in the window with a warning")
+{
+    const std::filesystem::path old =
+        folder.write("old.json", R"({"shvr_session": 1, "volume": {"procedural": "tubes", "size": [16, 16, 16]},
+                                     "render": {"adaptive_tolerance": 0.05}})");
+    bench.open(old, {});
+    settle(bench);
+    const auto& all = bench.messages().all();
+    const auto said = std::ranges::find_if(all, [](const Message& message) {
+        return message.text.find("render.adaptive_tolerance is ignored") != std::string::npos;
+    });
+    REQUIRE(said != all.end());
+    CHECK(said->text.starts_with("Opened "));
+    CHECK(said->weight == Weight::warning);
 }

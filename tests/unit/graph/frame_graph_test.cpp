@@ -113,30 +113,6 @@ TEST_CASE("a read at another stage waits on its own")
     CHECK(steps_of(graph) == "write [compute->compute]read [compute->transfer]back");
 }
 
-TEST_CASE("a dispatch whose groups are counted waits for the counts, at a stage of their own")
-{
-    FrameGraph graph;
-    const Resource counts = pass(graph, "count", {}, graph.create("counts", buffer_desc(12)));
-    Pass counted = graph.compute("counted");
-    counted.dispatch_counted(counts, {64, 8, 1}, {32, 8, 1});
-    static_cast<void>(counted.write("out", import_idle(graph, "x", 1)));
-    CHECK(steps_of(graph) == "count [compute->counts]counted");
-    const PassData& data = graph.passes()[1];
-    CHECK(data.is_counted);
-    CHECK(data.push.size() == 4);
-    CHECK(data.threads == glm::uvec3(64, 8, 1));
-    static_cast<void>(pass(graph, "count again", {}, counts));
-    graph.keep({counts.index, counts.version + 1});
-    CHECK(steps_of(graph) == "count [compute->counts]counted [compute+counts->compute]count again");
-    Pass other = graph.compute("other");
-    const int line = __LINE__ - 1;
-    const Resource lasting = import_idle(graph, "y", 2);
-    CHECK(error_of([&] {
-              other.dispatch_counted(lasting, {8, 8, 1}, {8, 8, 1});
-          }) == "pass 'other' (" + here(line) +
-                    ") counts groups by 'y', which outlives the frame; expected a buffer of the frame alone");
-}
-
 TEST_CASE("one barrier settles every resource it covers")
 {
     // write x -> x -> read x ->

@@ -124,11 +124,7 @@ struct Generator {
     {
         Pass pass = graph.compute("pass " + std::to_string(index));
         pass.dispatch(glm::uvec3(1));
-        const Resource counts = handles[IMPORTS + below(TRANSIENTS)];
-        const bool is_counted = !compute_only && counts.version > 0 && below(3) == 0;
-        if (is_counted) pass.dispatch_counted(counts, glm::uvec3(1), glm::uvec3(1));
         for (Resource& handle : handles) {
-            if (is_counted && handle == counts) continue;
             const bool readable = handle.index < IMPORTS || handle.version > 0;
             const std::string name = "r" + std::to_string(handle.index);
             switch (below(5)) {
@@ -205,7 +201,7 @@ std::vector<Event> run_frames(Generator& generator, uint32_t frames)
                 const uint32_t memory = compiled.memory_of[binding.resource];
                 REQUIRE((imported ? memory == binding.resource : memory >= Generator::IMPORTS));
                 const uint64_t object = imported ? memory : first_transient + memory;
-                event.accesses.push_back({object, binding.is_count ? STAGE_COUNTS : stage, binding.writes, false});
+                event.accesses.push_back({object, stage, binding.writes, false});
             }
             events.push_back(event);
         }

@@ -29,6 +29,13 @@ TEST_CASE("what differs between two sessions is said in words, by the names of f
           "groups: 3 color #ff0000 given up");
 }
 
+TEST_CASE("a patch of an earlier version may set an option that was removed, which changes nothing")
+{
+    const char* const patch = R"({"render":{"adaptive_tolerance":0.05,"saturation":0.5}})";
+    CHECK(words_of(patch) == "render: saturation 1 to 0.5");
+    CHECK(words_of(R"({"render":{"adaptive_tolerance":null}})") == "");
+}
+
 TEST_CASE("a changed curve of ambient occlusion is told as one, not as the numbers of its points")
 {
     const char* const two = R"({"light":{"occlusion":{"mapping":[{"arrives":0,"seen":0},{"arrives":1,"seen":1}]}}})";

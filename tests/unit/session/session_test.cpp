@@ -80,7 +80,7 @@ const std::string EVERYTHING = R"({
   "blend": {"size": 0.75, "rate": 2, "color": "#204060"},
   "render": {"size": [640, 480], "step_voxels": 0.25, "opacity_limit": 0.9, "background": "#10203040",
              "sampling": "exact", "paging": "never", "detail": 0.5, "skip_empty_space": false,
-             "preintegration": true, "adaptive_tolerance": 0.0625, "smooth_borders": true, "saturation": 0.375},
+             "preintegration": true, "smooth_borders": true, "saturation": 0.375},
   "view": {"arrangement": "slices", "stereo": {"output": "top_bottom", "eye_distance": 0.0625, "toe_in": true},
            "slices": {"black": -20, "white": 300.5, "paint_share": 0.25, "zoom": 3}, "overview_zoom": 1.5,
            "volume": false, "meshes": false, "cut_box": true, "solo": 7},
@@ -148,7 +148,7 @@ TEST_CASE("every key of a session is read")
     CHECK(
         session.render ==
         RenderSettings{
-            {640, 480}, 0.25, 0.9, background, Sampling::exact, Paging::never, 0.5, false, true, true, 0.0625, 0.375});
+            {640, 480}, 0.25, 0.9, background, Sampling::exact, Paging::never, 0.5, false, true, true, 0.375});
     CHECK(session.view == ViewSettings{Arrangement::slices,
                                        {StereoOutput::top_bottom, 0.0625, true},
                                        {-20.0, 300.5, 0.25, 3.0},
@@ -316,7 +316,7 @@ TEST_CASE("keys that are not known are refused by their full name, with those th
     CHECK(refusal(with(R"("render": {"step": 1})")) ==
           "s.json: unknown key render.step; expected one of: size, quality, step_voxels, opacity_limit, background, "
           "sampling, "
-          "paging, detail, skip_empty_space, preintegration, adaptive_tolerance, smooth_borders, saturation");
+          "paging, detail, skip_empty_space, preintegration, smooth_borders, saturation");
     struct Case {
         std::string keys, name;
     };
@@ -717,4 +717,23 @@ TEST_CASE("paths that open nothing are refused with what was expected")
     refused(folder.write("broken.json", "{"), "broken.json: is not JSON");
     refused(folder.write("large.json", std::string((16 << 20) + 1, ' ')), "large.json");
     refused(folder.write("wrong.json", with(R"("render": {"size": 3})")), "wrong.json: key render.size is 3");
+}
+
+TEST_CASE("a session with an option that was removed opens as without it, and says so")
+{
+    const TemporaryFolder folder;
+    const std::string volume = R"("shvr_session": 1, "volume": {"procedural": "tubes", "size": [8, 8, 8]})";
+    const fs::path old = folder.write("old.json", "{" + volume + R"(, "render": {"adaptive_tolerance": 0.05}})");
+    const fs::path now = folder.write("now.json", "{" + volume + "}");
+    const std::string said =
+        ": render.adaptive_tolerance is ignored, as the option was removed and every pixel has a ray of its own; "
+        "leave it out";
+    const OpenedSession opened = open_session(old), plain = open_session(now);
+    CHECK(opened.session.render == plain.session.render);
+    CHECK(opened.removed == std::vector{old.string() + said});
+    CHECK(plain.removed.empty());
+    CHECK(to_text(opened.session, folder.path).find("adaptive") == std::string::npos);
+    CHECK(open_session(now, {"render.adaptive_tolerance=0.05"}).removed == std::vector{"--set" + said});
+    CHECK(open_session(now, {R"(render={"adaptive_tolerance": 2})"}).removed == std::vector{"--set" + said});
+    CHECK(open_unmeasured_session(old).removed == opened.removed);
 }

@@ -71,13 +71,6 @@ bool numbers(RenderSettings& render, bool& is_reset, Actions& actions)
     is_other |= slider("Detail", render.detail, 0.0, 8.0, "%.2g voxels a pixel");
     hint("Multi-resolution volumes only: minimum voxels per pixel. Higher is finer; 0: always the finest level.");
     is_reset |= resets("render.detail", actions);
-    is_other |= slider("Adaptive", render.adaptive_tolerance, 0.0, 0.2,
-                       render.adaptive_tolerance > 0.0 ? "%.3f" : "every pixel");
-    hint(
-        "Above 0: draws every second pixel of every second row, and all pixels only where neighbouring colours differ "
-        "by more than this; the rest is interpolated. Faster, especially in large pictures; 0.03 is hardly visible. "
-        "Structures thinner than two pixels may be missed. 0: every pixel is drawn.");
-    is_reset |= resets("render.adaptive_tolerance", actions);
     return is_other;
 }
 
