@@ -20,6 +20,9 @@ SHARED_CONST float OPAQUE_DEPTH = 1e30f;
 SHARED_CONST uint OPAQUE_ENTRIES = 65536u;
 SHARED_CONST float OUT_OF_REACH = 1e30f;
 
+/// From `points` on, for integral.comp: the function's `point_count` points, sorted by density: colour and opacity of a
+/// reference length, one texel each; then their densities in codes, one texel each.
+
 /// The specialization constant SHININESS_SQUARINGS is log2 of the shininess if that is a whole number below this.
 SHARED_CONST uint NOT_A_POWER_OF_TWO = 10u;
 
@@ -99,6 +102,8 @@ struct RaycastParams {
     float shell_code;     ///< threshold of the surface
     vec3 shell_color;     ///< linear light
     float shell_opacity;  ///< of one crossing of the surface
+    uint points;          ///< texel of the table
+    uint point_count;     ///< integral.comp only
 };
 
 SHARED_END

@@ -47,6 +47,14 @@ void append_depths_of_steps(std::vector<glm::vec4>& texels, std::span<const floa
         }
 }
 
+/// The points as gpu::RaycastParams::points describes them.
+void append_points(std::vector<glm::vec4>& texels, std::span<const ControlPoint> points, const IntensityWindow& window)
+{
+    for (const ControlPoint& point : points) texels.emplace_back(glm::vec3(point.color), float(point.opacity));
+    for (const ControlPoint& point : points)
+        texels.emplace_back(float(window.code_of(point.intensity)), 0.0f, 0.0f, 0.0f);
+}
+
 /// The smallest multiple of `parts` that is at least MIN_TABLE_ENTRIES - 1: a table has one entry more than parts.
 uint32_t parts_of_at_least(uint32_t parts)
 {
@@ -153,20 +161,22 @@ TableRange table_range(const TransferFunction& function, const IntensityWindow& 
     return range;
 }
 
-bool LookTable::is_of(const TransferFunction& function, double step, bool is_preintegrated, const Samples& of) const
+bool LookTable::is_of(const TransferFunction& function, const RenderSettings& render, double step,
+                      const Samples& of) const
 {
-    return step_voxels == step && preintegrated == is_preintegrated && samples == of &&
-           std::ranges::equal(points, function.points());
+    return step_voxels == step && preintegrated == render.classifies_steps() && has_points == render.exact_integral &&
+           samples == of && std::ranges::equal(points, function.points());
 }
 
 LookTable make_look_table(const TransferFunction& function, const IntensityWindow& window, double step_voxels,
-                          bool is_preintegrated)
+                          bool is_preintegrated, bool has_points)
 {
     const std::span<const ControlPoint> points = function.points();
     const TableRange range = table_range(function, window, is_preintegrated);
     LookTable table{.points = {points.begin(), points.end()},
                     .step_voxels = step_voxels,
                     .preintegrated = is_preintegrated,
+                    .has_points = has_points,
                     .samples = range.samples,
                     .texels = {},
                     .visible_intervals = {}};
@@ -179,17 +189,20 @@ LookTable make_look_table(const TransferFunction& function, const IntensityWindo
         append_opaque(table.texels, opaque, range, window);
     } else {
         BakedTable baked = bake_table(function, step_voxels, range.samples);
-        table.visible_intervals = visible_intervals(baked.looks);
+        table.visible_intervals =
+            has_points ? visible_intervals(function, range.samples) : visible_intervals(baked.looks);
         table.texels = std::move(baked.looks);
         fill_row(table.texels);
         append_depths(table.texels, baked.depths);
     }
     fill_row(table.texels);
+    if (has_points) append_points(table.texels, points, window);
+    fill_row(table.texels);
     return table;
 }
 
 void set_look_table(gpu::RaycastParams& params, const TransferFunction& function, const IntensityWindow& window,
-                    bool is_preintegrated)
+                    bool is_preintegrated, bool has_points)
 {
     const TableRange range = table_range(function, window, is_preintegrated);
     set_table(params, range);
@@ -197,6 +210,9 @@ void set_look_table(gpu::RaycastParams& params, const TransferFunction& function
     params.table_depths = is_preintegrated ? side * side : whole_rows(entries);
     params.opaque_map = is_preintegrated && !opaque_intervals(function).empty() ? 2 * side * side : 0;
     params.opaque_scale = opaque_scale(range);
+    if (!has_points) return;
+    params.points = params.table_depths + whole_rows((entries + 3) / 4);
+    params.point_count = uint32_t(function.points().size());
 }
 
 std::vector<glm::vec4> make_group_looks(const Groups& groups, double step_voxels)
@@ -229,10 +245,10 @@ Resource DeviceTable::upload(FrameGraph& graph, std::span<const glm::vec4> texel
 
 const LookTable& LookTables::table_of(const Look& look, const IntensityWindow& window, double step_voxels)
 {
-    const bool is_preintegrated = look.render.preintegration;
+    const bool is_preintegrated = look.render.classifies_steps();
     const Samples samples = table_range(look.transfer_function, window, is_preintegrated).samples;
-    if (table_ && table_->is_of(look.transfer_function, step_voxels, is_preintegrated, samples)) return *table_;
-    table_ = make_look_table(look.transfer_function, window, step_voxels, is_preintegrated);
+    if (table_ && table_->is_of(look.transfer_function, look.render, step_voxels, samples)) return *table_;
+    table_ = make_look_table(look.transfer_function, window, step_voxels, is_preintegrated, look.render.exact_integral);
     function_on_device_.invalidate();
     return *table_;
 }

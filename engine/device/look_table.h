@@ -35,15 +35,16 @@ struct LookTable {
     std::vector<ControlPoint> points;
     double step_voxels = 0.0;  ///< in reference lengths
     bool preintegrated = false;
+    bool has_points = false;  ///< for the integral without steps
     Samples samples;
     std::vector<glm::vec4> texels;  ///< in the layout of raycast.h
     std::vector<uint32_t> visible_intervals;
 
-    bool is_of(const TransferFunction& function, double step, bool is_preintegrated, const Samples& of) const;
+    bool is_of(const TransferFunction& function, const RenderSettings& render, double step, const Samples& of) const;
 };
 
 LookTable make_look_table(const TransferFunction& function, const IntensityWindow& window, double step_voxels,
-                          bool is_preintegrated);
+                          bool is_preintegrated, bool has_points = false);
 /// Looks of all 256 colour groups, by number: linear RGB and opacity per step, 0 if hidden; followed by as many texels
 /// with the optical depth.
 std::vector<glm::vec4> make_group_looks(const Groups& groups, double step_voxels);
@@ -60,7 +61,7 @@ void set_table(Params& params, const TableRange& range)
 }
 /// Sets all parameters of the ray caster's table.
 void set_look_table(gpu::RaycastParams& params, const TransferFunction& function, const IntensityWindow& window,
-                    bool is_preintegrated);
+                    bool is_preintegrated, bool has_points = false);
 
 /// A table on the device: an rgba32f image in rows of gpu::TABLE_WIDTH. One thread, the renderer's.
 class DeviceTable {

@@ -471,7 +471,7 @@ Occlusion::Look Scene::occlusion_look(const Look& look)
                            .rays = settings.rays,
                            .full_sphere = settings.full_sphere,
                            .gradient_fade = gradient_fade_codes(look.light),
-                           .preintegrated = look.render.preintegration};
+                           .preintegrated = look.render.classifies_steps()};
     for (uint32_t group = 1; group < 256; ++group) {
         const ColorGroup of_group = group_of(look.groups, uint8_t(group));
         wanted.groups[group] = of_group.visible ? of_group.opacity : 0.0;

@@ -95,10 +95,14 @@ struct RenderSettings {
     double detail = 1.0;  ///< minimum voxels per pixel, if the volume has several levels; 0: always the finest
     bool skip_empty_space = true;
     bool preintegration = false;  ///< classifies steps by both of their ends (preintegration.h); for steps of at most 1
+    /// Integrates light between borders of voxels and points of the transfer function, instead of sampling steps
+    /// (shaders/rays/integral.comp); for steps of at most 1, and exact sampling. Takes the place of preintegration.
+    bool exact_integral = false;
     /// Smooth borders of painted groups: between voxels, the label with the largest weight among the eight around a
     /// sample, instead of the nearest voxel's. Slices and occlusion use the nearest voxel.
     bool smooth_borders = false;
     double saturation = 1.0;  ///< saturation of everything drawn, before lines over it; 0: greys of the same luminance
+    bool classifies_steps() const { return preintegration && !exact_integral; }
     bool operator==(const RenderSettings&) const = default;
 };
 

@@ -113,6 +113,23 @@ std::vector<OpaqueInterval> opaque_intervals(const TransferFunction& function)
     return found;
 }
 
+std::vector<uint32_t> visible_intervals(const TransferFunction& function, const Samples& samples)
+{
+    std::vector<uint32_t> visible_before(samples.entries, 0);
+    const std::span<const ControlPoint> points = function.points();
+    size_t line = 0;  // the first one between two points that does not end before
+    for (uint32_t k = 1; k < samples.entries; ++k) {
+        const double lower = samples.at(k - 1), upper = samples.at(k);
+        while (line + 2 < points.size() && points[line + 1].intensity < lower) ++line;
+        bool is_visible = false;
+        for (size_t i = line; i + 1 < points.size() && points[i].intensity <= upper; ++i)
+            is_visible = is_visible ||
+                         (points[i + 1].intensity >= lower && (points[i].opacity > 0.0 || points[i + 1].opacity > 0.0));
+        visible_before[k] = visible_before[k - 1] + uint32_t(is_visible);
+    }
+    return visible_before;
+}
+
 std::vector<uint32_t> visible_intervals(std::span<const glm::vec4> table)
 {
     std::vector<uint32_t> visible_before(table.size(), 0);

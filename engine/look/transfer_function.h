@@ -81,5 +81,8 @@ std::vector<OpaqueInterval> opaque_intervals(const TransferFunction& function);
 /// long. Interval j..k contains something visible exactly if result[k+1] - result[j] > 0. Integers, so there is no
 /// cancellation.
 std::vector<uint32_t> visible_intervals(std::span<const glm::vec4> table);
+/// The same for the function itself, whose peaks may lie between two samples; an intensity between two intervals counts
+/// in both.
+std::vector<uint32_t> visible_intervals(const TransferFunction& function, const Samples& samples);
 
 }  // namespace shvr

@@ -23,6 +23,17 @@ constexpr uint64_t MAX_BLOCKS = 4096;
 /// Margin around the pixels of an iso-surface: rays are rounded, and groups of threads are as wide as possible.
 constexpr double SHELL_MARGIN = 1.0, SHELL_ALIGNED = 16.0;  // pixels
 
+constexpr double MAX_PIECES = 64.0;  ///< pieces of a stretch for its light alone: 2^HALVINGS (integral.glsl)
+
+/// Maximum iterations in a step of a ray that is integrated (integral.glsl). Lanes do not wait for others: each passes
+/// a stretch in an iteration.
+double turns_of_integral(const gpu::RaycastParams& params, uint64_t levels)
+{
+    const double stretches = 2.0 * std::sqrt(3.0) * double(params.step) + 4.0;
+    const double to_find = 1.0 + std::ceil(std::log2(double(params.point_count) + 1.0));
+    return stretches * (1.0 + 2.0 * double(levels) + to_find * (3.0 + MAX_PIECES + double(params.point_count)));
+}
+
 /// Number of steps of a ray that one dispatch may take.
 uint64_t steps_of_block(const VolumeBinding& volume, const RaycastInput& input, bool is_shelled)
 {
@@ -34,7 +45,9 @@ uint64_t steps_of_block(const VolumeBinding& volume, const RaycastInput& input, 
     const uint64_t to_take = 1 + 2 * levels + (is_shelled ? 2 * (to_leap + 1) : 0);
     // Every iteration advances at least one lane by a step, except those in which all lanes find that they have to
     // continue elsewhere.
-    double turns = double(LANES * std::max(to_leap, to_take) + 1 + to_leap + to_search + to_take);
+    double turns = input.integrated && !input.pick
+                       ? turns_of_integral(input.params, levels)
+                       : double(LANES * std::max(to_leap, to_take) + 1 + to_leap + to_search + to_take);
     // An iso-surface is searched cell by cell: at most three per reference length, and one where the ray enters. Before
     // each, cells of four voxels a side are passed, of which there are a quarter.
     if (is_shelled) turns += 2.25 * double(LANES * (to_leap + 1)) * (3.0 * double(input.params.step) + 1.0);
@@ -67,7 +80,7 @@ struct Choice {
     bool is_paged, is_filtered, is_masked, is_occluded, is_surfaced;
     std::vector<std::pair<std::string, uint32_t>> of_codes;  ///< constants
     uint32_t shell = gpu::SHELL_NONE;
-    bool feedback, has_sample_bits, is_shaded, picks;
+    bool feedback, has_sample_bits, is_shaded, picks, is_integrated;
     uint32_t kept = gpu::KEPT_NOTHING;
 };
 
@@ -99,6 +112,7 @@ Choice choice_of(const VolumeBinding& volume, const RaycastInput& input, bool is
             .has_sample_bits = volume.sample_bits && finds_sample_bits(input.params),
             .is_shaded = input.shaded,
             .picks = input.pick,
+            .is_integrated = input.integrated && !input.pick,
             .kept = input.waiting ? gpu::KEPT_ALL
                     : keeps_rays  ? gpu::KEPT_SHELL
                                   : gpu::KEPT_NOTHING};
@@ -115,10 +129,11 @@ KernelVariant with(KernelVariant kernel, const Constants& constants)
 /// The constants that select how a step is classified, for rays that march.
 Constants constants_of_steps(const Choice& choice, const RaycastInput& input)
 {
-    Constants constants{{"GROUP_WIDTH", input.pixel_groups.width},
-                        {"PREINTEGRATED", input.preintegrated ? input.params.opaque_map > 0 ? 2 : 1 : 0}};
-    if (!choice.is_paged && !choice.is_filtered) constants.emplace_back("HAS_SAMPLE_BITS", choice.has_sample_bits);
+    Constants constants{{"GROUP_WIDTH", input.pixel_groups.width}};
     if (choice.is_masked) constants.emplace_back("SMOOTH_BORDERS", input.smooth_borders);
+    if (choice.is_integrated) return constants;
+    constants.emplace_back("PREINTEGRATED", input.preintegrated ? input.params.opaque_map > 0 ? 2 : 1 : 0);
+    if (!choice.is_paged && !choice.is_filtered) constants.emplace_back("HAS_SAMPLE_BITS", choice.has_sample_bits);
     if (input.params.step < MIN_PLAIN_STEP) constants.emplace_back("COMPENSATED", 1);
     return constants;
 }
@@ -149,12 +164,17 @@ KernelVariant kernel_of(const Choice& choice, const RaycastInput& input)
     if (input.slice) return slice_kernel(choice, input);
     if (choice.picks) return pick_kernel(choice, input);
     const bool is_shelled = choice.shell != gpu::SHELL_NONE;
-    KernelVariant kernel{variant_of("raycast", {{"PAGED", choice.is_paged},
-                                                {"FILTERED", choice.is_filtered},
-                                                {"MASKED", choice.is_masked},
-                                                {"OCCLUDED", choice.is_occluded},
-                                                {"SURFACED", choice.is_surfaced},
-                                                {"SHELLED", is_shelled}}),
+    KernelVariant kernel{choice.is_integrated ? variant_of("integral", {{"PAGED", choice.is_paged},
+                                                                        {"MASKED", choice.is_masked},
+                                                                        {"OCCLUDED", choice.is_occluded},
+                                                                        {"SURFACED", choice.is_surfaced},
+                                                                        {"SHELLED", is_shelled}})
+                                              : variant_of("raycast", {{"PAGED", choice.is_paged},
+                                                                       {"FILTERED", choice.is_filtered},
+                                                                       {"MASKED", choice.is_masked},
+                                                                       {"OCCLUDED", choice.is_occluded},
+                                                                       {"SURFACED", choice.is_surfaced},
+                                                                       {"SHELLED", is_shelled}}),
                          choice.of_codes};
     kernel = with(kernel, constants_of_steps(choice, input));
     const auto constant = [&](const char* name, uint32_t value) { kernel.second.emplace_back(name, value); };
@@ -245,7 +265,7 @@ void bind_volume(Pass& pass, VolumeBinding& volume, const RaycastInput& input)
 void bind_steps(Pass& pass, const VolumeBinding& volume, const RaycastInput& input)
 {
     pass.read("table", input.table);
-    if (!volume.pages && !volume.is_filtered())
+    if (!volume.pages && !volume.is_filtered() && (input.pick || !input.integrated))
         pass.read("sample_bits", volume.sample_bits.value_or(volume.leap));  // a stand-in is never read
     if (input.pick)
         pass.read("surfaces", input.surfaces.value_or(input.table));  // likewise

@@ -1,6 +1,6 @@
 #pragma once
-// Emission-absorption ray-casting of a bricked volume (shaders/rays/raycast.comp), slices through it (slice.comp) and
-// the place that a person points at (pick.comp).
+// Emission-absorption ray-casting of a bricked volume (shaders/rays: raycast.comp, integral.comp), slices through it
+// (slice.comp) and the place that a person points at (pick.comp).
 
 #include <optional>
 #include <span>
@@ -43,6 +43,7 @@ struct RaycastInput {
     PixelGroups pixel_groups;
     uint32_t shell = gpu::SHELL_NONE;  ///< otherwise params.shell_* are set
     bool preintegrated = false;        ///< `table` is for steps between two densities
+    bool integrated = false;           ///< `table` has the function's points: the integral without steps
     bool slice = false;                ///< draws a slice: the voxels half-way along the rays, with params.slice_*
     bool smooth_borders = false;       ///< smooth borders of painted groups; with Visibility::params.paint_reach 1
     bool pick = false;                 ///< positions instead of colours, see the kernel

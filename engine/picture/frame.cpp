@@ -82,7 +82,8 @@ Prepared prepare(FrameGraph& graph, Scene& scene, const Look& look, const Shot& 
     input.shaded = look.light.shaded && !shot.is_slice;
     input.slice = shot.is_slice;
     input.smooth_borders = look.render.smooth_borders && !shot.is_slice;
-    input.preintegrated = look.render.preintegration && !shot.is_slice;
+    input.preintegrated = look.render.classifies_steps() && !shot.is_slice;
+    input.integrated = look.render.exact_integral && !shot.is_slice && !prepared.volume.is_filtered();
     input.pixel_groups = pixel_groups_of(scene.traits());
     if (shot.is_slice) set_slice(input.params, look, scene);
     if (part.probe && !shot.is_slice) set_shell(input, *part.probe, scene);

@@ -112,7 +112,8 @@ gpu::RaycastParams raycast_params(const Look& look, const Camera& camera, Scene&
     }
     params.step = float(step_voxels);
     params.opacity_limit = float(look.render.opacity_limit);
-    set_look_table(params, look.transfer_function, scene.volume().window(), look.render.preintegration);
+    set_look_table(params, look.transfer_function, scene.volume().window(), look.render.classifies_steps(),
+                   look.render.exact_integral);
     params.background = look.render.background;
     params.ambient = float(look.light.ambient);
     params.diffuse = float(look.light.diffuse);

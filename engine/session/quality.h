@@ -19,6 +19,7 @@ struct Quality {
     double detail = 1.0;
     bool skip_empty_space = true;
     bool preintegration = false;
+    bool exact_integral = false;
 };
 
 /// From the fastest to the most exact.

@@ -98,8 +98,8 @@ namespace {
 void quality_fields(Fields& f, RenderSettings& render)
 {
     const About about{.meaning =
-                          "preset of `step_voxels`, `opacity_limit`, `sampling`, `detail`, `skip_empty_space` "
-                          "and `preintegration`, for those not given (quality.h)",
+                          "preset of `step_voxels`, `opacity_limit`, `sampling`, `detail`, `skip_empty_space`, "
+                          "`preintegration` and `exact_integral`, for those not given (quality.h)",
                       .allowed = "`\"draft\"`, `\"interactive\"`, `\"good\"`, `\"reference\"`",
                       .standard = "none"};
     if (!f.has("quality", false)) return f.mention("quality", about);
@@ -141,9 +141,17 @@ void way_fields(Fields& f, RenderSettings& render)
     f.flag("preintegration", render.preintegration,
            {"true: integrates the transfer function over all densities between the ends of a step, for narrow peaks "
             "and steep edges; needs steps of at most 1"});
+    f.flag("exact_integral", render.exact_integral,
+           {"true: integrates light between borders of voxels and points of the transfer function, to about 1e-5, "
+            "instead of sampling steps; takes the place of `preintegration`; needs exact sampling, and steps of at "
+            "most 1"});
     f.retired("adaptive_tolerance");
     f.check("preintegration", !render.preintegration || render.step_voxels <= 1.0,
             sentence("false, because render.step_voxels is ", render.step_voxels, ", above 1"));
+    f.check("exact_integral", !render.exact_integral || render.step_voxels <= 1.0,
+            sentence("false, because render.step_voxels is ", render.step_voxels, ", above 1"));
+    f.check("exact_integral", !render.exact_integral || render.sampling == Sampling::exact,
+            "false, because render.sampling is not exact");
 }
 
 void background_field(Fields& f, RenderSettings& render)

@@ -98,15 +98,23 @@ float central(float low, float high, float beyond, float f)
     return inner + (outer - inner) * abs(f - 0.5);
 }
 
-/// Codes per voxel along each axis. The six taps of a central difference share all but twelve codes with the eight
-/// corners.
-vec3 gradient_of(const Density d)
+// Pairs of codes along x beyond the corners, on the nearer side along y and along z.
+struct Beyond {
+    vec2 y0, y1, z0, z1;
+};
+
+Beyond beyond(const Density d)
 {
     const vec3 f = d.fraction;
     const ivec3 c = d.corner;
     const int y = c.y + (f.y < 0.5 ? -1 : 2), z = c.z + (f.z < 0.5 ? -1 : 2);
-    const vec2 y0 = pair_in(d, y, c.z), y1 = pair_in(d, y, c.z + 1);
-    const vec2 z0 = pair_in(d, c.y, z), z1 = pair_in(d, c.y + 1, z);
+    return Beyond(pair_in(d, y, c.z), pair_in(d, y, c.z + 1), pair_in(d, c.y, z), pair_in(d, c.y + 1, z));
+}
+
+vec3 gradient_between(const Density d, const Beyond there)
+{
+    const vec3 f = d.fraction;
+    const vec2 y0 = there.y0, y1 = there.y1, z0 = there.z0, z1 = there.z1;
     const float along_x = central(bilinear(d.v[0], d.v[2], d.v[4], d.v[6], f.y, f.z),
                                   bilinear(d.v[1], d.v[3], d.v[5], d.v[7], f.y, f.z),
                                   bilinear(d.beyond[0], d.beyond[1], d.beyond[2], d.beyond[3], f.y, f.z), f.x);
@@ -117,4 +125,11 @@ vec3 gradient_of(const Density d)
                                   bilinear(d.v[4], d.v[5], d.v[6], d.v[7], f.x, f.y),
                                   bilinear(z0.x, z0.y, z1.x, z1.y, f.x, f.y), f.z);
     return vec3(along_x, along_y, along_z);
+}
+
+/// Codes per voxel along each axis. The six taps of a central difference share all but twelve codes with the eight
+/// corners.
+vec3 gradient_of(const Density d)
+{
+    return gradient_between(d, beyond(d));
 }

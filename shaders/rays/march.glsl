@@ -11,12 +11,16 @@
 #include "../library/pick.glsl"
 #endif
 
-#if !defined(PAGED) && !defined(FILTERED)
+#if !defined(PAGED) && !defined(FILTERED) && !defined(INTEGRATED)
 #define BITTED
 layout(constant_id = 12) const uint HAS_SAMPLE_BITS = 0u;
 layout(binding = 14, r32ui) uniform readonly uimage3D sample_bits;   // leap.h
 #endif
+#ifdef INTEGRATED
+const uint COMPENSATED = 1u;
+#else
 layout(constant_id = 17) const uint COMPENSATED = 0u;
+#endif
 // linear RGB (PREINTEGRATED: times opacity), opacity of a full step; then optical depths (raycast.h)
 layout(binding = 3, rgba32f) uniform readonly image2D table;
 
@@ -109,7 +113,9 @@ void accumulate_compensated(inout vec4 sum, inout vec4 above, vec4 look)
     sum = next;
 }
 
+#ifndef INTEGRATED
 #include "../library/search.glsl"
+#endif
 
 // A ray's accumulated state, and its position.
 struct March {
@@ -152,6 +158,9 @@ void add(vec4 look, float middle, inout March march)
         accumulate(march.sum, look);
 }
 
+#ifdef INTEGRATED
+#include "integral.glsl"
+#else
 // The density at the beginning of a step.
 float value_at_begin(const RaycastParams params, const Ray ray, const Lattice lattice, uint step)
 {
@@ -235,6 +244,8 @@ void take_samples(const RaycastParams params, const Ray ray, const Lattice latti
         searches_on = march.i < end_step && march.sum.a < params.opacity_limit && !march.waits && !is_behind;
     } while (searches_on);
 }
+
+#endif
 
 // Adds the sample of the rest that take_samples() has found.
 void add_rest(const RaycastParams params, const Lattice lattice, inout March march)

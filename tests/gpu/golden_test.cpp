@@ -76,7 +76,7 @@ const Mistake MISTAKES[] = {
      "upper = float(range >> 16)", "upper = float(range & 0xffffu)"},
     {"a picture half a pixel off", "tubes_opaque", "rays/ray.glsl", "const vec2 centre = vec2(pixel) + 0.5;",
      "const vec2 centre = vec2(pixel);"},
-    {"rays that go through surfaces", "surfaces", "rays/raycast.comp",
+    {"rays that go through surfaces", "surfaces", "rays/raycast.glsl",
      "span.end = min(span.end, max(surface.a, span.begin));", ""},
     {"eyes exchanged", "anaglyph", "picture/anaglyph.comp", "vec4(red.r, rest.gb,", "vec4(rest.r, red.gb,"},
     {"ambient occlusion that is too strong", "tubes_occluded", "occlusion/occlusion.glsl",

@@ -53,7 +53,8 @@ Members raycast_params()
             MEMBER(RaycastParams, slice_black),   MEMBER(RaycastParams, slice_scale),
             MEMBER(RaycastParams, slice_paint),   MEMBER(RaycastParams, shell_center),
             MEMBER(RaycastParams, shell_reach),   MEMBER(RaycastParams, shell_code),
-            MEMBER(RaycastParams, shell_color),   MEMBER(RaycastParams, shell_opacity)};
+            MEMBER(RaycastParams, shell_color),   MEMBER(RaycastParams, shell_opacity),
+            MEMBER(RaycastParams, points),        MEMBER(RaycastParams, point_count)};
 }
 
 Members preview_params()

@@ -153,6 +153,9 @@ std::string special_sentence(const Session& was, const Session& is)
     if (was.render.preintegration != is.render.preintegration)
         return is.render.preintegration ? "Narrow peaks on: none is missed between samples"
                                         : "Narrow peaks off: samples may miss them";
+    if (was.render.exact_integral != is.render.exact_integral)
+        return is.render.exact_integral ? "Exact integral on: light is integrated between borders of voxels"
+                                        : "Exact integral off: light is sampled in steps";
     return {};
 }
 

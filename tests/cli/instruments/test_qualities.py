@@ -9,14 +9,15 @@ from harness import CliTest
 FRONT = Path(__file__).resolve().parents[3] / "tools/bench/front.csv"
 QUALITIES = ["draft", "interactive", "good", "reference"]
 SAME = 0.01  # a ray may end a sample later on another processor
+ROUNDING = 1e-6  # of sums, which differs between processors
 # Work is what is read: a sample that is pre-integrated reads 22 texels where a plain one reads 13, so samples are none. A
-# tap of a texture unit's filter is another unit, so "sampling hardware" is left out.
+# tap of a texture unit's filter is another unit, so "sampling hardware" is left out. "reference" reads texels once for
+# half a voxel, and computes more for each: it is compared by errors alone.
 WORK = "reads"
+OTHER_WORK = {"sampling hardware", "reference"}
 # One table for all scenes is not on the front of each. More than SAME better in both:
 ALONE = {("peaks", "draft", "resolution 0.5"),        # step 1 misses narrow peaks, whatever the size of the picture
-         ("peaks", "draft", "coarse 0.7, step 1"),
-         ("tissue", "reference", "step 0.0625"),      # in smooth functions pre-integration finds nothing, and reads more
-         ("anisotropic", "reference", "step 0.0625")}
+         ("peaks", "draft", "coarse 0.7, step 1")}
 
 
 def read(path):
@@ -24,8 +25,10 @@ def read(path):
         return list(csv.DictReader(file))
 
 
-def comparable(rows):
-    return [row for row in rows if row["run"] != "sampling hardware"]
+def is_better(run, than, quality, share=1.0):
+    """Whether (work, rmse) are below `share` of those of the quality."""
+    is_less_work = quality in OTHER_WORK or run[0] < share * than[0]
+    return is_less_work and run[1] < share * than[1]
 
 
 def over_scenes(rows):
@@ -42,19 +45,18 @@ def over_scenes(rows):
 
 def beaten(rows):
     """(quality, run) where the run takes less work and errs less, over all scenes."""
-    means = over_scenes(comparable(rows))
-    return [(quality, run) for quality in QUALITIES for run, (cost, rmse) in means.items()
-            if cost < means[quality][0] and rmse < means[quality][1]]
+    means = over_scenes(rows)
+    return [(quality, run) for quality in QUALITIES for run, mean in means.items()
+            if run not in OTHER_WORK and is_better(mean, means[quality], quality)]
 
 
 def beaten_alone(rows):
     """{(scene, quality, run)}: the same in single scenes, where both are more than SAME better."""
     found = set()
     for scene in {row["scene"] for row in rows}:
-        runs = {row["run"]: (float(row[WORK]), float(row["rmse"]))
-                for row in comparable(rows) if row["scene"] == scene}
-        found |= {(scene, quality, run) for quality in QUALITIES for run, (cost, rmse) in runs.items()
-                  if cost < (1 - SAME) * runs[quality][0] and rmse < (1 - SAME) * runs[quality][1]}
+        runs = {row["run"]: (float(row[WORK]), float(row["rmse"])) for row in rows if row["scene"] == scene}
+        found |= {(scene, quality, run) for quality in QUALITIES for run, of_run in runs.items()
+                  if run not in OTHER_WORK and is_better(of_run, runs[quality], quality, 1 - SAME)}
     return found
 
 
@@ -73,7 +75,8 @@ class Qualities(CliTest):
 
     def test_they_are_in_order(self):
         means = over_scenes(self.rows)
-        self.assertEqual(sorted(QUALITIES, key=lambda name: means[name][0]), QUALITIES)
+        by_work = [name for name in QUALITIES if name not in OTHER_WORK]
+        self.assertEqual(sorted(by_work, key=lambda name: means[name][0]), by_work)
         self.assertEqual(sorted(QUALITIES, key=lambda name: -means[name][1]), QUALITIES)
 
     def test_a_quality_off_the_front_is_found(self):
@@ -96,7 +99,9 @@ class Qualities(CliTest):
         for key, row in now.items():
             self.assertEqual(row["settings"], kept[key]["settings"])
             for name in ("samples", "reads", "rmse"):
-                self.assertAlmostEqual(float(row[name]) / float(kept[key][name]), 1.0, delta=SAME, msg=(key, name))
+                is_now, was = float(row[name]), float(kept[key][name])
+                if max(is_now, was) > ROUNDING:
+                    self.assertAlmostEqual(is_now / was, 1.0, delta=SAME, msg=(key, name))
 
 
 if __name__ == "__main__":

@@ -77,6 +77,23 @@ TEST_CASE("a table covers the codes that there are, and no others")
     }
 }
 
+TEST_CASE("a table for the exact integral holds the function's points, and sees peaks between its entries")
+{
+    const TransferFunction function = greys({{0.0, 0.0}, {10.0, 0.0}, {10.01, 0.5}, {10.02, 0.0}, {255.0, 0.0}});
+    const LookTable table = make_look_table(function, BYTES, 1.0, false, true);
+    gpu::RaycastParams params{};
+    set_look_table(params, function, BYTES, false, true);
+    REQUIRE(params.point_count == 5);
+    REQUIRE(table.texels.size() >= params.points + 2 * params.point_count);
+    CHECK(table.texels[params.points + 2] == glm::vec4(0.5f));
+    CHECK(table.texels[params.points + 5 + 2].x == float(BYTES.code_of(10.01)));
+    CHECK(table.visible_intervals.back() > 0);
+    const auto last = table.visible_intervals.size() - 1;
+    CHECK(table.visible_intervals[last / 2] == table.visible_intervals[last]);  // nothing in the upper half
+    for (const auto& [from, to] : {std::pair(300.0, 400.0), {-9.0, -5.0}})
+        CHECK(make_look_table(greys({{from, 0.5}, {to, 0.5}}), BYTES, 1.0, false, true).visible_intervals.back() == 0);
+}
+
 TEST_CASE("a table says the depth of a step, also where its opacity rounds to 1")
 {
     const TransferFunction function = greys({{0.0, 1.0 - 1e-12}, {255.0, 1.0 - 1e-12}});

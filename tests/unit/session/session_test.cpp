@@ -80,7 +80,7 @@ const std::string EVERYTHING = R"({
   "blend": {"size": 0.75, "rate": 2, "color": "#204060"},
   "render": {"size": [640, 480], "step_voxels": 0.25, "opacity_limit": 0.9, "background": "#10203040",
              "sampling": "exact", "paging": "never", "detail": 0.5, "skip_empty_space": false,
-             "preintegration": true, "smooth_borders": true, "saturation": 0.375},
+             "preintegration": true, "exact_integral": true, "smooth_borders": true, "saturation": 0.375},
   "view": {"arrangement": "slices", "stereo": {"output": "top_bottom", "eye_distance": 0.0625, "toe_in": true},
            "slices": {"black": -20, "white": 300.5, "paint_share": 0.25, "zoom": 3}, "overview_zoom": 1.5,
            "volume": false, "meshes": false, "cut_box": true, "solo": 7},
@@ -145,10 +145,9 @@ TEST_CASE("every key of a session is read")
     CHECK(session.light == Light{false, 0.1, 0.2, 0.3, 4, {1, 2, 3}, 0.5, {0.75, 9.5, 48, true, 1.5, false}});
     CHECK(session.blend == DistanceBlend{0.75, 2.0, color("#204060")});
     const glm::dvec4 background(color("#102030"), 64 / 255.0);
-    CHECK(
-        session.render ==
-        RenderSettings{
-            {640, 480}, 0.25, 0.9, background, Sampling::exact, Paging::never, 0.5, false, true, true, 0.375});
+    CHECK(session.render ==
+          RenderSettings{
+              {640, 480}, 0.25, 0.9, background, Sampling::exact, Paging::never, 0.5, false, true, true, true, 0.375});
     CHECK(session.view == ViewSettings{Arrangement::slices,
                                        {StereoOutput::top_bottom, 0.0625, true},
                                        {-20.0, 300.5, 0.25, 3.0},
@@ -316,7 +315,7 @@ TEST_CASE("keys that are not known are refused by their full name, with those th
     CHECK(refusal(with(R"("render": {"step": 1})")) ==
           "s.json: unknown key render.step; expected one of: size, quality, step_voxels, opacity_limit, background, "
           "sampling, "
-          "paging, detail, skip_empty_space, preintegration, smooth_borders, saturation");
+          "paging, detail, skip_empty_space, preintegration, exact_integral, smooth_borders, saturation");
     struct Case {
         std::string keys, name;
     };
@@ -365,6 +364,10 @@ TEST_CASE("values of the wrong type or range are refused with what was found and
             Case{R"("render": {"skip_empty_space": 1})", "render.skip_empty_space is 1; expected true or false"},
             Case{R"("render": {"step_voxels": 1.5, "preintegration": true})",
                  "render.preintegration is true; expected false, because render.step_voxels is 1.5, above 1"},
+            Case{R"("render": {"step_voxels": 1.5, "exact_integral": true, "sampling": "exact"})",
+                 "render.exact_integral is true; expected false, because render.step_voxels is 1.5, above 1"},
+            Case{R"("render": {"exact_integral": true})",
+                 "render.exact_integral is true; expected false, because render.sampling is not exact"},
             Case{R"("light": {"ambient": -0.1})", "light.ambient is -0.1; expected a number from 0 to 10"},
             Case{R"("light": {"shininess": 1e9})", "light.shininess is 1000000000.0; expected a number from 0 to"},
             Case{R"("light": {"direction": [1, 2]})", "light.direction is [1,2]; expected three numbers"},

@@ -42,6 +42,7 @@ bool sampling(RenderSettings& render)
         "How voxels are interpolated. Texture units are fast on GPUs and round positions to 1/256 of a voxel. A change "
         "reloads the volume.");
     render.sampling = Sampling(chosen);
+    if (render.sampling != Sampling::exact) render.exact_integral = false;
     return is_other;
 }
 
@@ -64,7 +65,7 @@ bool numbers(RenderSettings& render, bool& is_reset, Actions& actions)
         "Distance between samples along a ray. Half of it takes twice as long. Above 1, narrow peaks cannot be "
         "detected.");
     is_reset |= resets("render.step_voxels", actions);
-    if (render.step_voxels > MAX_PREINTEGRATED_STEP) render.preintegration = false;
+    if (render.step_voxels > MAX_PREINTEGRATED_STEP) render.preintegration = render.exact_integral = false;
     is_other |= slider("Opaque from", render.opacity_limit, 0.5, 1.0, "%.4f");
     hint("A ray stops once its opacity reaches this; 1: never before its end.");
     is_reset |= resets("render.opacity_limit", actions);
@@ -98,6 +99,12 @@ void quality_panel(const Model& model, Actions& actions)
     is_other |= ImGui::Checkbox("Narrow peaks", &render.preintegration);
     ImGui::EndDisabled();
     hint("No peak or edge of the transfer function is missed between two samples, however narrow (pre-integration).");
+    ImGui::BeginDisabled(render.step_voxels > MAX_PREINTEGRATED_STEP || render.sampling != Sampling::exact);
+    is_other |= ImGui::Checkbox("Exact integral", &render.exact_integral);
+    ImGui::EndDisabled();
+    hint(
+        "Integrates light between borders of voxels and points of the transfer function instead of sampling steps: for "
+        "pictures to compare with. Needs exact sampling.");
     is_other |= ImGui::Checkbox("Smooth borders of groups", &render.smooth_borders);
     hint(
         "Draws borders of painted groups smoothly instead of in steps. The paint stays as it is, and slices show it. A "
