@@ -5,6 +5,7 @@
 
 #include "engine/session/kept_settings.h"
 #include "engine/session/lasting_settings.h"
+#include "engine/volume/content_hash.h"
 #include "engine/volume/grid.h"
 
 namespace shvr {
@@ -46,6 +47,12 @@ WorkFiles work_files(const Session& session, const VolumeInfo& volume)
             .trace = session.trace_path,
             .density = session.density_path,
             .volume_hash = session.volume_hash,
+            .is_other_name =
+                [session = std::make_shared<const Session>(session)](const std::string& hash) {
+                    const std::optional<HashKind> kind = kind_of(hash);
+                    if (!kind || kind == kind_of(session->volume_hash)) return false;
+                    return is_same_content(hash, session->volume_hash, open_source(*session).get());
+                },
             .volume = volume};
 }
 

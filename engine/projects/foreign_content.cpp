@@ -12,7 +12,7 @@
 #include "engine/formats/zarr/ome_place.h"
 #include "engine/formats/zarr/store/zarr_json.h"
 #include "engine/formats/zarr/zarr_chunks.h"
-#include "engine/projects/import_pyramid.h"
+#include "engine/projects/levels/import_pyramid.h"
 #include "engine/volume/source.h"
 
 namespace shvr {

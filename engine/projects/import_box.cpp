@@ -61,6 +61,19 @@ void ImportBox::read(const VoxelBox& part, std::span<std::byte> voxels, WorkPool
     read_blocks(wanted, voxels, pool);
 }
 
+double ImportBox::bytes(const Size3& extent, int workers) const
+{
+    const Size3 block = this->block();
+    if (block == Size3(1)) return 0.0;
+    const auto voxel_bytes = double(bytes_of(type()));
+    const double decoded = voxels_in(block) * voxel_bytes;
+    const double blocks = voxels_in((source_.info().size + block - int64_t{1}) / block);
+    const double held =
+        block.z == 1 ? 0.0 : voxels_in(glm::min(extent, Size3(extent.x, block.y, block.z))) * voxel_bytes;
+    // While it is decoded a block is held as stored, as decoded and in the order of the volume.
+    return std::min(SOURCE_CACHE_BYTES, blocks * decoded) + double(workers) * (3.0 * decoded + held);
+}
+
 void ImportBox::read_slices(const VoxelBox& part, std::span<std::byte> voxels, WorkPool& pool) const
 {
     const Size3 extent = part.size();

@@ -10,6 +10,15 @@
 
 namespace shvr {
 
+/// The most that sources keep of decoded blocks.
+inline constexpr double SOURCE_CACHE_BYTES = double(64 << 20);
+
+/// As double, which any size fits.
+inline double voxels_in(const Size3& extent)
+{
+    return double(extent.x) * double(extent.y) * double(extent.z);
+}
+
 class ImportBox {
 public:
     /// `source` must outlive it. If voxels are to be reversed, the constructor first reads all of them to find their
@@ -23,6 +32,9 @@ public:
 
     /// Reads the voxels of `part`, counted from the box's first voxel, x fastest, with all workers.
     void read(const VoxelBox& part, std::span<std::byte> voxels, WorkPool& pool) const;
+    /// An upper bound of the memory, in bytes, that this takes for a part of that size: the source's decoded blocks,
+    /// and what workers hold of them.
+    double bytes(const Size3& extent, int workers) const;
 
 private:
     void read_slices(const VoxelBox& part, std::span<std::byte> voxels, WorkPool& pool) const;

@@ -11,6 +11,7 @@
 #include "engine/formats/zarr/zarr_codec.h"
 #include "engine/projects/import_files.h"
 #include "engine/projects/part_folder.h"
+#include "engine/volume/grid.h"
 
 namespace shvr {
 namespace {
@@ -20,10 +21,11 @@ using Bytes = std::span<const std::byte>;
 
 static_assert(std::endian::native == std::endian::little, "indices of shards are written as they are in memory");
 
-bool is_empty(Bytes chunk)
+bool consists_of(Bytes voxel, Bytes chunk)
 {
-    // Compares the chunk with itself, shifted by one byte.
-    return chunk[0] == std::byte{0} && std::memcmp(chunk.data(), chunk.data() + 1, chunk.size() - 1) == 0;
+    // Compares the chunk with itself, shifted by one voxel.
+    return std::memcmp(chunk.data(), voxel.data(), voxel.size()) == 0 &&
+           std::memcmp(chunk.data(), chunk.data() + voxel.size(), chunk.size() - voxel.size()) == 0;
 }
 
 /// Chunks of a full shard.
@@ -42,39 +44,49 @@ Size3 shard_counts(const ZarrVolume& volume)
 }  // namespace
 
 ImportChunks::ImportChunks(const std::filesystem::path& project, const VolumeInfo& info, int levels,
-                           OmeZarrVersion version, const ZarrCompressor& compressor, bool has_shards, int workers)
-    : project_(project), compressor_(compressor), compressed_(size_t(workers))
+                           OmeZarrVersion version, const ZarrCompressor& compressor, bool has_shards, int workers,
+                           const FillVoxel& fill)
+    : project_(project), compressor_(compressor), fill_(fill), compressed_(size_t(workers))
 {
     for (int level = 0; level < levels; ++level) {
-        ZarrVolume volume = import_level(project, info, level, version, compressor, has_shards);
+        ZarrVolume volume = import_level(project, info, level, version, compressor, has_shards, fill);
         const bool is_sharded = volume.metadata().sharding.has_value();
-        ZarrVolume loose = import_level(is_sharded ? loose_folder() : project, info, level, version, compressor, false);
-        const Size3 counts = volume.counts();
-        levels_.push_back(
-            {std::move(volume), std::move(loose), std::vector<uint64_t>(size_t(counts.x * counts.y * counts.z))});
+        ZarrVolume loose =
+            import_level(is_sharded ? loose_folder() : project, info, level, version, compressor, false, fill);
+        levels_.push_back({std::move(volume), std::move(loose)});
     }
 }
 
 void ImportChunks::write(int level, const Size3& chunk, Bytes voxels, int worker)
 {
     Level& to = levels_[size_t(level)];
-    const auto index = size_t(to.volume.index_of(chunk));
-    if (is_empty(voxels)) {
-        to.checksums[index] = 0;
-        return;
-    }
-    const Bytes stored =
-        compress_chunk(compressor_, voxels, bytes_of(to.volume.metadata().type), compressed_[size_t(worker)]);
+    const size_t voxel_bytes = bytes_of(to.volume.metadata().type);
+    if (consists_of(Bytes(fill_).first(voxel_bytes), voxels)) return;
+    const Bytes stored = compress_chunk(compressor_, voxels, voxel_bytes, compressed_[size_t(worker)]);
     write_part_file(to.loose.path_of(chunk), stored);
-    to.checksums[index] = checksum_of(stored);
+    const StoredChunk written{.index = uint64_t(to.volume.index_of(chunk)), .checksum = checksum_of(stored)};
+    const std::scoped_lock lock(mutex_);
+    to.written.push_back(written);
     bytes_ += int64_t(stored.size());
 }
 
-int64_t ImportChunks::shards(int level) const
+void ImportChunks::finish()
 {
-    if (!metadata(level).sharding) return 0;
-    const Size3 counts = shard_counts(of(level).volume);
-    return counts.x * counts.y * counts.z;
+    for (Level& level : levels_) std::ranges::sort(level.written, {}, &StoredChunk::index);
+}
+
+std::vector<int64_t> ImportChunks::shards(int level) const
+{
+    if (!metadata(level).sharding) return {};
+    const ZarrVolume& volume = of(level).volume;
+    std::vector<int64_t> shards;
+    for (const StoredChunk& chunk : of(level).written)
+        shards.push_back(
+            index_of(position_of(int64_t(chunk.index), volume.counts()) / shard_chunks(volume), shard_counts(volume)));
+    std::ranges::sort(shards);
+    const auto repeated = std::ranges::unique(shards);
+    shards.erase(repeated.begin(), repeated.end());
+    return shards;
 }
 
 void ImportChunks::pack(int level, int64_t shard)
@@ -90,8 +102,9 @@ void ImportChunks::pack(int level, int64_t shard)
     for (Size3 chunk = first; chunk.z < last.z; ++chunk.z)
         for (chunk.y = first.y; chunk.y < last.y; ++chunk.y)
             for (chunk.x = first.x; chunk.x < last.x; ++chunk.x)
-                if (from.checksums[size_t(from.volume.index_of(chunk))] != 0) stored.push_back(chunk);
-    if (stored.empty()) return;
+                if (std::ranges::binary_search(from.written, uint64_t(from.volume.index_of(chunk)), {},
+                                               &StoredChunk::index))
+                    stored.push_back(chunk);
     bytes_ += int64_t(index_bytes);
 
     std::error_code error;
@@ -128,23 +141,24 @@ void ImportChunks::remove_loose() const
 int64_t ImportChunks::all() const
 {
     int64_t chunks = 0;
-    for (const Level& level : levels_) chunks += int64_t(level.checksums.size());
+    for (const Level& level : levels_) {
+        const Size3 counts = level.volume.counts();
+        chunks += counts.x * counts.y * counts.z;
+    }
     return chunks;
 }
 
 int64_t ImportChunks::stored() const
 {
     int64_t chunks = 0;
-    for (const Level& level : levels_) {
-        chunks += int64_t(std::ranges::count_if(level.checksums, [](uint64_t checksum) { return checksum != 0; }));
-    }
+    for (const Level& level : levels_) chunks += int64_t(level.written.size());
     return chunks;
 }
 
 void ImportChunks::save(StateWriter& state) const
 {
     state.put_all(std::vector<int64_t>{bytes_});
-    for (const Level& level : levels_) state.put_all(level.checksums);
+    for (const Level& level : levels_) state.put_all(level.written);
 }
 
 void ImportChunks::load(StateReader& state)
@@ -152,7 +166,7 @@ void ImportChunks::load(StateReader& state)
     std::vector<int64_t> bytes(1);
     state.take_all(bytes);
     bytes_ = bytes[0];
-    for (Level& level : levels_) state.take_all(level.checksums);
+    for (Level& level : levels_) level.written = state.take_list<StoredChunk>();
 }
 
 }  // namespace shvr

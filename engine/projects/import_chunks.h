@@ -4,28 +4,33 @@
 
 #include <atomic>
 #include <filesystem>
+#include <mutex>
 #include <span>
 #include <vector>
 
 #include "engine/formats/zarr/ome_zarr.h"
 #include "engine/formats/zarr/zarr_volume.h"
-#include "engine/projects/import_state.h"
+#include "engine/projects/levels/import_pyramid.h"
+#include "engine/projects/levels/import_state.h"
 
 namespace shvr {
 
 class ImportChunks {
 public:
+    /// `fill`: the value of voxels in chunks that are not stored.
     ImportChunks(const std::filesystem::path& project, const VolumeInfo& info, int levels, OmeZarrVersion version,
-                 const ZarrCompressor& compressor, bool has_shards, int workers);
+                 const ZarrCompressor& compressor, bool has_shards, int workers, const FillVoxel& fill = {});
 
-    /// Compresses and writes the voxels of a chunk; writes no file if all of them are 0. Different workers may write
-    /// different chunks at once.
+    /// Compresses and writes the voxels of a chunk; writes no file if all of them are the fill value. Different workers
+    /// may write different chunks at once, each once.
     void write(int level, const Size3& chunk, std::span<const std::byte> voxels, int worker);
+    /// To be called once all chunks of all levels are written; the members below are valid from then on.
+    void finish();
 
-    int64_t shards(int level) const;  ///< 0: the level has no shards
-    /// To be called once all chunks of the level are written: merges the files of a shard's chunks into the shard's
-    /// file, and removes them. Does nothing if that is done already. Writes no file if no chunk of the shard has one.
-    /// Any thread may pack any shard.
+    /// The shards of a level that have chunks, by number; none if the level has no shards.
+    std::vector<int64_t> shards(int level) const;
+    /// Merges the files of a shard's chunks into the shard's file, and removes them. Does nothing if that is done
+    /// already. Any thread may pack any shard.
     void pack(int level, int64_t shard);
     /// To be called once all shards are packed.
     void remove_loose() const;
@@ -33,8 +38,8 @@ public:
     int levels() const { return int(levels_.size()); }
     Size3 counts(int level) const { return of(level).volume.counts(); }
     const ZarrMetadata& metadata(int level) const { return of(level).volume.metadata(); }
-    /// Checksums, indexed by ZarrVolume::index_of; 0 if there is no file.
-    const std::vector<uint64_t>& checksums(int level) const { return of(level).checksums; }
+    /// The chunks that have a file, ascending.
+    const std::vector<StoredChunk>& written(int level) const { return of(level).written; }
 
     int64_t all() const;                      ///< chunks
     int64_t stored() const;                   ///< chunks that have a file
@@ -48,7 +53,7 @@ private:
     struct Level {
         ZarrVolume volume;  ///< used for names and places; nothing is read through it
         ZarrVolume loose;   ///< the same array without shards, into which `write` puts chunks
-        std::vector<uint64_t> checksums;
+        std::vector<StoredChunk> written{};
     };
     std::filesystem::path loose_folder() const { return project_ / "shvr" / "chunks"; }
     const Level& of(int level) const { return levels_[size_t(level)]; }
@@ -56,7 +61,9 @@ private:
     std::filesystem::path project_;
     ZarrCompressor compressor_;
     std::vector<Level> levels_;
+    FillVoxel fill_;
     std::vector<std::vector<std::byte>> compressed_;  ///< by worker
+    std::mutex mutex_;                                ///< of `written`
     std::atomic<int64_t> bytes_ = 0;
 };
 

@@ -12,7 +12,7 @@
 #include "engine/formats/zarr/ome_zarr.h"
 #include "engine/formats/zarr/project.h"
 #include "engine/formats/zarr/store/zarr_json.h"
-#include "engine/projects/import_pyramid.h"
+#include "engine/projects/levels/import_pyramid.h"
 #include "engine/projects/part_folder.h"
 
 namespace shvr {
@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 /// Increment when the layout of an import's files or of its state changes.
-constexpr int LAYOUT = 3;
+constexpr int LAYOUT = 4;
 
 /// Chunks per shard along an axis: 512 voxels. So a scan of 2048^3 is 64 files, and a shard's index takes 8 KiB.
 constexpr int64_t SHARD_CHUNKS = 8;
@@ -129,7 +129,7 @@ std::string LabelImage::Journal::checksum_digits() const
 }
 
 ZarrVolume import_level(const fs::path& project, const VolumeInfo& info, int level, OmeZarrVersion version,
-                        const ZarrCompressor& compressor, bool has_shards)
+                        const ZarrCompressor& compressor, bool has_shards, const FillVoxel& fill)
 {
     const Size3 size = size_of_level(info.size, level);
     const bool is_3 = version == OmeZarrVersion::v0_5;
@@ -138,6 +138,7 @@ ZarrVolume import_level(const fs::path& project, const VolumeInfo& info, int lev
                           .shape = {size.z, size.y, size.x},
                           .chunks = {IMPORT_CHUNK, IMPORT_CHUNK, IMPORT_CHUNK},
                           .type = info.type,
+                          .fill = fill,
                           .has_prefix = is_3,
                           .separator = '/',
                           .codecs = {compressor},
@@ -288,12 +289,14 @@ std::string import_session()
     return document.dump(2) + "\n";
 }
 
-std::string import_identity(const VolumeSource& source, const fs::path& origin, const ImportOptions& options)
+std::string import_identity(const VolumeSource& source, const fs::path& origin, const ImportOptions& options,
+                            const char* way)
 {
     const VolumeInfo& info = source.info();
     const auto list = [](const auto& vector) { return Json{vector.x, vector.y, vector.z}; };
     const Json document = {
         {"layout", LAYOUT},
+        {"way", way},
         {"path", origin.string()},
         {"files", signatures_of(origin)},
         {"choice", options.choice},

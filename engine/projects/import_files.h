@@ -5,13 +5,14 @@
 
 #include "engine/formats/zarr/zarr_volume.h"
 #include "engine/projects/import_volume.h"
+#include "engine/projects/levels/import_pyramid.h"
 
 namespace shvr {
 
 /// The array of a level, as it will be written. Only OME-Zarr 0.5 `has_shards`, and only for levels of several chunks:
 /// up to 8 x 8 x 8 chunks in a file, with an index of their positions at the end.
 ZarrVolume import_level(const std::filesystem::path& project, const VolumeInfo& info, int level, OmeZarrVersion version,
-                        const ZarrCompressor& compressor, bool has_shards);
+                        const ZarrCompressor& compressor, bool has_shards, const FillVoxel& fill = {});
 
 /// The attributes of the image, as JSON: the content of .zattrs, or "attributes" of zarr.json. `labels`: additional
 /// attributes of a label image, or null. `folder`: that of the levels within the image, empty or ending with a slash.
@@ -39,8 +40,8 @@ OmeZarrVersion label_image_version(const std::filesystem::path& target, std::opt
 void list_label_image(const std::filesystem::path& target, OmeZarrVersion version);
 
 /// Equal for imports that give equal projects: covers the source (including the names, sizes and times of its files)
-/// and the processing applied to it.
+/// and the processing applied to it. `way`: how the voxels are gone through, on which the state depends.
 std::string import_identity(const VolumeSource& source, const std::filesystem::path& origin,
-                            const ImportOptions& options);
+                            const ImportOptions& options, const char* way);
 
 }  // namespace shvr

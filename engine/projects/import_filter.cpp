@@ -127,6 +127,25 @@ public:
         }
     }
 
+    double bytes(int64_t rows, int64_t slices, int workers) const override
+    {
+        const int64_t rows_held = std::min(rows * factor_, size_.y);
+        const int64_t rows_read = std::min(rows_held + 2 * reach(1), size_.y);
+        const double numbers = double(pitch_) * sizeof(Number<T>);
+        const double plane = numbers * double(rows_held);
+        const double slice = double(size_.x) * double(rows_read) * sizeof(T);
+        const double most = std::min(double(slices * factor_), std::max(1.0, double(PLANE_BYTES) / plane));
+        // Spare planes are those that the blur along z has just left behind. Values that are not finite need the
+        // blurred share of those that are, and the original.
+        const double planes = most + double(factor_ + 4 * reach(2) + 1);
+        const double kinds = std::is_floating_point_v<T> ? 2.0 * plane + slice : plane;
+        const auto at_once = double(std::max<int64_t>(1, box_.block().z));
+        const double read = std::max({double(READ_BYTES), slice, at_once * slice});
+        const double scratch = numbers * double(rows_read) + (std::is_floating_point_v<T> ? slice : 0.0);
+        return planes * kinds + read + double(workers) * scratch +
+               box_.bytes({size_.x, rows_read, std::max<int64_t>(1, box_.block().z)}, workers);
+    }
+
 private:
     int64_t reach(size_t axis) const { return int64_t(weights_[axis].size()) - 1; }
 

@@ -30,6 +30,10 @@ public:
     {
         box_.read({{0, slab.lower_row, slab.lower}, {info().size.x, slab.upper_row, slab.upper}}, voxels, pool);
     }
+    double bytes(int64_t rows, int64_t slices, int workers) const override
+    {
+        return box_.bytes({info().size.x, rows, slices}, workers);
+    }
 
 private:
     ImportBox box_;

@@ -53,6 +53,8 @@ public:
         int64_t lower_row = 0, upper_row = 0;  ///< y
     };
     virtual void read(const Slab& slab, std::span<std::byte> voxels, WorkPool& pool) = 0;
+    /// An upper bound of the memory, in bytes, that reading slabs of that size takes in addition to their voxels.
+    virtual double bytes(int64_t rows, int64_t slices, int workers) const = 0;
 
 protected:
     explicit Preparation(VolumeInfo info) : info_(std::move(info)) {}

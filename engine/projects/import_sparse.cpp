@@ -9,11 +9,11 @@
 #include "engine/formats/zarr/zarr_codec.h"
 #include "engine/projects/atomic_folder.h"
 #include "engine/projects/foreign_content.h"
-#include "engine/projects/import_cube.h"
 #include "engine/projects/import_files.h"
+#include "engine/projects/levels/import_cube.h"
 #include "engine/projects/part_folder.h"
+#include "engine/volume/stored_chunks.h"
 #include "engine/volume/voxel_dispatch.h"
-#include "engine/volume/voxel_walk.h"
 
 namespace shvr {
 namespace {
@@ -27,16 +27,6 @@ constexpr int64_t MIN_GAIN = 8;
 Size3 chunk_counts(const Size3& size)
 {
     return (size + (IMPORT_CHUNK - 1)) / IMPORT_CHUNK;
-}
-
-/// The bits of x, y and z interleaved (Morton 1966): chunks below one of a coarser level are adjacent. Chunks of
-/// MAX_SIDE voxels have 14 bits a side.
-uint64_t interleaved(const Size3& chunk)
-{
-    uint64_t key = 0;
-    for (int bit = 0; bit < 20; ++bit)
-        for (int axis = 0; axis < 3; ++axis) key |= (uint64_t(chunk[axis]) >> bit & 1) << (3 * bit + axis);
-    return key;
 }
 
 Size3 ancestor(const Size3& chunk, int levels)
@@ -265,22 +255,11 @@ std::optional<std::vector<Size3>> stored_chunks(const VolumeSource& source)
     const Size3& size = source.info().size;
     const std::optional<StoredBlocks> stored = source.stored_blocks(0, MAX_STORED_BLOCKS);
     if (!stored || stored->fill != 0.0) return std::nullopt;
+    const std::optional<std::vector<uint64_t>> keys =
+        chunk_keys(*stored, size, {Size3(0), size}, 64 * MAX_STORED_BLOCKS);
+    if (!keys) return std::nullopt;
     std::vector<Size3> chunks;
-    for (const glm::ivec3& block : stored->blocks) {
-        const VoxelBox box = box_of_block(*stored, block, size);
-        const Size3 lower = box.lower / IMPORT_CHUNK, upper = chunk_counts(box.upper);
-        for (int64_t z = lower.z; z < upper.z; ++z)
-            for (int64_t y = lower.y; y < upper.y; ++y)
-                for (int64_t x = lower.x; x < upper.x; ++x) {
-                    if (!chunks.empty() && chunks.back() == Size3(x, y, z)) continue;
-                    // Small blocks touch the same chunk again and again.
-                    if (int64_t(chunks.size()) > 64 * MAX_STORED_BLOCKS) return std::nullopt;
-                    chunks.emplace_back(x, y, z);
-                }
-    }
-    std::ranges::sort(chunks, {}, interleaved);
-    const auto repeated = std::ranges::unique(chunks);
-    chunks.erase(repeated.begin(), repeated.end());
+    for (const uint64_t key : *keys) chunks.push_back(uninterleaved(key));
     return chunks;
 }
 

@@ -24,11 +24,49 @@ void count_values(Bytes voxels, std::vector<int64_t>& counts)
 
 }  // namespace
 
+ValueCounts::ValueCounts(VoxelType type, int workers)
+    : type_(type), counts_(size_t(workers), std::vector<int64_t>(values_of(type)))
+{}
+
+void ValueCounts::add(Bytes voxels, int worker)
+{
+    std::vector<int64_t>& counts = counts_[size_t(worker)];
+    if (bytes_of(type_) == 1) count_values<uint8_t>(voxels, counts);
+    if (bytes_of(type_) == 2) count_values<uint16_t>(voxels, counts);
+}
+
+void ValueCounts::add(Bytes voxel, int64_t times, int worker)
+{
+    if (counts_[0].empty()) return;
+    uint16_t bits = 0;
+    std::memcpy(&bits, voxel.data(), bytes_of(type_));
+    counts_[size_t(worker)][bits] += times;
+}
+
+std::vector<int64_t> ValueCounts::total() const
+{
+    std::vector<int64_t> total = counts_[0];
+    for (size_t worker = 1; worker < counts_.size(); ++worker) {
+        for (size_t value = 0; value < total.size(); ++value) total[value] += counts_[worker][value];
+    }
+    return total;
+}
+
+std::optional<VolumeStatistics> ValueCounts::statistics() const
+{
+    const std::vector<int64_t> counts = total();
+    if (counts.empty()) return std::nullopt;
+    const bool is_signed = type_ == VoxelType::int8 || type_ == VoxelType::int16;
+    if (!is_signed) return statistics_of(counts, 0);
+    // In the order of their bits, negative values come after the others.
+    const auto half = std::ptrdiff_t(counts.size() / 2);
+    std::vector<int64_t> ascending(counts.begin() + half, counts.end());
+    ascending.insert(ascending.end(), counts.begin(), counts.begin() + half);
+    return statistics_of(ascending, -int(half));
+}
+
 ImportTally::ImportTally(const VolumeInfo& info, int64_t slices_at_once, int workers)
-    : type_(info.type),
-      hashes_(size_t(info.size.z)),
-      hashers_(size_t(slices_at_once)),
-      counts_(size_t(workers), std::vector<int64_t>(values_of(info.type)))
+    : hashes_(size_t(info.size.z)), hashers_(size_t(slices_at_once)), counts_(info.type, workers)
 {}
 
 SliceHasher& ImportTally::hasher_of(int64_t slice)
@@ -39,9 +77,7 @@ SliceHasher& ImportTally::hasher_of(int64_t slice)
 void ImportTally::add(int64_t slice, Bytes rows, int worker)
 {
     hasher_of(slice).add(rows);
-    std::vector<int64_t>& counts = counts_[size_t(worker)];
-    if (bytes_of(type_) == 1) count_values<uint8_t>(rows, counts);
-    if (bytes_of(type_) == 2) count_values<uint16_t>(rows, counts);
+    counts_.add(rows, worker);
 }
 
 void ImportTally::finish(int64_t lower, int64_t upper)
@@ -56,38 +92,16 @@ std::string ImportTally::content_hash() const
     return shvr::content_hash(hashes_);
 }
 
-std::vector<int64_t> ImportTally::total_counts() const
-{
-    std::vector<int64_t> total = counts_[0];
-    for (size_t worker = 1; worker < counts_.size(); ++worker) {
-        for (size_t value = 0; value < total.size(); ++value) total[value] += counts_[worker][value];
-    }
-    return total;
-}
-
-std::optional<VolumeStatistics> ImportTally::statistics() const
-{
-    const std::vector<int64_t> counts = total_counts();
-    if (counts.empty()) return std::nullopt;
-    const bool is_signed = type_ == VoxelType::int8 || type_ == VoxelType::int16;
-    if (!is_signed) return statistics_of(counts, 0);
-    // In the order of their bits, negative values come after the others.
-    const auto half = std::ptrdiff_t(counts.size() / 2);
-    std::vector<int64_t> ascending(counts.begin() + half, counts.end());
-    ascending.insert(ascending.end(), counts.begin(), counts.begin() + half);
-    return statistics_of(ascending, -int(half));
-}
-
 void ImportTally::save(StateWriter& state) const
 {
     state.put_all(hashes_);
-    state.put_all(total_counts());
+    counts_.save(state);
 }
 
 void ImportTally::load(StateReader& state)
 {
     state.take_all(hashes_);
-    state.take_all(counts_[0]);
+    counts_.load(state);
 }
 
 }  // namespace shvr

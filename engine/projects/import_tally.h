@@ -8,11 +8,31 @@
 #include <string>
 #include <vector>
 
-#include "engine/projects/import_state.h"
+#include "engine/projects/levels/import_state.h"
 #include "engine/volume/content_hash.h"
 #include "engine/volume/source.h"
 
 namespace shvr {
+
+/// How often each value occurs, for types of 8 and 16 bits; for others it counts nothing. Different workers may add at
+/// once.
+class ValueCounts {
+public:
+    ValueCounts(VoxelType type, int workers);
+    void add(std::span<const std::byte> voxels, int worker);
+    /// Voxels that are not gone through one by one.
+    void add(std::span<const std::byte> voxel, int64_t times, int worker);
+    /// Null if the type has too many values to count each.
+    std::optional<VolumeStatistics> statistics() const;
+    void save(StateWriter& state) const { state.put_all(total()); }
+    void load(StateReader& state) { state.take_all(counts_[0]); }
+
+private:
+    std::vector<int64_t> total() const;
+
+    VoxelType type_;
+    std::vector<std::vector<int64_t>> counts_;  ///< by worker, then by the value's bits
+};
 
 class ImportTally {
 public:
@@ -26,22 +46,18 @@ public:
 
     /// The hash of the whole volume, once all slices are finished.
     std::string content_hash() const;
-    /// Null if the type has too many values to count each.
-    std::optional<VolumeStatistics> statistics() const;
+    std::optional<VolumeStatistics> statistics() const { return counts_.statistics(); }
 
     /// Only while no slice is partly added.
     void save(StateWriter& state) const;
     void load(StateReader& state);
 
 private:
-    std::vector<int64_t> total_counts() const;
     SliceHasher& hasher_of(int64_t slice);
 
-    VoxelType type_;
     std::vector<SliceHash> hashes_;     ///< by slice
     std::vector<SliceHasher> hashers_;  ///< hashers of unfinished slices, by slice number modulo their number
-    std::vector<std::vector<int64_t>>
-        counts_;  ///< counts by worker, then by the value's bits; empty if the type has too many values
+    ValueCounts counts_;
 };
 
 }  // namespace shvr

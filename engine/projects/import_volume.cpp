@@ -1,9 +1,7 @@
 #include "engine/projects/import_volume.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <thread>
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
@@ -14,10 +12,11 @@
 #include "engine/projects/import_box.h"
 #include "engine/projects/import_chunks.h"
 #include "engine/projects/import_files.h"
-#include "engine/projects/import_pyramid.h"
+#include "engine/projects/import_pass.h"
+#include "engine/projects/import_plan.h"
 #include "engine/projects/import_sparse.h"
-#include "engine/projects/import_tally.h"
 #include "engine/projects/part_folder.h"
+#include "engine/volume/voxel_numbers.h"
 
 namespace shvr {
 namespace {
@@ -26,19 +25,12 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using Bytes = std::span<const std::byte>;
 
-/// Rows of a slab of 64 slices held at once, twice: one batch is read while the previous one is compressed.
-constexpr int64_t SLAB_BYTES = int64_t{64} << 20;
 /// The state is written each time this multiple of its writing time has passed, so that it costs 5 %.
 constexpr double STATE_INTERVAL = 20.0;
 
 double seconds_since(Clock::time_point begin)
 {
     return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
-int thread_count(int wanted)
-{
-    return wanted > 0 ? wanted : std::max(1, int(std::thread::hardware_concurrency()));
 }
 
 /// Refuses processing that would create new label numbers.
@@ -66,21 +58,19 @@ public:
         };
     }
 
-    /// Refuses sizes that would be too large; reads nothing.
-    static void check_size(const VolumeSource& source, const fs::path& project, PreparationOptions preparation)
-    {
-        preparation.reverse = false;  // not measured here, since that would require a pass over all voxels
-        static_cast<void>(checked(make_preparation(source, preparation)->info(), project));
-    }
-
-    Import(const VolumeSource& source, const fs::path& origin, const fs::path& project, const ImportOptions& options)
-        : origin_(fs::absolute(origin).lexically_normal()),
+    Import(const VolumeSource& source, const fs::path& origin, const fs::path& project, const ImportOptions& options,
+           const ImportPlan& plan)
+        : source_(source),
+          origin_(fs::absolute(origin).lexically_normal()),
           options_(options),
+          plan_(plan),
           preparation_(make_preparation(source, options.preparation, looking(options))),
-          info_(checked(preparation_->info(), project)),
-          identity_(options.label_image ? std::string() : import_identity(source, origin_, options)),
+          info_(preparation_->info()),
+          identity_(options.label_image
+                        ? std::string()
+                        : import_identity(source, origin_, options, plan.stored ? "stored chunks" : "all voxels")),
           folder_(project, options.overwrites),
-          threads_(thread_count(options.threads)),
+          threads_(import_threads(options.threads)),
           pool_(
               threads_, [this] { poll(); }, [this] { stop_where_asked(); })
     {
@@ -93,32 +83,11 @@ public:
 
     ImportReport run()
     {
-        const auto voxel_bytes = int64_t(bytes_of(info_.type));
-        const int64_t rows = SLAB_BYTES / (IMPORT_CHUNK * info_.size.x * voxel_bytes) / IMPORT_CHUNK * IMPORT_CHUNK;
-        rows_ = std::clamp(rows, std::min(IMPORT_CHUNK, info_.size.y), info_.size.y);
-        const int64_t bands = (info_.size.y + rows_ - 1) / rows_;
-        const int64_t slabs = (info_.size.z + IMPORT_CHUNK - 1) / IMPORT_CHUNK;
-        chunks_of_plane_ = counts(0).x * counts(0).y;
-        chunks_done_ = slabs_done_ * chunks_of_plane_;
-        chunks_at_start_ = chunks_done_;
         write_level_metadata();
         begin_ = Clock::now();
-
-        const auto slab_of = [&](int64_t step) {
-            const int64_t z = step / bands * IMPORT_CHUNK;
-            const int64_t y = step % bands * rows_;
-            return Preparation::Slab{z, std::min(info_.size.z, z + IMPORT_CHUNK), y, std::min(info_.size.y, y + rows_)};
-        };
-        const int64_t first = slabs_done_ * bands;
-        for (int64_t step = first; step < slabs * bands; ++step) {
-            const auto place = size_t(step % 2);
-            if (step == first) read(slab_of(step), place);
-            const auto batch = start(slab_of(step), place);
-            if (step + 1 < slabs * bands) read(slab_of(step + 1), 1 - place);
-            pool_.wait(batch);
-            if (step % bands == bands - 1) finish_slab(step / bands, slabs);
-        }
-        finish_levels();
+        done_at_start_ = pass_->done();
+        pass_->run({.is_due = [this] { return is_state_due(); }, .keep = [this] { keep_state(); }});
+        chunks_->finish();
         pack_shards();
         write_attributes();
         if (!options_.label_image) write_knowledge();
@@ -127,73 +96,31 @@ public:
     }
 
 private:
-    /// Checks before anything is allocated or read.
-    static const VolumeInfo& checked(const VolumeInfo& info, const fs::path& project)
+    // ---- State kept between runs ----
+
+    void begin_anew()
     {
-        static_cast<void>(voxel_count(info));
-        try {
-            check_tables(project, info);
-        } catch (const Error& error) {
-            fail(project.string(), ": would have ", info.size.x, " x ", info.size.y, " x ", info.size.z,
-                 " voxels, and a project keeps the range of every brick and the checksum of every chunk, also where ",
-                 "nothing is stored (", error.what(), "): use --crop or --downscale");
-        }
-        return info;
+        const int levels = level_count(info_.size);
+        pass_.reset();
+        chunks_ = std::make_unique<ImportChunks>(folder_.path(), info_, levels, version(), options_.compressor,
+                                                 options_.has_shards, threads_ + 1, plan_.fill);
+        const ImportSetup setup{.info = info_,
+                                .halving = options_.halving,
+                                .fill = plan_.fill,
+                                .threads = threads_,
+                                .chunks = *chunks_,
+                                .pool = pool_};
+        const Size3 first = options_.preparation.crop ? options_.preparation.crop->lower : Size3(0);
+        pass_ = plan_.stored ? make_sparse_pass(source_, first, *plan_.stored, setup)
+                             : make_dense_pass(*preparation_, setup);
     }
 
-    // ---- One slab ----
-
-    void read(const Preparation::Slab& slab, size_t place)
+    bool is_state_due() const
     {
-        const int64_t voxels = info_.size.x * (slab.upper_row - slab.lower_row) * (slab.upper - slab.lower);
-        buffers_[place].resize(size_t(voxels) * bytes_of(info_.type));
-        preparation_->read(slab, buffers_[place], pool_);
+        return !options_.label_image && seconds_since(state_written_) >= STATE_INTERVAL * state_seconds_;
     }
-
-    /// Starts writing chunks and levels, and hashing and counting slices.
-    std::shared_ptr<WorkPool::Batch> start(const Preparation::Slab& slab, size_t place)
+    void keep_state()
     {
-        const std::byte* const voxels = buffers_[place].data();
-        const size_t row_bytes = size_t(info_.size.x) * bytes_of(info_.type);
-        const size_t slice_bytes = row_bytes * size_t(slab.upper_row - slab.lower_row);
-        const int64_t along_x = counts(0).x;
-        const int64_t along_y = (slab.upper_row - slab.lower_row + IMPORT_CHUNK - 1) / IMPORT_CHUNK;
-        const int64_t chunks = along_x * along_y;
-        const auto run = [=, this](int64_t task, int worker) {
-            if (task >= chunks) {
-                const auto slice = size_t(task - chunks);
-                tally_->add(slab.lower + task - chunks, Bytes(voxels + slice * slice_bytes, slice_bytes), worker);
-                return;
-            }
-            const Size3 chunk{task % along_x, slab.lower_row / IMPORT_CHUNK + task / along_x,
-                              slab.lower / IMPORT_CHUNK};
-            const Size3 origin = chunk * IMPORT_CHUNK;
-            const size_t first =
-                size_t(origin.y - slab.lower_row) * row_bytes + size_t(origin.x) * bytes_of(info_.type);
-            const ImportPyramid::Chunk taken{.origin = origin,
-                                             .extent = glm::min(Size3(IMPORT_CHUNK), info_.size - origin),
-                                             .voxels = voxels + first,
-                                             .row_bytes = row_bytes,
-                                             .slice_bytes = slice_bytes};
-            chunks_->write(0, chunk, pyramid_->add(taken, worker), worker);
-            ++chunks_done_;
-        };
-        return pool_.start(chunks + slab.upper - slab.lower, run);
-    }
-
-    void finish_slab(int64_t slab, int64_t slabs)
-    {
-        const int64_t slices = std::min(info_.size.z, (slab + 1) * IMPORT_CHUNK);
-        tally_->finish(slab * IMPORT_CHUNK, slices);
-        for (int level = 1; level < pyramid_->levels(); ++level) {
-            if (!pyramid_->completes_layer(level, slices)) continue;
-            write_layer(level, (size_of_level(Size3(slices), level).z - 1) / IMPORT_CHUNK);
-            pyramid_->clear_layer(level);
-        }
-        slabs_done_ = slab + 1;
-        if (slabs_done_ == slabs || options_.label_image ||
-            seconds_since(state_written_) < STATE_INTERVAL * state_seconds_)
-            return;
         const Clock::time_point begin = Clock::now();
         folder_.sync();
         write_state();
@@ -201,35 +128,13 @@ private:
         state_seconds_ = seconds_since(begin);
     }
 
-    void write_layer(int level, int64_t layer)
-    {
-        const Size3 chunks = counts(level);
-        pool_.run(chunks.x * chunks.y, [&](int64_t task, int worker) {
-            const Size3 chunk{task % chunks.x, task / chunks.x, layer};
-            chunks_->write(level, chunk, pyramid_->gather(level, chunk, worker), worker);
-        });
-    }
-
-    // ---- State kept between runs ----
-
-    void begin_anew()
-    {
-        pyramid_ = make_import_pyramid(info_.size, info_.type, threads_, options_.halving);
-        chunks_ = std::make_unique<ImportChunks>(folder_.path(), info_, pyramid_->levels(), version(),
-                                                 options_.compressor, options_.has_shards, threads_);
-        tally_ = std::make_unique<ImportTally>(info_, IMPORT_CHUNK, threads_);
-        slabs_done_ = 0;
-    }
-
     /// Written last: everything that it refers to is already on disk.
     void write_state()
     {
         StateWriter state;
         state.put(identity_);
-        state.put_all(std::vector<int64_t>{slabs_done_});
-        tally_->save(state);
+        pass_->save(state);
         chunks_->save(state);
-        pyramid_->save(state);
         state.write(folder_.state());
     }
 
@@ -245,8 +150,9 @@ private:
             try {
                 StateReader state(folder_.state());
                 if (state.take_text() == identity_) {
-                    load_state(state);
-                    return slabs_done_ > 0;
+                    pass_->load(state);
+                    chunks_->load(state);
+                    return pass_->is_begun();
                 }
                 report_.warnings.push_back(
                     sentence(folder_.path().string(),
@@ -261,38 +167,22 @@ private:
         return false;
     }
 
-    void load_state(StateReader& state)
-    {
-        std::vector<int64_t> slabs(1);
-        state.take_all(slabs);
-        tally_->load(state);
-        chunks_->load(state);
-        pyramid_->load(state);
-        slabs_done_ = slabs[0];
-    }
-
     // ---- The rest of the folder ----
 
     void write_level_metadata()
     {
-        for (int level = 0; level < pyramid_->levels(); ++level) {
+        for (int level = 0; level < chunks_->levels(); ++level) {
             write_text(sentence(level, "/", chunks_->metadata(level).key()), to_text(chunks_->metadata(level)));
-        }
-    }
-
-    void finish_levels()
-    {
-        pyramid_->finish();
-        for (int level = IMPORT_REACH; level < pyramid_->levels(); ++level) {
-            for (int64_t layer = 0; layer < counts(level).z; ++layer) write_layer(level, layer);
         }
     }
 
     /// Chunks have separate files until all are written: a shard spans many slabs, and is not changed once written.
     void pack_shards()
     {
-        for (int level = 0; level < pyramid_->levels(); ++level)
-            pool_.run(chunks_->shards(level), [&](int64_t shard, int) { chunks_->pack(level, shard); });
+        for (int level = 0; level < chunks_->levels(); ++level) {
+            const std::vector<int64_t> shards = chunks_->shards(level);
+            pool_.run(int64_t(shards.size()), [&](int64_t task, int) { chunks_->pack(level, shards[size_t(task)]); });
+        }
         chunks_->remove_loose();
     }
 
@@ -300,42 +190,48 @@ private:
     {
         const LabelImage* labels = options_.label_image ? &*options_.label_image : nullptr;
         const std::string attributes =
-            import_attributes(version(), folder_.name(), info_, pyramid_->levels(), options_.halving, labels);
+            import_attributes(version(), folder_.name(), info_, chunks_->levels(), options_.halving, labels);
         for (const auto& [name, text] : group_files(version(), attributes)) write_text(name, text);
     }
 
     void write_knowledge()
     {
-        for (int level = 0; level < pyramid_->levels(); ++level) {
-            write(ranges_path({}, level), to_bytes({.kind = "ranges",
-                                                    .level = level,
-                                                    .element_bytes = 2 * bytes_of(info_.type),
-                                                    .counts = size_of_level(size_of_level(info_.size, level), 5),
-                                                    .elements = pyramid_->ranges(level)}));
-            const Bytes checksums = std::as_bytes(std::span(chunks_->checksums(level)));
-            write(checksums_path({}, level), to_bytes({.kind = "checksum",
-                                                       .level = level,
-                                                       .element_bytes = sizeof(uint64_t),
-                                                       .counts = counts(level),
-                                                       .elements = {checksums.begin(), checksums.end()}}));
+        for (int level = 0; level < chunks_->levels(); ++level) {
+            write(ranges_path({}, level), to_bytes(pass_->ranges(level)));
+            write(checksums_path({}, level), to_bytes(checksums(level)));
         }
-        ProjectRecord record{.info = info_, .levels = pyramid_->levels()};
+        ProjectRecord record{.info = info_, .levels = chunks_->levels()};
         // Types with too many values to count each are measured in the written project, without the source.
-        const std::optional<VolumeStatistics> counted = tally_->statistics();
+        const std::optional<VolumeStatistics> counted = pass_->statistics();
         record.statistics = counted ? *counted
                                     : measure(*open_ome_zarr(folder_.path(), {}),
                                               {.exact = true, .progress = [this](double) { stop_where_asked(); }});
-        record.content_hash = tally_->content_hash();
+        record.content_hash = pass_->content_hash();
         record.source = origin_.string();
         record.preparation = to_text(options_.preparation);
+        load_voxels(info_.type, plan_.fill.data(), std::span(&record.fill, 1));
         write_text(PROJECT_RECORD, to_text(record));
         write_text(PROJECT_SESSION, import_session());
+    }
+
+    ProjectTable checksums(int level) const
+    {
+        const Size3 counts = size_of_level(size_of_level(info_.size, level), IMPORT_REACH);
+        ProjectTable table{.kind = "checksum", .level = level, .element_bytes = sizeof(uint64_t), .counts = counts};
+        table.is_sparse = true;
+        table.elements.resize(sizeof(uint64_t));
+        for (const StoredChunk& chunk : chunks_->written(level)) {
+            table.keys.push_back(chunk.index);
+            const auto bytes = std::as_bytes(std::span(&chunk.checksum, 1));
+            table.elements.insert(table.elements.end(), bytes.begin(), bytes.end());
+        }
+        return stored_form(std::move(table), has_small_tables(info_));
     }
 
     void finish_folder()
     {
         report_.info = info_;
-        report_.levels = pyramid_->levels();
+        report_.levels = chunks_->levels();
         report_.bricks = chunks_->all();
         report_.bricks_stored = chunks_->stored();
         report_.bytes = chunks_->bytes() + other_bytes_;
@@ -362,22 +258,21 @@ private:
         stop_where_asked();
         if (!options_.progress || seconds_since(told_) < 0.1) return;
         told_ = Clock::now();
-        const auto all = double(chunks_of_plane_ * counts(0).z);
-        const auto done = double(chunks_done_ - chunks_at_start_);
-        const auto left = all - double(chunks_done_);
+        const auto all = double(pass_->all()), all_done = double(pass_->done());
+        const double done = all_done - double(done_at_start_);
         const double seconds = seconds_since(begin_);
         if (!(all > 0.0) || !(done > 0.0)) return;
-        const auto voxels = double(voxel_count(info_));
-        options_.progress({.fraction = double(chunks_done_) / all,
-                           .voxels_per_second = done / all * voxels / seconds,
-                           .seconds_left = left / done * seconds});
+        options_.progress({.fraction = all_done / all,
+                           .voxels_per_second = done / all * pass_->voxels() / seconds,
+                           .seconds_left = (all - all_done) / done * seconds});
     }
 
-    Size3 counts(int level) const { return chunks_->counts(level); }
     OmeZarrVersion version() const { return options_.version.value_or(OmeZarrVersion::v0_4); }
 
+    const VolumeSource& source_;
     fs::path origin_;
     const ImportOptions& options_;
+    const ImportPlan& plan_;
     std::unique_ptr<Preparation> preparation_;
     VolumeInfo info_;
     std::string identity_;
@@ -385,17 +280,10 @@ private:
     int threads_;
     ImportReport report_;
 
-    std::unique_ptr<ImportPyramid> pyramid_;
     std::unique_ptr<ImportChunks> chunks_;
-    std::unique_ptr<ImportTally> tally_;
-    int64_t slabs_done_ = 0;
+    std::unique_ptr<ImportPass> pass_;
     int64_t other_bytes_ = 0;  ///< of files other than chunks
-    int64_t rows_ = 0;         ///< rows of a slab held at once
-    std::array<std::vector<std::byte>, 2> buffers_;
-
-    int64_t chunks_of_plane_ = 0;
-    int64_t chunks_at_start_ = 0;
-    std::atomic<int64_t> chunks_done_ = 0;
+    int64_t done_at_start_ = 0;
     Clock::time_point begin_{}, told_{}, state_written_{};
     double state_seconds_ = 0.0;
 
@@ -413,7 +301,9 @@ std::string remains_of(const fs::path& part)
 /// Exports a label image, completely or not at all.
 ImportReport import_all(const VolumeSource& labels, const fs::path& target, const ImportOptions& options)
 {
-    Import job(labels, target, target, options);
+    const ImportPlan plan;
+    check_all_tables(target, labels.info());
+    Import job(labels, target, target, options, plan);
     try {
         return job.run();
     } catch (const ImportStopped&) {
@@ -436,8 +326,8 @@ ImportReport import_volume(const VolumeSource& source, const fs::path& origin, c
                            const ImportOptions& options)
 {
     if (options.halving == Halving::label) check_labels(source.info(), options.preparation);
-    Import::check_size(source, project, options.preparation);
-    Import job(source, origin, project, options);
+    const ImportPlan plan = plan_import(source, project, options);
+    Import job(source, origin, project, options, plan);
     constexpr const char* GOES_ON = ", and the same command goes on from there; rm -r removes it";
     const fs::path part = job.folder();
     try {

@@ -66,6 +66,7 @@ struct ImportOptions {
     bool overwrites = false;
     std::optional<LabelImage> label_image{};  ///< with Halving::label; see export_label_image
     int threads = 0;                          ///< 0: one per core
+    int64_t budget_host_bytes = 0;            ///< 0: three quarters of the machine's memory; see import_memory.h
     ZarrCompressor compressor{.kind = ZarrCompressor::Kind::blosc};
     /// Null: 0.4; for label images, the version of their image, or else of the label image they replace.
     std::optional<OmeZarrVersion> version{};

@@ -13,6 +13,8 @@ namespace shvr {
 
 namespace {
 
+constexpr int64_t MAX_BUDGET_MIB = int64_t{1} << 24;
+
 void crop_fields(Fields& f, VoxelBox& crop)
 {
     const auto corner = [&](const char* name, Size3& voxel, const About& about) {
@@ -123,6 +125,8 @@ void fields(Fields& f, ImportTask& task)
     f.flag("overwrite", task.overwrite,
            {"a project that is there is replaced, with all annotations in it, once the new one is complete"});
     threads_field(f, task.threads);
+    f.whole("budget_host_mib", task.budget_host_mib, 0, MAX_BUDGET_MIB,
+            {"memory that it may take, in MiB; 0: three quarters of the machine's"});
 }
 
 void check(const ImportTask& task)
@@ -145,6 +149,9 @@ void check(const ImportTask& task)
                 ? "--shards is given without --ome-zarr 0.5; expected both, since OME-Zarr 0.4 has no shards"
                 : "shards is true without ome_zarr 0.5; expected both, since OME-Zarr 0.4 has no shards");
     check_threads(task.threads, task.names);
+    if (task.budget_host_mib < 0 || task.budget_host_mib > MAX_BUDGET_MIB)
+        throw UsageError(sentence(name("budget_host_mib"), " is ", task.budget_host_mib, "; expected 0 to ",
+                                  MAX_BUDGET_MIB, " MiB"));
     if (task.volume.empty() || task.project.empty())
         throw UsageError(sentence("no ", name(task.volume.empty() ? "volume" : "project"), " is given; expected both"));
 }
@@ -173,6 +180,7 @@ ImportResult run(const ImportTask& task, ProgressReporter& reporter)
                                                   task.choice.level > 0 ? sentence("\nlevel ", task.choice.level) : ""),
                                .overwrites = task.overwrite,
                                .threads = task.threads,
+                               .budget_host_bytes = task.budget_host_mib << 20,
                                .version = task.version,
                                .has_shards = task.shards,
                                .progress = [&](const ImportProgress& progress) { listener.take(progress); },

@@ -21,6 +21,7 @@ struct ImportTask {
     bool shards = false;  ///< version 0.5 only: many chunks per file
     bool overwrite = false;
     int threads = 0;
+    int64_t budget_host_mib = 0;  ///< memory that it may take; 0: three quarters of the machine's
 
     std::string program = "shvr import";    ///< shown to other processes that want the project being replaced
     OptionNames names = OptionNames::keys;  ///< in messages; these two are not options

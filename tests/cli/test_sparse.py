@@ -1,6 +1,7 @@
 """Sparse and huge volumes: work costs what is stored, sizes decide before voxels are read, and estimates are stated."""
 import json
 import os
+import shutil
 import unittest
 
 from harness import CliTest
@@ -106,17 +107,98 @@ class Sparse(CliTest):
                                says=["or .zarr, which holds what is stored alone", "leave out --output"])
             self.assertFalse((self.folder / name).exists())
 
-    def test_a_project_of_2_to_the_20_a_side_is_refused_before_any_work_and_a_part_of_it_is_made(self):
+    def test_all_voxels_of_2_to_the_20_a_side_are_refused_before_any_work_and_a_part_of_them_is_imported(self):
         volume = write_sparse(self.folder / "sparse", HUGE, [(5, 6, 7)])
-        for more in ((), ("--reverse",), ("--labels",)):
-            self.check_refused("import", volume, self.folder / "project", *more,
-                               says=["a project keeps the range of every brick", "expected", "--crop"])
+        for more in ("--reverse",), ("--blur", "1"), ("--downscale", "2"):
+            self.check_refused("import", volume, self.folder / "project", *more, "--budget-host", "4096",
+                               says=["takes up to", "of memory; expected at most 4096 MiB", "--crop", "--downscale"])
             self.assertEqual([path.name for path in self.folder.iterdir()], ["sparse"])
         part = self.check_json("import", volume, self.folder / "project", "--crop", "128,160,192,224,256,288",
                                "--reverse")
         self.assertEqual(part["size"], [96, 96, 96])
         info = self.check_json("info", self.folder / "project")
         self.assertEqual((info["min"], info["max"], info["histogram"][0]), (0, 200, CHUNK ** 3))
+
+    def test_a_project_of_2_to_the_20_a_side_is_imported_painted_measured_and_drawn(self):
+        volume, project = write_sparse(self.folder / "sparse", HUGE, [(HUGE // CHUNK - 2, 6, 7)]), self.folder / "project"
+        report = self.check_json("import", volume, project, "--budget-host", "512")
+        self.assertEqual((report["size"], report["levels"], report["warnings"]), ([HUGE] * 3, 16, []))
+        self.assertLess(report["bytes"], 1 << 20)
+        self.assertLess(report["peak_rss_mib"], 512)
+        info = self.check_json("info", project)
+        self.assertEqual((info["statistics"], info["min"], info["max"]), ("exact", 0, 200))
+        self.assertEqual(info["mean"], 200 * CHUNK ** 3 / HUGE ** 3)
+        place = [HUGE - 1.5 * CHUNK, 6.5 * CHUNK, 7.5 * CHUNK]
+        script = self.folder / "strokes.jsonl"
+        script.write_text("".join(json.dumps(line) + "\n" for line in (
+            {"op": "paint", "brush": "fill", "region": "box", "group": 3, "threshold": 100, "radius": 4,
+             "path": [place]}, {"op": "save"})))
+        painted = self.check_json("annotate", project, "--script", script)["voxels_changed"]
+        self.assertGreater(painted, 100)
+        exported = self.check_json("export", project, "--metrics", self.folder / "m.csv", "--mask",
+                                   self.folder / "mask.zarr")
+        self.assertEqual(exported["voxels_by_group"], {"3": painted})
+        rows = self.picture_of(project, place, 2 * CHUNK)
+        self.assertEqual(rows[16][16], (255, 0, 0))
+        self.assertEqual(self.check_json("label", project, "--threshold", "100")["foreground_voxels"], CHUNK ** 3)
+
+    def test_a_volume_with_another_fill_value_keeps_it(self):
+        volume, project = write_sparse(self.folder / "sparse", HUGE, [(5, 6, 7)], fill=7), self.folder / "project"
+        self.check_json("import", volume, project)
+        self.assertEqual(json.loads((project / "3/.zarray").read_text())["fill_value"], 7)
+        info = self.check_json("info", project)
+        self.assertEqual((info["min"], info["max"]), (7, 200))
+        self.assertNotIn("fill_value", " ".join(info["warnings"]))
+
+    def test_an_import_that_would_exceed_its_budget_is_refused_and_one_that_fits_keeps_to_it(self):
+        volume = write_sparse(self.folder / "sparse", 512, [(x, y, z) for x in range(16) for y in range(16)
+                                                            for z in range(0, 16, 2)], value=9)
+        project = self.folder / "project"
+        self.check_refused("import", volume, project, "--budget-host", "64", "--threads", "2",
+                           says=["importing 512 x 512 x 512 voxels of uint8 takes up to", "expected at most 64 MiB",
+                                 "--budget-host"])
+        self.assertFalse(project.exists())
+        report = self.check_json("import", volume, project, "--budget-host", "512", "--threads", "2")
+        self.assertLess(report["peak_rss_mib"], 512)
+
+    # Kind (Sparse volumes): one chunk as large as the volume
+    def test_a_chunk_as_large_as_the_volume_is_refused_by_its_size(self):
+        volume = write_sparse(self.folder / "sparse", HUGE, [(0, 0, 0)])
+        array = volume / "0/.zarray"
+        array.write_text(json.dumps({**json.loads(array.read_text()), "chunks": [HUGE] * 3}))
+        self.check_refused("import", volume, self.folder / "project", says=["chunks", "256 MiB"])
+        self.assertFalse((self.folder / "project").exists())
+
+    # Kind (Sparse volumes): names of chunks outside the volume
+    def test_chunks_outside_the_volume_are_told_and_left_out(self):
+        volume = write_sparse(self.folder / "sparse", HUGE, [(5, 6, 7)])
+        stray = volume / "0/7/6" / str(HUGE)
+        stray.write_bytes(bytes(CHUNK ** 3))
+        report = self.check_json("import", volume, self.folder / "project")
+        self.assertIn("lies outside the array", " ".join(report["warnings"]))
+        self.assertEqual(self.check_json("info", self.folder / "project")["histogram"][255], CHUNK ** 3)
+
+    # Kind (Sparse volumes): shards whose index is damaged
+    def test_a_damaged_index_of_a_shard_ends_the_import_in_a_sentence(self):
+        volume, shards = write_sparse(self.folder / "sparse", HUGE, [(5, 6, 7)]), self.folder / "shards"
+        first = self.check_json("import", volume, shards, "--ome-zarr", "0.5", "--shards")
+        shutil.rmtree(shards / "shvr")  # an image of another program
+        again = self.check_json("import", shards, self.folder / "project")
+        self.assertEqual(self.check_json("info", self.folder / "project")["histogram"][255], CHUNK ** 3)
+        self.assertEqual(again["bricks_stored"], first["bricks_stored"])
+        shard = next(path for path in (shards / "0/c").rglob("*") if path.is_file())
+        content = bytearray(shard.read_bytes())
+        content[-9] ^= 1
+        shard.write_bytes(content)
+        self.check_refused("import", shards, self.folder / "damaged", says=[str(shard)])
+        self.assertFalse((self.folder / "damaged").exists())
+
+    # Kind (Sparse volumes): a stored chunk that is too short
+    def test_a_damaged_chunk_ends_the_import_in_a_sentence(self):
+        volume = write_sparse(self.folder / "sparse", HUGE, [(5, 6, 7)])
+        (volume / "0/7/6/5").write_bytes(bytes(100))
+        self.check_refused("import", volume, self.folder / "project", says=["0/7/6/5"])
+        self.assertFalse((self.folder / "project").exists())
 
     def test_a_background_at_or_above_the_threshold_is_refused_in_a_sentence(self):
         volume = write_sparse(self.folder / "sparse", HUGE, [(1, 1, 1)], fill=7)

@@ -1,6 +1,6 @@
 // The state from which an interrupted import resumes: such a file or, after a "w", the content of one to be written.
 
-#include "engine/projects/import_state.h"
+#include "engine/projects/levels/import_state.h"
 #include "tests/fuzz/support/attempt.h"
 #include "tests/fuzz/support/input_folder.h"
 

@@ -27,7 +27,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
     // Read as the table of a volume of 2 x 2 x 1 bricks of uint8.
     ProjectTable table;
     if (accepts([&] { table = read_project_table(file, {"ranges", 0, 2, Size3(2, 2, 1)}); })) {
-        expect(table.elements.size() == 8, "a table of another size");
+        expect(table.elements.size() == (table.is_sparse ? 2 * (table.keys.size() + 1) : 8), "a table of another size");
+        for (int64_t brick = 0; brick < 4; ++brick) expect(table.at(brick).size() == 2, "an element of another size");
     }
     return 0;
 }

@@ -157,6 +157,11 @@ void add_spacing_options(CLI::App& command, const std::function<void(const glm::
         ->type_name("UNIT");
 }
 
+void add_host_budget_option(CLI::App& command, Common& common, const std::string& help)
+{
+    command.add_option("--budget-host", common.budget_host_mib, help)->type_name("MIB")->check(whole_mib());
+}
+
 void add_device_options(CLI::App& command, Common& common)
 {
     command.add_option("--device", common.device, "Vulkan device: part of its name, or its index");
@@ -166,9 +171,7 @@ void add_device_options(CLI::App& command, Common& common)
                     "are the same, and faster with more")
         ->type_name("MIB")
         ->check(whole_mib());
-    command.add_option("--budget-host", common.budget_host_mib, "Host memory SHVR may use for bricks and transfers")
-        ->type_name("MIB")
-        ->check(whole_mib());
+    add_host_budget_option(command, common, "Host memory SHVR may use for bricks and transfers");
     add_input_options(command, common);
     command.add_option("--threads", common.threads, "Worker threads; 0: one per core")->check(CLI::Range(0, 1024));
 }

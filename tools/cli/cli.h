@@ -42,6 +42,8 @@ void add_spacing_options(CLI::App& command, const std::function<void(const glm::
                          const std::function<void(const std::string&)>& take_unit);
 /// The input options, and --device, --budget-device, --budget-host, --threads.
 void add_device_options(CLI::App& command, Common& common);
+/// --budget-host
+void add_host_budget_option(CLI::App& command, Common& common, const std::string& help);
 /// --ome-zarr: the version to write; null if it is not given.
 void add_version_option(CLI::App& command, std::optional<OmeZarrVersion>& version, const std::string& otherwise);
 /// --believe, for commands that open annotation.

@@ -85,6 +85,7 @@ void run_import(const ImportCommandOptions& options)
     task.crop = parse_crop(options.crop);
     task.blur_voxels = parse_blur(options.blur);
     task.threads = options.common.threads;
+    task.budget_host_mib = int64_t(options.common.budget_host_mib);
     LongWork work(options.common.quiet);
     const ImportResult result = run(task, work);
     const ImportReport& report = result.report;
@@ -160,6 +161,9 @@ void add_import(CLI::App& program)
                       "Replace the project PROJECT, with all annotations in it, once the new one is complete");
     command->add_option("--threads", options->common.threads, "Worker threads; 0: one per core")
         ->check(CLI::Range(0, 1024));
+    add_host_budget_option(*command, options->common,
+                           "Host memory that the import may take; one that would take more is refused before it "
+                           "begins. Three quarters of the machine's unless given");
     add_output_options(*command, options->common);
     command->footer(
         "The order is: crop, reverse, blur, downscale. An interrupted import continues when it is run again.\n"

@@ -80,7 +80,8 @@ std::optional<MaskJournal> journal_of_mask(const std::filesystem::path& mask)
     }
 }
 
-void check_mask_image(const std::filesystem::path& mask, const std::string& content_hash)
+void check_mask_image(const std::filesystem::path& mask, const std::string& content_hash,
+                      const std::function<bool(const std::string& hash)>& is_other_name)
 {
     if (content_hash.empty()) return;
     std::optional<JsonDocument> document;  // of a file next to the mask
@@ -97,10 +98,10 @@ void check_mask_image(const std::filesystem::path& mask, const std::string& cont
     if (!record.is_object()) record.refuse("an object");
     record["shvr_mask"].whole(VERSION, VERSION);
     const JsonNode image = record.required("image", "the hash of an image");
-    if (!image.is(content_hash))
-        image.refuse(sentence(in_quotes(content_hash),
-                              ", the volume's: the mask was painted on other voxels (without this ",
-                              is_label_image ? "member" : "file", " only its size is compared)"));
+    if (image.is(content_hash) || (image.is_text() && is_other_name && is_other_name(image.any_text()))) return;
+    image.refuse(sentence(in_quotes(content_hash),
+                          ", the volume's: the mask was painted on other voxels (without this ",
+                          is_label_image ? "member" : "file", " only its size is compared)"));
 }
 
 }  // namespace shvr

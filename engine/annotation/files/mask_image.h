@@ -8,6 +8,7 @@
 // older than the mask, or another one.
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -31,7 +32,8 @@ std::optional<MaskJournal> journal_of_mask(const std::filesystem::path& mask);
 std::filesystem::path journal_is_named_in(const std::filesystem::path& mask);
 
 /// Fails if the mask was painted on an image with another hash, or MASK.json is malformed. Accepts an empty hash,
-/// and a mask without MASK.json.
-void check_mask_image(const std::filesystem::path& mask, const std::string& content_hash);
+/// and a mask without MASK.json. `is_other_name`: whether a hash that differs names the same image; empty: none does.
+void check_mask_image(const std::filesystem::path& mask, const std::string& content_hash,
+                      const std::function<bool(const std::string& hash)>& is_other_name = {});
 
 }  // namespace shvr

@@ -138,7 +138,7 @@ LoadNotes load(Part part, const WorkFiles& files, Document& into)
             // Reported first: a mask of another size is also of another image, but the size makes the better message.
             const fs::path& file = file_to_read(files, part);
             ImportedMask mask = import_mask(file, space);
-            check_mask_image(file, files.volume_hash);
+            check_mask_image(file, files.volume_hash, files.is_other_name);
             for (const MaskBrickChange& change : mask.changes) into.mask.apply(change, Direction::forwards);
             return {std::move(mask.losses), std::move(mask.remarks)};
         }

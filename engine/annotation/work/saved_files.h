@@ -23,8 +23,10 @@ struct WorkFiles {
     /// `Work`, which renames `mask` then (saved_mask_path).
     std::filesystem::path mask_to_read{};
     std::string volume_hash{};  ///< Session::volume_hash
-    VolumeInfo volume{};        ///< the annotated volume
-    SettingValues settings{};   ///< the session's, as read from its file
+    /// Whether another hash names the same voxels, too, which may read them all; empty: none does.
+    std::function<bool(const std::string& hash)> is_other_name{};
+    VolumeInfo volume{};       ///< the annotated volume
+    SettingValues settings{};  ///< the session's, as read from its file
     /// Settings as this version writes them, so that files and journals of different versions can be compared. Fails if
     /// it cannot read them.
     std::function<SettingValues(const SettingValues&)> normalized{};

@@ -288,8 +288,9 @@ void Work::check_subject() const
     if (found.size != size_ || found.type != type_)
         fail(name, ": is of a volume of ", volume_in_words(found.size, found.type), "; expected ",
              volume_in_words(size_, type_));
-    if (!found.image.empty() && !files_.volume_hash.empty() && found.image != files_.volume_hash)
-        fail(name, ": is of an image with the hash ", found.image, "; expected ", files_.volume_hash);
+    const bool is_named = found.image.empty() || files_.volume_hash.empty() || found.image == files_.volume_hash ||
+                          (files_.is_other_name && files_.is_other_name(found.image));
+    if (!is_named) fail(name, ": is of an image with the hash ", found.image, "; expected ", files_.volume_hash);
 }
 
 // ---- Replaying ------------------------------------------------------------------------------------------------------
@@ -434,7 +435,7 @@ void Work::look_at_file(Part part, std::vector<Notice>& notices)
 void Work::look_at_mask_image(std::vector<Notice>& notices) const
 {
     try {
-        check_mask_image(files_.mask, files_.volume_hash);
+        check_mask_image(files_.mask, files_.volume_hash, files_.is_other_name);
     } catch (const Error& error) {
         notices.push_back({sentence(error.what(), "; the journal ", files_.journal.string(),
                                     " is of this volume and is taken; saving writes this file anew"),

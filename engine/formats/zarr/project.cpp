@@ -3,6 +3,7 @@
 #include <xxhash.h>
 #include <zstd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -83,18 +84,37 @@ void put(std::vector<std::byte>& bytes, const T& value)
     bytes.insert(bytes.end(), first, first + sizeof(T));
 }
 
+constexpr std::string_view SPARSE = "/s";
+
 /// The whole header except its checksum.
 std::vector<std::byte> header_of(const ProjectTable& table, uint64_t frame_bytes)
 {
     std::vector<std::byte> header;
     for (size_t i = 0; i < 8; ++i) put(header, MAGIC[i]);
-    for (size_t i = 0; i < 8; ++i) put(header, i < table.kind.size() ? table.kind[i] : '\0');
+    // "ranges", "checksum", "ranges/s", "checks/s"
+    const std::string kind = table.is_sparse ? table.kind.substr(0, 8 - SPARSE.size()).append(SPARSE) : table.kind;
+    for (size_t i = 0; i < 8; ++i) put(header, i < kind.size() ? kind[i] : '\0');
     put(header, int32_t(table.level));
     put(header, uint32_t(table.element_bytes));
     put(header, table.counts);
     put(header, frame_bytes);
     SHVR_CHECK(header.size() == HEADER_BYTES - sizeof(uint64_t), header.size());
     return header;
+}
+
+/// What is compressed.
+std::vector<std::byte> content_of(const ProjectTable& table)
+{
+    const std::span<const std::byte> elements(table.elements);
+    std::vector<std::byte> content;
+    content.reserve(elements.size() + table.keys.size() * sizeof(uint64_t));
+    const auto add = [&](std::span<const std::byte> bytes) {
+        content.insert(content.end(), bytes.begin(), bytes.end());
+    };
+    add(elements.first(table.element_bytes));
+    add(std::as_bytes(std::span(table.keys)));
+    add(elements.subspan(table.element_bytes));
+    return content;
 }
 
 uint64_t checksum_of(std::span<const std::byte> header, std::span<const std::byte> elements)
@@ -139,7 +159,7 @@ std::string to_text(const ProjectRecord& record)
             measured["bulk"]["fill"].push_back({{"value", fill.value}, {"voxels", fill.voxels}});
     }
     measured["histogram"] = statistics.histogram;
-    const OrderedJson document = {
+    OrderedJson document = {
         {"shvr_volume", VERSION},
         {"source", record.source},
         {"preparation", record.preparation},
@@ -156,6 +176,10 @@ std::string to_text(const ProjectRecord& record)
         {"content_hash", record.content_hash},
         {"statistics", measured},
         {"warnings", info.warnings}};
+    if (std::isnan(record.fill))
+        document["fill"] = "NaN";
+    else if (record.fill != 0.0)
+        document["fill"] = record.fill;
     return document.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
@@ -183,6 +207,8 @@ ProjectRecord read_project_record(const Path& file)
     info.frame = printable(root["frame"].any_text());
     for (const JsonNode& warning : root["warnings"].elements()) info.warnings.push_back(printable(warning.any_text()));
     record.statistics = read_statistics(root["statistics"]);
+    if (const JsonNode fill = root["fill"]; fill.exists())  // older projects have none
+        record.fill = fill.is("NaN") ? std::numeric_limits<double>::quiet_NaN() : fill.number(any_number());
     return record;
 }
 
@@ -205,44 +231,120 @@ void check_tables(const Path& project, const VolumeInfo& info)
                                      {.element_bytes = sizeof(uint64_t), .counts = (info.size + (CHUNK - 1)) / CHUNK}));
 }
 
+std::span<const std::byte> ProjectTable::at(int64_t number) const
+{
+    auto place = size_t(number);
+    if (is_sparse) {
+        const auto found = std::ranges::lower_bound(keys, uint64_t(number));
+        const bool is_listed = found != keys.end() && *found == uint64_t(number);
+        place = is_listed ? size_t(found - keys.begin()) + 1 : 0;
+    }
+    return std::span(elements).subspan(place * element_bytes, element_bytes);
+}
+
+bool is_smaller_as_list(const ProjectTable& table, size_t listed)
+{
+    const auto element_bytes = double(table.element_bytes);
+    const double all = double(table.counts.x) * double(table.counts.y) * double(table.counts.z) * element_bytes;
+    return element_bytes + double(listed) * (element_bytes + sizeof(uint64_t)) < all;
+}
+
+ProjectTable stored_form(ProjectTable sparse, bool is_small)
+{
+    SHVR_CHECK(sparse.is_sparse && sparse.elements.size() == (sparse.keys.size() + 1) * sparse.element_bytes);
+    if (!is_small && is_smaller_as_list(sparse, sparse.keys.size())) return sparse;
+    ProjectTable table{
+        .kind = sparse.kind, .level = sparse.level, .element_bytes = sparse.element_bytes, .counts = sparse.counts};
+    table.elements.resize(size_t(bytes_of_table(sparse.kind, sparse)));
+    const auto put_at = [&](size_t number, size_t place) {
+        std::memcpy(table.elements.data() + number * table.element_bytes,
+                    sparse.elements.data() + place * table.element_bytes, table.element_bytes);
+    };
+    for (size_t number = 0; number * table.element_bytes < table.elements.size(); ++number) put_at(number, 0);
+    for (size_t i = 0; i < sparse.keys.size(); ++i) put_at(size_t(sparse.keys[i]), i + 1);
+    return table;
+}
+
 std::vector<std::byte> to_bytes(const ProjectTable& table)
 {
-    SHVR_CHECK(table.elements.size() == size_t(bytes_of_table(table.kind, table)), table.elements.size());
-    std::vector<std::byte> frame(ZSTD_compressBound(table.elements.size()));
-    const size_t made = ZSTD_compress(frame.data(), frame.size(), table.elements.data(), table.elements.size(), 3);
+    const std::vector<std::byte> listed = table.is_sparse ? content_of(table) : std::vector<std::byte>();
+    const std::vector<std::byte>& content = table.is_sparse ? listed : table.elements;
+    SHVR_CHECK(table.is_sparse || content.size() == size_t(bytes_of_table(table.kind, table)), content.size());
+    std::vector<std::byte> frame(ZSTD_compressBound(content.size()));
+    const size_t made = ZSTD_compress(frame.data(), frame.size(), content.data(), content.size(), 3);
     SHVR_CHECK(ZSTD_isError(made) == 0, ZSTD_getErrorName(made));
     frame.resize(made);
     std::vector<std::byte> bytes = header_of(table, made);
-    put(bytes, checksum_of(bytes, table.elements));
+    put(bytes, checksum_of(bytes, content));
     bytes.insert(bytes.end(), frame.begin(), frame.end());
     return bytes;
 }
 
+namespace {
+
+/// The bytes that the frame says it holds, which must be those of a whole number of elements and keys.
+int64_t bytes_of_list(const Path& file, const ProjectTable& table, std::span<const std::byte> frame)
+{
+    const unsigned long long stated = ZSTD_getFrameContentSize(frame.data(), frame.size());
+    const size_t each = table.element_bytes + sizeof(uint64_t);
+    if (stated > size_t(MAX_TABLE_BYTES) || stated < table.element_bytes || (stated - table.element_bytes) % each != 0)
+        fail(file.string(), ": states no possible length; expected that of a list of ", table.kind);
+    return int64_t(stated);
+}
+
+void split_list(const Path& file, std::span<const std::byte> content, ProjectTable& table)
+{
+    const size_t count = (content.size() - table.element_bytes) / (table.element_bytes + sizeof(uint64_t));
+    table.keys.resize(count);
+    const std::span<const std::byte> keys = content.subspan(table.element_bytes, count * sizeof(uint64_t));
+    if (count > 0) std::memcpy(table.keys.data(), keys.data(), keys.size());
+    table.elements.assign(content.begin(), content.begin() + ptrdiff_t(table.element_bytes));
+    const std::span<const std::byte> listed = content.subspan(table.element_bytes + keys.size());
+    table.elements.insert(table.elements.end(), listed.begin(), listed.end());
+    const auto all = uint64_t(table.counts.x * table.counts.y * table.counts.z);
+    const bool ascends =
+        std::ranges::is_sorted(table.keys) && std::ranges::adjacent_find(table.keys) == table.keys.end();
+    if (!ascends || (count > 0 && table.keys.back() >= all))
+        fail(file.string(), ": lists ", table.kind,
+             " out of order or outside the volume; expected each once, by number");
+}
+
+}  // namespace
+
 ProjectTable read_project_table(const Path& file, const ProjectTable& expected)
 {
-    const int64_t decoded_bytes = bytes_of_table(file, expected);
-    const auto longest = int64_t(HEADER_BYTES + ZSTD_compressBound(size_t(decoded_bytes)));
+    const auto longest = int64_t(HEADER_BYTES + ZSTD_compressBound(size_t(MAX_TABLE_BYTES)));
     const std::vector<std::byte> bytes = read_file(file, longest);
     if (bytes.size() < HEADER_BYTES || std::memcmp(bytes.data(), MAGIC, 8) != 0) {
         fail(file.string(), ": does not begin with ", MAGIC, "; expected a table of a project");
     }
     const std::span<const std::byte> frame = std::span(bytes).subspan(HEADER_BYTES);
-    const std::vector<std::byte> header = header_of(expected, frame.size());
-    if (std::memcmp(bytes.data(), header.data(), header.size()) != 0) {
+    ProjectTable table = expected;
+    const auto is_header = [&](bool is_sparse) {
+        table.is_sparse = is_sparse;
+        const std::vector<std::byte> header = header_of(table, frame.size());
+        return std::memcmp(bytes.data(), header.data(), header.size()) == 0;
+    };
+    if (!is_header(true) && !is_header(false)) {
         fail(file.string(), ": is truncated or of another volume; expected ", expected.kind, " of ", expected.counts.x,
              "x", expected.counts.y, "x", expected.counts.z, " elements");
     }
+    const int64_t decoded_bytes = table.is_sparse ? bytes_of_list(file, table, frame) : bytes_of_table(file, expected);
     if (decoded_bytes / MAX_OUT_OF_A_BYTE > int64_t(frame.size())) {
         fail(file.string(), ": holds ", frame.size(), " compressed bytes; expected enough for ", decoded_bytes);
     }
-    ProjectTable table = expected;
-    table.elements.resize(size_t(decoded_bytes));
-    const size_t made = ZSTD_decompress(table.elements.data(), table.elements.size(), frame.data(), frame.size());
+    std::vector<std::byte> content(size_t(decoded_bytes), std::byte{0});
+    const size_t made = ZSTD_decompress(content.data(), content.size(), frame.data(), frame.size());
     uint64_t checksum = 0;
+    const std::span<const std::byte> header = std::span(bytes).first(HEADER_BYTES - sizeof(checksum));
     std::memcpy(&checksum, bytes.data() + header.size(), sizeof(checksum));
-    if (made != table.elements.size() || checksum != checksum_of(header, table.elements)) {
+    if (made != content.size() || checksum != checksum_of(header, content)) {
         fail(file.string(), ": is damaged; expected a table that matches its checksum");
     }
+    if (table.is_sparse)
+        split_list(file, content, table);
+    else
+        table.elements = std::move(content);
     return table;
 }
 

@@ -1,5 +1,6 @@
 #include "engine/formats/zarr/project_knowledge.h"
 
+#include <cmath>
 #include <cstring>
 
 #include "engine/base/error.h"
@@ -19,6 +20,19 @@ ProjectTable table_for(const VolumeInfo& info, int level)
             .level = level,
             .element_bytes = 2 * bytes_of(info.type),
             .counts = size_of_level(size_of_level(info.size, level), 5)};
+}
+
+/// The chunks that have a checksum other than 0.
+std::vector<StoredChunk> stored_chunks_of(const ProjectTable& table)
+{
+    std::vector<StoredChunk> chunks;
+    const size_t first = table.is_sparse ? 1 : 0;
+    for (size_t place = first; place < table.elements.size() / sizeof(uint64_t); ++place) {
+        StoredChunk chunk{.index = table.is_sparse ? table.keys[place - 1] : place, .checksum = 0};
+        std::memcpy(&chunk.checksum, table.elements.data() + place * sizeof(uint64_t), sizeof(uint64_t));
+        if (chunk.checksum != 0) chunks.push_back(chunk);
+    }
+    return chunks;
 }
 
 template <class Read>
@@ -67,7 +81,8 @@ void check_arrays(const fs::path& folder, const ProjectRecord& record, std::vect
         if (found.chunks != chunks) warn(is_3 ? "chunk_shape" : "chunks", list_of(found.chunks), list_of(chunks));
         if (found.type != record.info.type)
             warn(is_3 ? "data_type" : "dtype", name_of(found.type), name_of(record.info.type));
-        if (fill != 0.0) warn("fill_value", fill, 0);
+        if (fill != record.fill && !(std::isnan(fill) && std::isnan(record.fill)))
+            warn("fill_value", digits_of(fill), digits_of(record.fill));
         if (found.separator != '/')
             warn(is_3 ? "separator" : "dimension_separator", in_quotes(std::string(1, found.separator)), "\"/\"");
     }
@@ -107,10 +122,7 @@ ProjectKnowledge read_project_knowledge(const fs::path& folder, VolumeInfo& info
     for (int level = 0; level < int(volumes.size()); ++level) {
         const auto index = size_t(level);
         try_to(
-            [&] {
-                knowledge.ranges[index] =
-                    read_project_table(ranges_path(folder, level), table_for(info, level)).elements;
-            },
+            [&] { knowledge.ranges[index] = read_project_table(ranges_path(folder, level), table_for(info, level)); },
             damage);
         try_to(
             [&] {
@@ -119,9 +131,7 @@ ProjectKnowledge read_project_knowledge(const fs::path& folder, VolumeInfo& info
                                                                        .level = level,
                                                                        .element_bytes = sizeof(uint64_t),
                                                                        .counts = volumes[index].counts()});
-                std::vector<uint64_t> checksums(table.elements.size() / sizeof(uint64_t));
-                std::memcpy(checksums.data(), table.elements.data(), table.elements.size());
-                volumes[index].expect(std::move(checksums));
+                volumes[index].expect(stored_chunks_of(table));
             },
             damage);
     }
@@ -133,12 +143,9 @@ std::optional<ValueRange> range_of(const ProjectKnowledge& knowledge, const Volu
                                    const Size3& brick)
 {
     const auto index = size_t(level);
-    if (index >= knowledge.ranges.size() || knowledge.ranges[index].empty()) return std::nullopt;
-    const ProjectTable table = table_for(info, level);
-    const int64_t element = brick.x + table.counts.x * (brick.y + table.counts.y * brick.z);
-    return range_of(
-        info.type,
-        std::span(knowledge.ranges[index]).subspan(size_t(element) * table.element_bytes, table.element_bytes));
+    if (index >= knowledge.ranges.size() || !knowledge.ranges[index]) return std::nullopt;
+    const ProjectTable& table = *knowledge.ranges[index];
+    return range_of(info.type, table.at(brick.x + table.counts.x * (brick.y + table.counts.y * brick.z)));
 }
 
 }  // namespace shvr

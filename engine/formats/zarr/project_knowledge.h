@@ -13,7 +13,7 @@ namespace shvr {
 
 struct ProjectKnowledge {
     std::optional<ProjectRecord> record{};
-    std::vector<std::vector<std::byte>> ranges{};  ///< by level; may be empty
+    std::vector<std::optional<ProjectTable>> ranges{};  ///< by level
 };
 
 /// Puts the record's data about the volume into `info`, and sets the checksums that `volumes`, its levels, verify.

@@ -78,12 +78,19 @@ std::filesystem::path ZarrVolume::path_of(const Size3& chunk) const
     return chunks_->path_of(numbers_of(chunk));
 }
 
+uint64_t ZarrVolume::expected_checksum(const Size3& chunk) const
+{
+    const auto index = uint64_t(index_of(chunk));
+    const auto found = std::ranges::lower_bound(*expected_, index, {}, &StoredChunk::index);
+    return found != expected_->end() && found->index == index ? found->checksum : 0;
+}
+
 Block ZarrVolume::load(const Size3& chunk) const
 {
     const std::vector<int64_t> numbers = numbers_of(chunk);
     const auto stored = chunks_->read(numbers);
-    if (!checksums_.empty()) {
-        const uint64_t expected = checksums_[size_t(index_of(chunk))];
+    if (expected_) {
+        const uint64_t expected = expected_checksum(chunk);
         const std::string name = chunks_->name_of(numbers);
         if (!stored && expected != 0) fail(name, ": is missing; expected the chunk that the import wrote");
         if (stored && checksum_of(*stored) != expected)
@@ -100,13 +107,13 @@ Block ZarrVolume::load(const Size3& chunk) const
 
 bool ZarrVolume::is_missing(const Size3& chunk) const
 {
-    if (!checksums_.empty()) return checksums_[size_t(index_of(chunk))] == 0;
+    if (expected_) return expected_checksum(chunk) == 0;
     return chunks_->is_missing(numbers_of(chunk));
 }
 
 bool ZarrVolume::list_stored(int64_t most, const std::function<void(const Size3&)>& take) const
 {
-    if (checksums_.empty()) {
+    if (!expected_) {
         std::vector<std::optional<int64_t>> at(view_.at.size());
         for (size_t axis = 0; axis < at.size(); ++axis) {
             const bool is_of_volume = std::ranges::find(view_.xyz, axis) != view_.xyz.end();
@@ -116,10 +123,9 @@ bool ZarrVolume::list_stored(int64_t most, const std::function<void(const Size3&
             take({numbers[view_.xyz[0]], numbers[view_.xyz[1]], numbers[view_.xyz[2]]});
         });
     }
-    for (size_t i = 0; i < checksums_.size(); ++i) {
-        if (checksums_[i] == 0) continue;
+    for (const StoredChunk& chunk : *expected_) {
         if (--most < 0) return false;
-        take(position_of(int64_t(i), counts_));
+        take(position_of(int64_t(chunk.index), counts_));
     }
     return true;
 }

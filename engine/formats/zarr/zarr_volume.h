@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,11 @@ struct ZarrView {
 /// The checksum of a chunk's stored bytes, which finds damage even if they still decode. 0: no chunk is stored.
 uint64_t checksum_of(std::span<const std::byte> stored);
 
+/// A chunk that an import wrote: its number (ZarrVolume::index_of), and the checksum of its stored bytes.
+struct StoredChunk {
+    uint64_t index, checksum;
+};
+
 class ZarrVolume {
 public:
     ZarrVolume(ZarrPlace array, ZarrMetadata metadata, ZarrView view);
@@ -38,9 +44,9 @@ public:
     /// The file of a chunk, or of the shard that holds it.
     std::filesystem::path path_of(const Size3& chunk) const;
 
-    /// Sets the checksums, by `index_of`, that stored chunks are compared with from now on. Not while other threads
+    /// Sets all chunks that are stored, ascending, with which chunks are compared from now on. Not while other threads
     /// read.
-    void expect(std::vector<uint64_t> checksums) { checksums_ = std::move(checksums); }
+    void expect(std::vector<StoredChunk> chunks) { expected_ = std::move(chunks); }
 
     /// The voxels of a chunk, x fastest, in native byte order; empty if all are the fill value.
     Block load(const Size3& chunk) const;
@@ -65,11 +71,13 @@ public:
 private:
     std::vector<int64_t> numbers_of(const Size3& chunk) const;
     Block arranged(Block chunk) const;
+    /// 0: no chunk is expected. Call only if some are known.
+    uint64_t expected_checksum(const Size3& chunk) const;
 
     std::shared_ptr<const ZarrChunks> chunks_;
     ZarrView view_;
     Size3 size_{0}, chunk_{0}, counts_{0};
-    std::vector<uint64_t> checksums_;
+    std::optional<std::vector<StoredChunk>> expected_;
 };
 
 }  // namespace shvr

@@ -249,7 +249,9 @@ void FileTaker::take_transfer_function(const std::filesystem::path& path)
 void FileTaker::take_annotation(Part part, const std::filesystem::path& path)
 {
     const VolumeInfo volume = document_->volume();
-    WorkFiles files{.volume_hash = document_->session.volume_hash, .volume = volume};
+    WorkFiles files{.volume_hash = document_->session.volume_hash,
+                    .is_other_name = work_files(document_->session, volume).is_other_name,
+                    .volume = volume};
     (part == Part::mask ? files.mask : part == Part::trace ? files.trace : files.density) = path;
     const uint64_t opening = desk_.openings;
     const Groups groups = document_->session.groups;

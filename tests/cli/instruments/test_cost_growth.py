@@ -11,8 +11,9 @@ class CostGrowth(CliTest):
                                 timeout=TIMEOUT_S, env=ENVIRONMENT)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         rows = {line.split(" | ")[0][2:]: line.split(" | ")[5] for line in result.stdout.splitlines()[2:]}
-        bounded = [name for name, bound in rows.items() if bound != "none"]
-        self.assertEqual(bounded, ["info", "render", "label", "label to .zarr", "stroke and save", "open", "metrics"])
+        self.assertEqual(list(rows), ["info", "render", "label", "label to .zarr", "stroke and save", "open", "metrics",
+                                      "import", "stroke in project", "export of project"])
+        self.assertEqual(set(rows.values()), {"0.15"})
 
 
 if __name__ == "__main__":

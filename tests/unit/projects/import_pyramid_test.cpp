@@ -1,6 +1,6 @@
 // Levels and ranges compared with their definitions, voxel by voxel.
 
-#include "engine/projects/import_pyramid.h"
+#include "engine/projects/levels/import_pyramid.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "engine/projects/import_pyramid.h"
+#include "engine/projects/levels/import_pyramid.h"
 #include "engine/volume/halving.h"
 #include "engine/volume/source.h"
 

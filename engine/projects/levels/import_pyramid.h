@@ -10,11 +10,12 @@
 // The pass also finds, for every level and every brick of 32^3 voxels, the smallest and largest finite value of level 0
 // below the brick and one voxel of its level around it.
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "engine/projects/import_state.h"
+#include "engine/projects/levels/import_state.h"
 #include "engine/volume/halving.h"
 #include "engine/volume/volume.h"
 
@@ -34,8 +35,8 @@ public:
     virtual ~ImportPyramid() = default;
 
     /// Takes the chunk whose first voxel is at `origin`, with `extent` voxels inside the volume; rows and slices lie
-    /// `row_bytes` and `slice_bytes` apart. Returns all its 64^3 voxels, 0 outside the volume; they stay valid until
-    /// the next call with the same `worker`. Different workers may add different chunks at once.
+    /// `row_bytes` and `slice_bytes` apart. Returns all its 64^3 voxels, the fill value outside the volume; they stay
+    /// valid until the next call with the same `worker`. Different workers may add different chunks at once.
     struct Chunk {
         Size3 origin{0};
         Size3 extent{0};
@@ -73,7 +74,10 @@ private:
     int levels_;
 };
 
+/// A voxel, in as many bytes as its type has.
+using FillVoxel = std::array<std::byte, 8>;
+
 std::unique_ptr<ImportPyramid> make_import_pyramid(const Size3& size, VoxelType type, int workers,
-                                                   Halving how = Halving::mean);
+                                                   Halving how = Halving::mean, const FillVoxel& fill = {});
 
 }  // namespace shvr

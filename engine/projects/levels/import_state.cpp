@@ -1,4 +1,4 @@
-#include "engine/projects/import_state.h"
+#include "engine/projects/levels/import_state.h"
 
 #include <xxhash.h>
 #include <zstd.h>

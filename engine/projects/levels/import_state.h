@@ -45,6 +45,16 @@ public:
         if (piece.size() != elements.size() * sizeof(T)) refuse();
         if (!piece.empty()) std::memcpy(elements.data(), piece.data(), piece.size());
     }
+    /// Elements whose number the file states.
+    template <class T>
+    std::vector<T> take_list()
+    {
+        const std::span<const std::byte> piece = take();
+        if (piece.size() % sizeof(T) != 0) refuse();
+        std::vector<T> elements(piece.size() / sizeof(T));
+        if (!piece.empty()) std::memcpy(elements.data(), piece.data(), piece.size());
+        return elements;
+    }
     [[noreturn]] void refuse() const;
 
 private:

@@ -1,9 +1,9 @@
-#include "engine/projects/import_pyramid.h"
+#include "engine/projects/levels/import_pyramid.h"
 
 #include <algorithm>
 
-#include "engine/projects/import_cube.h"
-#include "engine/projects/import_ranges.h"
+#include "engine/projects/levels/import_cube.h"
+#include "engine/projects/levels/import_ranges.h"
 #include "engine/volume/source.h"
 #include "engine/volume/voxel_dispatch.h"
 #include "shaders/bricks.h"
@@ -44,8 +44,9 @@ struct Window {
 template <class T>
 class Pyramid final : public ImportPyramid {
 public:
-    Pyramid(const Size3& size, int workers, Halving how) : ImportPyramid(size), how_(how)
+    Pyramid(const Size3& size, int workers, Halving how, const FillVoxel& fill_voxel) : ImportPyramid(size), how_(how)
     {
+        std::memcpy(&fill_, fill_voxel.data(), sizeof(T));
         for (int level = 0; level < levels(); ++level) {
             tables_.push_back(std::make_unique<ImportRanges<T>>(size_of_level(size, level)));
             if (level > 0) windows_.emplace_back(size, level);
@@ -138,13 +139,13 @@ private:
 
     const Window<T>& window_of(int level) const { return windows_[size_t(level - 1)]; }
 
-    /// Fills every row with `put`; 0 outside the extent.
+    /// Fills every row with `put`; the fill value outside the extent.
     template <class Put>
-    static void fill(ImportCube<T>& cube, const Size3& extent, const Put& put)
+    void fill(ImportCube<T>& cube, const Size3& extent, const Put& put) const
     {
         const bool is_part = extent != Size3(IMPORT_CHUNK);
         cube.extent = extent;
-        if (is_part) std::fill(cube.values.begin(), cube.values.end(), T{});
+        if (is_part) std::fill(cube.values.begin(), cube.values.end(), fill_);
         for (int64_t z = 0; z < extent.z; ++z) {
             for (int64_t y = 0; y < extent.y; ++y) {
                 put(y, z, &ImportCube<T>::values, cube.values.data() + cube.row(y, z));
@@ -204,6 +205,7 @@ private:
     }
 
     Halving how_;
+    T fill_{};
     std::vector<std::unique_ptr<ImportRanges<T>>> tables_;  ///< by level
     std::vector<Window<T>> windows_;                        ///< by level, from 1
     std::vector<Scratch> scratch_;                          ///< by worker
@@ -224,10 +226,11 @@ bool ImportPyramid::completes_layer(int level, int64_t slices) const
     return slices >= size_.z || slices % (IMPORT_CHUNK << level) == 0;
 }
 
-std::unique_ptr<ImportPyramid> make_import_pyramid(const Size3& size, VoxelType type, int workers, Halving how)
+std::unique_ptr<ImportPyramid> make_import_pyramid(const Size3& size, VoxelType type, int workers, Halving how,
+                                                   const FillVoxel& fill)
 {
     return with_voxel_type(type, [&]<class T>(T) -> std::unique_ptr<ImportPyramid> {
-        return std::make_unique<Pyramid<T>>(size, workers, how);
+        return std::make_unique<Pyramid<T>>(size, workers, how, fill);
     });
 }
 

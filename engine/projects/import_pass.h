@@ -1,0 +1,78 @@
+#pragma once
+// Going through the voxels of a volume: makes the chunks of all levels, and what else a project knows of its volume.
+// Either all voxels in slabs, or only the chunks in which the source stores something; the results are equal. For
+// import_volume.cpp. One thread, which owns the pool, calls all but `done`.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "engine/base/work_pool.h"
+#include "engine/formats/zarr/project.h"
+#include "engine/projects/import_chunks.h"
+#include "engine/projects/import_prepare.h"
+#include "engine/projects/levels/import_pyramid.h"
+#include "engine/projects/levels/import_state.h"
+#include "engine/volume/content_hash.h"
+#include "engine/volume/stored_chunks.h"
+
+namespace shvr {
+
+class ImportPass {
+public:
+    virtual ~ImportPass() = default;
+
+    /// Keeps the state from time to time, for which no work may be in progress.
+    struct Keeper {
+        std::function<bool()> is_due;
+        std::function<void()> keep;
+    };
+    /// Writes all chunks that the state lacks.
+    virtual void run(const Keeper& keeper) = 0;
+
+    virtual int64_t all() const = 0;    ///< chunks of level 0 to be gone through
+    virtual int64_t done() const = 0;   ///< any thread
+    virtual double voxels() const = 0;  ///< in all of them
+    virtual bool is_begun() const = 0;  ///< whether a loaded state has some of them
+
+    // ---- Once it has run ----
+    /// The ranges of the bricks of a level, as they are stored.
+    virtual ProjectTable ranges(int level) = 0;
+    /// Null if the type has too many values to count each.
+    virtual std::optional<VolumeStatistics> statistics() const = 0;
+    virtual std::string content_hash() = 0;
+
+    virtual void save(StateWriter& state) const = 0;
+    virtual void load(StateReader& state) = 0;
+};
+
+struct ImportSetup {
+    const VolumeInfo& info;  ///< describes the result
+    Halving halving = Halving::mean;
+    FillVoxel fill{};  ///< value of voxels in chunks that are not stored
+    int threads = 1;
+    ImportChunks& chunks;  ///< for one worker more than there are threads
+    WorkPool& pool;
+};
+
+std::unique_ptr<ImportPass> make_dense_pass(Preparation& preparation, const ImportSetup& setup);
+/// `origin`: the first voxel of the part of `source` that is imported, with which `stored` is aligned.
+std::unique_ptr<ImportPass> make_sparse_pass(const VolumeSource& source, const Size3& origin, StoredChunks stored,
+                                             const ImportSetup& setup);
+
+/// A table of ranges without its elements.
+inline ProjectTable ranges_table(const VolumeInfo& info, int level)
+{
+    return {.kind = "ranges",
+            .level = level,
+            .element_bytes = 2 * bytes_of(info.type),
+            .counts = size_of_level(size_of_level(info.size, level), 5)};
+}
+/// Whether the tables of a volume have every element, whatever is stored.
+inline bool has_small_tables(const VolumeInfo& info)
+{
+    return voxel_count(info) <= MAX_VOXELS_IN_SLICES;
+}
+
+}  // namespace shvr
