@@ -23,7 +23,7 @@ class Phantom(CliTest):
 
     def test_every_kind_and_type(self):
         for kind in ("constant", "ramp", "sphere", "marschner_lobb", "tubes", "speckles", "fog", "checker",
-                     "chirality", "capitulum"):
+                     "chirality", "capitulum", "section"):
             for voxel_type in ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"):
                 result = self.check_json("phantom", kind, "--size", 5, "--type", voxel_type, "-o", self.folder)
                 self.assertEqual(self.check_json("info", result["volume"])["type"], voxel_type)
@@ -94,6 +94,18 @@ class Phantom(CliTest):
             self.assertGreater(scores["node_out"][1], 10)
             self.assertEqual(scores["internode_score"], None if kind == "speckles" else 1, kind)
             self.assertEqual(scores["segments"][0], scores["segments"][1], kind)
+
+    def test_the_section_scores_as_the_truth_of_the_thesis(self):
+        """Table 6.1, row "truth", within the tolerances of its specification."""
+        truth = self.check_json("phantom", "section", "--size", 128, "-o", self.folder)
+        self.assertEqual(truth["sections"], {"adaxial": 2, "floret": 3, "separate": 4})
+        scores = self.check_json("evaluate", "--truth-mask", truth["truth_mask"], "--mask", truth["truth_partial_mask"],
+                                 "--truth-trace", truth["truth_trace"], "--trace", truth["truth_trace"])
+        self.assertAlmostEqual(scores["dice"], 0.824, delta=0.005)
+        self.assertAlmostEqual(scores["node_score"], 0.971, delta=0.01)
+        self.assertGreaterEqual(scores["internode_score"], 0.99)
+        self.assertEqual((scores["node_out"], scores["internode_out"]), ([0, 70], [0, 71]))
+        self.assertEqual((scores["segments"], scores["topological_errors"]), ([26, 26], 0))
 
     def test_options_without_effect_are_refused(self):
         self.check_refused("phantom", "fog", "--noise", 5, "-o", self.folder, status=2,

@@ -144,8 +144,11 @@ void run_phantom(const PhantomCommandOptions& options)
     if (error) fail(options.folder, ": cannot be created: ", error.message());
     Json written = {{"volume", write_volume(folder, spec.kind, *phantom.volume, work)},
                     {"truth_mask", nullptr},
+                    {"truth_partial_mask", nullptr},
                     {"truth_trace", nullptr}};
     if (phantom.mask) written["truth_mask"] = write_volume(folder, spec.kind + "-mask", *phantom.mask, work);
+    if (phantom.partial_mask)
+        written["truth_partial_mask"] = write_volume(folder, spec.kind + "-partial-mask", *phantom.partial_mask, work);
     if (!phantom.nodes.empty()) {
         const std::filesystem::path trace = folder / (spec.kind + "-trace.graphml");
         save_trace(trace, trace_of(phantom, info), space_of(info));
@@ -159,6 +162,7 @@ void run_phantom(const PhantomCommandOptions& options)
     }
     print({{"volume", written["volume"]},
            {"truth_mask", written["truth_mask"]},
+           {"truth_partial_mask", written["truth_partial_mask"]},
            {"truth_trace", written["truth_trace"]},
            {"sections", phantom.sections},
            {"size", {info.size.x, info.size.y, info.size.z}},
@@ -231,10 +235,10 @@ void add_phantom(CLI::App& program)
         ->check(CLI::IsMember(type_names()))
         ->capture_default_str();
     command
-        ->add_option(
-            "-o,--output", options->folder,
-            "Folder for KIND.nhdr and KIND.raw, and of a kind whose truth is known (capitulum, tubes, speckles, "
-            "chirality) also KIND-mask.nhdr and KIND-trace.graphml; made where missing")
+        ->add_option("-o,--output", options->folder,
+                     "Folder for KIND.nhdr and KIND.raw, and of a kind whose truth is known (capitulum, section, "
+                     "tubes, speckles, "
+                     "chirality) also KIND-mask.nhdr and KIND-trace.graphml; made where missing")
         ->required();
     add_capitulum_options(*command, *options);
     add_flaw_options(*command, *options);

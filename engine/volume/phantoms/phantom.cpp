@@ -18,7 +18,7 @@ struct NamedKind {
     const char* name;
     PhantomModel (*make)(const PhantomSpec& spec);
 };
-constexpr NamedKind KINDS[] = {{"capitulum", make_capitulum}};
+constexpr NamedKind KINDS[] = {{"capitulum", make_capitulum}, {"section", make_section}};
 
 VolumeInfo info_of(const PhantomSpec& spec, VoxelType type)
 {
@@ -149,9 +149,17 @@ Phantom make_phantom(const PhantomSpec& spec)
         tube.seen = 0.2;
         tube.gap_intensity = GROUND_TISSUE;
     }
+    std::unique_ptr<VolumeSource> partial;
+    if (model.group_of_separate != 0) {
+        std::vector<Tube> joined = model.tubes;
+        std::erase_if(joined, [&](const Tube& tube) { return tube.group == model.group_of_separate; });
+        partial = std::make_unique<PhantomMask>(
+            spec, std::make_shared<const TubeScene>(std::move(joined), spec.size, 0.5 * spec.flaws.blur));
+    }
     const auto scene = std::make_shared<const TubeScene>(std::move(model.tubes), spec.size, 0.5 * spec.flaws.blur);
     return {.volume = std::make_unique<PhantomVolume>(spec, scene, std::move(model.tissue)),
             .mask = std::make_unique<PhantomMask>(spec, scene),
+            .partial_mask = std::move(partial),
             .nodes = std::move(model.nodes),
             .links = std::move(model.links),
             .sections = std::move(model.sections)};

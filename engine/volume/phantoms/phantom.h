@@ -45,8 +45,10 @@ struct PhantomSpec {
 
 struct Phantom {
     std::unique_ptr<VolumeSource> volume;
-    std::unique_ptr<VolumeSource> mask{};  ///< uint8: the colour group of each voxel; null if it is not known
-    /// Along centre lines. Balls of nodes lie in the mask to the last voxel, and so do those at the middles of links.
+    std::unique_ptr<VolumeSource> mask{};          ///< uint8: the colour group of each voxel; null if it is not known
+    std::unique_ptr<VolumeSource> partial_mask{};  ///< section: without bundles that no trace reaches
+    /// Along centre lines. Balls of nodes and of the middles of links lie in the mask to the last voxel, except in
+    /// `section`.
     std::vector<ProceduralTruth::Node> nodes{};
     std::vector<std::array<size_t, 2>> links{};
     std::map<std::string, uint8_t> sections{};  ///< the colour group of each named part

@@ -16,6 +16,7 @@ struct PhantomModel {
     std::vector<ProceduralTruth::Node> nodes;
     std::vector<std::array<size_t, 2>> links;
     std::map<std::string, uint8_t> sections;
+    uint8_t group_of_separate = 0;  ///< of tubes that the partial mask leaves out; 0: there is no partial mask
     /// Intensity where no tube is, in voxel coordinates; sums, products, divisions and square roots alone.
     std::function<double(const glm::dvec3& voxel)> tissue = [](const glm::dvec3&) { return GROUND_TISSUE; };
 
@@ -45,6 +46,7 @@ struct PhantomModel {
 /// Of one of `procedural_kinds()`.
 Phantom make_procedural_phantom(const PhantomSpec& spec);
 
+PhantomModel make_section(const PhantomSpec& spec);
 PhantomModel make_capitulum(const PhantomSpec& spec);
 
 /// How much of a voxel at this distance from a flat surface lies inside, for a surface that is `blur` voxels thick.
