@@ -23,7 +23,7 @@ if(SHVR_SANITIZE STREQUAL "" AND NOT CMAKE_BUILD_TYPE STREQUAL "Release")
     target_link_options(shvr_checks INTERFACE ${checks})
     shvr_compile_together(shvr_checked ${checked_sources})
     add_library(shvr_checked STATIC EXCLUDE_FROM_ALL ${together} ${kernel_table})
-    target_link_libraries(shvr_checked PUBLIC shvr_options nlohmann_json::nlohmann_json PNG::PNG TIFF::TIFF
+    target_link_libraries(shvr_checked PUBLIC shvr_options nlohmann_json::nlohmann_json PNG::PNG TIFF::TIFF JPEG::JPEG
         pugixml::pugixml PkgConfig::BLOSC PkgConfig::ZSTD PkgConfig::XXHASH ZLIB::ZLIB gdcm PkgConfig::OPENJPEG Threads::Threads glm::glm
         shvr_checks)  # last: its options come after the others
 endif()

@@ -8,10 +8,8 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/annotation/files/mask_image.h"
 #include "engine/formats/open_volume.h"
 #include "engine/formats/zarr/project.h"
-#include "engine/live/annotator.h"
 #include "engine/projects/import_volume.h"
 #include "engine/session/session.h"
 #include "engine/volume/content_hash.h"
@@ -239,31 +237,6 @@ TEST_CASE("a hash in chunks depends on the voxels alone, and hashes of both kind
     large.size = Size3(2048);
     CHECK(kind_for(large, 4096) == HashKind::chunks);
     CHECK(kind_for(large, 4097) == HashKind::slices);
-}
-
-TEST_CASE("annotation that names its volume by the other kind of hash is of the same image")
-{
-    const TemporaryFolder folder;
-    const Size3 size(96, 96, 1 << 17);  // a tall volume has small slices
-    const StoredBlocks one{.block = Size3(64), .blocks = {{0, 1, 5}}};
-    const Noise<uint8_t> source(size, VoxelType::uint8, 0, one, one);
-    import_volume(source, folder.path / "noise", folder.path / "p", {});
-    const OpenedSession opened = open_session(folder.path / "p");
-    const WorkFiles files = work_files(opened.session, opened.source->info());
-    CHECK(kind_of(files.volume_hash) == HashKind::chunks);
-    const std::string slices = content_hash(source);  // as an import of all voxels by an earlier version has it
-    CHECK(files.is_other_name(slices));
-    std::string other = slices;
-    other.back() = other.back() == '0' ? '1' : '0';
-    CHECK(!files.is_other_name(other));
-    CHECK(!files.is_other_name("xxh3-128-chunks:0"));
-    const std::filesystem::path mask = folder.path / "old.mask";
-    save_mask_image(mask, slices);
-    check_mask_image(mask, files.volume_hash, files.is_other_name);
-    CHECK(contains(error_of([&] { check_mask_image(mask, files.volume_hash); }), "painted on other voxels"));
-    save_mask_image(mask, other);
-    CHECK(contains(error_of([&] { check_mask_image(mask, files.volume_hash, files.is_other_name); }),
-                   "painted on other voxels"));
 }
 
 TEST_CASE("an import that would take more memory than its budget is refused before anything is written")
