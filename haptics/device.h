@@ -22,14 +22,14 @@ inline constexpr double MAX_REACH_M = 10.0;  ///< no device reaches farther from
 struct DeviceState {
     uint64_t time_ns = 0;         ///< time of the position on the device's own steady clock: only differences matter
     uint32_t sequence = 0;        ///< counts states; a gap means lost states
-    uint32_t force_sequence = 0;  ///< number of the force that was in effect at that time
+    uint32_t force_sequence = 0;  ///< number of the force that was in effect at `time_ns`
     glm::dvec3 position_m{0.0};
     glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
     uint32_t buttons = 0;  ///< a set of PAINT_BUTTON and MOVE_BUTTON
-    uint32_t jump = 0;     ///< changes when a simulated device was placed at a new position: the jump is no glitch
+    uint32_t jump = 0;     ///< changes when a simulated device is placed elsewhere: the jump is no glitch
     bool calibrated = true;
     /// For devices that report speeds (`DeviceCaps::rate_control`): fractions of full deflection, -1 ... 1, along and
-    /// about our axes. They may move the view; position and rotation are their integrals over time.
+    /// about our axes. The speeds may move the view; position and rotation are the integrals of the speeds over time.
     glm::dvec3 rate{0.0}, turn_rate{0.0};
 };
 
@@ -59,9 +59,9 @@ public:
     virtual ~HapticDevice() = default;
     virtual DeviceCaps caps() const noexcept = 0;
     virtual ReadResult read(DeviceState& state) noexcept = 0;
-    /// Sets the force on the hand until the next call. False if the device is gone.
+    /// Sets the force on the hand until the next call. Returns false if the device is gone.
     virtual bool write(const glm::dvec3& force_n, uint32_t sequence) noexcept = 0;
-    /// Why the device is lost or gives no force, as a sentence in static storage; "" if nothing is wrong. Any thread.
+    /// Returns why the device is lost or gives no force, as a sentence in static storage; "" if neither. Any thread.
     virtual const char* trouble() const noexcept { return ""; }
 };
 

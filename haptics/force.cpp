@@ -10,9 +10,9 @@ namespace shvr {
 namespace {
 
 constexpr double VELOCITY_CUTOFF_HZ = 100.0;
-/// Longest interval of a fade: a longer pause of the servo counts as one of this length.
+/// Longest tick for fades: a longer pause of the servo counts as this long.
 constexpr uint64_t MAX_TICK_NS = 10'000'000;
-/// The thesis's damping has no interval; at this one it equals `damping`.
+/// The thesis's damping has no time interval; with ticks of this length, it equals `damping`.
 constexpr double THESIS_TICK_S = 0.001;
 
 bool is_place(const DeviceState& state)
@@ -35,8 +35,8 @@ void disengage(ForceMemory& memory)
     memory.energy = {};
 }
 
-/// Clears a fault after the user switched assistance on again. Numbers of forces continue, and motors stay as warm as
-/// they were.
+/// Clears a fault after the user switched assistance on again. The numbering of forces continues, and the heat of the
+/// motors is kept.
 void clear_fault(uint32_t reset, ForceMemory& memory)
 {
     if (memory.reset == reset) return;
@@ -50,7 +50,7 @@ void clear_fault(uint32_t reset, ForceMemory& memory)
     memory.reset = reset;
 }
 
-/// No force from this tick on; the limit on its change does not apply.
+/// Gives no force from this tick on; the limit on the force's change per tick does not apply.
 ForceStep stop(const ForceSettings& settings, uint32_t flags, uint64_t now_ns, ForceMemory& memory)
 {
     memory.flags = (memory.flags & FORCE_FAULT) | flags;
@@ -79,7 +79,7 @@ void accept_elsewhere(const DeviceState& state, ForceMemory& memory)
     disengage(memory);
 }
 
-/// Exact for a constant velocity over the interval, so that damping does not depend on the rate.
+/// Takes the next state. A constant velocity is computed exactly, so that damping does not depend on the rate.
 void accept_next(const DeviceState& state, ForceMemory& memory)
 {
     // If the device's clock stands still or goes back, the velocity is left unchanged.
@@ -104,7 +104,7 @@ void believe_or_not(const DeviceState& state, ForceMemory& memory)
     if (memory.glitches >= GLITCHES_TO_ACCEPT) accept_elsewhere(state, memory);
 }
 
-/// `value` after `dt_ns` of a fade towards 0 or 1 that takes `whole_ns` in full.
+/// Returns `value` after `dt_ns` of a fade, towards 1 if it `rises` and else 0; a full fade takes `whole_ns`.
 double faded(double value, bool rises, uint64_t dt_ns, uint64_t whole_ns)
 {
     const double change = double(dt_ns) / double(whole_ns);
@@ -122,15 +122,15 @@ glm::dvec3 shortened(const glm::dvec3& v, double most)
     return length > most ? v * (most / length) : v;
 }
 
-/// The divisor of eq. 3.7: the probe's size in the hand times the user's scale of its motion.
+/// Returns the divisor of eq. 3.7: the probe's size in the hand times the user's scale of its motion.
 double scaling(const ForceSettings& settings)
 {
     const double in_hand_m = settings.probe_radius / settings.workspace.scale();
     return in_hand_m / PROBE_M * settings.movement_scale;
 }
 
-/// The proxy's pull in the device's frame: `to_volume` is a rotation times a scale, so its inverse is its transpose
-/// divided by the scale squared.
+/// Returns the proxy's pull in the device's frame: `to_volume` is a rotation times a scale, so its inverse is its
+/// transpose divided by the scale squared.
 glm::dvec3 spring(const ForceSettings& settings, double stiffness, const glm::dvec3& offset)
 {
     const double scale = settings.workspace.scale();
@@ -143,7 +143,7 @@ struct Moment {
     bool is_fresh = false;
 };
 
-/// Cross-fades from the pull of one mode, law, object or cut to that of the next without a step.
+/// Cross-fades from the previous pull to the present one after a change of mode, law, object or limits, without a step.
 glm::dvec3 cross_faded(const ForceSettings& settings, const ModePull& pull, uint32_t limits, const glm::dvec3& wanted,
                        uint64_t dt_ns, ForceMemory& memory)
 {
@@ -169,7 +169,7 @@ glm::dvec3 damping_of(const ForceSettings& settings, const ForceMemory& memory)
     return damping / divided * memory.moved_m / THESIS_TICK_S;
 }
 
-/// The push of a click, before fades.
+/// Returns the force of a click, before fades.
 glm::dvec3 click_of(const ForceSettings& settings, const DeviceCaps& caps, const ModePull& pull, uint64_t dt_ns,
                     ForceMemory& memory)
 {
@@ -193,7 +193,7 @@ glm::dvec3 click_of(const ForceSettings& settings, const DeviceCaps& caps, const
     return std::sin(std::numbers::pi * double(CLICK_NS - click.left_ns) / double(CLICK_NS)) * click.peak_n;
 }
 
-/// Spring, click and damping, faded, but not yet limited.
+/// Returns spring, click and damping forces, with fades applied but not yet limited.
 ForceStep feel(const ForceSettings& settings, const DeviceCaps& caps, const RelevancePatch& patch, const Moment& moment,
                ForceMemory& memory, GrowthMemory& growth)
 {
@@ -237,14 +237,14 @@ ForceStep feel(const ForceSettings& settings, const DeviceCaps& caps, const Rele
             .objects = growth.contacts};
 }
 
-/// Maximum change of the force in a tick. It grows with the hand's speed: so a steep law, where a ball meets a thin
-/// sheet (1200 N/m for two voxels), causes no jolt if the hand is slow.
+/// Returns the maximum change of the force in a tick. It grows with the hand's speed, so that a steep law, as where a
+/// ball meets a thin sheet (1200 N/m for two voxels), causes no jolt if the hand is slow.
 double slew_at(const glm::dvec3& velocity)
 {
     return std::clamp(GENTLE_SLEW_N * glm::length(velocity) / GENTLE_SPEED, GENTLE_SLEW_N, SLEW_N);
 }
 
-/// The limits: a ball around 0, and a ball around the last force, whose centre lies in the first.
+/// Applies two limits: a ball around 0, and a ball around the last force. The second ball's centre lies in the first.
 void limit(const DeviceCaps& caps, const glm::dvec3& wanted, ForceMemory& memory)
 {
     const double held = caps.outputs_force ? force_allowed(caps, memory.heat) : caps.peak_force_n;

@@ -5,13 +5,13 @@
 //   F = k_hand * offset - b * v - taken, |F| <= peak and the motors' continuous limit, |dF| <= slew per tick,
 //   all scaled by the fades;    k_hand = k * (PROBE_M / probe radius in the hand) / movement scale
 //
-// The scaling is eq. 3.7 of the thesis: a probe that is large in the hand, or moves far, pulls as little as a small
-// one. The limit applies to the stiffness at the hand, after scaling.
+// The scaling is eq. 3.7 of the thesis: a probe that is large in the hand, or moves far, pulls no harder than a small
+// one. The stiffness limit applies at the hand, after scaling.
 //
 // Stability (delay of two ticks, haptic literature: Colgate and Schenkel; Abbott and Okamura): k <= 300 N/m and b = 1.0
 // N s/m; velocities are computed from time stamps and smoothed at about 100 Hz, so damping does not depend on the rate.
-// Both apply at the hand, without the scale from device to volume. Only `ProxyLaw::thesis` damps as eq. 3.5 does, by
-// the difference of two positions, which is equally strong at 1 kHz.
+// Both values apply at the hand, without the scale from device to volume. Only `ProxyLaw::thesis` damps as eq. 3.5
+// does, with the difference of two positions; at 1 kHz this damping is equally strong.
 
 #include <cstdint>
 
@@ -33,16 +33,16 @@ enum ForceFlag : uint32_t {
     FORCE_WARM = 32,         ///< limited to the motors' continuous force
     FORCE_SLOW = 64,         ///< states of the device arrive too rarely: half the stiffness, or none
     FORCE_OUTSIDE = 128,     ///< outside the box in which the device's forces are accurate
-    FORCE_LET_GO = 256,      ///< on request
-    FORCE_OFF_OBJECT = 512,  ///< object following: the probe left its object and after a moment touches another
+    FORCE_LET_GO = 256,      ///< no force, on the user's request
+    FORCE_OFF_OBJECT = 512,  ///< object following: the probe left its object; after a moment it touches another
 };
 
 /// A pulse against the hand's motion as it touches something, half a sine wave: a hand perceives the onset of contact
 /// by its first milliseconds, not by its stiffness (Kuchenbecker, Fiene, Niemeyer: Improving contact realism through
-/// event-based haptic feedback, 2006). It is proportional to the hand's speed, so that it slows even the lightest one,
-/// the free arm of a Touch (45 g), by only 0.6 of that speed, never reverses it, and adds no energy. There is no pulse
-/// if the hand hardly moves, or has been off for less than CLICK_PAUSE_NS: a hand that trembles on a surface feels no
-/// buzz.
+/// event-based haptic feedback, 2006). The pulse is proportional to the hand's speed. It therefore slows even the
+/// lightest hand, the free arm of a Touch (45 g), by only 0.6 of its speed, never reverses its motion, and adds no
+/// energy. There is no pulse if the hand hardly moves, or has been off surfaces for less than CLICK_PAUSE_NS: a hand
+/// that trembles on a surface feels no buzz.
 struct ClickMemory {
     glm::dvec3 peak_n{0.0};  ///< peak of the pulse in progress
     uint64_t left_ns = 0;    ///< remaining time of the pulse; 0: there is none
@@ -64,7 +64,7 @@ struct ForceMemory {
     bool has_begun = false;       ///< the engagement is rising
     double engagement = 0.0;      ///< 0 ... 1: fades in after the device has appeared or jumped
     double relevance_fade = 0.0;  ///< 0 ... 1: falls while the relevance is unusable
-    double contact_fade = 0.0;    ///< 0 ... 1: for the damping
+    double contact_fade = 0.0;    ///< 0 ... 1: fades the damping in and out with contact
     double strength = 0.0;        ///< follows ForceSettings::strength
     uint64_t last_tick_ns = 0;
     uint64_t last_fresh_ns = 0;  ///< when the last fresh state arrived
@@ -91,19 +91,19 @@ struct ForceMemory {
 struct ForceStep {
     glm::dvec3 force_n{0.0};   ///< device frame
     glm::dvec3 probe{0.0};     ///< physical
-    glm::dvec3 velocity{0.0};  ///< the probe's, physical units per second, smoothed
-    glm::dvec3 proxy{0.0};     ///< physical position; the probe's if there is no contact
-    glm::dvec3 middle{0.0};    ///< physical: where tools act with ForceSettings::finds_middle; otherwise the probe's
+    glm::dvec3 velocity{0.0};  ///< velocity of the probe, physical units per second, smoothed
+    glm::dvec3 proxy{0.0};     ///< physical position; equals the probe's if there is no contact
+    glm::dvec3 middle{0.0};    ///< physical: where tools act; equals the probe's without ForceSettings::finds_middle
     bool in_contact = false;
     double relevant_share = 0.0;
     uint32_t flags = 0;
     uint32_t sequence = 0;   ///< number to write with the force
     double made_j = 0.0;     ///< energy generated according to the observer and not yet dissipated
-    uint32_t objects = 0;    ///< number touched so far, in object following
+    uint32_t objects = 0;    ///< number of objects touched so far, in object following
     double latency_s = 0.0;  ///< measured; 0 if the device does not report it
 };
 
-inline constexpr uint64_t RELEVANCE_FADE_NS = 100'000'000;    ///< duration of the fade of unusable relevance
+inline constexpr uint64_t RELEVANCE_FADE_NS = 100'000'000;    ///< duration of the fade while relevance is unusable
 inline constexpr uint64_t CONTACT_FADE_NS = 20'000'000;       ///< keeps damping from setting in abruptly
 inline constexpr uint64_t MODE_FADE_NS = 100'000'000;         ///< from one pull to another
 inline constexpr uint64_t STRENGTH_FADE_NS = 200'000'000;     ///< from no strength to all of it

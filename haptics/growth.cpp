@@ -8,7 +8,7 @@
 namespace shvr {
 namespace {
 
-/// The runs of `mask` that contain bits of `seeds`, found by doubling steps in both directions. `seeds` lie in `mask`.
+/// Returns the runs of `mask` that contain `seeds`, found by doubling steps in both directions. `seeds` lie in `mask`.
 uint32_t fill_runs(uint32_t seeds, uint32_t mask)
 {
     uint32_t up = seeds, down = seeds, up_mask = mask, down_mask = mask;
@@ -21,7 +21,7 @@ uint32_t fill_runs(uint32_t seeds, uint32_t mask)
     return up | down;
 }
 
-/// Mask of those bits of word `word` that are voxels.
+/// Returns a mask of the bits that are voxels in the row's word with index `word`.
 uint32_t valid_bits(const RelevancePatch& patch, int32_t word)
 {
     const int32_t rest = patch.size.x - 32 * word;
@@ -49,7 +49,7 @@ struct Growing {
         list.waits[at / 32] &= ~(1u << (at % 32));
         return at;
     }
-    /// Adds seeds to a word and queues it; true if a voxel was added. `word` is its index in the row of `at`.
+    /// Adds seeds to word `at` and queues it; returns true if a voxel was added. `word`: the word's index in its row.
     bool seed(uint32_t at, int32_t word, uint32_t seeds)
     {
         const uint32_t allowed = mask.words[at] & valid_bits(mask, word);
@@ -61,7 +61,7 @@ struct Growing {
     }
 };
 
-/// The 32 bits from bit `x` of a row on; bits outside it are 0.
+/// Returns the 32 bits of a row that begin at bit `x`; bits outside the row are 0.
 uint32_t bits_from(const uint32_t* row, int32_t words, int32_t x)
 {
     const int32_t word = x >> 5;  // rounds down
@@ -73,7 +73,7 @@ uint32_t bits_from(const uint32_t* row, int32_t words, int32_t x)
 struct Box {
     glm::ivec3 lower{0}, upper{0};  ///< half-open
 };
-/// The voxels of a patch that the ball may contain.
+/// Returns the voxels of a patch that the ball may contain.
 Box voxels_around(const RelevancePatch& patch, const glm::dvec3& centre, double radius)
 {
     const glm::dvec3 lower = (centre - radius) / patch.spacing - glm::dvec3(patch.origin);
@@ -113,7 +113,7 @@ uint32_t seed_across_levels(const RelevancePatch& object, const glm::dvec3& cent
         const uint32_t at = uint32_t(voxel.x / 32 + mask.words_per_row * (voxel.y + mask.size.y * voxel.z));
         seeded += growing.seed(at, voxel.x / 32, 1u << (voxel.x % 32));
     };
-    // Iterates over the finer of the two, so that none of its voxels is missed.
+    // Iterates over the finer of the two patches, so that none of its voxels is missed.
     if (object.spacing.x <= mask.spacing.x) {
         each_voxel_in_ball(object, centre, radius, [&](const glm::ivec3&, const glm::dvec3& p) { seed_at(p); });
         return seeded;
@@ -239,7 +239,7 @@ const RelevancePatch& advance_object(const RelevancePatch& patch, const glm::dve
         }
     }
     RelevancePatch& held = memory.patches[memory.current];
-    // The same bits with a newer time stamp extend the validity of the growth.
+    // If the same bits have a newer time stamp, the grown object remains valid for longer.
     if (patch.sequence == held.sequence && patch.settings == held.settings)
         held.time_ns = std::max(held.time_ns, patch.time_ns);
     if (!memory.is_growing) return memory.object();

@@ -1,14 +1,14 @@
 #pragma once
-// The connected object that a hand follows: relevant voxels joined through faces to those it touched. It is grown
-// within the servo's tick, on the bits of a `RelevancePatch`, so that it never lags behind them.
+// The connected object that a hand follows: the relevant voxels connected through faces to those that the hand touched.
+// It grows within the servo's tick, on the bits of a `RelevancePatch`, so that it never lags behind them.
 //
-// A new patch is seeded with a set: all voxels of the object that lie in it and are still relevant. The first touch,
-// and a new one after the hand has been off the object for RECONTACT_NS, seeds with the relevant voxel nearest to the
-// probe's centre, within its ball. Until then a probe off its object feels nothing, even next to other objects.
+// A new patch is seeded with all voxels of the object that lie in it and are still relevant. The first touch, and a
+// touch after RECONTACT_NS off the object, seeds with the relevant voxel nearest to the probe's centre, within its
+// ball. Until then, a probe off its object feels nothing, even next to other objects.
 //
-// The words of rows wait in a list; each is propagated to its four neighbouring rows and two neighbouring words, where
-// it fills the runs it touches. This takes 10 us for tubes in 64^3 voxels; solid or noisy cubes need more than
-// GROWTH_STEPS and are finished in the next ticks while the previous object stays in force.
+// Words of rows wait in a list; each word's bits are propagated to the four neighbouring rows and the two neighbouring
+// words, where they fill the runs that they touch. This takes 10 us for tubes in 64^3 voxels; solid or noisy cubes need
+// more than GROWTH_STEPS and are finished in the next ticks while the previous object stays in force.
 //
 // Never allocates; the caller owns the memory (1 MiB). One thread.
 
@@ -28,11 +28,11 @@ struct GrowthList {
 
 /// Empties `grown` and gives it the position of `mask`.
 void begin_growth(const RelevancePatch& mask, RelevancePatch& grown, GrowthList& list) noexcept;
-/// Seeds with the voxels of `object` that are set in `mask`. Patches of different levels share only voxels whose
-/// centres lie in the ball. Returns the number of words that hold seeds.
+/// Seeds `grown` with the voxels of `object` that are set in `mask`. If the patches differ in level, they share only
+/// voxels whose centres lie in the ball. Returns the number of words that contain seeds.
 uint32_t seed_from_object(const RelevancePatch& object, const RelevancePatch& mask, const glm::dvec3& centre,
                           double radius, RelevancePatch& grown, GrowthList& list) noexcept;
-/// Seeds with the voxel set in `mask` whose centre is nearest to `centre`, and in the ball. False if there is none.
+/// Seeds with the voxel in `mask` and the ball whose centre is nearest to `centre`. Returns false if there is none.
 bool seed_nearest(const RelevancePatch& mask, const glm::dvec3& centre, double radius, RelevancePatch& grown,
                   GrowthList& list) noexcept;
 /// Processes up to `steps` words of the list. The list is empty when `grown` holds all voxels connected to its seeds.
@@ -42,14 +42,14 @@ inline constexpr uint32_t GROWTH_STEPS = 8192;         ///< words per tick: 0.2 
 inline constexpr uint64_t RECONTACT_NS = 100'000'000;  ///< time without contact after which the next touch is a new one
 
 struct GrowthMemory {
-    std::array<RelevancePatch, 2> patches;  ///< two patches: the object, and the one that is being grown
+    std::array<RelevancePatch, 2> patches;  ///< the object, and the patch that is being grown
     uint32_t current = 0;                   ///< index into `patches`: the object
     RelevancePatch mask;                    ///< copy of the bits in which the object grows, if that takes several ticks
     GrowthList list;
     bool is_growing = false;
     bool has_mask = false;       ///< true: the object grows in `mask`; false: in the servo's patch of this tick
     uint64_t seen_sequence = 0;  ///< sequence of the last patch in which the object grew
-    uint64_t off_since_ns = 0;   ///< time since when the ball has not touched the object; 0: it touches it
+    uint64_t off_since_ns = 0;   ///< time when the ball lost contact with the object; 0: it is in contact
     uint32_t contacts = 0;       ///< objects touched so far
     bool has_object = false;
     bool is_new_contact = false;  ///< another object is being grown
@@ -59,12 +59,12 @@ struct GrowthMemory {
 
 /// Forgets the object, but keeps the count.
 void forget_object(GrowthMemory& memory) noexcept;
-/// Carries the object over to `patch` if that is new, and grows. Returns the object in force afterwards; its sequence
-/// is 0 while there is none.
+/// Carries the object over to `patch`, if that patch is new, and continues growing it. Returns the object in force
+/// afterwards; the object's sequence is 0 while there is none.
 const RelevancePatch& advance_object(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
                                      GrowthMemory& memory) noexcept;
-/// To be called once per tick; `in_contact`: the ball holds part of the object. Releases the object after a while
-/// without contact, and then touches another.
+/// Call once per tick. `in_contact`: the ball contains part of the object. After RECONTACT_NS without contact, the ball
+/// may touch another object, which then replaces the present one.
 void keep_contact(const RelevancePatch& patch, const glm::dvec3& centre, double radius, bool in_contact,
                   uint64_t now_ns, GrowthMemory& memory) noexcept;
 

@@ -17,7 +17,7 @@ public:
     ~KeptMemory();
     KeptMemory(const KeptMemory&) = delete;
     KeptMemory& operator=(const KeptMemory&) = delete;
-    /// False: the memory is loaded, but the system may evict it (RLIMIT_MEMLOCK, typically 8 MiB).
+    /// Returns false if the memory is loaded, but the system may evict it (RLIMIT_MEMLOCK, typically 8 MiB).
     bool is_kept() const { return is_kept_; }
 
 private:
@@ -27,7 +27,7 @@ private:
 };
 
 /// Locks the code of the program and of the C and mathematics libraries into memory, once for the life of the process.
-/// False: see is_kept().
+/// Returns false if the system may evict the code, as for is_kept().
 bool keep_code() noexcept;
 
 }  // namespace shvr

@@ -26,8 +26,8 @@ ModePull pull_in(const ForceSettings& settings, const RelevancePatch& patch, con
 ModePull pull_to_surface(const ForceSettings& settings, const RelevancePatch& patch, const glm::dvec3& probe,
                          SurfaceMemory& surface)
 {
-    const ProxyLaw law = settings.law == ProxyLaw::thesis ? ProxyLaw::thesis : ProxyLaw::mean;  // only its share is
-                                                                                                // used
+    const ProxyLaw law = settings.law == ProxyLaw::thesis ? ProxyLaw::thesis : ProxyLaw::mean;  // only the proxy's
+                                                                                                // share is used
     const Proxy around = patch.sequence == 0 ? Proxy{} : find_proxy(patch, probe, settings.probe_radius, law);
     const double hold = std::clamp(settings.surface_share, 0.0, 1.0);
     const bool is_known = patch.known_part(probe, settings.probe_radius).share >= MIN_KNOWN_SHARE;
@@ -76,7 +76,7 @@ ModePull pull_of(const ForceSettings& settings, const RelevancePatch& patch, con
         case TouchMode::surface: pull = pull_to_surface(settings, patch, probe, surface); break;
         case TouchMode::object: pull = pull_to_object(settings, patch, probe, now_ns, growth); break;
     }
-    // An object is as old as the patch it was grown in; without one, nothing is felt and the patch itself counts.
+    // An object is as old as the patch it was grown in; without an object, nothing is felt and the patch's age counts.
     const bool is_object = settings.mode == TouchMode::object && growth.has_object;
     const RelevancePatch& felt = is_object ? growth.object() : patch;
     pull.known_share = felt.known_part(probe, settings.probe_radius).share;

@@ -8,14 +8,14 @@ namespace shvr {
 
 struct SurfaceMemory {
     bool is_pinned = false;
-    bool is_armed = true;   ///< a surface can hold: after a release only once a smaller share of the ball was
-                            ///< relevant
+    bool is_armed = true;   ///< whether a surface can hold the probe: after a release, only once less of the ball has
+                            ///< been relevant
     glm::dvec3 pin{0.0};    ///< physical
-    double farthest = 0.0;  ///< smallest value since the pin was set of the probe's offset from it towards the camera;
+    double farthest = 0.0;  ///< the smallest offset of the probe from the pin towards the camera since the pin was set;
                             ///< physical units
 };
 
-/// Motion towards the camera, as a share of the probe's radius, that releases a surface: a hand at rest trembles.
+/// Motion towards the camera, as a share of the probe's radius, that releases a surface; not 0, since hands tremble.
 inline constexpr double RELEASE_SHARE = 0.05;
 /// Fraction of `surface_share` below which a surface also releases, and is re-armed.
 inline constexpr double SURFACE_HYSTERESIS = 0.75;
@@ -27,16 +27,16 @@ struct ModePull {
     bool in_contact = false;
     double relevant_share = 0.0;
     double known_share = 0.0;  ///< share of the ball whose relevance is known
-    bool is_usable = false;    ///< enough of the ball is known, by recent relevance of the present settings
-    bool has_lost = false;     ///< object following: off the object it followed
-    uint32_t object = 0;       ///< number of touched objects and set pins: a change means that the pull is another one
+    bool is_usable = false;    ///< enough of the ball is known, from recent relevance with the present settings
+    bool has_lost = false;     ///< object following: the probe is off the object that it followed
+    uint32_t object = 0;       ///< number of touched objects and set pins; when it changes, the pull is a different one
 };
 
 ModePull pull_of(const ForceSettings& settings, const RelevancePatch& patch, const glm::dvec3& probe, uint64_t now_ns,
                  SurfaceMemory& surface, GrowthMemory& growth) noexcept;
 
-/// With less of the ball known, the force fades out, a surface neither holds nor lets go, and an object is not lost.
+/// If less of the ball is known, the force fades out, a surface neither holds nor lets go, and an object is not lost.
 inline constexpr double MIN_KNOWN_SHARE = 0.5;
-inline constexpr uint64_t RELEVANCE_FRESH_NS = 50'000'000;  ///< with older relevance the force fades out
+inline constexpr uint64_t RELEVANCE_FRESH_NS = 50'000'000;  ///< older relevance makes the force fade out
 
 }  // namespace shvr

@@ -19,8 +19,8 @@ struct Chord {
     double lower = 0.0, upper = 0.0;  ///< chord in voxels from the patch's lower corner, clipped to the patch
 };
 
-/// Runs of set bits are integrated word by word: a run over two words is two touching intervals, whose sum is the
-/// run's. Only the ends of the chord are fractions of a voxel. Inlined in both callers: calls cost a tick 5 to 15 %.
+/// Integrates runs of set bits word by word: a run across two words is two touching intervals, whose integrals add up
+/// to the run's. Only the chord's ends are fractions of a voxel. Inlined, since calls cost a tick 5 to 15 %.
 [[gnu::always_inline]] inline Moments integrate_row(const uint32_t* words, const Chord& chord, double centre,
                                                     double spacing)
 {
@@ -92,7 +92,7 @@ glm::dvec3 point_of(double of_volume, double of_height, double of_turn)
     return r * glm::dvec3(across * std::cos(phi), across * std::sin(phi), z);
 }
 
-/// `IS_CUT`: something within the radius is beyond `reach`. Whole balls, almost all, take a tenth less time without it.
+/// `IS_CUT`: part of the ball lies beyond `reach`. Whole balls, which most are, take a tenth less time without it.
 template <bool IS_CUT>
 BallIntegrals integrate_part(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
                              const glm::dvec3& reach) noexcept
@@ -210,7 +210,7 @@ Proxy find_sampled_proxy(const RelevancePatch& patch, const glm::dvec3& centre, 
 
 namespace {
 
-/// Divides the integral of a - p. Only for the laws that integrate.
+/// Returns the divisor of the integral of a - p. Only for the laws that integrate.
 double denominator_of(ProxyLaw law, const BallIntegrals& ball, double radius, double whole) noexcept
 {
     switch (law) {
@@ -218,7 +218,7 @@ double denominator_of(ProxyLaw law, const BallIntegrals& ball, double radius, do
         case ProxyLaw::thesis: return ball.volume;
         case ProxyLaw::potential: {
             // The weight 1 - |a - p|^2 / r^2 is 0 at the rim, so the chords' ends contribute nothing to the derivative
-            // of its sum: it is 2 / r^2 times `first`, exactly, even for a finite number of rows.
+            // of the weights' sum: the derivative is 2 / r^2 times `first`, exactly, even for a finite number of rows.
             const double weighted = std::max(ball.volume - ball.second / (radius * radius), 0.0);
             return weighted + POTENTIAL_FLOOR * whole;
         }

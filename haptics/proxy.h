@@ -1,8 +1,8 @@
 #pragma once
 // The proxy by exact integration: instead of sampling points in the probe's ball, each row of relevant voxels is
 // clipped to its chord in the ball and integrated along x in closed form. The result is a continuous function of the
-// probe's position, since chords shrink to 0 at the ball's rim. Across y and z, a row is a line through its voxels'
-// centres or, for small balls, four or nine lines.
+// probe's position, since chords shrink to 0 at the ball's rim. Across y and z, a row is represented by a line through
+// its voxels' centres or, for small balls, by four or nine lines.
 //
 // Three laws:
 //   mean      proxy = mean of the relevant points in the ball: as in the thesis (eq. 3.3 - 3.5), without sampling noise
@@ -13,7 +13,7 @@
 //
 // Where the ball sticks out of the patch, the unknown part is left out of the integral and never taken as empty: both
 // sides are cut alike (KnownPart), and the offset is weighted by the known share. So nothing pulls along a straight
-// tube at the border of the known region, and the pull fades to 0 as the centre reaches it.
+// tube at the border of the known region, and the pull fades to 0 as the centre reaches that border.
 //
 // Pure; any thread. Cost: 10 to 20 ns per line.
 
@@ -33,7 +33,7 @@ struct BallIntegrals {
     glm::dvec3 first{0.0};  ///< integral of a - p
     double second = 0.0;    ///< integral of |a - p|^2
 };
-/// Voxels farther than `reach` from the centre along any axis are left out.
+/// Leaves out voxels farther than `reach` from the centre along any axis.
 BallIntegrals integrate(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
                         const glm::dvec3& reach) noexcept;
 inline BallIntegrals integrate(const RelevancePatch& patch, const glm::dvec3& centre, double radius) noexcept
@@ -46,28 +46,28 @@ inline constexpr int SAMPLE_POINTS = 3000;  ///< as in the thesis
 struct Proxy {
     bool in_contact = false;      ///< the ball contains relevant voxels
     glm::dvec3 offset{0.0};       ///< proxy - probe, physical units; 0 without contact
-    glm::dvec3 mean{0.0};         ///< mean of the relevant points - probe, whatever the law
+    glm::dvec3 mean{0.0};         ///< mean of the relevant points minus probe, for every law
     double relevant_share = 0.0;  ///< relevant share of the known part of the ball, by volume
 };
 inline constexpr double POTENTIAL_FLOOR = 0.05;  ///< eps above
 Proxy find_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius, ProxyLaw law) noexcept;
 
 /// Returns the middle of the structure that a ball with this proxy touches, where tools act, minus the ball's centre.
-/// It is the exact mean of a ball around the exact mean, since the first ball's rim cuts more off the far side of a
-/// thick tube. In balls of 1.5 times a tube's radius it is within 0.11 voxels of the axis (RMS, guided hand); the first
-/// mean is within 0.65.
+/// It is the exact mean in a second ball, centred at the first ball's exact mean, since the first ball's rim cuts more
+/// off the far side of a thick tube. In balls of 1.5 times a tube's radius, the second mean is within 0.11 voxels of
+/// the axis (RMS, guided hand); the first mean is within 0.65.
 glm::dvec3 find_middle(const RelevancePatch& patch, const glm::dvec3& centre, double radius, ProxyLaw law,
                        const Proxy& proxy) noexcept;
 
 // ---- By sample points, for comparison (`shvr haptics bench --sweep`)
 // --------------------------------------------------
 
-/// Random points in a ball of radius 1, uniformly distributed (algorithm 2 of the thesis); the same on every machine.
+/// Returns random points, uniform in a ball of radius 1 (algorithm 2 of the thesis); the same on every machine.
 std::vector<glm::dvec3> random_points(int count);
-/// Points in the ball with low discrepancy: additive recurrence with the plastic number (Roberts 2018) over equal
-/// volumes.
+/// Returns points in the ball with low discrepancy: an additive recurrence with the plastic number (Roberts 2018) over
+/// equal volumes.
 std::vector<glm::dvec3> even_points(int count);
-/// Returns the proxy at the mean of the relevant ones among these points.
+/// Returns the proxy at the mean of those of `points` that are relevant.
 Proxy find_sampled_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
                          std::span<const glm::dvec3> points) noexcept;
 

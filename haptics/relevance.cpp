@@ -50,7 +50,7 @@ KnownPart RelevancePatch::known_part(const glm::dvec3& centre, double radius) co
     if (sequence == 0 || !(radius > 0.0) || !std::isfinite(centre.x + centre.y + centre.z + radius)) return known;
     known.share = 1.0;
     for (int axis = 0; axis < 3; ++axis) {
-        // Beyond the volume's own border nothing is relevant, which is known.
+        // Nothing beyond the volume's own border is relevant, so that part counts as known.
         const double lower = (centre[axis] - double(origin[axis]) * spacing[axis]);
         const double upper = (double(origin[axis] + size[axis]) * spacing[axis] - centre[axis]);
         double reach = radius;

@@ -11,7 +11,7 @@
 
 namespace shvr {
 
-/// The part of a ball whose relevance is known, cut by planes at the same distance on both sides of its centre: so that
+/// The part of a ball whose relevance is known. Planes cut it at the same distance on both sides of the centre, so that
 /// a part missing on one side causes no pull to the other.
 struct KnownPart {
     glm::dvec3 reach{0.0};  ///< distance of the planes from the centre along each axis, at most the radius
@@ -26,7 +26,7 @@ struct RelevancePatch {
 
     uint64_t sequence = 0;  ///< 0: nothing is known yet
     uint64_t time_ns = 0;   ///< time of the request, CLOCK_MONOTONIC; the bits do not include later changes
-    glm::ivec3 origin{0};   ///< voxel of its lower corner
+    glm::ivec3 origin{0};   ///< voxel of the patch's lower corner
     glm::ivec3 size{0};  ///< voxels, each at most MAX_VOXELS; clipped to the volume, outside which nothing is relevant
     int32_t words_per_row = 0;  ///< 32-bit words along x: bit b of word w is voxel x = origin.x + 32 w + b
     glm::dvec3 spacing{1.0};    ///< physical units per voxel of its level
@@ -34,7 +34,7 @@ struct RelevancePatch {
     int32_t level = 0;          ///< level l voxels cover 2^l of the volume's along each axis; coarse levels are for
                                 ///< large probes
     uint32_t settings = 0;      ///< the ForceSettings::relevance_settings used; if they differ, the patch is unusable
-    uint32_t limits = 0;        ///< counts changes of what is left out (cuts, hidden groups): the pull fades over
+    uint32_t limits = 0;        ///< counts changes of the excluded voxels (cuts, hidden groups): the pull cross-fades
     std::array<uint32_t, MAX_WORDS> words{};  ///< index of a word: word + words_per_row * (y + size.y * z)
 
     uint32_t row_word(int32_t word, int32_t y, int32_t z) const
@@ -42,14 +42,14 @@ struct RelevancePatch {
         return words[size_t(word) + size_t(words_per_row) * (size_t(y) + size_t(size.y) * size_t(z))];
     }
     size_t word_count() const { return size_t(words_per_row) * size_t(size.y) * size_t(size.z); }
-    /// Whether its dimensions are consistent with each other and with the array.
+    /// Returns whether the patch's dimensions are consistent with each other and with the array.
     bool is_well_formed() const;
     /// Copies everything except the words.
     void take_place_of(const RelevancePatch& other);
-    /// Whether the patch covers the part of the ball that lies in the volume. Physical units; the corner of voxel (0,
-    /// 0, 0) is the origin and voxel i has its centre at (i + 0.5) * spacing. False while nothing is known yet.
+    /// Returns whether the patch covers the ball's part in the volume. Physical units; the corner of voxel (0, 0, 0) is
+    /// the origin and voxel i has its centre at (i + 0.5) * spacing. False while nothing is known yet.
     bool covers(const glm::dvec3& centre, double radius) const;
-    /// The whole ball if `covers`.
+    /// Returns the known part of the ball: the whole ball if `covers` is true of it.
     KnownPart known_part(const glm::dvec3& centre, double radius) const;
 };
 

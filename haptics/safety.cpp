@@ -6,7 +6,7 @@
 namespace shvr {
 namespace {
 
-/// A device's stiffness limit applies at two ticks: 2 ms, half a tick for which a force is held, and the delay of
+/// A device's stiffness limit applies at two ticks: 2 ms, plus half a tick for which a force is held, plus the delay of
 /// smoothing the velocity at 100 Hz (fitted to K = 300 B at two ticks).
 constexpr double USUAL_LATENCY_S = 0.002, HELD_S = 0.0005, VELOCITY_LAG_S = 0.00083;
 constexpr double LATENCY_SMOOTHING_S = 0.1;
@@ -42,7 +42,7 @@ void add_state(uint64_t now_ns, RateMemory& rate)
 double share_for_rate(uint64_t now_ns, const RateMemory& rate)
 {
     if (rate.count < SLOW_STATES) return 1.0;
-    // Whether that many of the last intervals took longer than `most_ns`.
+    // Returns whether the last `intervals` intervals together took longer than `most_ns`.
     const auto is_late = [&](size_t intervals, uint64_t most_ns) {
         const uint64_t then_ns = rate.fresh_ns[(rate.count - intervals - 1) % SLOW_STATES];
         return now_ns > then_ns && now_ns - then_ns > most_ns;

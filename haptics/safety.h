@@ -13,14 +13,14 @@ namespace shvr {
 
 // ---- Heat: no 10 s have a root mean square above the continuous force ----------------------------------------------
 
-/// The square of the force, smoothed with HEAT_S, stays at or below continuous^2 / (1 + HEAT_S / 10 s). As 10 s of
-/// squares add up to HEAT_S times its growth plus 10 s of it, their mean is at most continuous^2.
+/// The square of the force, smoothed with HEAT_S, stays at or below continuous^2 / (1 + HEAT_S / 10 s). The squares of
+/// 10 s add up to HEAT_S times its growth plus its own sum, so their mean is at most continuous^2.
 inline constexpr double HEAT_S = 2.0;
 inline constexpr double HEAT_WINDOW_S = 10.0;
 struct HeatMemory {
     double square = 0.0;  ///< N^2
 };
-/// Maximum force now: the peak while cool, then gradually less, and the continuous force when hot.
+/// Returns the maximum force now: the peak while cool, then gradually less, and the continuous force when hot.
 double force_allowed(const DeviceCaps& caps, const HeatMemory& heat);
 void add_heat(const glm::dvec3& force_n, double dt_s, HeatMemory& heat);
 
@@ -33,7 +33,7 @@ struct RateMemory {
     uint32_t count = 0;                            ///< states since the device appeared
 };
 void add_state(uint64_t now_ns, RateMemory& rate);
-/// 1, 1/2 or 0 times the stiffness. 1 until enough states have arrived to tell.
+/// Returns the factor of the stiffness: 1, 1/2 or 0. It is 1 until enough states have arrived to tell.
 double share_for_rate(uint64_t now_ns, const RateMemory& rate);
 
 // ---- Forces sent, and the times at which they were in effect --------------------------------------------------------
@@ -49,13 +49,13 @@ struct SentForces {
     double latency_s = 0.0;  ///< measured, smoothed; 0: not yet
 };
 void add_sent(const glm::dvec3& force_n, uint64_t now_ns, SentForces& sent);
-/// The force in effect at a state: by the number that the device reports or, if it reports none, by its latency.
+/// Returns the force in effect at a state, by the number that the device reports or, without one, by its latency.
 SentForce force_in_effect(const DeviceCaps& caps, const DeviceState& state, uint64_t now_ns, const SentForces& sent);
 void measure_latency(const DeviceCaps& caps, const DeviceState& state, uint64_t now_ns, double tick_s,
                      SentForces& sent);
 
-/// The stiffness that is stable at the latency that the device states, or at the measured one if that is longer. Its
-/// own limit applies at two ticks; beyond, K (latency + half a tick + the velocity's lag) stays constant.
+/// Returns the stiffness that is stable at the latency that the device states, or at the measured one if longer. The
+/// device's limit applies at two ticks; beyond, K (latency + half a tick + velocity lag) stays constant.
 double stable_stiffness(const DeviceCaps& caps, const SentForces& sent);
 
 // ---- Energy: the passivity observer and controller of Hannaford and Ryu ---------------------------------------------
@@ -65,18 +65,18 @@ double stable_stiffness(const DeviceCaps& caps, const SentForces& sent);
 struct EnergyMemory {
     bool has_last = false;
     glm::dvec3 position_m{0.0}, field_n{0.0};  ///< position and undelayed force at the last state
-    double made_j = 0.0;                       ///< not dissipated yet; at least 0
+    double made_j = 0.0;                       ///< energy not dissipated yet; at least 0
 };
 inline constexpr double MAX_TAKING = 2.0;  ///< N s/m: more damping is itself unstable at two ticks
 inline constexpr double TAKING_MOST_N = 0.3;
 void observe_energy(const glm::dvec3& position_m, const glm::dvec3& field_n, const glm::dvec3& in_effect_n,
                     EnergyMemory& energy);
-/// The force that dissipates energy over `dt_s`, which is then counted as dissipated.
+/// Returns the force that dissipates energy over `dt_s`, and counts that energy as dissipated.
 glm::dvec3 take_energy(const glm::dvec3& velocity, double dt_s, EnergyMemory& energy);
 
 // ---- The box ----------------------------------------------------------------------------------------------------------
 
-/// 1 inside the box where the device's forces are accurate, falling to 0 over BOX_MARGIN_M outside.
+/// Factor of the force: 1 inside the box where forces are accurate, falling to 0 over BOX_MARGIN_M outside.
 inline constexpr double BOX_MARGIN_M = 0.01;
 double share_in_box(const DeviceCaps& caps, const glm::dvec3& position_m);
 

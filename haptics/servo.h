@@ -28,17 +28,17 @@ public:
     /// Sleeps until `deadline_ns`.
     virtual void wait_until(uint64_t deadline_ns) noexcept = 0;
 };
-/// CLOCK_MONOTONIC, absolute sleeps.
+/// Returns the real clock: CLOCK_MONOTONIC, absolute sleeps.
 std::unique_ptr<Pacing> real_pacing();
 
-/// Counts by powers of two of a microsecond: bin 0 below 1 us, bin i from 2^(i-1) to 2^i us; the last holds the rest.
+/// Counts by powers of two of a microsecond: bin 0 below 1 us, bin i from 2^(i-1) to 2^i us; the last bin has no end.
 struct TimeHistogram {
     static constexpr size_t BINS = 24;
     std::array<uint64_t, BINS> counts{};
     uint64_t worst_ns = 0;
     void add(uint64_t nanoseconds) noexcept;
     uint64_t total() const noexcept;
-    /// Upper end of the bin where the cumulative count reaches `share`, microseconds; 0 if empty.
+    /// Returns the upper end, in microseconds, of the bin where the cumulative count reaches `share`; 0 if empty.
     double quantile_us(double share) const noexcept;
 };
 
@@ -70,7 +70,7 @@ public:
         bool realtime = true;  ///< SCHED_FIFO if the system allows it; see is_realtime()
     };
     Servo(std::unique_ptr<HapticDevice> device, std::unique_ptr<Pacing> pacing, const Options& options);
-    /// Writes a zero force and joins.
+    /// Writes a zero force and joins the thread.
     ~Servo();
     Servo(const Servo&) = delete;
     Servo& operator=(const Servo&) = delete;
@@ -78,12 +78,12 @@ public:
     Latest<ForceSettings>& settings() { return settings_; }
     Latest<RelevancePatch>& relevance() { return relevance_; }
     Latest<ServoState>& state() { return state_; }
-    /// For one reading thread, which may be another than that of state().
+    /// For one reading thread, which need not be the one that reads state().
     Latest<ProbePlace>& place() { return place_; }
-    /// Whether the system granted SCHED_FIFO; if not, only the timer slack is reduced.
+    /// Returns whether the system granted SCHED_FIFO; if not, only the timer slack is reduced.
     bool is_realtime() const { return is_realtime_; }
-    /// Whether all memory needed in a tick could be locked (kept_memory.h). Valid after the first tick. If false, that
-    /// memory is present at the first tick, but may be paged out when the program has run for long.
+    /// Returns whether all memory needed in a tick could be locked (kept_memory.h). Valid after the first tick. If
+    /// false, that memory is present at the first tick, but may be paged out when the program has run for long.
     bool keeps_memory() const { return keeps_memory_; }
 
 private:

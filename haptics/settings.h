@@ -23,7 +23,7 @@ struct ForceSettings {
     bool assistance = false;  ///< off: no force
     ProxyLaw law = ProxyLaw::potential;
     double probe_radius = 1.0;  ///< physical units
-    double stiffness = 300.0;   ///< N/m for a probe of PROBE_M in the hand; at the hand never above the device's limit
+    double stiffness = 300.0;   ///< N/m for a probe of PROBE_M in the hand; the device's limit applies at the hand
     double damping = 1.0;       ///< N s/m, at most 1.2
     Workspace workspace;
     uint32_t reset = 0;  ///< a change clears a latched fault
@@ -31,12 +31,12 @@ struct ForceSettings {
     glm::dvec3 to_camera{0.0, 0.0, 1.0};  ///< unit vector in the volume; motion along it releases a surface
     double surface_share = 0.4;           ///< fraction of the ball: a surface holds above it and lets go below 3/4 of
                                           ///< it
-    double movement_scale = 1.0;          ///< user's scale of the hand's motion: divides the force
+    double movement_scale = 1.0;          ///< user's scale of the hand's motion; the force is divided by it
     double strength = 1.0;                ///< factor of the force, 0 ... 1
     bool clicks = false;                  ///< a short pulse when contact begins; only for devices with motors
     bool let_go = false;                  ///< no force from the next tick on; when unset, the force fades in again
     bool finds_middle = false;            ///< tools act at the middle of the touched structure; no effect on the force
-    uint32_t relevance_settings = 0;      ///< counts changes of threshold and groups: relevance made before fades out
+    uint32_t relevance_settings = 0;      ///< counts changes of threshold and groups; outdated relevance fades out
     bool operator==(const ForceSettings&) const = default;
 };
 

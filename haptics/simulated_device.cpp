@@ -7,7 +7,7 @@
 namespace shvr {
 namespace {
 
-/// exp(a) by scaling, Taylor series and squaring. With norms below 1/16 the remainder of the series is 1e-16.
+/// Returns exp(a) by scaling, Taylor series and squaring. With norms below 1/16 the series' remainder is 1e-16.
 glm::dmat2 exponential(glm::dmat2 a)
 {
     int halvings = 0;
@@ -22,7 +22,7 @@ glm::dmat2 exponential(glm::dmat2 a)
     return sum;
 }
 
-/// The exact motion over one tick with constant wish and force: stable for every hand and tick length.
+/// Returns the exact motion over one tick with constant wish and force: stable for every hand and tick length.
 glm::dmat2 propagator_of(const HandModel& hand)
 {
     if (hand.mass_kg > 0.0) {

@@ -24,7 +24,7 @@ namespace shvr {
 struct HandWish {
     glm::dvec3 position_m{0.0};
     uint32_t buttons = 0;
-    uint32_t jump = 0;  ///< a change puts the hand there at once: the probe was placed, not moved
+    uint32_t jump = 0;  ///< a change moves the hand to the wish at once: the probe was placed, not moved
 };
 
 struct HandModel {

@@ -8,11 +8,11 @@ SHARED_BEGIN
 SHARED_CONST uint UNPACK_THREADS = 64u;  // per slice of a brick
 
 struct BrickUnpackJob {
-    uvec3 code;    ///< texel of its first code
-    uint codes;    ///< the first staged word of its codes
+    uvec3 code;    ///< texel of the brick's first code
+    uint codes;    ///< the first staged word of the brick's codes
     uvec3 extent;  ///< in codes
-    uvec3 cell;    ///< texel of its first cell
-    uint ranges;   ///< the first word of its cells' ranges
+    uvec3 cell;    ///< texel of the brick's first cell
+    uint ranges;   ///< the first word of the cells' ranges
 };
 
 SHARED_END

@@ -2,9 +2,9 @@
 //
 // A brick holds 32^3 voxels. Paged bricks are in slots of the atlas, a 3-D texture, with an apron of one voxel on each
 // side, so that trilinear filtering, and central differences of +-0.5 voxel, never need a second brick. Bricks of a
-// resident volume are side by side; a border of one voxel repeats the outermost ones, except along x, where readers
-// repeat them, so that rows keep the lengths that devices prefer. Slot 0 never holds a brick and means "not on the
-// device".
+// Bricks of a resident volume are side by side, within a border of one voxel that repeats the outermost voxels. Along x
+// there is no border: readers repeat those voxels, so that rows keep the lengths that devices prefer. Slot 0 never
+// holds a brick and means "not on the device".
 #ifndef SHVR_BRICKS_H
 #define SHVR_BRICKS_H
 #include "shared.h"
@@ -37,7 +37,7 @@ SHARED_FUNCTION uvec3 unpack_slot(uint packed_slot)
     return uvec3(packed_slot & 0xffu, packed_slot >> 8u & 0xffu, packed_slot >> 16u & 0xffu);
 }
 
-/// First texel (apron included) of a slot in an image with BRICK_TEXELS per slot: values of ambient light.
+/// First texel, apron included, of a slot in an image of BRICK_TEXELS per slot side, as for values of ambient light.
 SHARED_FUNCTION uvec3 slot_origin(uint packed_slot)
 {
     return BRICK_TEXELS * unpack_slot(packed_slot);

@@ -1,9 +1,9 @@
 // The leap grid: for every cell of 4^3 voxels, how far a ray may jump, whether it is painted, and which brick holds it.
 //
 // An entry is (distance << 25) | (painted << 24) | slot. Painted: a voxel of the cell (or, with smooth borders, next to
-// it) is in a group; samples in other
-// cells need not read the mask. Distance 0: something visible may be in the cell. Distance D > 0: every cell within
-// Chebyshev distance D - 1 is empty, so a ray may leave the cube of 2 D - 1 cells around it without sampling.
+// it) is in a group; samples in unpainted cells need not read the mask. Distance 0: something visible may be in the
+// cell. Distance D > 0: every cell within Chebyshev distance D - 1 is empty, so a ray may leave the cube of 2 D - 1
+// cells around the cell without sampling.
 #ifndef SHVR_LEAP_H
 #define SHVR_LEAP_H
 #include "bricks.h"
@@ -45,18 +45,18 @@ struct LeapBoundParams {
 
 SHARED_CONST uint SAMPLE_BITS_AHEAD = 24u;
 SHARED_CONST uint SAMPLE_BIT_PARTS = 32768u;
-/// Maximum voxels along z of volumes with sample bits: parts have 31 bits. Along y there may be four times as many.
+/// Maximum voxels along z of volumes with sample bits: parts fit in 31 bits. Along y there may be four times as many.
 SHARED_CONST uint SAMPLE_BITS_SIZE = 4095u;
 SHARED_CONST float SAMPLE_BITS_REACH = 4.0f;
 
-/// Sample bits: whether a sample may show anything, according to the eight voxels around it. A sample's bit is at the
-/// upper ones, floor(position - 0.5) + 1, at most the volume's last voxel. Two texels per cell, with two planes along z
-/// each: bit x + 4 y + 16 z.
+/// Sample bits tell whether a sample may show anything, judging by the eight voxels around it. A sample's bit is that
+/// of the upper voxel, floor(position - 0.5) + 1, at most the volume's last one. A cell has two texels of two planes
+/// along z each: bit x + 4 y + 16 z.
 ///
 /// Rays find the places of SAMPLE_BITS_AHEAD samples in fixed point: SAMPLE_BIT_PARTS parts of a voxel along x, four
 /// times as many along y and sixteen times along z. So a sample may be assigned to a neighbouring voxel, by the error
-/// of its own coordinates plus the rounding of the parts; bits have a guard against that for rays whose ends are at
-/// most SAMPLE_BITS_REACH times the volume's longest side apart, along each axis; other rays do not use them.
+/// of its own coordinates plus the rounding of the parts. The bits have a guard against that for rays whose ends are at
+/// most SAMPLE_BITS_REACH times the volume's longest side apart, along each axis; other rays do not use the bits.
 struct SampleBitsParams {
     uvec3 cell_begin;  ///< the cells to compute
     uvec3 cell_end;

@@ -8,9 +8,9 @@
 // (pack_slot) of a brick of that level that contains the cell: the finest one loaded, perhaps coarser than wanted. Or,
 // level PAGE_MISSING: a ray that arrives here waits.
 //
-// Within a brick, `cell_leap` describes its 8^3 cells: distance << 1 | painted. The distance is Chebyshev, to the
-// nearest cell of the brick that may contain something visible, or to the brick's end; if painted is 0, no voxel of the
-// cell is in a group.
+// Within a brick, `cell_leap` describes its 8^3 cells: distance << 1 | painted. The distance is the Chebyshev distance
+// to the nearest cell of the brick that may contain something visible, or to the brick's end; if painted is 0, no voxel
+// of the cell is in a group.
 #ifndef SHVR_PAGES_H
 #define SHVR_PAGES_H
 #include "leap.h"
@@ -23,9 +23,9 @@ SHARED_CONST uint PAGE_NODE = 15u;
 SHARED_CONST uint PAGE_PAYLOAD_MASK = 0x00ffffffu;
 SHARED_CONST uint CELL_PAINTED = 1u;
 SHARED_CONST uint CELL_DISTANCE_SHIFT = 1u;
-/// The brick is not on the device, and no coarser one stands in. Only while rays wait (RaycastInput::waiting).
+/// The brick is not on the device, and no coarser one stands in. Occurs only while rays wait (RaycastInput::waiting).
 SHARED_CONST uint PAGE_MISSING = 14u;
-/// Maximum cells of the directory's grid along one axis; it is rebuilt for every new view.
+/// Maximum cells of the directory's grid along one axis; the grid is rebuilt for every new view.
 SHARED_CONST uint PAGE_GRID = 32u;
 
 /// A brick whose cells are examined: one workgroup.

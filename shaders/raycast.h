@@ -6,22 +6,22 @@
 SHARED_BEGIN
 
 /// The transfer function's table is an image in rows of TABLE_WIDTH texels: first its entries (preintegrated:
-/// TABLE_WIDTH x TABLE_WIDTH, front density along x), padded to whole rows. From `table_depths` on, optical depths of a
-/// full step, OPAQUE_DEPTH if it is opaque: opacity alone would round to 1, and the opacity of a part of such a step
-/// would be unknown. Depths of four entries per texel, in order; preintegrated: one texel per entry, with the depths of
-/// the entry, its neighbours along x and y, and the diagonal one.
+/// TABLE_WIDTH x TABLE_WIDTH, front density along x), padded to whole rows. From texel `table_depths` on, it has the
+/// optical depths of a full step, OPAQUE_DEPTH if the step is opaque: opacity alone would round to 1, and the opacity
+/// of a part of such a step would be unknown. A texel has the depths of four successive entries; preintegrated: one
+/// texel per entry, with the depths of the entry, its neighbours along x and y, and the diagonal one.
 SHARED_CONST uint TABLE_WIDTH = 256u;
 SHARED_CONST float OPAQUE_DEPTH = 1e30f;
 
-/// From `opaque_map` on, where a preintegrated function reaches opacity 1: OPAQUE_ENTRIES texels over the table's
-/// range, whose x is the first opaque interval that ends at or above the texel, and y the last one that begins at or
-/// below the next texel. Then the intervals: colour and density at their beginnings and ends, two texels each. The
-/// first and the last interval are sentinels out of reach.
+/// From texel `opaque_map` on, the table tells where a preintegrated function reaches opacity 1: OPAQUE_ENTRIES texels
+/// over its range, whose x is the first opaque interval that ends at or above the texel, and y the last one that begins
+/// at or below the next texel. Then come the intervals: colour and density at their beginnings and ends, two texels
+/// each. The first and the last interval are sentinels out of reach.
 SHARED_CONST uint OPAQUE_ENTRIES = 65536u;
 SHARED_CONST float OUT_OF_REACH = 1e30f;
 
-/// From `points` on, for integral.comp: the function's `point_count` points, sorted by density: colour and opacity of a
-/// reference length, one texel each; then their densities in codes, one texel each.
+/// From texel `points` on, the table has, for integral.comp, the function's `point_count` points, sorted by density:
+/// colour and opacity of a reference length, one texel each; then their densities in codes, one texel each.
 
 /// The specialization constant SHININESS_SQUARINGS is log2 of the shininess if that is a whole number below this.
 SHARED_CONST uint NOT_A_POWER_OF_TWO = 10u;
@@ -31,16 +31,16 @@ SHARED_CONST uint SHELL_NONE = 0u;
 SHARED_CONST uint SHELL_BALL = 1u;
 SHARED_CONST uint SHELL_BOX = 2u;
 
-/// The specialization constant PICK: the target's first row is the answer; between blocks the other rows hold the state
-/// of the runs so far. A rise below the second constant does not count as visible.
+/// The specialization constant PICK: the target's first row receives the answer; between blocks the other rows hold the
+/// state of the runs so far. A rise below MIN_SEEN does not count as visible.
 SHARED_CONST uint PICK_ROWS = 3u;
 SHARED_CONST float MIN_SEEN = 0.015625f;
 
 /// The specialization constant KEPT: the values that a ray stores in the image `rays` between two dispatches, besides
 /// the colour accumulated in its pixel. x: length of the ray up to the next iso-surface; y: length from which the
-/// search continues (negative before the region). KEPT_ALL is for rays that wait for bricks, each at its own position;
-/// z, w: the next step, in two halves of 16 bits, with RAY_* times 65536 added to w; the image then has a second half
-/// below this one, for the accumulated colour, and every dispatch writes the pixels themselves fully composited.
+/// search continues (negative before the region). KEPT_ALL, for rays that each wait for bricks at their own position,
+/// adds z, w: the next step, in two halves of 16 bits, with RAY_* times 65536 added to w. The image then has a second
+/// half below this one, for the accumulated colour, and every dispatch writes the pixels themselves fully composited.
 SHARED_CONST uint KEPT_NOTHING = 0u;
 SHARED_CONST uint KEPT_SHELL = 1u;
 SHARED_CONST uint KEPT_ALL = 2u;
@@ -77,11 +77,11 @@ struct RaycastParams {
     float table_upper;    ///< codes; nothing is drawn above
     float table_scale;    ///< table coordinate = (code - table_lower) * table_scale
     uint table_entries;
-    uint table_depths;   ///< texel of the table
-    uint opaque_map;     ///< texel of the table; 0: none
+    uint table_depths;   ///< texel of the table where depths begin
+    uint opaque_map;     ///< texel of the table where the map begins; 0: none
     float opaque_scale;  ///< texel of the map = (code - table_lower) * opaque_scale
     uint first_step;     ///< the block: range of steps of every ray in this dispatch; 0: rays begin
-    uint end_step;       ///< KEPT_ALL: only their number matters
+    uint end_step;       ///< KEPT_ALL: only the number of steps matters
     uint is_last_block;
     vec4 background;  ///< linear light, straight alpha
     vec3 light;       ///< unit vector towards the light, volume space
@@ -101,8 +101,8 @@ struct RaycastParams {
     vec3 shell_reach;     ///< half the size of the box, or the ball's radius along each axis; voxels
     float shell_code;     ///< threshold of the surface
     vec3 shell_color;     ///< linear light
-    float shell_opacity;  ///< of one crossing of the surface
-    uint points;          ///< texel of the table
+    float shell_opacity;  ///< opacity of one crossing of the surface
+    uint points;          ///< texel of the table where the points begin
     uint point_count;     ///< integral.comp only
 };
 

@@ -12,29 +12,29 @@ struct Surface {
     vec3 from;
     float radius_from;
     vec3 along;       ///< from the first ball to the second
-    float radius_to;  ///< neither ball contains the other
+    float radius_to;  ///< radius of the second ball; neither ball contains the other
     vec3 from_rest;
     uint number;  ///< tie-breaker: if two surfaces are at the same length, the lower number is visible
     vec3 color;   ///< linear light
     uint unused;
 };
 
-/// A box around surfaces. Nodes are in depth-first order: the next one is the first child, or `skip` if there is none.
-/// Stored as three texels of four words each.
+/// A box around surfaces. Nodes are in depth-first order: after a node comes its first child, or node `skip` if it has
+/// no child. Stored as three texels of four words each.
 struct SurfaceNode {
     vec3 lower;
-    uint skip;  ///< the next node outside this one
+    uint skip;  ///< index of the next node that is not inside this one
     vec3 upper;
-    uint begin;  ///< surfaces of a leaf; begin == end elsewhere
+    uint begin;  ///< range of a leaf's surfaces; begin == end in other nodes
     uint end;
     uvec3 unused;
 };
 
-/// Maximum number of surfaces in a leaf. Fewer means more boxes to load, more means more rods to intersect.
+/// Maximum number of surfaces in a leaf. A smaller one means more boxes to load, a larger one more rods to intersect.
 SHARED_CONST uint SURFACES_IN_LEAF = 4u;
 
-/// Both are stored in images, in rows of this length: devices without a cache for buffers read those one thread at a
-/// time.
+/// Surfaces and nodes are stored in images, in rows of this length: devices without a cache for buffers read buffers
+/// one thread at a time.
 SHARED_CONST uint SURFACES_IN_ROW = 1024u;
 SHARED_CONST uint SURFACE_TEXELS = 4u;
 SHARED_CONST uint SURFACE_NODE_TEXELS = 3u;
@@ -64,9 +64,9 @@ struct SurfaceParams {
     vec3 probe_color;  ///< linear light
 };
 
-/// Side in pixels of a tile, from the first pixel of the part on. A tile lists the surfaces that its rays may meet,
-/// their number first, in a texel for each of its pixels: an index, and from bit SURFACE_BLOCK on, a bit for each of
-/// the tile's blocks of 4 x 2 pixels. If there are more, rays search the boxes instead.
+/// Side of a tile in pixels; tiles start at the part's first pixel. A tile has a texel per pixel: the first holds the
+/// number of surfaces that its rays may meet, each other one a surface's index and, from bit SURFACE_BLOCK on, a bit
+/// for each of the tile's blocks of 4 x 2 pixels. If not all surfaces fit, rays search the boxes instead.
 SHARED_CONST uint SURFACE_TILE = 8u;
 SHARED_CONST uint SURFACES_IN_TILE = SURFACE_TILE * SURFACE_TILE - 1u;
 SHARED_CONST uint SURFACE_BLOCK = 24u;  // no scene has 2^24 surfaces
@@ -83,13 +83,13 @@ SHARED_FUNCTION uint surface_block(uvec2 in_part)
     return SURFACE_BLOCK + in_part.x / 4u % 2u + 2u * (in_part.y / 2u % 4u);
 }
 
-/// The texel of a word of a tile's list: the first word is their number.
+/// The texel of a word of a tile's list: word 0 is the number of surfaces in the list.
 SHARED_FUNCTION uvec2 surface_tile_texel(uvec2 tile, uint word)
 {
     return SURFACE_TILE * tile + uvec2(word % SURFACE_TILE, word / SURFACE_TILE);
 }
 
-/// The length if a ray meets no surface.
+/// Stands for the length along a ray that meets no surface.
 SHARED_CONST float NO_SURFACE = 1e30f;
 
 SHARED_END

@@ -18,13 +18,13 @@ namespace {
 /// While work is pending the loop runs at this interval, so that the device never runs out of work.
 constexpr double WORK_S = 0.001;
 constexpr double IDLE_S = 0.25;
-constexpr double CLICK_S = 0.05;  ///< while a click waits for its second
-/// Without input, sharper tiles are shown at this interval, since drawing the interface takes time from them.
+constexpr double CLICK_S = 0.05;  ///< interval while a click may become a double click
+/// Without input, sharper tiles are shown at this interval, since drawing the interface delays the tiles.
 constexpr double SHARPEN_S = 0.12;
 /// Duration after the last event for which widgets may settle, hover and blink.
 constexpr double AFTERGLOW_S = 0.3;
 
-/// Takes budgets that the command line leaves open from the preferences. Errors in these are reported by the workbench.
+/// Takes budgets that the command line does not set from the preferences. The workbench reports errors in these.
 gpu::Budget budget_of(const AppOptions& options)
 {
     gpu::Budget budget = options.budget;
@@ -148,8 +148,8 @@ void App::draw()
     if (now - *undrawn_since_s_ > PATIENCE_S) fail("the window cannot be drawn: ", frame_failure_);
 }
 
-/// Called when all images of the window are on their way to the screen, or it is hidden: work goes on, and a frame is
-/// tried again, less and less often.
+/// Called if no image is available, because all are on their way to the screen or the window is hidden: work goes on,
+/// and the frame is tried again, less and less often.
 void App::try_again_soon()
 {
     constexpr double FIRST_S = 0.002, LAST_S = 0.05, GROWTH = 0.1;
@@ -167,7 +167,7 @@ bool App::closes()
     std::string why;
     switch (bench_->leave(why)) {
         case Workbench::Leave::now: return true;
-        case Workbench::Leave::later: return false;  // until then all can be used
+        case Workbench::Leave::later: return false;  // closes later; until then everything can be used
         case Workbench::Leave::refused: return !refuses_to_close(why);
     }
     return false;
@@ -190,7 +190,7 @@ bool App::refuses_to_close(const std::string& why)
     return true;
 }
 
-/// For so long, and for as many frames as widgets need to find their sizes, however long a frame takes.
+/// Draws the interface for at least this duration, and for at least the frames that widgets need to find their sizes.
 void App::keep_drawing(double for_s)
 {
     constexpr uint64_t SETTLING_FRAMES = 3;
@@ -208,11 +208,11 @@ bool App::something_moves() const
     return bench_->is_stirring() || glm::distance(bench_->document().probe_voxel(), drawn_probe_voxel_) > STIR_VOXELS;
 }
 
-/// Returns when the interface should be drawn next, as far as known: at once, a little later, or not at all.
+/// Returns when the interface has to be drawn next, as far as is known: now, at a later time, or never.
 double App::next_reason_to_draw_s() const
 {
     if (undrawable_since_s_) return 0.0;
-    // Until the first picture exists, it has the device to itself.
+    // Until the first picture exists, the interface leaves the device to that picture.
     const bool waits_for_picture =
         bench_->is_open() && !bench_->document().screen.shows_anything() && viewport_.pixels().x > 0;
     if (waits_for_picture && !report_.has_unanswered()) return report_.last_begun_s() + SHARPEN_S;
@@ -233,7 +233,7 @@ double App::time_to_wait() const
 
 namespace {
 
-/// Returns whether another motion follows at once while nothing is held, so that only the last position matters.
+/// Returns whether a motion is followed by another while no button is held, so that only the last position matters.
 bool is_overtaken(const std::vector<InputEvent>& events, const InputEvent& event)
 {
     const size_t next = size_t(&event - events.data()) + 1;
@@ -243,7 +243,7 @@ bool is_overtaken(const std::vector<InputEvent>& events, const InputEvent& event
 
 }  // namespace
 
-/// Dear ImGui's answer is of the previous frame; if nothing is held or popped up, the windows under the pointer decide.
+/// Dear ImGui answers for the previous frame: without a held button or a popup, the windows under the pointer decide.
 bool App::ui_has_mouse(const InputEvent& event) const
 {
     const ImGuiIO& io = ImGui::GetIO();
@@ -258,8 +258,8 @@ bool App::ui_has_mouse(const InputEvent& event) const
     return covers(at / glm::dvec2(io.DisplayFramebufferScale.x, io.DisplayFramebufferScale.y));
 }
 
-/// Text goes to the field in which it is typed. While panels are used by keyboard, or a popup is open, the keys that
-/// move in them go to them, and all others act as always.
+/// Returns whether the interface takes a key. Typed text goes to its field. While panels are used by keyboard, or a
+/// popup is open, the keys that navigate in them go to them, and all other keys act as usual.
 bool App::ui_has_key(const KeyEvent& event) const
 {
     if (field_has_keys() || choosers_have_keys()) return true;
@@ -274,7 +274,7 @@ bool App::panels_have_keyboard() const
     return ImGui::GetIO().NavVisible || has_popup || field_has_keys() || choosers_have_keys();
 }
 
-/// Input after a key that may have opened or closed a field waits for the frame that shows where it goes.
+/// Holds back input after a key that may have opened or closed a field, until a frame shows where the input goes.
 std::vector<InputEvent> App::events_in_turn(double timeout_s)
 {
     for (InputEvent& event : window_.wait_events(timeout_s)) held_back_.push_back(std::move(event));
@@ -320,7 +320,7 @@ void App::handle_events(double timeout_s)
             viewport_.handle(event, model(), ui_has_mouse(event), actions_);
         }
         bench_->set_pointer(viewport_.pointer());
-        apply_all();  // the next event may depend on the action: on the probe's position, the selection
+        apply_all();  // the next event may depend on an action's effect: on the probe's position, the selection
         if (decides) hold_back(events, i + 1);
     }
     if (window_.has_clicks()) keep_drawing(AFTERGLOW_S);
@@ -338,7 +338,7 @@ void App::apply_all()
 {
     for (const Action& action : std::exchange(actions_, {})) {
         was_asked_to_close_ &= std::holds_alternative<Quit>(action);
-        // With nothing open such actions are ignored: an error for each key would cover the hint.
+        // If nothing is open, such actions are ignored: an error for each key would cover the hint.
         if (!bench_->is_open() && !bench_->why_not(action).empty()) continue;
         static_cast<void>(bench_->apply(action));
     }

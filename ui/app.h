@@ -88,9 +88,9 @@ private:
     Viewport viewport_;
     Keyboard keyboard_;
     Actions actions_;
-    std::vector<InputEvent> held_back_;  ///< for a frame after held_back_in_frame_
+    std::vector<InputEvent> held_back_;  ///< input for the frame after held_back_in_frame_
     int held_back_in_frame_ = -1;
-    bool was_asked_to_close_ = false;  ///< closing was refused, since saving failed; nothing has been done since
+    bool was_asked_to_close_ = false;  ///< closing was refused, since saving failed; no action has followed
     bool was_stopped_ = false;         ///< the program was asked to stop from outside (AppOptions::stop)
     std::string frame_failure_;
     std::optional<double> undrawn_since_s_;  ///< time since which every frame has failed
@@ -100,9 +100,9 @@ private:
 
     // Pace
     double next_frame_s_ = 0.0;
-    std::optional<double> undrawable_since_s_;  ///< time since which no image is available, or of the last one's loss
-    double ui_until_s_ = 1.0;                   ///< time until which the interface is drawn at least
-    uint64_t ui_until_frame_ = 3;               ///< number of frames to present until which it is drawn at least
+    std::optional<double> undrawable_since_s_;  ///< time since which no image is available, or the last one is lost
+    double ui_until_s_ = 1.0;                   ///< the interface is drawn at least until this time
+    uint64_t ui_until_frame_ = 3;               ///< drawn at least until this many frames are presented
     double last_keys_s_ = 0.0;
     uint64_t drawn_revision_ = ~uint64_t(0);
     bool drew_complete_ = false;  ///< the interface indicates whether the picture is sharp

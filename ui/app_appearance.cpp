@@ -13,7 +13,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// All names given by the user. Texts derived from them, such as histories and lists, use the same characters.
+/// Requests the characters of all names given by the user. Derived texts, such as histories and lists, need no others.
 void want_glyphs_of(const Model& model)
 {
     want_glyphs(model.volume.name);
@@ -25,7 +25,7 @@ void want_glyphs_of(const Model& model)
     for (const std::filesystem::path& path : model.preferences.recent) want_glyphs(path.native());
 }
 
-/// Acts as if a navigation key had been pressed: the first item of the window is framed and takes the keys.
+/// Acts as if a navigation key had been pressed: frames the window's first item, which then takes the keys.
 void give_keyboard_to(ImGuiWindow* window, ImGuiNavLayer layer)
 {
     if (!window) return;

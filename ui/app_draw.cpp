@@ -48,7 +48,7 @@ bool App::draw_ui()
     // cost of the view excludes the interface.
     if (is_open && renderer_->device().traits().is_cpu) bench_->screen().wait();
     const double waited_s = window_.now_s() - begun;
-    follow_appearance();  // new fonts wait for the device, which must not have an image of the screen then
+    follow_appearance();  // new fonts wait for the device, which must not have an image of the screen meanwhile
     if (!window_.is_ready()) return false;
     std::vector<View::Layer> layers;
     Layout layout{.begin = glm::uvec2(0), .end = window_.pixels()};
@@ -80,7 +80,7 @@ bool App::draw_ui()
                        .moves = moves,
                        .shows_picture = !layers.empty(),
                        .shows_sharp_picture = !layers.empty() && bench_->document().screen.complete()});
-    // Presented by a software device it is done; later would count the next turn, and the wait for events in it.
+    // On a software device a presented frame is done; reported later, its time would include the wait for events.
     report_.done(window_.frames_done(), window_.now_s());
     return true;
 }
@@ -111,8 +111,8 @@ void App::say_that_it_is_coming() const
         words, [](const glm::dvec2& at) { return ImVec2(float(at.x), float(at.y)); }, *ImGui::GetBackgroundDrawList());
 }
 
-/// The lines over each pane: the probe's outline, visible even if the probe is hidden; in maps the camera's direction;
-/// and a line towards the point where assistance pulls the probe.
+/// Draws the lines over each pane: the probe's outline, visible even if the probe is hidden; in maps, the camera's
+/// direction; and a line towards the point to which assistance pulls the probe.
 void App::draw_strokes() const
 {
     const Document& document = bench_->document();

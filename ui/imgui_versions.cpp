@@ -11,7 +11,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Versions since the one that moved the render pass into `Info`; their header decides.
+/// Calls ImGui_ImplVulkan_Init in the form of the present version: later ones have the render pass in `Info`.
 template <class Info>
 void init_vulkan(Info& info, VkRenderPass pass)
 {
@@ -77,7 +77,7 @@ bool is_alt(int key)
     return key == GLFW_KEY_LEFT_ALT || key == GLFW_KEY_RIGHT_ALT;
 }
 
-/// Returns the current pointer position: after a click reported at its own position no event may follow.
+/// Returns the present pointer position. Not for frames with a click: no event may follow one at its own position.
 ImVec2 pointer_of(GLFWwindow* window)
 {
     const bool is_here = glfwGetWindowAttrib(window, GLFW_FOCUSED) || glfwGetWindowAttrib(window, GLFW_HOVERED);
@@ -89,8 +89,8 @@ ImVec2 pointer_of(GLFWwindow* window)
 
 }  // namespace
 
-/// All events before a frame are for that frame, and of two contradicting ones the later counts. The back end reports
-/// the mouse as well, and the reports here come after its own.
+/// Makes every frame apply all events before it: of two contradicting events, the later counts. The back end reports
+/// the mouse as well, but the reports made here come after its own.
 void set_up_imgui_input()
 {
     ImGui::GetIO().ConfigInputTrickleEventQueue = false;
@@ -101,7 +101,7 @@ void tell_imgui_key(GLFWwindow* window, int key, bool pressed, int mods)
     if (!is_alt(key)) ImGui_ImplGlfw_KeyCallback(window, key, 0, pressed ? GLFW_PRESS : GLFW_RELEASE, mods);
 }
 
-/// Not passed as an event: code that reads or clears typed text between frames would not find it.
+/// Bypasses the event queue: code that reads or clears typed text between frames would not find the character there.
 void tell_imgui_character(GLFWwindow*, unsigned character)
 {
     if (character == 0) return;
@@ -122,7 +122,7 @@ void tell_imgui_buttons(GLFWwindow* window, const MouseFeed::Frame& frame)
 void begin_imgui_frame(GLFWwindow* window, const std::vector<int>& pressed, int mods)
 {
     for (const int key : pressed) tell_imgui_key(window, key, true, mods);
-    ImGui::GetIO().AddKeyEvent(ALT, false);  // otherwise releasing it, as after a drag, would move on to the menu
+    ImGui::GetIO().AddKeyEvent(ALT, false);  // otherwise releasing Alt, as after Alt + drag, would move to the menu
     ImGui::NewFrame();
     for (const int key : pressed)
         if (glfwGetKey(window, key) != GLFW_PRESS) tell_imgui_key(window, key, false, mods);
@@ -155,7 +155,7 @@ void begin_imgui_frame(GLFWwindow* window, const std::vector<int>& pressed, int)
 {
     bool(&down)[512] = ImGui::GetIO().KeysDown;
     for (const int key : pressed) down[key] = true;
-    ImGui::GetIO().KeyAlt = false;  // otherwise releasing Alt, as after Alt + drag, would move on to the menu
+    ImGui::GetIO().KeyAlt = false;  // otherwise releasing Alt, as after Alt + drag, would move to the menu
     ImGui::NewFrame();
     for (const int key : pressed) down[key] = glfwGetKey(window, key) == GLFW_PRESS;
 }

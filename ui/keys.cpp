@@ -75,7 +75,7 @@ std::vector<const Shortcut*> shortcuts_for(const KeyEvent& event, int mods, cons
     const std::string in_layout = name_in_layout(event), at_place = name_at_place(event.key);
     add(in_layout, false);
     add(at_place, true);
-    // Keys of an American keyboard that this one may have only with Shift: brackets under German umlauts.
+    // Falls back to the key at that place of an American keyboard: brackets, where a German one has umlauts.
     const bool is_letter = in_layout.size() == 1 && std::isalnum(static_cast<unsigned char>(in_layout[0]));
     if (found.empty() && !is_letter && in_layout != at_place) add(at_place, false);
     return found;
@@ -138,7 +138,7 @@ void Keyboard::hold(double seconds, int mods, const std::function<bool(int key)>
         return true;
     });
     for (const Held& held : held_) {
-        // After Ctrl + S, a hand that releases Ctrl first still holds S for a moment.
+        // After Ctrl + S, a hand that releases Ctrl first still holds S for a moment: S alone must not act.
         const std::vector<const Shortcut*> begun = shortcuts_for(held.pressed, held.pressed.mods, model.keymap);
         for (const Shortcut* shortcut : shortcuts_for(held.pressed, mods, model.keymap))
             if (shortcut->mode == Shortcut::Mode::hold && std::ranges::find(begun, shortcut) != begun.end())

@@ -1,6 +1,6 @@
 #pragma once
-// Converts the keyboard to actions, by the keymap (engine/workbench/bindings/keymap.h). Letters and signs are those of
-// the user's layout; keys that steer like a joystick are those at the same place on every keyboard. Main thread.
+// Converts the keyboard to actions, by the keymap (engine/workbench/bindings/keymap.h). Letters and signs are taken
+// from the user's layout; keys that steer like a joystick have the same place on every keyboard. Main thread.
 
 #include <vector>
 
@@ -21,7 +21,7 @@ public:
 private:
     struct Held {
         KeyEvent pressed;
-        const Shortcut* lasting = nullptr;  ///< the action that ends with the key's release
+        const Shortcut* lasting = nullptr;  ///< the shortcut whose action ends when the key is released
     };
     static void release(const Held& held, const Model& model, Actions& actions);
     std::vector<Held> held_;
@@ -29,7 +29,7 @@ private:
 
 /// Returns whether Dear ImGui navigates with this key: arrows, Tab, Space, Enter and Escape, without Ctrl and Alt.
 bool moves_in_panels(const KeyEvent& event);
-/// Returns whether Dear ImGui would take this key, pressed over the picture, for a move into a panel: Tab alone may.
+/// Returns whether Dear ImGui would move the focus into a panel if this key is pressed over the picture: only Tab may.
 bool moves_focus(const KeyEvent& event);
 /// Returns whether the key gives the keyboard back to the picture.
 bool leaves_panels(const KeyEvent& event);

@@ -1,7 +1,7 @@
 #pragma once
-// Mouse buttons for Dear ImGui, which (1.86) polls their state once a frame: if a frame takes longer than
-// a click, it takes two clicks for one. Presses wait here, and each frame gets one of them, with its position and
-// time. Any thread, one at a time.
+// Mouse buttons for Dear ImGui, which (1.86) polls their state once a frame: if a frame takes longer than a click, Dear
+// ImGui takes two clicks for one. Presses wait here, and each frame gets one of them, with its position and time. Any
+// thread, one at a time.
 
 #include <array>
 #include <deque>
@@ -23,8 +23,8 @@ public:
         bool is_double = false;  ///< the same button may have been pressed shortly before; the distance is not checked
     };
 
-    /// Adds a change that happened between the two times: input during a long frame is received after it. Other
-    /// buttons are ignored.
+    /// Adds a change that happened between the two times: input during a long frame is received only after the frame.
+    /// Other buttons are ignored.
     void add(int button, bool pressed, const glm::dvec2& at, double earliest_s, double latest_s);
     /// Returns the state for the next frame.
     Frame next();

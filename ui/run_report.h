@@ -17,15 +17,15 @@ namespace shvr::ui {
 struct AppReport {
     std::string gpu_name;
     uint64_t frames = 0;           ///< number of frames of the user interface
-    std::vector<double> frame_ms;  ///< per interface frame: from its first call until the device has finished it
-    /// frame_ms without the wait for running work on a software device: while nothing refines, and while a picture
-    /// does.
+    std::vector<double> frame_ms;  ///< times of interface frames: from first call to completion by the device
+    /// frame_ms without the wait for running work on a software device: `own_idle_ms` of frames during which nothing
+    /// refines, `own_busy_ms` of those during which a picture does.
     std::vector<double> own_idle_ms, own_busy_ms;
     std::vector<double> interval_ms;  ///< time between two frames while something was moving
     std::vector<double> input_ms;     ///< latencies from a key or button until the frame that shows its effect is
                                       ///< finished
-    /// Time from opening the last volume until the device has finished the first frame that shows any of it, and the
-    /// first that shows all of it sharp.
+    /// Time from opening the last volume until the device has finished the first frame that shows any part of it, and
+    /// the first frame that shows all of it sharp.
     std::optional<double> first_picture_ms, sharp_picture_ms;
     std::vector<double> relevance_ms;  ///< time from requesting relevance until the servo has it
     uint64_t view_submissions = 0;
@@ -34,7 +34,7 @@ struct AppReport {
     glm::dvec3 probe_voxel{0.0};
     std::array<int64_t, 256> voxels_by_group{};
     size_t undoable = 0, redoable = 0;
-    std::optional<int64_t> previewed_voxels;  ///< preview at the start of the last stroke, if there was one
+    std::optional<int64_t> previewed_voxels;  ///< size of the preview at the start of the last stroke; null: none
     std::string status;
     std::vector<std::string> messages;  ///< last messages
     std::vector<std::string> validation_messages;

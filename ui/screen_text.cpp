@@ -64,7 +64,7 @@ std::string utf8_of(unsigned int character)
     return text;
 }
 
-/// The quad whose six indices begin there; null if they are other triangles.
+/// Returns the quad whose six indices begin at `index`; null if they form other triangles.
 std::optional<Quad> quad_at(const ImDrawList& list, unsigned int index)
 {
     const ImDrawIdx* const at = &list.IdxBuffer[int(index)];
@@ -100,7 +100,7 @@ public:
 
         if (!continues(pen, top, size, is_seen)) begin_text(top);
         ScreenText* const text = has_text_ ? &texts_.back() : nullptr;
-        // Characters wholly beyond the edge are not drawn at all: a text that ends between two is not known to be cut.
+        // Characters wholly beyond the edge are not drawn: a text cut between two characters is not recognised as cut.
         const bool is_cut = begin.x > whole_begin.x + CUT || end.x < whole_end.x - CUT;
         if (is_seen && !text) {
             texts_.push_back({.text = {}, .window = window_, .begin = begin, .end = end});

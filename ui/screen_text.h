@@ -13,13 +13,13 @@ struct ImFont;
 
 namespace shvr::ui {
 
-/// Consecutive characters on one line, spaced as the font sets them, spaces included.
+/// Consecutive characters on one line, including spaces, spaced as the font places them.
 struct ScreenText {
     std::string text;            ///< UTF-8
     std::string window;          ///< Dear ImGui's name of the window that contains it
     glm::vec2 begin{0}, end{0};  ///< box of the visible pixels, in pixels of the frame buffer
     bool is_cut = false;         ///< cut at its left or right end, within a character
-    bool is_scrolled = false;    ///< cut partly above or below the visible part of its window
+    bool is_scrolled = false;    ///< partly above or below the visible part of its window
 };
 
 /// Returns texts in the order of drawing: later ones lie over earlier ones. Omits invisible characters.

@@ -67,8 +67,8 @@ VkCompositeAlphaFlagBitsKHR alpha_of(const VkSurfaceCapabilitiesKHR& capabilitie
     return VK_COMPOSITE_ALPHA_POST_MULTIPLIED_BIT_KHR;
 }
 
-/// Prefers mailbox: a newer picture replaces one that the screen has not shown, so presenting never waits for the
-/// screen, as some drivers do. Otherwise all are shown in turn.
+/// Prefers mailbox: a newer picture replaces one that the screen has not shown, so presenting does not wait for the
+/// screen, as it does with some drivers otherwise. Without mailbox, all pictures are shown in turn.
 VkPresentModeKHR mode_of(VkPhysicalDevice physical, VkSurfaceKHR surface)
 {
     const auto modes = gpu::enumerate<VkPresentModeKHR>([&](uint32_t* count, VkPresentModeKHR* items) {
@@ -101,7 +101,7 @@ void Swapchain::choose_format()
         vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical(), surface_, count, items);
     });
     // The layers are already encoded and are copied byte by byte, so the image must not encode again.
-    // Some drivers list colour spaces of bright screens with the same formats.
+    // Some drivers list these formats with the colour spaces of HDR screens, too: sRGB is preferred.
     for (const bool any_space : {false, true})
         for (const VkSurfaceFormatKHR& candidate : formats) {
             const bool has_8_bits =
@@ -199,10 +199,10 @@ void Swapchain::renew_fonts()
     create_imgui();
 }
 
-/// Does not wait for the device: resources of the previous swapchain are freed later. False if the window is minimised.
+/// Creates a swapchain without waiting for the device: the previous one is freed later. False if minimised.
 bool Swapchain::create_swapchain()
 {
-    if (!surface_) create_surface();  // the surface could not be re-created when it was lost
+    if (!surface_) create_surface();  // the surface was lost and could not be re-created then
     glfwGetFramebufferSize(window_, &made_for_.x, &made_for_.y);
     VkSurfaceCapabilitiesKHR& capabilities = made_of_;
     check(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical(), surface_, &capabilities),
@@ -236,7 +236,7 @@ bool Swapchain::create_swapchain()
                                         .clipped = VK_TRUE,
                                         .oldSwapchain = retire()};
     check(vkCreateSwapchainKHR(device_.handle(), &info, nullptr, &swapchain_), "vkCreateSwapchainKHR");
-    is_stale_ = true;  // until it has all its targets
+    is_stale_ = true;  // stale until it has all its targets
     const auto chain = gpu::enumerate<VkImage>([&](uint32_t* count, VkImage* items) {
         SHVR_VK(vkGetSwapchainImagesKHR(device_.handle(), swapchain_, count, items));
     });
@@ -246,7 +246,7 @@ bool Swapchain::create_swapchain()
     return true;
 }
 
-/// Retires the swapchain, with the image that was acquired in vain; returns it, for the creation of the next one.
+/// Retires the swapchain and any image acquired but not used. Returns the swapchain: creating the next one needs it.
 VkSwapchainKHR Swapchain::retire()
 {
     if (!swapchain_) return VK_NULL_HANDLE;
@@ -261,9 +261,9 @@ VkSwapchainKHR Swapchain::retire()
 }
 
 /// Frees swapchains whose frames the device has drawn and the screen has taken. Vulkan reveals the latter only by
-/// returning an image that was shown later. While a window's edge is dragged every frame has a swapchain of its own,
-/// none of which gets an image back: of those only the last ones are kept, once the device is done with something that
-/// came after them in the queue, or nothing did.
+/// returning an image that was shown later. While a window's edge is dragged, every frame has its own swapchain, which
+/// gets no image back: of these swapchains only the last ones are kept, and an older one is freed once the device has
+/// finished a later submission, or all submissions.
 void Swapchain::free_retired()
 {
     constexpr size_t MOST = 2;

@@ -36,9 +36,9 @@ public:
     void renew_fonts();
     /// Call before ImGui::NewFrame.
     static void begin_ui();
-    /// Returns whether a frame can be drawn and shown without waiting, because an image is available. There may be none
-    /// for long while the window is hidden. Never waits, except some milliseconds for a new swapchain. Fails as
-    /// present() does.
+    /// Returns whether a frame can be drawn and shown without waiting, because an image is available. While the window
+    /// is hidden, no image may be available for a long time. Never waits, except some milliseconds for a new swapchain.
+    /// Fails as present() does.
     bool is_ready();
     /// As Window::present, after ImGui::Render. A failed frame leaves no state behind that breaks later ones; a
     /// lost surface is re-created, and the frame is not shown.
@@ -55,26 +55,26 @@ private:
         VkImageView view = VK_NULL_HANDLE;
         VkFramebuffer framebuffer = VK_NULL_HANDLE;
         VkSemaphore drawn = VK_NULL_HANDLE;
-        uint64_t presented = 0;  ///< number of the last frame that it displayed
+        uint64_t presented = 0;  ///< number of the last frame shown in the image
     };
     struct Frame {
         VkCommandBuffer commands = VK_NULL_HANDLE;
         VkSemaphore acquired = VK_NULL_HANDLE;
         VkFence done = VK_NULL_HANDLE;
-        uint64_t number = 0;      ///< number of the last frame that used it
+        uint64_t number = 0;      ///< number of the last frame recorded here
         uint64_t submission = 0;  ///< submission number of that frame (gpu::Device)
-        uint64_t follows = 0;     ///< number of the frame that the same image showed before
+        uint64_t follows = 0;     ///< number of the frame shown before in the same image
     };
     /// A swapchain that another one has replaced: the screen may still be reading from it.
     struct Retired {
         VkSwapchainKHR swapchain = VK_NULL_HANDLE;
         std::vector<Target> targets;
         VkSemaphore acquired = VK_NULL_HANDLE;  ///< semaphore of an image in which nothing was drawn
-        uint64_t submission = 0;                ///< last submission that uses it
-        uint64_t presented = 0;                 ///< number of its last frame
+        uint64_t submission = 0;                ///< last submission that uses the swapchain
+        uint64_t presented = 0;                 ///< number of the last frame that it presented
     };
 
-    /// The surface is re-created; other failures are the caller's.
+    /// The surface was lost and has to be re-created. Other failures are left to the caller.
     class SurfaceLost : public Error {
     public:
         using Error::Error;

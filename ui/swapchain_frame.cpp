@@ -109,10 +109,10 @@ void Swapchain::record(const Frame& frame, const Target& target, const std::vect
     // The writes of the view's frames and the clear come before the copy of the layers.
     memory_barrier(commands, WORK, WRITES, TRANSFER, VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
     draw_layers(commands, target.image, layers, origin);
-    // The view's next frames must wait for the copy before they write: their graphs do not know this reader. Earlier
-    // writes become visible as well, at no cost here: when an image is acquired, validation (1.3.239) counts everything
-    // as in flight that it considered in flight when the image was presented, and otherwise reports reads after
-    // writes of frames that had long been waited for.
+    // The view's next frames must wait for the copy before they write: their graphs do not know this reader. Making
+    // earlier writes visible as well costs nothing here and avoids false reports of validation (1.3.239): when an image
+    // is acquired, it again counts as in flight all that was in flight when the image was presented, and would report
+    // reads after writes of frames that had long been waited for.
     memory_barrier(commands, WORK, WRITES, WORK, WRITES | VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_TRANSFER_READ_BIT);
     image_barrier(commands, target.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                   VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, TRANSFER, VK_ACCESS_2_TRANSFER_WRITE_BIT,
@@ -123,8 +123,8 @@ void Swapchain::record(const Frame& frame, const Target& target, const std::vect
                                      .framebuffer = target.framebuffer,
                                      .renderArea = {{0, 0}, extent_}};
     vkCmdBeginRenderPass(commands, &pass, VK_SUBPASS_CONTENTS_INLINE);
-    // The back end grows its buffers to these totals. They never fall, so that a buffer that could not be allocated is
-    // requested again, not used.
+    // The back end grows its buffers to these totals. The totals never fall, so that a buffer that could not be
+    // allocated is requested again, instead of being used.
     ImDrawData& drawn = *ImGui::GetDrawData();
     drawn.TotalVtxCount = max_vertices_ = std::max(max_vertices_, drawn.TotalVtxCount);
     drawn.TotalIdxCount = max_indices_ = std::max(max_indices_, drawn.TotalIdxCount);
@@ -143,8 +143,8 @@ void Swapchain::complete(Frame& frame) const
     if (!frame.done) SHVR_VK(vkCreateFence(device_.handle(), &fence, nullptr, &frame.done));
 }
 
-/// After a failure half way: its semaphore may be signalled and its fence never be, and an image may be acquired that
-/// is never presented. All of these are destroyed, and so is the recorded work.
+/// Cleans up after a failure half way. The frame's semaphore may be signalled, its fence may never be, and an image may
+/// be acquired that is never presented: destroys all of these, and discards the recorded work.
 void Swapchain::abandon(Frame& frame)
 {
     device_.wait_idle_or_lost();
@@ -212,8 +212,8 @@ bool Swapchain::prepare(Frame& frame)
 /// Acquires an image if there is one. Afterwards the swapchain may have to be re-created.
 bool Swapchain::acquire(Frame& frame)
 {
-    constexpr uint64_t PATIENCE_NS = 10'000'000;  // some drivers have no image yet just after they have made them
-    // Has the same result as vkGetFenceStatus, and informs validation that the frame was waited for.
+    constexpr uint64_t PATIENCE_NS = 10'000'000;  // some drivers have no image ready just after making them
+    // Like vkGetFenceStatus, but also informs validation that the frame was waited for.
     const VkResult status = vkWaitForFences(device_.handle(), 1, &frame.done, VK_TRUE, 0);
     check(status, "vkWaitForFences");
     if (status == VK_TIMEOUT) return false;
@@ -307,8 +307,8 @@ VkResult Swapchain::hand_to_screen(const VkPresentInfoKHR& info)
 /// Expected wait for the screen when the next image is presented; 0: too short to be used.
 double Swapchain::expected_wait_ms() const
 {
-    constexpr double MIN_MS = 1.0, MAX_MS = 50.0;  // ignores longer waits, of a screen that is slow for the moment
-    // A single frame that waited proves nothing; and if newer images replace older ones, none waits.
+    constexpr double MIN_MS = 1.0, MAX_MS = 50.0;  // longer waits, of a screen that is slow at present, count as MAX_MS
+    // The shortest of the last waits: one long wait proves nothing. If newer images replace older ones, none waits.
     const double wait_ms = std::min(*std::ranges::min_element(waits_ms_), MAX_MS);
     return mode_ == VK_PRESENT_MODE_FIFO_KHR && wait_ms >= MIN_MS ? wait_ms : 0.0;
 }

@@ -83,7 +83,7 @@ Viewport::Gesture Viewport::turning(const Model& model) const
     }
 }
 
-/// From press to press, as widgets take it (ui/mouse_feed.h), so that a long frame makes no two clicks of one double.
+/// Measures from press to press, as for widgets (ui/mouse_feed.h), so that a double click in a long frame remains one.
 bool Viewport::is_double(double earliest_s, const glm::dvec2& at) const
 {
     return last_click_s_ && earliest_s - *last_click_s_ < MouseFeed::DOUBLE_CLICK_S &&
@@ -190,7 +190,7 @@ void Viewport::wait(double time_s, Actions& actions)
 
 // ---- Motion ---------------------------------------------------------------------------------------------------------
 
-/// A press has moved too far for a click.
+/// Begins a drag: the pointer has moved too far from the press for a click.
 void Viewport::begin_drag(const Model& model, Actions& actions)
 {
     if (!pressed_node_ || !model.trace.nodes().contains(*pressed_node_)) {
@@ -206,8 +206,8 @@ void Viewport::begin_drag(const Model& model, Actions& actions)
     actions.emplace_back(DragNode{true});
 }
 
-/// The probe follows a pointer without a pressed button. In slices it stays in place with tools that point, since
-/// otherwise the other slices would follow every motion.
+/// Makes the probe follow a pointer without a pressed button. In slices the probe stays in place with tools that point
+/// (select, measure), since otherwise the other slices would follow every motion.
 void Viewport::hover(const Model& model, bool jumps, Actions& actions)
 {
     const Tool tool = model.tool();

@@ -10,16 +10,16 @@
 //   select    a click selects, a double click the whole segment; a drag turns
 //   measure   clicks set the ends of a distance; a drag turns
 //
-//   no button          the probe follows: in its plane; in the tools paint, erase, trace and measure along what is seen
+//   no button          the probe follows in its plane; with paint, erase, trace and measure, it follows what is seen
 //   right              turn tool: paint; otherwise turn           Shift + left     move
 //   middle             turn tool: move; otherwise turn, with Shift move           Alt + left       turn
 //   wheel              zoom; with Ctrl push the probe away, or pull it closer
 //
-// In a map, what turns or moves elsewhere moves the camera, and the wheel takes it forward. In a slice the wheel moves
-// the slice; what turns elsewhere drags the cross, which moves the other slices; Ctrl + left changes the contrast, and
-// so does the right button outside the turn tool.
+// In a map, gestures that turn or move elsewhere move the camera, and the wheel moves it forward. In a slice the wheel
+// moves the slice; gestures that turn elsewhere drag the cross, which moves the other slices; Ctrl + left changes the
+// contrast, and so does the right button with all tools but turn.
 //
-// A motion that no hand makes (is_jump), and the first one after the pointer was elsewhere, lifts the brush.
+// The brush is lifted by a motion that no hand makes (is_jump), and by the first one after the pointer was elsewhere.
 
 #include <optional>
 
@@ -34,7 +34,7 @@ public:
     const Layout& layout() const { return layout_; }
     glm::uvec2 pixels() const { return layout_.end - layout_.begin; }
 
-    /// Handles all events except keys. `ui_has_mouse`: Dear ImGui uses it.
+    /// Handles all events except keys. `ui_has_mouse`: Dear ImGui uses the mouse.
     void handle(const InputEvent& event, const Model& model, bool ui_has_mouse, Actions& actions);
     /// Handles timeouts: a click of the turn tool selects once it can no longer become a double click.
     void wait(double time_s, Actions& actions);
@@ -81,7 +81,7 @@ private:
     int button_ = 0;
     glm::dvec2 last_{0.0}, pressed_{0.0};
     std::optional<uint32_t> pressed_node_;
-    bool was_elsewhere_ = true;  ///< set when the pointer was outside before the next motion
+    bool was_elsewhere_ = true;  ///< the pointer was outside before the next motion
     std::optional<Pointer> pointer_;
     double pressed_s_ = 0.0;              ///< latest time of the left button's press
     bool is_second_ = false;              ///< set if that press is the second of a double click

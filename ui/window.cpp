@@ -22,8 +22,8 @@ std::string glfw_error()
     return description ? description : "no reason given";
 }
 
-/// GLFW 3.4 prefers Wayland, where a window knows neither its position nor its screen, and only the compositor may move
-/// the pointer, which tests need. With X11 (there, Xwayland), all versions behave alike.
+/// GLFW 3.4 prefers Wayland, where a window knows neither its position nor its screen, and where only the compositor
+/// may move the pointer, as tests must. With X11 (on Wayland: Xwayland), all versions behave alike.
 bool start_glfw()
 {
 #ifdef GLFW_PLATFORM  // since 3.4
@@ -60,7 +60,7 @@ struct Window::Input {
     MouseFeed mouse;
     double asked_s = 0.0, answered_s = 0.0;  ///< when the last wait for events began, and when it ended
 
-    /// When the event at hand can have happened: GLFW does not tell. What is there at once came since the last time.
+    /// Earliest time of the current event, which GLFW does not report: events present at once came since the last wait.
     double earliest_s() const
     {
         constexpr double AT_ONCE_S = 0.005;
@@ -105,7 +105,7 @@ struct Window::Input {
                (down(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT) ? GLFW_MOD_SHIFT : 0) |
                (down(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT) ? GLFW_MOD_ALT : 0);
     }
-    /// Call after Dear ImGui has installed its own callbacks, which these replace (Window::tell_ui).
+    /// Call after Dear ImGui has installed its callbacks: replaces them by our own (Window::tell_ui).
     void listen_to_keys() const
     {
         glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
@@ -291,8 +291,8 @@ void Window::begin_ui()
     if (std::exchange(input_->frame_is_open, true)) ImGui::EndFrame();  // the last frame failed before it was presented
     Swapchain::begin_ui();
     ImGui_ImplGlfw_NewFrame();
-    tell_imgui_buttons(input_->window, input_->mouse.next());  // one change of the buttons, at its place
-    // A key that went down and up since the last frame, which may have taken long, was pressed all the same.
+    tell_imgui_buttons(input_->window, input_->mouse.next());  // one change of the buttons, where it happened
+    // A key that went down and up again during the last frame, which may have been long, still counts as pressed.
     begin_imgui_frame(input_->window, std::exchange(input_->pressed, {}), Input::mods(input_->window));
 }
 

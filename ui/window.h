@@ -87,8 +87,8 @@ public:
 
     /// Waits for events, at most `timeout_s` (0: not at all), and returns them.
     std::vector<InputEvent> wait_events(double timeout_s);
-    /// Passes a key or a character to the interface in one of its next frames: in the order of events, and no earlier
-    /// than its predecessors.
+    /// Passes a key or a character to the interface in one of its next frames: in the order of events, so that it never
+    /// overtakes an earlier event.
     void tell_ui(const InputEvent& event);
     /// Returns whether a key is held down.
     bool is_down(int key) const;
@@ -105,13 +105,13 @@ public:
     /// Uploads Dear ImGui's fonts again, before the next frame. Waits for the device; rare.
     void renew_fonts();
     /// Draws the layers with their upper left corner at `origin`, the interface over them, and shows the frame. False
-    /// if there is nothing to draw on (minimised, hidden), or if the frame was lost: draw it again. Before the call
-    /// waits for the screen, `meanwhile` is called with the expected wait, once the frame is submitted to
-    /// the device; it may be empty.
+    /// if there is nothing to draw on (minimised, hidden), or if the frame was lost and must be drawn again. After the
+    /// frame is submitted to the device, and before the call waits for the screen, `meanwhile` is called with the
+    /// expected wait, unless it is empty.
     bool present(const std::vector<View::Layer>& layers, const glm::uvec2& origin,
                  const std::function<void(double wait_ms)>& meanwhile);
 
-    /// Numbers of frames submitted to the device, and finished by it, which are visible. Never wait.
+    /// Numbers of frames submitted to the device, and of those that it has finished, which are visible. Never wait.
     uint64_t frames_presented() const;
     uint64_t frames_done() const;
 

@@ -20,10 +20,10 @@ struct BrushRow {
     const char* name;   ///< in sentences
     const char* title;  ///< in menus
     const char* hint;
-    bool is_connected;  ///< it selects connected voxels, so connectivity matters
+    bool is_connected;  ///< the brush selects connected voxels, so connectivity matters
 };
 
-/// Ordered as in menus, which is the order of the enumeration.
+/// Brushes in the order of the enumeration, which is also their order in menus.
 inline constexpr std::array BRUSHES{
     BrushRow{Brush::fill, "fill", "fill", "Fill",
              "Paints every voxel in the probe that is at or above the paint threshold.", false},
@@ -42,7 +42,7 @@ constexpr const BrushRow& row_of(Brush brush)
     return BRUSHES.at(size_t(brush));
 }
 
-/// Their keys, for readers and writers.
+/// The spellings of all brushes (their keys), for readers and writers.
 inline constexpr auto BRUSH_SPELLINGS = [] {
     std::array<Spelling<Brush>, BRUSHES.size()> spellings{};
     for (size_t i = 0; i < BRUSHES.size(); ++i) spellings[i] = {BRUSHES[i].brush, BRUSHES[i].key};
@@ -73,7 +73,7 @@ struct BrushSettings {
     /// Density painting: the brush raises intensities, in addition to painting its group or instead of it.
     std::optional<DensityBrush> density{};
     bool paints_group = true;     ///< false, with `density` set: offsets only
-    bool only_unpainted = false;  ///< paints only unpainted voxels, and takes none from another group
+    bool only_unpainted = false;  ///< paints only unpainted voxels: takes none from another group
     bool operator==(const BrushSettings&) const = default;
 };
 
@@ -82,23 +82,23 @@ struct PaintOp {
     Brush brush = Brush::flood;
     RegionShape region = RegionShape::ball;
     uint8_t group = 1;             ///< 0 erases
-    double threshold = 0.0;        ///< intensity units of the file; at or above
+    double threshold = 0.0;        ///< selects intensities at or above it, in units of the file
     double radius_voxels = 6.0;    ///< along x
     int connectivity = 6;          ///< 6 or 26
     std::vector<glm::dvec3> path;  ///< voxel coordinates
-    /// Offsets to give the selected voxels; group 0 removes their offsets.
+    /// Offsets for the selected voxels; with group 0, their offsets are removed instead.
     std::optional<DensityBrush> density{};
     bool paints_group = true;     ///< false: offsets only
     bool only_unpainted = false;  ///< as in BrushSettings
     GroupSet locked{};            ///< locked groups, which neither lose nor gain voxels; [0] is not set. Neither
-                                  ///< restriction applies to offsets
+                                  ///< `locked` nor `only_unpainted` applies to offsets
     bool operator==(const PaintOp&) const = default;
 
-    /// Whether the stroke removes voxels from their group, and their offsets if it paints offsets.
+    /// Whether the stroke unpaints the selected voxels (and removes their offsets, if it paints offsets).
     bool erases() const { return paints_group && group == 0; }
 };
 
-/// Uses `threshold` if the settings state none.
+/// Returns the stroke that these settings make along a path; uses `threshold` if the settings state none.
 inline PaintOp stroke_of(const BrushSettings& settings, double threshold, std::vector<glm::dvec3> path = {})
 {
     // Uses a structured binding, so that a new member fails to compile until it is handled here.

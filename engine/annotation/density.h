@@ -2,12 +2,12 @@
 // Density painting: offsets that raise (or lower) single voxels, stored separately from the volume in sparse bricks
 // (sparse_bricks.h).
 //
-// With P the painted offset and p(v) that of voxel v, which falls off from P to 0 (density_brush.h):
+// P is the painted offset; p(v), the offset painted at voxel v, falls off from P to 0 (density_brush.h):
 //
 //     new = max(p, min(old, P))        P >= 0
 //     new = min(p, max(old, P))        P <  0, the same with opposite signs
 //
-// So painting over higher offsets lowers them to P, painting over lower ones keeps the higher of both, painting twice
+// For P >= 0, an offset above P is lowered to P, and a lower one is raised to p(v) if that is higher. Painting twice
 // changes nothing more, and the order of positions within a stroke does not matter. P = 0 resets.
 //
 // Offsets have 32 bits (engine/volume/offset_brick.h).

@@ -22,21 +22,21 @@ constexpr std::span<const Spelling<Falloff>> spellings_of(Falloff)
     return FALLOFFS;
 }
 
-/// The density part of a brush: painted together with a group or instead of one.
+/// The density part of a brush. It is painted together with a group or instead of one.
 struct DensityBrush {
     /// P, in intensity units. Null: automatic, which makes the paint threshold as bright as the lowest point of the
-    /// transfer function; callers replace it by `automatic_offset` before painting.
+    /// transfer function; callers replace null by `automatic_offset` before painting.
     std::optional<double> offset{};
     Falloff falloff = Falloff::flat;
     bool operator==(const DensityBrush&) const = default;
 };
 
-/// The lowest point of the transfer function minus the paint threshold; 0 if that is negative, since such voxels are
-/// visible already.
+/// The lowest point of the transfer function minus the paint threshold. A negative difference becomes 0: voxels at the
+/// threshold are visible already.
 double automatic_offset(double lowest_point, double paint_threshold);
 
-/// The rule of density.h on bits of the type: the new offset of a voxel with offset `old`, for P = `most` and p(v) =
-/// `here`.
+/// Applies the rule of density.h to bits of the type: returns the new offset of a voxel with offset `old`, for P =
+/// `most` and p(v) = `here`.
 uint32_t painted_offset(VoxelType type, uint32_t old, uint32_t most, uint32_t here);
 
 class DensityStroke {
@@ -46,7 +46,7 @@ public:
     /// Adds the voxels of `region` whose bit is set (VoxelSelection::add); the region surrounds `centre_voxel`.
     void add(const BrushRegion& region, std::span<const uint32_t> words, const glm::dvec3& centre_voxel,
              double radius_voxels);
-    /// The records that paint everything added so far, without voxels that keep their offset.
+    /// The records that paint everything added so far; voxels that keep their offset are left out.
     std::vector<DensityBrickChange> changes(const DensityField& field) const;
 
 private:

@@ -23,7 +23,7 @@ struct Range {
 template <class Test>
 Range range_where(double centre, double reach, const Range& within, const Test& holds)
 {
-    constexpr double FAR_AWAY = 1 << 22;  // voxels from the volume beyond which the estimate is useless, as for NaN
+    constexpr double FAR_AWAY = 1 << 22;  // distance in voxels beyond which the estimate is useless, as for NaN
     Range range = within;
     if (reach < FAR_AWAY && std::abs(centre) < FAR_AWAY) {
         range.begin = std::clamp(int64_t(std::floor(centre - reach)) - 1, within.begin, within.end);
@@ -34,7 +34,7 @@ Range range_where(double centre, double reach, const Range& within, const Test& 
     return range;
 }
 
-/// Bits `begin` ... `end` - 1 of a row, as positioned in its word `word`.
+/// Bits `begin` ... `end` - 1 of a row, as far as they lie in its word `word`, at their positions in that word.
 uint32_t span_bits(const gpu::RowSpan& span, int64_t word)
 {
     const int64_t begin = std::max<int64_t>(span.begin - 32 * word, 0);
@@ -42,7 +42,7 @@ uint32_t span_bits(const gpu::RowSpan& span, int64_t word)
     return begin < end ? ~uint32_t{0} >> (32 - (end - begin)) << begin : 0;
 }
 
-/// At least 1: two equal points remain two positions of the stroke.
+/// At least 1, so that two equal points remain two positions of the stroke.
 double steps_between(const glm::dvec3& a, const glm::dvec3& b)
 {
     const glm::dvec3 way = glm::abs(b - a);
@@ -143,8 +143,8 @@ std::vector<glm::dvec3> stroke_positions(std::span<const glm::dvec3> path)
 
 VoxelSelection::VoxelSelection(Size3 size) : size_(size), counts_(brick_grid(size)) {}
 
-// A brick's row along x is one word of the selection; a word of the region covers parts of two of them. The bricks
-// along a row are looked up once for all rows through the same bricks.
+// A brick's row along x is one word of the selection; a word of the region may overlap two such words. The bricks along
+// a row are looked up once for all rows through the same bricks.
 void VoxelSelection::add(const BrushRegion& region, std::span<const uint32_t> words)
 {
     const Size3 size = region.box.size();
@@ -166,7 +166,7 @@ void VoxelSelection::add(const BrushRegion& region, std::span<const uint32_t> wo
             if (y == region.box.lower.y || y % BRICK_SIDE == 0)
                 std::fill(row_of_bricks.begin(), row_of_bricks.end(), nullptr);
             for (int64_t w = 0; w < per_row; ++w) {
-                // Kernels should respect the spans; if one does not, nothing outside of them is selected all the same.
+                // Kernels should respect the spans; if one does not, this mask still excludes voxels outside them.
                 const uint32_t word = words[row * size_t(per_row) + size_t(w)] & span_bits(region.rows[row], w);
                 merge(w, y, z, word << shift);
                 if (shift > 0) merge(w + 1, y, z, word >> (BRICK_SIDE - shift));

@@ -26,9 +26,9 @@ struct BrushRegion {
     int64_t words_per_row() const { return (box.size().x + 31) / 32; }
 };
 
-/// A voxel belongs to the ball if its centre is within `radius_voxels` (measured along x: radius_voxels * spacing.x) of
-/// `centre_voxel`, in physical units. The box uses the same radius along each axis independently. Fails if the region's
-/// box, with rows padded to whole words, holds more than 256^3 voxels.
+/// A voxel belongs to the ball if the distance of its centre from `centre_voxel`, in physical units, is at most the
+/// radius: `radius_voxels` * spacing.x. The box uses the same radius along each axis independently. Fails if the
+/// region's box, with rows padded to whole words, holds more than 256^3 voxels.
 BrushRegion make_region(RegionShape shape, const glm::dvec3& centre_voxel, double radius_voxels,
                         const glm::dvec3& spacing, const Size3& volume_size);
 

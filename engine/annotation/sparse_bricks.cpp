@@ -16,7 +16,7 @@ Size3 place_in_brick(int64_t index)
     return position_of(index, Size3(BRICK_SIDE));
 }
 
-/// Whether voxels `first` to `last` lie in the volume; the brick has `extent` voxels along each axis inside it.
+/// Whether voxels `first` to `last` lie in the volume; `extent` is the size of the brick's part inside the volume.
 bool run_is_inside(int64_t first, int64_t last, const Size3& extent)
 {
     const Size3 begin = place_in_brick(first), end = place_in_brick(last);

@@ -45,8 +45,8 @@ struct BrickChange {
     int64_t voxels() const;
 };
 
-/// Appends voxels `first` to `last` (inclusive), which follow those of `runs`; extends the last run if possible and
-/// omits voxels that keep their value.
+/// Appends voxels `first` to `last` (inclusive), which must come after those of `runs`. Extends the last run if
+/// possible, and omits voxels that keep their value.
 template <class Value>
 void append_run(std::vector<BrickRun<Value>>& runs, size_t first, size_t last, Value before, Value after)
 {
@@ -105,7 +105,7 @@ protected:
 
     /// Function that names a value in error messages: "group 3".
     using Named = std::function<std::string(Value)>;
-    /// Function that returns why voxels may not be set to a value; empty: they may.
+    /// Function that returns whether voxels may be set to a value; empty: any value is allowed.
     using Allowed = std::function<bool(Value)>;
     /// Why a change cannot be applied: its runs must ascend inside the volume, and their voxels must have the record's
     /// values before the change. Empty if it fits.
@@ -114,8 +114,8 @@ protected:
     /// Applies a change that fits; `replaced(from, to, voxels)` is called for each run. Frees bricks that return to 0.
     template <class Replaced>
     void replace(const BrickChange<Value>& change, Direction direction, const Replaced& replaced);
-    /// Adds a missing brick (SHVR_CHECK) and returns how many of its voxels are not 0; those beyond the volume's border
-    /// are set to 0.
+    /// Adds a missing brick (SHVR_CHECK) and returns how many of its voxels are not 0. Voxels beyond the volume's
+    /// border are set to 0.
     int64_t put(int64_t index, Brick values);
 
 private:

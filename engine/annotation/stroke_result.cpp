@@ -50,7 +50,7 @@ std::string listed(const std::vector<std::string>& items)
     return list;
 }
 
-/// Lists the groups with most voxels first, each as `item(voxels, name)`; those beyond four are summed up.
+/// Lists the groups with most voxels first, each as `item(voxels, name)`; of over four, all but three are summed up.
 template <class Item>
 std::string listed(const StrokeResult::ByGroup& voxels, const GroupNames& name_of, const Item& item)
 {
@@ -70,7 +70,7 @@ std::string listed(const StrokeResult::ByGroup& voxels, const GroupNames& name_o
     return listed(items);
 }
 
-/// Lists the previous groups of the painted voxels; follows "Painted N voxels in group G".
+/// Lists the previous groups of the painted voxels; continues the sentence "Painted N voxels in group G".
 std::string taken_in_words(const StrokeResult& result, const GroupNames& name_of)
 {
     const int64_t taken = sum_of(result.taken_from);

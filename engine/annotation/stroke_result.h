@@ -17,12 +17,12 @@ struct StrokeResult {
     using ByGroup = std::map<uint8_t, int64_t>;  ///< number of voxels per group, without groups that have none
     ByGroup taken_from{};                        ///< part of `regrouped` that came from another group
     ByGroup kept_locked{};                       ///< selected, but in a locked group
-    int64_t kept_locked_out = 0;                 ///< selected, but the painted group is locked
+    int64_t kept_locked_out = 0;                 ///< selected, but unchanged because the painted group is locked
     int64_t kept_painted = 0;  ///< selected but already painted, and the brush is limited to unpainted voxels
 
     /// Voxels that changed their group plus those that changed their offset.
     int64_t voxels() const { return regrouped + raised; }
-    /// Number of voxels that are unchanged because of locks.
+    /// Number of selected voxels that locks kept from changing.
     int64_t kept_by_locks() const;
     bool operator==(const StrokeResult&) const = default;
 };
@@ -32,7 +32,7 @@ struct StrokeResult {
 class StrokeTally {
 public:
     explicit StrokeTally(const PaintOp& stroke);
-    /// Adds an answer: the selected voxels, the mask before it, and the records made from both.
+    /// Adds an answer: the selected voxels, the mask before the answer, and the records made from both.
     void add(const Mask& before, const VoxelSelection& selection, std::span<const MaskBrickChange> groups,
              std::span<const DensityBrickChange> offsets);
     const StrokeResult& result() const { return result_; }

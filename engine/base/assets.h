@@ -6,7 +6,7 @@
 
 namespace shvr {
 
-/// The folder of that name in $SHVR_ASSETS, or else in the installed or built tree. Empty if there is none.
+/// The folder `name` in $SHVR_ASSETS, or else in the installed or built tree. Empty if there is none.
 std::filesystem::path asset_folder(const std::string& name);
 
 }  // namespace shvr

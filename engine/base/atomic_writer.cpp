@@ -93,7 +93,7 @@ bool is_dead(pid_t process)
     return ::kill(process, 0) != 0 && errno == ESRCH;
 }
 
-/// Whether a file stays unfinished: its process is dead here, or the file is old where that cannot be known.
+/// Whether a file was left behind: its process is dead or, if that cannot be known here, the file is old.
 bool is_left(const Owner& owner, const fs::directory_entry& entry)
 {
     std::error_code error;

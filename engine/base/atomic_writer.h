@@ -1,6 +1,6 @@
 #pragma once
-// Writes a file all or nothing: the bytes go into a temporary file next to the target, which is synced and renamed over
-// it at the end. Without `commit` the target stays as it was and the temporary file is removed.
+// Writes a file all or nothing: the bytes go into a temporary file next to the target. At the end this file is synced
+// and renamed over the target. Without `commit` the target stays as it was and the temporary file is removed.
 //
 // Every failure is one sentence with the target's path and the system's reason. One thread at a time.
 
@@ -19,18 +19,18 @@ namespace shvr {
 /// Syncs the folder that contains `path`, so that a new or renamed file survives a power cut.
 void sync_folder(const std::filesystem::path& path);
 
-/// The file that a path leads to: symbolic links are followed, also dangling ones. Writers replace links; what a user
-/// names as an output is written where it leads.
+/// The file that a path leads to: symbolic links are followed, also dangling ones. Writers replace links; a path that a
+/// user names as an output is written where it leads.
 std::filesystem::path link_target(const std::filesystem::path& path);
 
-/// Removes what writers that were killed have left in a folder: temporary files of dead processes of this host, and
-/// those of other hosts that are older than a day. Never fails.
+/// Removes files that killed writers have left in a folder: temporary files of dead processes of this host, and those
+/// of other hosts that are older than a day. Never fails.
 void collect_temporary_files(const std::filesystem::path& folder);
 
 /// The product, or null if it exceeds 2^63 - 1.
 std::optional<int64_t> multiplied(int64_t a, int64_t b);
-/// Fails, stating both sizes, if the disk of a file to be written has less free space than `bytes`; null: more than
-/// 2^63 - 1. Does nothing if the file system does not state it. `remedy` ends the message: "free some of it".
+/// Fails, stating both sizes, if the file's disk has less free space than `bytes` (null: more than 2^63 - 1). Does
+/// nothing if the file system does not state its free space. `remedy` ends the message: "free some of it".
 void expect_space(const std::filesystem::path& path, std::optional<int64_t> bytes, const char* remedy);
 
 /// Removes the temporary files of all writers that have not committed. For signal handlers: calls only
@@ -64,7 +64,7 @@ private:
     FileDescriptor descriptor_;
     bool is_renamed_ = false;
     uint64_t unsynced_bytes_ = 0;
-    std::atomic<const char*>* listed_ = nullptr;  ///< the slot in which remove_temporary_files finds its name
+    std::atomic<const char*>* listed_ = nullptr;  ///< the slot in which remove_temporary_files finds the file's name
 };
 
 }  // namespace shvr

@@ -16,7 +16,7 @@ std::vector<std::byte> read_file(const std::filesystem::path& path, int64_t max_
 /// The same bytes as text; encoding and line ends are unchanged.
 std::string read_text(const std::filesystem::path& path, int64_t max_bytes);
 
-/// Whether it is a regular file; false if that cannot be determined.
+/// Whether the path leads to a regular file; false if that cannot be determined.
 bool is_file(const std::filesystem::path& path);
 
 /// "No space left on device" for ENOSPC; unlike strerror, without shared state.
@@ -25,7 +25,7 @@ std::string reason_of(int error_number);
 /// Owns a POSIX file descriptor.
 class FileDescriptor {
 public:
-    /// A negative number, as failing calls return it, owns nothing.
+    /// If the number is negative, as returned by failing calls, the object owns nothing.
     explicit FileDescriptor(int number) : number_(number) {}
     FileDescriptor(FileDescriptor&& other) noexcept : number_(other.number_) { other.number_ = -1; }
     FileDescriptor& operator=(FileDescriptor&&) = delete;

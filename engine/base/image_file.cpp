@@ -62,7 +62,7 @@ void check_size(int64_t width, int64_t height, std::string_view name)
     }
 }
 
-/// libpng stops reading after the last row, so it would accept a file whose last bytes are missing.
+/// Checks all chunks, since libpng stops reading after the last row and would accept a file without its last bytes.
 void check_chunks(Bytes file, std::string_view name)
 {
     for (size_t start = SIGNATURE_BYTES; start + CHUNK_FRAME_BYTES <= file.size();) {
@@ -281,7 +281,7 @@ Image8 decode_png(Bytes file, std::string_view name)
         fail(name, ": is not a valid PNG file: ", png.image.message);
     }
     png.image.format = PNG_FORMAT_RGBA;
-    // Without this flag, 16-bit files without a gAMA chunk count as linear, which hardly any of them is.
+    // Without this flag, 16-bit files without a gAMA chunk count as linear, although hardly any of them are.
     png.image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
     Image8 decoded{int(png.image.width), int(png.image.height), std::vector<uint8_t>(PNG_IMAGE_SIZE(png.image))};
     if (png_image_finish_read(&png.image, nullptr, decoded.rgba.data(), 0, nullptr) == 0) {

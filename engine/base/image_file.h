@@ -30,13 +30,13 @@ Image8 read_png(const std::filesystem::path& path);
 /// compressed (iTXt) before the pixels. At most MAX_PICTURE_TEXT bytes each.
 using PictureTexts = std::vector<std::pair<std::string, std::string>>;
 inline constexpr size_t MAX_PICTURE_TEXT = size_t{16} << 20;
-/// The first text with that keyword (iTXt, zTXt or tEXt) before the pixels; null if there is none, or the file is not a
+/// The first text with `keyword` (iTXt, zTXt or tEXt) before the pixels; null if there is none, or the file is not a
 /// PNG file. Reads no pixels. Fails if the text is larger than MAX_PICTURE_TEXT, or damaged.
 std::optional<std::string> read_png_text(const std::filesystem::path& path, std::string_view keyword);
 /// Replaces an existing file atomically; leaves it untouched on failure (atomic_file.h).
 void write_png(const std::filesystem::path& path, const Image8& image, const PictureTexts& texts = {});
 
-/// A picture file that is written row by row, in memory of a few rows. `commit` gives it its final name; without it,
+/// A picture file that is written row by row, with memory for a few rows. `commit` gives it its final name; without it,
 /// the old file stays as it was and nothing else is left (atomic_writer.h). One thread at a time.
 class ImageWriter {
 public:
@@ -52,8 +52,8 @@ public:
 protected:
     ImageWriter() = default;
 };
-/// Writes as `write_pfm`, without texts, if the name ends in .pfm, otherwise as `write_png` with light converted as by
-/// `to_image8`.
+/// If the name ends in .pfm, writes as `write_pfm` does, without texts; otherwise writes as `write_png` does, with
+/// light converted as by `to_image8`.
 std::unique_ptr<ImageWriter> image_writer(const std::filesystem::path& path, int64_t width, int64_t height,
                                           const PictureTexts& texts = {});
 

@@ -71,7 +71,7 @@ double ssim_of(const Plane& a, const Plane& b, const Progress& progress)
 PixelDifference compare_pixels(const Image8& a, const Image8& b)
 {
     check_comparable(a, b);
-    // Integers, so the result does not depend on the order of summation.
+    // Sums are integers, so the result does not depend on the order of summation.
     std::array<int64_t, 4> sums{}, squares{};
     int64_t over_1 = 0, over_4 = 0;
     int largest = 0;
@@ -105,7 +105,7 @@ ImageDifference compare(const Image8& a, const Image8& b, const Progress& progre
 {
     tell(progress, 0.0);
     ImageDifference result{compare_pixels(a, b)};
-    constexpr double SSIM = 0.1;  // share of the time
+    constexpr double SSIM = 0.1;  // SSIM's share of the run time
     result.ssim = ssim_of(luma_of(a), luma_of(b), part_of(progress, 0.0, SSIM));
     std::vector<double> flip = flip_map(a, b, FLIP_PIXELS_PER_DEGREE, part_of(progress, SSIM, 1.0));
     result.flip_mean = std::accumulate(flip.begin(), flip.end(), 0.0) / double(flip.size());
@@ -135,7 +135,7 @@ std::optional<std::string> why_not_within(const PixelDifference& difference, con
 {
     std::string reasons;
     const auto check = [&](const char* what, double found, double limit, const char* unit) {
-        // Written so that NaN exceeds every limit.
+        // Written such that a NaN counts as exceeding every limit.
         if (found <= limit) return;
         if (!reasons.empty()) reasons += "; ";
         reasons += sentence(what, " is ", found, unit, ", expected at most ", limit, unit);

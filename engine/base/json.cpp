@@ -18,7 +18,7 @@ constexpr size_t MAX_QUOTE_BYTES = 60;
 constexpr size_t MAX_REASON_BYTES = 200;
 constexpr double MAX_WHOLE = 9007199254740992.0;  // 2^53: above it, doubles cannot represent every whole number
 
-/// At most MAX_QUOTE_BYTES bytes, never cutting a UTF-8 character.
+/// Shortens the text to at most MAX_QUOTE_BYTES bytes without cutting a UTF-8 character.
 std::string shortened(std::string text)
 {
     if (text.size() <= MAX_QUOTE_BYTES) return text;
@@ -27,7 +27,7 @@ std::string shortened(std::string text)
     return text.substr(0, end) + "...";
 }
 
-/// On one line; JSON escapes all control characters except DEL.
+/// The value as JSON on one line. JSON itself escapes all control characters except DEL.
 std::string shown(const json& value)
 {
     std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -42,7 +42,7 @@ std::string shown_key(const std::string& key)
     return shortened(quoted.substr(1, quoted.size() - 2));
 }
 
-/// The parser's error message, without its list of expected tokens, in printable ASCII: it quotes bytes unchanged.
+/// The parser's error message without its list of expected tokens, made printable ASCII: the parser quotes raw bytes.
 std::string reason_of(const json::exception& error)
 {
     std::string reason = error.what();
@@ -54,9 +54,9 @@ std::string reason_of(const json::exception& error)
     return reason;
 }
 
-/// Checks a text and refuses invalid JSON, and two things that the parser itself accepts: deep nesting, and repeated
-/// keys, of which it would silently keep the last. This is a separate pass: as the parser's callback, it would make the
-/// parser search a whole array at the end of each element.
+/// Checks a text. Refuses invalid JSON, and two things that the parser accepts: deep nesting, and repeated keys (the
+/// parser silently keeps the last one). Runs as a separate pass because a parser with a callback searches a whole array
+/// at the end of each of its elements.
 class Strictness : public nlohmann::json_sax<json> {
 public:
     Strictness(const std::string& origin, const JsonLimits& limits) : origin_(&origin), limits_(limits) {}
@@ -107,7 +107,7 @@ std::string joined(const std::string& before, const std::string& name)
     return before.empty() ? name : before + "." + name;
 }
 
-/// The key of `wanted`, searched for in and below `value`; null if it is not there.
+/// Returns the full key of `wanted` if it is `value` (whose key is `key`) or lies below it; otherwise null.
 std::optional<std::string> key_below(const json& value, const json* wanted, const std::string& key)
 {
     if (&value == wanted) return key;
@@ -148,7 +148,7 @@ NumberRange above_zero(double lower, double upper)
 JsonDocument::JsonDocument(std::string_view text, std::string origin, const JsonLimits& limits)
     : origin_(std::move(origin))
 {
-    // The parser would take a zero byte for the end of the text.
+    // The parser would treat a zero byte as the end of the text.
     if (const size_t zero = text.find('\0'); zero != std::string_view::npos)
         fail(origin_, ": is not JSON: byte ", zero + 1, " is zero; expected ", limits.expected);
     Strictness strictness(origin_, limits);

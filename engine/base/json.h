@@ -25,7 +25,7 @@
 
 namespace shvr {
 
-/// The accepted numbers: from `lower` to `upper`, both included.
+/// The accepted numbers: from `lower` to `upper`, both inclusive.
 struct NumberRange {
     double lower;
     double upper;
@@ -39,14 +39,14 @@ NumberRange above_zero(double lower, double upper);
 
 /// Limits on a text, checked before its values are read.
 struct JsonLimits {
-    int depth = 16;                      ///< levels of nesting; reading and printing values uses stack space for each
+    int depth = 16;                      ///< maximum nesting; reading and printing values takes stack space per level
     const char* expected = "an object";  ///< added to the message if the text is not JSON or nests too deeply
-    bool may_repeat_keys = false;        ///< of repeated keys the last counts: for metadata written by other programs
+    bool may_repeat_keys = false;        ///< accept repeated keys (the last one counts), for metadata of other programs
 };
 
 class JsonDocument;
 
-/// A value and its place in the document; it may be missing. Refers to the document, which must outlive it.
+/// A value, possibly missing, and its place in the document. Refers to the document, which must outlive the node.
 class JsonNode {
 public:
     bool exists() const { return value_ != nullptr; }
@@ -55,14 +55,14 @@ public:
     bool is_number() const;
     bool is_object() const;
     bool is_array() const;
-    bool is(std::string_view text) const;  ///< whether it is this text
+    bool is(std::string_view text) const;  ///< whether the value is the string `text`
     size_t count() const;                  ///< elements of an array; 0 for anything else
 
     /// "FILE: key KEY is VALUE; expected EXPECTED", or "... is missing; expected ..."
     std::string refusal(const std::string& expected) const;
     [[noreturn]] void refuse(const std::string& expected) const { throw Error(refusal(expected)); }
     [[noreturn]] void refuse_because(const std::string& reason) const;
-    /// Runs `read` and prefixes the key to any `Error` it throws.
+    /// Runs `read`; if it throws an `Error`, prefixes the key to the error's message.
     template <class Read>
     auto checked(const Read& read) const
     {
@@ -73,16 +73,16 @@ public:
         }
     }
 
-    /// Fails if this is not an object, or has a key that is not in `known`.
+    /// Fails if the value is not an object, or has a key that is not in `known`.
     void allow(std::span<const std::string_view> known) const;
     void allow(std::initializer_list<std::string_view> known) const { allow(std::span(known.begin(), known.size())); }
-    JsonNode operator[](std::string_view name) const;  ///< missing if this is not an object or lacks the key
+    JsonNode operator[](std::string_view name) const;  ///< the member `name`; missing if this is no object or lacks it
     JsonNode required(std::string_view name, const std::string& expected) const;
     std::vector<std::string> names() const;  ///< keys of an object's members; fails for anything else
     /// The elements of an array, at least `least` and at most `most` of them; fails for anything else.
     std::vector<JsonNode> elements(size_t least = 0, size_t most = SIZE_MAX) const;
 
-    // The value; these fail if it is missing.
+    // These return the value, and fail if it is missing.
     double number(const NumberRange& range) const;
     int64_t whole(int64_t lower, int64_t upper) const;  ///< 3.0 counts as whole
     bool flag() const;
@@ -90,7 +90,7 @@ public:
     std::string any_text(const std::string& expected = "a text") const;                ///< may be empty
     glm::dvec3 vector(const NumberRange& range) const;
     glm::i64vec3 size(int64_t largest) const;  ///< each 1 ... `largest`
-    /// The index in `names`.
+    /// The value's index in `names`.
     size_t choice(std::span<const std::string_view> names) const;
     /// A value of an enumeration with `spellings_of`.
     template <class Value>
@@ -99,7 +99,7 @@ public:
         const std::span<const Spelling<Value>> spellings = spellings_of(Value{});
         return spellings[choice(names_of(spellings))].value;
     }
-    /// Applies `parse`, which returns an optional, to a text; fails if the result is empty.
+    /// Applies `parse`, which returns an optional, to a text value; fails if the optional is empty.
     template <class Parse>
     auto parsed(const Parse& parse, const std::string& expected) const
     {
@@ -139,8 +139,8 @@ private:
 
     const JsonDocument* document_;
     const nlohmann::json* value_;
-    // The place of a missing value: the innermost object that exists, and the rest of the key. The key of an existing
-    // value is found by searching the document, which happens only on refusal.
+    // For a missing value: the innermost existing object, and the rest of the key below that object. The key of an
+    // existing value is found by searching the document, which happens only on refusal.
     const nlohmann::json* parent_ = nullptr;
     std::string missing_;
 };

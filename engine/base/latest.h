@@ -7,7 +7,7 @@
 //     latest.writing() = pose; latest.publish();      // writer: any number of fields, then publish
 //     if (latest.take()) use(latest.value());         // reader: value() stays as it is until the next take()
 //
-// One writing and one reading thread. Copying T must not throw. Before it is written, a slot holds T{} or, later, some
+// One writing and one reading thread. Copying T must not throw. writing() returns a slot that still holds T{} or an
 // older value, so a writer must set every field.
 
 #include <array>

@@ -20,7 +20,7 @@ struct Plane {
     {}
 };
 
-/// Reports the progress of several filters, row by row; an exception from `progress` stops them. One thread.
+/// Reports the progress of several filters, row by row. If `progress` throws, the filters stop. One thread.
 class FilterProgress {
 public:
     FilterProgress(Progress progress, double filters) : progress_(std::move(progress)), filters_(filters) {}
@@ -38,8 +38,8 @@ private:
     int64_t rows_ = 0;
 };
 
-/// Correlation with `across` along rows and `down` along columns; both have odd lengths, and their middle element is at
-/// the pixel itself. The picture's border is repeated outwards.
+/// Correlates the plane with `across` along rows and `down` along columns. Both weights have odd lengths; their middle
+/// element applies to the pixel itself. The picture's border is repeated outwards.
 Plane filtered(const Plane& plane, std::span<const double> across, std::span<const double> down,
                FilterProgress& progress);
 

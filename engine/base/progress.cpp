@@ -9,7 +9,7 @@ namespace shvr {
 namespace {
 
 constexpr double SILENT_SECONDS = 1.0;
-/// Intervals between two lines, and between two changes of the line on a terminal.
+/// Minimum interval between two lines; on a terminal, between two changes of the line.
 constexpr double LINE_SECONDS = 10.0, REWRITE_SECONDS = 0.1;
 constexpr const char* CLEARED = "\r\x1b[K";
 

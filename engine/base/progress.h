@@ -8,8 +8,8 @@
 
 namespace shvr {
 
-/// Called now and then by long-running work, on the thread that runs it, with the completed fraction (0 ... 1). An
-/// exception from it ends the work, which then leaves nothing half done. An empty function: progress is not reported.
+/// Long-running work calls this at intervals, on its own thread, with the completed fraction (0 ... 1). An exception
+/// thrown by it ends the work, which leaves nothing half done. An empty function: progress is not reported.
 using Progress = std::function<void(double fraction)>;
 
 /// The work was stopped by the user.
@@ -23,7 +23,7 @@ inline void tell(const Progress& progress, double fraction)
     if (progress) progress(fraction);
 }
 
-/// Progress of a part of the work: its 0 ... 1 is `lower` ... `upper` of the whole. `progress` is copied.
+/// Progress of one part of the work: maps the part's 0 ... 1 to `lower` ... `upper` of the whole. Copies `progress`.
 inline Progress part_of(const Progress& progress, double lower, double upper)
 {
     if (!progress) return {};
@@ -33,8 +33,8 @@ inline Progress part_of(const Progress& progress, double lower, double upper)
 /// "5 s", "2 min 5 s", "3 h 20 min": rounded up.
 std::string duration_text(double seconds);
 
-/// The progress line of a command: nothing in the first second; then on a terminal one line that is rewritten,
-/// elsewhere at most one line every ten seconds. One thread at a time.
+/// The progress line of a command. Prints nothing in the first second; then, on a terminal, one line that is rewritten,
+/// and elsewhere at most one line every ten seconds. One thread at a time.
 class ProgressLine {
 public:
     struct Place {
@@ -47,9 +47,9 @@ public:
     ~ProgressLine() { clear(); }
     ProgressLine(const ProgressLine&) = delete;
 
-    /// Starts a new stage of the work, as in "measuring"; its time left is estimated from scratch.
+    /// Starts a new stage of the work, such as "measuring", and estimates its time left from scratch.
     void begin(std::string what);
-    /// A negative fraction means unknown; then the time since `begin` is shown. `detail`: shown after the fraction, as
+    /// A negative fraction means unknown: the time since `begin` is then shown. `detail`: shown after the fraction, as
     /// in "120 MB/s"; may be empty. Without `seconds_left`, the time left is estimated from the time since `begin`.
     void show(double fraction, const std::string& detail = {}, double seconds_left = -1.0);
     /// Erases the line from a terminal, before anything else is printed there.

@@ -1,6 +1,6 @@
 #pragma once
 // Spellings of the values of an enumeration in files and messages, in one place: a table next to the enumeration, and a
-// function `spellings_of(Enumeration)` that returns it and is found by argument-dependent lookup.
+// function `spellings_of(Enumeration)` that returns the table and is found by argument-dependent lookup.
 //
 //   enum class Paging { automatic, always, never };
 //   inline constexpr Spelling<Paging> PAGINGS[] = {{Paging::automatic, "automatic"}, ...};

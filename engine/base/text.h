@@ -21,13 +21,13 @@ inline bool is_digit(char character)
 std::string_view trimmed(std::string_view text);
 std::string lower_case(std::string_view text);
 std::vector<std::string_view> words_of(std::string_view text);
-/// Whether it contains control characters, which terminals interpret.
+/// Whether the text contains control characters, which terminals interpret.
 bool has_controls(std::string_view text);
 /// The text with each control character replaced by a question mark.
 std::string printable(std::string_view text);
 /// For messages: in quotes, at most 60 characters, no control characters.
 std::string in_quotes(std::string_view text);
-/// The text up to the next line end, removed from `rest` together with that line end; "\r\n" counts as one.
+/// Returns the text up to the next line end, and removes both from `rest`. "\r\n" counts as one line end.
 std::string_view take_line(std::string_view& rest);
 
 std::optional<int64_t> whole_of(std::string_view word);

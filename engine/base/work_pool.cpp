@@ -8,7 +8,7 @@ class WorkPool::Batch {
 public:
     Task run;
     int64_t next = 0;     ///< the first task not yet started
-    int64_t end = 0;      ///< index from which on tasks do not exist or were dropped
+    int64_t end = 0;      ///< tasks from this index on do not exist or were dropped
     int64_t running = 0;  ///< started but not finished
     std::exception_ptr failure;
 
@@ -55,7 +55,7 @@ void WorkPool::wait(const std::shared_ptr<Batch>& batch)
     const auto is_finished = [&] { return batch->is_finished(); };
     for (;;) {
         if (!poll_) finished_.wait(lock, is_finished);
-        // Polls by the clock, so that many batches shorter than the interval get polled, too.
+        // Checks the clock, so that a series of batches shorter than the interval is polled, too.
         const bool is_due = poll_ && std::chrono::steady_clock::now() >= polled_ + POLL_INTERVAL;
         if (!is_due && finished_.wait_until(lock, polled_ + POLL_INTERVAL, is_finished)) break;
         lock.unlock();

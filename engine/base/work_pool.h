@@ -22,9 +22,9 @@ class WorkPool {
 public:
     using Task = std::function<void(int64_t task, int worker)>;
 
-    /// A waiting thread calls `poll` every 50 ms, whether it waits for one batch or many short ones; an exception from
-    /// `poll` ends the batch being waited for and is rethrown. Workers call `before_task` before every task; an
-    /// exception from it counts as one from the task.
+    /// A waiting thread calls `poll` every 50 ms, whether it waits for one batch or many short ones. If `poll` throws,
+    /// the batch being waited for ends and the exception is rethrown. Workers call `before_task` before every task; an
+    /// exception from `before_task` counts as an exception from the task.
     explicit WorkPool(int threads, std::function<void()> poll = {}, std::function<void()> before_task = {});
     /// Drops tasks that have not started, and waits for the rest.
     ~WorkPool();

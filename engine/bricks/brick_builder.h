@@ -47,8 +47,8 @@ private:
 
 /// Builds every brick of level 0, in order of their index (x fastest). Reads the source slab by slab, each slice once;
 /// holds two slabs of 34 slices at a time, in the source's format, and a few rows of bricks. Calls `take` once per
-/// brick, in order, on the calling thread, while `threads` workers build the next bricks and read. Rethrows exceptions
-/// of the source or of `take`, and stops.
+/// brick, in order, on the calling thread, while `threads` workers read and build the next bricks. If the source or
+/// `take` throws, stops and rethrows.
 void build_bricks(const VolumeSource& source, const IntensityWindow& window, int threads,
                   const std::function<void(const glm::ivec3& brick, const BrickTexels& texels)>& take);
 

@@ -1,7 +1,7 @@
 #pragma once
 // Maps each brick of a set to a number: a flat hash table with linear probing, for sets of 10^5 bricks that are rebuilt
-// when a camera moves, and queried for every brick. It is built four times as fast as the standard library's, whose
-// entries are allocations, and queried nearly three times as fast (engine/device/MEASURED.md). One thread.
+// when a camera moves, and queried for every brick. The standard library's table, which allocates each entry, takes
+// four times as long to build and nearly three times to query (engine/device/MEASURED.md). One thread.
 
 #include <optional>
 #include <vector>

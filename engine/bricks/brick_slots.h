@@ -30,17 +30,17 @@ public:
     std::optional<uint32_t> find(const BrickKey& key) const { return placed_.find(key); }
     bool is_pinned(uint32_t slot) const { return slots_[slot].is_pinned; }
     size_t free_count() const { return free_.size(); }
-    /// Number of slots that are free, or whose bricks neither a picture nor a region needs. Calls `need` for all of
-    /// them.
+    /// Number of slots that are free or whose bricks are needed by neither a picture nor a region. Calls `need` for all
+    /// placed bricks.
     size_t room() const;
     /// Bricks evicted so far.
     uint64_t evictions() const { return evictions_; }
 
-    /// Makes later uses count as more recent than all before.
+    /// Makes later uses count as more recent than all earlier ones.
     void tick() { ++now_; }
     void use(const BrickKey& key);
-    /// To be called if `need` may have decreased for any brick; an increased need is noticed when the brick is
-    /// considered.
+    /// To be called if `need` may have decreased for any brick. An increased need requires no call: it is noticed when
+    /// the brick is considered for eviction.
     void needs_changed() { evictable_is_stale_ = true; }
 
     struct Placed {
@@ -48,8 +48,8 @@ public:
         std::optional<BrickKey> evicted;  ///< the brick that previously occupied the slot
     };
     /// Places a brick that has no slot and marks it as used now. Takes a free slot, or evicts a brick that is not
-    /// needed; if `need` is that of a region, also one that only the picture needs. Null if no slot can be had. Pinned
-    /// bricks are never evicted, only removed.
+    /// needed; for a `need` of BrickNeed::region, may also evict a brick that only the picture needs. Null if no slot
+    /// can be freed. Pinned bricks are never evicted, only removed.
     std::optional<Placed> place(const BrickKey& key, BrickNeed need, bool is_pinned);
     void remove(const BrickKey& key);
 

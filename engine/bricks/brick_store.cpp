@@ -13,12 +13,12 @@ namespace shvr {
 namespace {
 
 constexpr uint64_t BRICK_BYTES = sizeof(BrickTexels);
-/// More messages than a user would read; failures are still counted.
+/// Limit on stored messages, more than a user would read; failures beyond it are still counted.
 constexpr size_t MAX_MESSAGES = 20;
 
-/// Loader threads run at lower priority than rendering: on two cores, loaders of equal priority delay the first
-/// picture. Linux has a priority for each thread; elsewhere (POSIX has one per process), or if the call fails, only
-/// speed is lost.
+/// Lowers the priority of a loader thread below that of rendering: on two cores, loaders of equal priority delay the
+/// first picture. Linux sets priorities per thread. Elsewhere (POSIX has one priority per process), or if the call
+/// fails, the priority stays unchanged, which costs only speed.
 void give_way()
 {
     constexpr int NICENESS = 5;
@@ -31,7 +31,7 @@ BrickStore::BrickStore(const VolumeSource& source, const IntensityWindow& window
     : source_(source), window_(window), own_maker_(source, window)
 {
     const int loaders = std::max(1, threads);
-    // Memory for one brick in progress per loader, and for one that waits to be taken.
+    // The minimum: one brick in progress per loader, and per loader one brick that waits to be taken.
     max_bricks_ = std::max<uint64_t>(budget_bytes / BRICK_BYTES, 2 * uint64_t(loaders));
     for (int i = 0; i < loaders; ++i) {
         loaders_.emplace_back([this](std::stop_token stop) {
@@ -158,8 +158,8 @@ std::optional<BrickKey> BrickStore::next()
     return std::nullopt;
 }
 
-/// The mutex is held. Evicts the least recently used bricks that are not waiting to be taken, until there is room for
-/// one more.
+/// The mutex is held. Evicts the least recently used bricks, except those waiting to be taken, until there is room for
+/// one more brick.
 bool BrickStore::make_room()
 {
     const auto is_full = [&] { return kept_.size() + loading_.size() >= max_bricks_; };

@@ -40,7 +40,7 @@ public:
         const glm::dvec3 up = glm::cross(right, forward_);
         const bool is_perspective = camera_.projection == Camera::Projection::perspective;
         const double half = is_perspective ? std::tan(glm::radians(0.5 * camera_.fov_y_degrees)) : 0.5 * camera_.height;
-        // One extra pixel on each side: rounding must not cut off rays at the border.
+        // Adds one pixel on each side, so that rounding does not cut off rays at the border.
         const glm::dvec2 margin = (glm::dvec2(pixels_) + 2.0) / glm::dvec2(pixels_);
         const double half_y = half * margin.y;
         const double half_x = half * margin.x * double(pixels_.x) / double(pixels_.y);
@@ -157,7 +157,7 @@ private:
     std::vector<PageTree::Leaf> leaves_;
 };
 
-/// The entry of an empty cell, `distance` cells from the next non-empty one.
+/// The entry of an empty cell, `distance` cells from the nearest non-empty cell.
 uint32_t empty_entry(uint32_t distance)
 {
     return distance << gpu::PAGE_DISTANCE_SHIFT;
@@ -179,7 +179,7 @@ uint32_t entry_below(PageTree& tree, uint32_t entry, int shift, const BrickKey& 
     return entry;
 }
 
-/// Chebyshev distance to the nearest cell of the grid that is not empty, axis by axis.
+/// Computes each cell's Chebyshev distance to the nearest non-empty cell of the grid, one axis after the other.
 void measure_distances(PageTree& tree)
 {
     constexpr uint32_t LIMIT = gpu::LEAP_LIMIT;
@@ -271,7 +271,7 @@ void for_each_entry_below(const PageTree& tree, const BrickKey& key,
     if (coarser < 0) {
         uint32_t entry = gpu::grid_index(glm::uvec3(key.brick >> -coarser), tree.counts);
         for (int shift = -coarser - 1; shift >= 0; --shift) {
-            if (tree.entries[entry] >> gpu::PAGE_LEVEL_SHIFT != gpu::PAGE_NODE) return;  // within a leaf
+            if (tree.entries[entry] >> gpu::PAGE_LEVEL_SHIFT != gpu::PAGE_NODE) return;  // the brick lies within a leaf
             const glm::ivec3 half = key.brick >> shift & 1;
             entry = (tree.entries[entry] & gpu::PAGE_PAYLOAD_MASK) + uint32_t(half.x + 2 * half.y + 4 * half.z);
         }

@@ -3,8 +3,8 @@
 // show, without bricks that are outside the view, cut away or invisible under the transfer function. Plain data,
 // computed in double on the CPU; no device.
 //
-// A brick is fine enough when its voxels, along the finest axis, are no larger than a pixel at the brick's nearest
-// point, divided by `detail`. This depends on the view alone, never on loaded bricks or a budget, so pictures under
+// A brick is fine enough when its voxel size along the finest axis is at most 1 / `detail` times the size of a pixel at
+// the brick's nearest point. This depends on the view alone, never on loaded bricks or a budget, so pictures under
 // different budgets are equal.
 
 #include <functional>
@@ -22,7 +22,7 @@ struct PageView {
     double detail = 1.0;  ///< minimum voxels per pixel; 0: the finest level everywhere
     CutBox cut;
     bool shows_all = false;  ///< ignore the transfer function
-    /// Bricks of these voxels are always shown.
+    /// Bricks that overlap this box are always shown.
     std::optional<VoxelBox> shown{};
     bool operator==(const PageView&) const = default;
 };
@@ -30,12 +30,12 @@ struct PageView {
 struct PageTree {
     struct Leaf {
         BrickKey key;
-        double depth = 0.0;  ///< depth of its nearest point along the view; near bricks are loaded first
+        double depth = 0.0;  ///< depth of the brick's nearest point along the view; near bricks load first
     };
     static constexpr uint32_t NO_LEAF = 0xffffffffu;
 
     std::vector<Leaf> leaves;  ///< nearest first
-    int finest_level = 0;      ///< the finest of all leaves; determines the sample distance
+    int finest_level = 0;      ///< the finest level of all leaves; determines the sample distance
     int cell_shift = 5;        ///< log2 of the side of a cell of the directory's grid, in voxels
     glm::uvec3 counts{1};      ///< cells of the grid
     int depth = 0;             ///< levels of nodes below the grid
@@ -47,12 +47,12 @@ struct PageTree {
     std::vector<uint32_t> entries_of_leaves, begin_of_leaf;
 };
 
-/// `levels` as VolumeSource::levels. `shows`: whether anything in a brick, or in the finer bricks below it, may be
-/// visible. If a view needs more than `max_leaves`, its detail is halved repeatedly.
+/// `levels`: as VolumeSource::levels. `shows`: whether a brick, or any of the finer bricks below it, may have visible
+/// voxels. If a view needs more than `max_leaves`, its detail is halved repeatedly.
 PageTree make_page_tree(const VolumeInfo& volume, int levels, const PageView& view,
                         const std::function<bool(const BrickKey&)>& shows, size_t max_leaves = size_t{1} << 17);
 
-/// Visits the directory entries of all leaves at or below a brick, each once.
+/// Visits the directory entries of all leaves at or below a brick, each entry once.
 void for_each_entry_below(const PageTree& tree, const BrickKey& key,
                           const std::function<void(uint32_t entry, uint32_t leaf)>& visit);
 

@@ -9,11 +9,11 @@ namespace shvr {
 namespace {
 
 constexpr size_t MIN_ENTRIES = 16;
-/// Cuckoo insertion: a brick whose place is taken moves the occupant to its other place, and so on. If half of the
+/// Cuckoo insertion: if a brick's place is taken, the occupant moves to its own other place, and so on. If half of the
 /// entries are free, few insertions move more than a dozen bricks.
 constexpr int MAX_MOVES = 500;
 
-/// Inserts `brick` into `entries`; false if it and the bricks it would move find no place.
+/// Inserts `brick` into `entries`; false if there is no place for it and the bricks that it would displace.
 bool insert(std::vector<PaintedBrick>& entries, PaintedBrick brick)
 {
     const uint32_t last = uint32_t(entries.size() - 1);

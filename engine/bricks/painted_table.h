@@ -1,7 +1,7 @@
 #pragma once
 // Finds the slots of painted bricks when a table of all bricks would be too large: a hash table in which each brick is
-// at one of two places (cuckoo hashing, Pagh and Rodler 2004). Kernels always check both, which takes six loads and no
-// loop.
+// at one of two places (cuckoo hashing, Pagh and Rodler 2004). Kernels always check both places, which takes six loads
+// and no loop.
 
 #include <cstdint>
 #include <span>

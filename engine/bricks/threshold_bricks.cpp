@@ -23,7 +23,7 @@ void for_each_brick(const VoxelBox& box, int64_t side, const Visit& visit)
             for (int64_t x = first.x; x <= last.x; ++x) visit(Size3(x, y, z));
 }
 
-/// The bits of `count` <= 32 voxels in a row.
+/// The bits of `count` (at most 32) consecutive voxels of a row.
 template <class T>
 uint32_t word_of(const std::byte* voxels, int64_t count, double threshold)
 {
@@ -68,7 +68,7 @@ std::vector<uint32_t> ThresholdBricks::bits_in(const VoxelBox& box, double thres
     if (reading_.valid()) {
         try {
             take_reading();
-        } catch (const Error&) {  // a brick that is needed now is read again, and that read reports the failure
+        } catch (const Error&) {  // a brick that is needed now is read again later; that read reports the failure
         }
     }
     if (kept_.size() + missing(box, threshold).size() > MAX_BRICKS) kept_.clear();
@@ -117,7 +117,7 @@ std::vector<Size3> ThresholdBricks::missing(const VoxelBox& box, double threshol
     return bricks;
 }
 
-/// Bricks of one layer are read at once, so that larger blocks of a file are not decoded for each of them.
+/// Reads all bricks of a layer at once, so that a larger block of the file is not decoded again for each brick.
 ThresholdBricks::Bricks ThresholdBricks::read(const VolumeSource& source, const std::vector<Size3>& bricks,
                                               double threshold)
 {

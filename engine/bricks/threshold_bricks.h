@@ -1,6 +1,6 @@
 #pragma once
 // One bit per voxel: whether its value in the file is at or above a threshold. Bricks of bits are read when they are
-// needed, and kept. Brushes and touch decide by them where several values share a 16-bit code (has_exact_codes,
+// needed, and kept. Brushes and touch use these bits where several values share a 16-bit code (has_exact_codes,
 // volume.h).
 //
 // One thread owns an object; get_ready() reads on a separate thread.
@@ -24,8 +24,8 @@ public:
     ~ThresholdBricks();
     ThresholdBricks(const ThresholdBricks&) = delete;
 
-    /// Whether bits_in() would read nothing. If not, starts reading in the background: ask again. Fails if voxels
-    /// cannot be read.
+    /// Whether bits_in() would find all its bricks already read. If not, starts reading them in the background; the
+    /// caller has to ask again later. Fails if voxels cannot be read.
     bool get_ready(const VoxelBox& box, double threshold);
     /// The bits of a box inside the volume, in rows of whole words along x: bit b of word w of row (y, z) is voxel x =
     /// box.lower.x + 32 w + b. NaN is below every threshold. Reads missing bricks; fails if one cannot be read.
@@ -34,8 +34,8 @@ public:
     void renew(std::span<const VoxelBox> changed);
 
 private:
-    static constexpr int64_t SIDE = 32;                    ///< voxels of a brick along each axis: a row is one word
-    static constexpr size_t MAX_BRICKS = size_t{1} << 12;  ///< kept: 16 MiB
+    static constexpr int64_t SIDE = 32;                    ///< voxels along each axis of a brick; a row is one word
+    static constexpr size_t MAX_BRICKS = size_t{1} << 12;  ///< maximum number of kept bricks: 16 MiB
     using Bits = std::array<uint32_t, SIDE * SIDE>;        ///< rows, y fastest
     struct Key {
         double threshold = 0.0;

@@ -9,7 +9,7 @@
 namespace shvr {
 namespace {
 
-/// Voxel bytes to read at once, unless a row of blocks is larger: the size of a core's second-level cache.
+/// Voxel bytes to read at once: the size of a core's second-level cache. A larger row of blocks is read as a whole.
 constexpr int64_t STRIP_BYTES = int64_t{1} << 20;
 constexpr int64_t MAX_BIT_BYTES = int64_t{64} << 20;
 constexpr int64_t WORD = 64;
@@ -61,7 +61,7 @@ BitSlab::BitSlab(const VolumeSource& source, const ThresholdBits& bits, const Bi
 int64_t BitSlab::thickness_of(const BitLayout::Layer& layer) const
 {
     const int64_t thickness = std::clamp<int64_t>(MAX_BIT_BYTES / (8 * layer.words), 1, block_.z);
-    // Thin blocks of small slices: a slab takes many of them.
+    // If blocks are thin and slices small, one slab spans many blocks along z.
     const int64_t bytes = layer.words * WORD * int64_t(bytes_of(bits_.type()));
     return thickness < block_.z ? thickness : thickness * std::max<int64_t>(STRIP_BYTES / (bytes * thickness), 1);
 }
@@ -82,7 +82,7 @@ bool BitSlab::read(int64_t z, int64_t end)
     return true;
 }
 
-/// `first_word`: index of the word of its first row, in each slice.
+/// `first_word`: index, within each slice, of the first word of the strip's first row.
 void BitSlab::read_strip(const BitLayout::Strip& strip, int64_t first_word)
 {
     const auto voxel_bytes = int64_t(bytes_of(bits_.type()));
@@ -93,7 +93,7 @@ void BitSlab::read_strip(const BitLayout::Strip& strip, int64_t first_word)
     int64_t word_of_columns = first_word;
     for (const BitLayout::Columns& columns : strip.columns) {
         const int64_t width = columns.upper - columns.lower;
-        // Takes as many whole rows of blocks as fit, or else whole blocks; always whole words.
+        // Reads as many whole rows of blocks as fit at once, or else parts of them: whole blocks and whole words.
         const int64_t least_bytes = voxel_bytes * block_.y * slices;
         int64_t step = width;
         if (width * least_bytes > STRIP_BYTES) {
@@ -111,11 +111,11 @@ void BitSlab::read_strip(const BitLayout::Strip& strip, int64_t first_word)
     }
 }
 
-/// Columns of the part that can hold a voxel at or above the threshold, in whole words; null if there are none.
+/// The columns of `part`, in whole words, that can hold a voxel at or above the threshold; null if there are none.
 std::optional<BitLayout::Columns> BitSlab::columns_above(const VoxelBox& part) const
 {
     const int64_t begin = part.lower.x, end = part.upper.x;
-    // Ranges exclude infinities, which can be above the threshold all the same.
+    // Stored ranges exclude infinities, but an infinite voxel can still be above the threshold.
     if (is_float(bits_.type())) return BitLayout::Columns{begin, end};
     const Size3 first = part.lower / BRICK_SIDE, last = (part.upper - int64_t{1}) / BRICK_SIDE;
     const auto is_above = [&](int64_t x) {

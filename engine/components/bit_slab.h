@@ -1,6 +1,6 @@
 #pragma once
-// A slab of slices of a volume as bits: which voxels are at or above a threshold. Holds only the parts that the source
-// stores; all others are below the threshold. For components.cpp.
+// A slab of slices of a volume as bits, set for the voxels at or above a threshold. Holds only the parts that the
+// source stores; all other voxels are below the threshold. For components.cpp.
 
 #include <optional>
 #include <vector>
@@ -27,10 +27,10 @@ public:
         int64_t words = 0;  ///< words of bits per slice
     };
 
-    /// All voxels, as one layer, or those of stored blocks.
+    /// Covers all voxels, as one layer, or only the blocks in `stored`.
     BitLayout(const Size3& size, const std::optional<StoredBlocks>& stored);
 
-    /// The layer that contains slice z, or else the next one; null if there is none.
+    /// The layer that contains slice z, or else the next layer; null if there is none.
     const Layer* layer_from(int64_t z) const;
     int64_t words() const { return words_; }  ///< total of all slices
 
@@ -44,17 +44,17 @@ public:
     /// All arguments must outlive it.
     BitSlab(const VolumeSource& source, const ThresholdBits& bits, const BitLayout& layout);
 
-    /// Finds and reads the next slab from slice z on, up to `end`: skips empty slices, and is as thick as the source's
-    /// blocks, so that they are decoded once, unless the bits of that many slices take more than 64 MiB. Returns false
-    /// if there is none. Parts that the source knows to be below the threshold are not read.
+    /// Finds and reads the next slab from slice z on, up to `end`. Skips empty slices. The slab is as thick as the
+    /// source's blocks, so that they are decoded once, unless its bits would take more than 64 MiB. Returns false if no
+    /// slab is left. Does not read parts that the source knows to be below the threshold.
     bool read(int64_t z, int64_t end);
     int64_t lower() const { return lower_; }
     int64_t upper() const { return upper_; }
     /// Words of the slab's bits, as counted by BitLayout::words.
     int64_t words() const { return layer_->words * (upper_ - lower_); }
 
-    /// Calls `take(y, ends)` for each row with runs of slice z of the slab, in order; `ends` has the first voxel of
-    /// every run and the one after its last.
+    /// Calls `take(y, ends)`, in order, for each row of slice z that has runs. `ends` lists the first voxel of every
+    /// run and the voxel after the run's last.
     template <class Take>
     void for_each_row(int64_t z, const Take& take)
     {

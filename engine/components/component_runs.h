@@ -21,7 +21,7 @@ struct LabelledRun {
 struct SliceRuns {
     struct Row {
         uint32_t y = 0;
-        uint32_t end = 0;  ///< end of its runs; they begin where those of the previous row end
+        uint32_t end = 0;  ///< end of the row's runs, which begin where those of the previous row end
     };
     std::vector<Row> rows{};  ///< ascending
     std::vector<LabelledRun> runs{};
@@ -44,7 +44,7 @@ struct SliceRuns {
 /// different slices at once; each slice is written once, before it is read.
 class RunFile {
 public:
-    /// Creates it in `folder`, for `slices` slices. Fails if no file can be created there.
+    /// Creates the file in `folder`, for `slices` slices. Fails if no file can be created there.
     RunFile(const std::filesystem::path& folder, int64_t slices);
 
     void write(int64_t z, const SliceRuns& slice);

@@ -20,9 +20,9 @@ namespace shvr {
 namespace {
 
 constexpr uint32_t NO_LABEL = std::numeric_limits<uint32_t>::max();
-/// Number of ranges per thread, since some ranges hold more runs than others; and the minimum thickness of a range.
+/// Number of ranges per thread (several, since some ranges hold more runs than others), and minimum range thickness.
 constexpr int64_t RANGES_PER_THREAD = 4, THINNEST_RANGE = 16;
-/// Limit of the bits of a slice: 2^33 voxels.
+/// Limit on the size of a slice stored as bits: 2^33 voxels.
 constexpr int64_t MAX_SLICE_BYTES = int64_t{1} << 30;
 
 [[noreturn]] void refuse_labels()
@@ -46,8 +46,8 @@ private:
     std::atomic<int64_t> now_ = 0, peak_ = 0;
 };
 
-/// Joins touching runs of two neighbouring rows; with `reach` 1, contact over an edge or a corner counts, too. Runs of
-/// `row` without a label take that of their neighbour.
+/// Joins touching runs of two neighbouring rows; with `reach` 1, runs also touch over an edge or a corner. A run of
+/// `row` without a label takes the label of its neighbour.
 void join_rows(std::span<LabelledRun> row, std::span<const LabelledRun> before, uint32_t reach, LabelForest& forest)
 {
     auto first = before.begin();
@@ -62,8 +62,8 @@ void join_rows(std::span<LabelledRun> row, std::span<const LabelledRun> before, 
     }
 }
 
-/// Joins a row with those of the preceding slice: the one at the same position and, over corners, its neighbours. `at`
-/// is 0 for the first row of a slice, and kept for the next ones.
+/// Joins a row with the row at the same position in the preceding slice and, for connectivity over corners, with the
+/// neighbours of that row. The caller passes `at` as 0 for a slice's first row, and unchanged for the next rows.
 void join_slices(std::span<LabelledRun> row, int64_t y, SliceRuns& before, size_t& at, Connectivity connectivity,
                  LabelForest& forest)
 {
@@ -73,7 +73,7 @@ void join_slices(std::span<LabelledRun> row, int64_t y, SliceRuns& before, size_
         join_rows(row, before.runs_of(near), reach, forest);
 }
 
-/// A range of slices with labels of its own. One thread.
+/// A range of slices, with its own set of labels. One thread.
 class LabelledRange {
 public:
     LabelledRange(int64_t lower_slice, int64_t upper_slice) : lower_(lower_slice), upper_(upper_slice) {}
@@ -152,10 +152,10 @@ private:
 
 /// The data that the volume of labels needs.
 struct LabelTable {
-    LabelForest forest;                    ///< maps provisional labels to final ones, as their parents
+    LabelForest forest;                    ///< maps provisional labels to final labels, stored as their parents
     std::vector<int64_t> lower;            ///< first slice of each range
     std::vector<uint32_t> bases;           ///< offset of each range's labels
-    std::optional<RunFile> runs{};         ///< with labels of their ranges
+    std::optional<RunFile> runs{};         ///< the runs, with the labels of their ranges
     std::optional<StoredBlocks> stored{};  ///< blocks that can hold labels; null: all
 };
 
@@ -238,13 +238,13 @@ public:
     }
 
 private:
-    /// The blocks of a sparse volume that can be at or above the threshold; null: all.
+    /// The blocks of a sparse volume that can hold voxels at or above the threshold; null: all blocks.
     std::optional<StoredBlocks> stored_above(const VolumeSource& source) const
     {
         const Size3& size = source.info().size;
         std::optional<StoredBlocks> stored = source.stored_blocks(0, MAX_STORED_BLOCKS);
         if (stored && !(stored->fill >= options_.threshold)) {
-            stored->fill = 0.0;  // of labels
+            stored->fill = 0.0;  // fill value of the volume of labels
             return stored;
         }
         const int64_t bytes = words_of_row(size.x) * size.y * 8;
@@ -281,7 +281,7 @@ private:
             try {
                 tell(options_.progress, double(words_done) / words);
             } catch (...) {
-                is_stopped = true;  // ranges take long
+                is_stopped = true;  // stops the ranges in progress, which can take long
                 throw;
             }
         });
@@ -315,7 +315,7 @@ private:
         counts_.forest_bytes = forest.bytes();
     }
 
-    /// Afterwards the parent of every label is the smallest label of its component, which holds the voxel count.
+    /// Sets the parent of each label to the smallest label of its component, which also receives the voxel count.
     void resolve()
     {
         LabelForest& forest = table_->forest;
@@ -328,7 +328,7 @@ private:
         }
     }
 
-    /// Orders components by size, and equal ones by their first voxel.
+    /// Orders components by size, and components of equal size by their first voxel.
     struct Larger {
         bool operator()(const Component& a, const Component& b) const
         {

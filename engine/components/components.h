@@ -1,12 +1,12 @@
 #pragma once
 // Connected components of the voxels at or above a threshold, in a volume that need not fit into memory.
 //
-// Slices are read slab by slab and turned into bits and runs; a run takes the label of a run it touches in the
-// preceding rows, or a new one, and labels that meet are joined (label_forest.h). Several threads label ranges of
-// slices in parallel; the ranges are joined where they meet. Memory holds a slab and two slices of runs per range, and
-// 12 bytes per provisional label (in a noisy volume up to one per run); the labelled runs themselves go to a temporary
-// file, and only if the labels are wanted. If a source knows what it stores (VolumeSource::stored_blocks), only that is
-// traversed, unless the fill value is at or above the threshold.
+// Slices are read slab by slab and turned into bits and runs. A run takes the label of a run that it touches in the
+// preceding rows, or a new label; labels that meet are joined (label_forest.h). Several threads label ranges of slices
+// in parallel; the ranges are joined where they meet. Memory holds a slab and two slices of runs per range, and 12
+// bytes per provisional label (in a noisy volume up to one label per run). The labelled runs themselves go to a
+// temporary file, and only if the labels are wanted. If a source lists its stored blocks (VolumeSource::stored_blocks),
+// only those are traversed, unless the fill value is at or above the threshold.
 
 #include <filesystem>
 #include <functional>
@@ -17,13 +17,13 @@
 
 namespace shvr {
 
-enum class Connectivity { faces = 6, corners = 26 };  ///< two voxels are connected if they share a face, or a corner
+enum class Connectivity { faces = 6, corners = 26 };  ///< two voxels are connected if they share a face, or any corner
 
 struct ComponentOptions {
     double threshold = 0.0;  ///< inclusive, in intensity units; not NaN
     Connectivity connectivity = Connectivity::faces;
     int64_t fewest_voxels = 1;   ///< smaller components are dropped
-    int64_t max_components = 0;  ///< keeps only the largest N, the first of equal ones; 0: all
+    int64_t max_components = 0;  ///< keeps only this many, the largest (of equal ones, the first); 0: all
     int threads = 0;             ///< 0: one per core
     /// Folder of the temporary file; if unset, no labels are kept, and `labels` must not be called.
     std::optional<std::filesystem::path> run_folder{};
@@ -45,7 +45,7 @@ public:
                                          ///< MAX_LARGEST_LISTED
         int64_t provisional = 0;         ///< number of provisional labels
         int64_t peak_bytes = 0;          ///< peak memory while labelling
-        int64_t forest_bytes = 0;        ///< part of that for provisional labels
+        int64_t forest_bytes = 0;        ///< part of `peak_bytes` that provisional labels take
         int64_t run_file_bytes = 0;
     };
     static constexpr size_t MAX_LARGEST_LISTED = 100;
@@ -53,9 +53,9 @@ public:
     virtual ~Components() = default;
     const Counts& counts() const { return counts_; }
 
-    /// The volume of labels: 0 for dropped and background voxels, and 1 ... kept in the order of components' first
-    /// voxels (z, then y, then x), in the smallest of uint8, uint16 and uint32 that holds them. It may outlive this
-    /// object and `source`.
+    /// The volume of labels: 0 for dropped and background voxels, otherwise 1 to `kept`, in the order of the
+    /// components' first voxels (z, then y, then x). The type is the smallest of uint8, uint16 and uint32 that holds
+    /// all labels. The volume may outlive this object and `source`.
     virtual std::unique_ptr<VolumeSource> labels() const = 0;
 
 protected:

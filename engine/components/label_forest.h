@@ -1,7 +1,7 @@
 #pragma once
 // Sets of provisional labels, joined when a scan finds that they belong together: union-find with path halving (Tarjan
 // and van Leeuwen 1984) in arrays, with the smallest label as representative of its set, as in Wu, Otoo and Suzuki
-// 2009. So a label is never smaller than its parent, and one ascending pass resolves all.
+// 2009. A label is therefore never smaller than its parent, and one pass in ascending order resolves all labels.
 //
 // Labels are stored in blocks that never move: adding labels copies nothing, forests are appended to each other
 // cheaply, and `bytes` is the exact memory use. One thread at a time.
@@ -28,7 +28,7 @@ public:
         parent(label) = label;
         return label;
     }
-    /// Number of labels so far. Includes labels skipped by `append`, which have 0 voxels.
+    /// Number of labels so far, including labels that `append` skipped, which have 0 voxels.
     uint64_t size() const { return next_; }
 
     uint32_t root_of(uint32_t label)
@@ -47,7 +47,7 @@ public:
         return a;
     }
 
-    /// While labelling: the parent of a label. Afterwards: for any use by the caller.
+    /// While labelling: the parent of a label. Afterwards, the caller may use the value for other purposes.
     uint32_t& parent(uint32_t label) { return blocks_[label / BLOCK]->parents[label % BLOCK]; }
     uint32_t parent(uint32_t label) const { return blocks_[label / BLOCK]->parents[label % BLOCK]; }
     /// The number of voxels in the label's own runs.

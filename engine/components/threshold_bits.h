@@ -1,5 +1,5 @@
 #pragma once
-// Voxels at or above a threshold as one bit each, a row at a time, and the runs of such voxels. Any thread.
+// Represents a row's voxels at or above a threshold as one bit each, and finds the runs of such voxels. Any thread.
 
 #include <bit>
 #include <cstdint>
@@ -25,8 +25,8 @@ public:
     /// Whether a voxel with a value in the range can be at or above the threshold.
     bool reaches(const ValueRange& range) const { return range.lower <= range.upper && range.upper >= threshold_; }
 
-    /// Bit b of word w is voxel 64 w + b: 1 where it is at or above the threshold, which NaN never is; 0 beyond the
-    /// row. `voxels` has native byte order and the alignment of its type.
+    /// Bit b of word w is 1 if voxel 64 w + b is at or above the threshold, which NaN never is. Bits beyond the row are
+    /// 0. `voxels` has native byte order and the alignment of its type.
     void convert(std::span<const std::byte> voxels, std::span<uint64_t> words) const;
 
 private:
@@ -34,13 +34,13 @@ private:
     double threshold_;
 };
 
-/// Appends, for each run of set bits, the first voxel and the one after the last. Bits beyond `voxels` are 0.
+/// Appends, for each run of set bits, its first voxel and the voxel after its last. Bits beyond `voxels` are 0.
 inline void append_run_ends(std::span<const uint64_t> words, int64_t voxels, std::vector<uint32_t>& ends)
 {
     uint64_t before = 0;
     for (size_t word = 0; word < words.size(); ++word) {
         const uint64_t bits = words[word];
-        // Set where a bit differs from the one before it.
+        // An edge bit is set where a bit differs from the bit before it.
         uint64_t edges = bits ^ (bits << 1 | before);
         before = bits >> 63;
         for (; edges != 0; edges &= edges - 1) ends.push_back(uint32_t(64 * word) + uint32_t(std::countr_zero(edges)));

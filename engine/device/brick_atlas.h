@@ -1,7 +1,7 @@
 #pragma once
 // Bricks in slots on the device: their codes, aprons included, and the value ranges of their cells. Codes are in one
-// image, or in several if one cannot hold enough (StackedLayout). The owner assigns bricks to slots (paged_volume.h).
-// One thread, the one that owns the device.
+// image, or in several if one image cannot hold enough (StackedLayout). The owner assigns bricks to slots
+// (paged_volume.h). One thread, the one that owns the device.
 
 #include <vector>
 
@@ -25,7 +25,7 @@ public:
     /// The packed address of a slot, as kernels use it.
     uint32_t packed(uint32_t slot) const;
 
-    /// Uploads a brick to its slot with the next batch; may wait for the batch before the last one.
+    /// Stages a brick for upload to its slot with the next batch; may wait for the batch before the last one.
     void stage(uint32_t slot, const BrickTexels& texels);
     void flush() { uploads_.flush(); }
     /// Bricks uploaded so far.

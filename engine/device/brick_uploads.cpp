@@ -41,7 +41,7 @@ void write_codes(const BrickTexels& texels, const glm::ivec3& begin, const glm::
 
 void BrickUploads::stage(const Target& target, const BrickTexels& texels)
 {
-    if (targets_.size() == batch_) flush();  // only if this failed after the last brick was staged
+    if (targets_.size() == batch_) flush();  // the buffer is full only if flush() failed after the last staged brick
     Staging& staging = staging_[filling_];
     if (staging.copy) static_cast<void>(staging.copy.finish());
     std::byte* bytes = staging.bytes.mapped().data();
@@ -109,7 +109,7 @@ void BrickUploads::add_copies(FrameGraph& graph, Resource staged) const
         });
 }
 
-/// One dispatch per image of codes that bricks go to.
+/// Adds one dispatch for each image of codes that receives bricks of the batch.
 void BrickUploads::add_kernels(FrameGraph& graph, Resource staged) const
 {
     Resource cells = graph.import("cell ranges", targets_.front().cells->import());

@@ -1,8 +1,8 @@
 #pragma once
-// Uploads bricks to the device in double-buffered batches: one is filled while the device copies the other, so that
-// cutting, host copies and device copies overlap. On CPU devices each brick is copied row by row; on GPUs, some of
-// which run a dispatch for every slice of a copy, one kernel unpacks a batch (passes/brick_unpack.h). One thread, the
-// one that owns the device.
+// Uploads bricks to the device in double-buffered batches: one batch is filled while the device copies the other, so
+// that cutting, host copies and device copies overlap. On CPU devices each brick is copied row by row. On GPUs one
+// kernel unpacks a batch (passes/brick_unpack.h), since some GPUs run a dispatch for every slice of a copy. One thread,
+// the one that owns the device.
 
 #include <array>
 #include <vector>
@@ -15,9 +15,9 @@ namespace shvr {
 
 class BrickUploads {
 public:
-    static constexpr size_t BATCH = 32;  ///< twice 2.5 MiB of staging
+    static constexpr size_t BATCH = 32;  ///< bricks per batch; each of the two buffers takes 2.5 MiB
 
-    /// `bricks`: upper bound of a batch.
+    /// `bricks`: upper bound on the size of a batch.
     BrickUploads(gpu::Executor& executor, gpu::Memory& memory, uint64_t bricks, AtlasCodes codes);
 
     /// Destination of a brick: its codes, and the ranges of its cells. The images must outlive the copies.
@@ -43,13 +43,13 @@ public:
 
 private:
     struct Staging {
-        gpu::Storage bytes;  ///< codes of all bricks, as they lie in a slot, then their ranges
+        gpu::Storage bytes;  ///< codes of all bricks, laid out as in a slot, then their ranges
         gpu::Submission copy;
     };
-    /// Where the codes and the ranges of a brick of a batch are staged.
+    /// Offsets at which the codes and the ranges of a brick of a batch are staged.
     uint64_t codes_at(uint64_t brick) const
     {
-        return brick * slot_code_bytes(codes_);  // the most that go to any place
+        return brick * slot_code_bytes(codes_);  // a slot takes at least as many codes as any destination
     }
     uint64_t ranges_at(uint64_t brick) const { return codes_at(batch_) + brick * BrickTexels::RANGE_BYTES; }
     glm::uvec3 extent_of(uint32_t brick) const { return {targets_[brick].end - targets_[brick].begin}; }
@@ -62,7 +62,7 @@ private:
     size_t batch_;
     std::array<Staging, 2> staging_;
     size_t filling_ = 0;           ///< index into staging_
-    std::vector<Target> targets_;  ///< targets of the bricks in that buffer
+    std::vector<Target> targets_;  ///< targets of the bricks in the buffer being filled
     uint64_t upload_count_ = 0;
 };
 

@@ -38,8 +38,8 @@ std::optional<ResourceDesc> DeviceMask::desc_for(uint64_t bricks) const
     return memory_.can_create(desc) ? std::optional(desc) : std::nullopt;
 }
 
-/// Allocates room for `bricks`, plus half as many more if that leaves half of the memory, else a sixteenth more, or
-/// none if the device's images hold no more.
+/// Allocates room for `bricks`, plus a reserve: half as many bricks if that leaves half of the memory, else a sixteenth
+/// as many, or none if the device's images hold no more.
 void DeviceMask::grow(uint64_t bricks)
 {
     atlas_.reset();
@@ -55,7 +55,7 @@ void DeviceMask::grow(uint64_t bricks)
     atlas_ = memory_.create("mask", *desc, gpu::Placement::device, "what is painted");
     free_slots_.clear();
     slots_.clear();
-    // The first corner is NO_SLOT and stays unused. Slots are taken from the end of the list.
+    // The slot in the first corner is NO_SLOT and stays unused. Slots are taken from the end of the list.
     for (uint32_t z = slots.z; z-- > 0;)
         for (uint32_t y = slots.y; y-- > 0;)
             for (uint32_t x = slots.x; x-- > 0;)
@@ -105,8 +105,8 @@ void DeviceMask::send(const Mask& mask, std::span<const int64_t> bricks)
     is_table_stale_ = false;
 }
 
-/// Assigns slots to painted bricks without one, and releases those of bricks that are no longer painted. Returns true
-/// if the atlas had to grow, which moves all bricks to other slots.
+/// Assigns slots to painted bricks that have none, and releases the slots of bricks that are no longer painted. Returns
+/// true if the atlas had to grow, which moves all bricks to other slots.
 bool DeviceMask::give_slots(const Mask& mask, std::span<const int64_t> bricks)
 {
     std::vector<int64_t> added;
@@ -191,7 +191,7 @@ std::vector<uint32_t> DeviceMask::hashed_table(const Mask& mask) const
 
 void DeviceMask::submit(FrameGraph graph)
 {
-    constexpr size_t MAX_IN_FLIGHT = 4;  // each holds an upload
+    constexpr size_t MAX_IN_FLIGHT = 4;  // each submission holds an upload
     if (in_flight_.size() >= MAX_IN_FLIGHT) in_flight_.front().wait();
     std::erase_if(in_flight_, [](const gpu::Submission& submission) { return submission.done(); });
     in_flight_.push_back(executor_.submit(std::move(graph), {.timestamps = false}));

@@ -1,6 +1,6 @@
 #pragma once
-// The painted voxels on the device: a copy of the mask's bricks, updated brick by brick. It is allocated with the first
-// painted voxel and freed with the last.
+// The painted voxels on the device: a copy of the mask's bricks, updated brick by brick. Memory is allocated with the
+// first painted voxel and freed with the last.
 
 #include <map>
 #include <optional>
@@ -21,15 +21,15 @@ public:
 
     /// Minimum device memory of a mask with this many painted bricks.
     static uint64_t bytes_for(uint64_t painted_bricks);
-    /// Uploads `bricks` of `mask` (the changed ones); grows the atlas if they do not fit. Does not wait: frames
-    /// submitted later see them. On failure the device holds no mask, and the next update uploads everything.
+    /// Uploads `bricks`, the changed bricks of `mask`; grows the atlas if they do not fit. Does not wait: frames
+    /// submitted later see the change. On failure the device holds no mask, and the next update uploads everything.
     void update(const Mask& mask, std::span<const int64_t> bricks);
 
     /// The slot of a painted brick; gpu::NO_SLOT if it is not on the device.
     uint32_t slot_of(int64_t brick) const;
     bool empty() const { return slots_.empty(); }
     bool is_stale() const { return is_stale_; }
-    /// Voxel boxes of the painted bricks, one each, in a volume of that size.
+    /// The voxel box of each painted brick, in a volume of `size`.
     std::vector<VoxelBox> bricks(const Size3& size) const;
     /// Handles for a graph; null while nothing is painted.
     std::optional<MaskBinding> import(FrameGraph& graph) const;

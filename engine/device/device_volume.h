@@ -1,6 +1,6 @@
 #pragma once
-// A volume on the device: resident, with all bricks there (resident_volume.h), or paged (paged_volume.h). Callers need
-// not know which; for a resident volume most of these calls are trivial.
+// A volume on the device: either resident, with all bricks on the device (resident_volume.h), or paged
+// (paged_volume.h). Callers need not know which kind it is; for a resident volume most of these calls are trivial.
 //
 // For each picture: look(), prepare(), the passes that draw, request_feedback(), later take_feedback(). Between
 // pictures: advance(). One thread, the one that owns the executor.
@@ -20,8 +20,8 @@
 
 namespace shvr {
 
-/// How many bricks an atlas holds along each axis, at least `slots` in all. Slots fill a row of bricks first; narrow
-/// rows keep a brick's texels close in memory on devices with linear images.
+/// Number of bricks that an atlas holds along each axis, at least `slots` in total. Slots fill a row of bricks first;
+/// narrow rows keep a brick's texels close in memory on devices with linear images.
 glm::uvec3 atlas_layout(uint64_t slots, uint32_t brick_texels, uint32_t max_side, bool narrow);
 /// Maximum number of slots for atlas_layout().
 uint64_t max_atlas_slots(uint32_t brick_texels, uint32_t max_side);
@@ -33,13 +33,13 @@ struct StackedLayout {
     glm::uvec3 all() const { return slots * glm::uvec3(1, 1, images); }
     uint64_t count() const { return uint64_t{slots.x} * slots.y * slots.z * images; }
 };
-/// At least this many slots in as few images as the device's limits allow; null if it would take too many.
+/// A layout of at least this many slots in as few images as the device's limits allow; null if it needs too many.
 std::optional<StackedLayout> stacked_layout(uint64_t slots, AtlasCodes codes, const gpu::DeviceTraits& traits);
 
 /// The packed address of the slot with that index, x fastest.
 uint32_t slot_at(uint32_t index, const glm::uvec3& slots);
 
-/// The bricks of a level whose texels, aprons included, depend on level 0 voxels in one of the boxes; each once.
+/// The bricks of a level whose texels, aprons included, depend on level 0 voxels in `boxes`; each brick once.
 std::vector<BrickKey> bricks_that_see(std::span<const VoxelBox> boxes, const Size3& size, int level);
 
 /// The bricks of level 0 that overlap a box of voxels, without their slots.
@@ -63,35 +63,35 @@ public:
 
     // ---- Loading in time slices, if requested: until everything is loaded nothing else may be called
 
-    /// Takes bricks that have been read, for about `seconds`; never waits for a disk. True: all is loaded. Fails like
-    /// the constructor of a volume that loads at once.
+    /// Loads bricks that have been read, for about `seconds`; never waits for a disk. Returns true once all is loaded.
+    /// Fails like the constructor of a volume that loads at once.
     virtual bool load_on(double seconds) = 0;
     /// The loaded fraction, 0 to 1.
     virtual double loaded() const = 0;
 
     // ---- The view
 
-    /// Whether look() with these arguments would return without waiting. If not, it starts listing the required bricks
-    /// in the background: ask again. Fails as look() does.
+    /// Whether look() with these arguments would return without waiting. If not, starts listing the required bricks in
+    /// the background; the caller has to ask again later. Fails as look() does.
     virtual bool get_ready(const PageView& view, const Visibility& visibility) = 0;
-    /// Sets the view; waits until its bricks are listed. Costs nothing if it is unchanged. Returns finest_level().
+    /// Sets the view; waits until its bricks are listed. Does nothing if the view is unchanged. Returns finest_level().
     virtual int look(const PageView& view, const Visibility& visibility) = 0;
     /// Sets what is visible, and keeps the current view.
     virtual void look_by(const Visibility& visibility) = 0;
     /// Whether the bricks that the view needs are known.
     virtual bool has_view() const = 0;
-    /// The finest level among the bricks that the view needs; the sample distance may be as large as its voxels.
+    /// The finest level that the view needs; the sample distance may be as large as a voxel of that level.
     virtual int finest_level() const = 0;
 
     /// A graph with one short step of prepare()'s work that can be done in advance; null when none is left. The graph
     /// must be submitted before the next call.
     virtual std::optional<FrameGraph> next_preparation(const Visibility& visibility, const DeviceMask& mask) = 0;
-    /// Returns a graph with one step of work that makes later pictures faster without changing them; null if there is
-    /// none.
+    /// Returns a graph with one step of work that makes later pictures faster without changing them; null if no such
+    /// work is left.
     virtual std::optional<FrameGraph> next_refinement(const Visibility& visibility, const DeviceMask& mask) = 0;
     virtual bool refinement_is_due() const = 0;
-    /// Adds the passes that update the data read by rays, and returns the handles to draw with. `painted`: the mask's
-    /// handles in that graph. `feedback`: rays record the bricks that they visit.
+    /// Adds the passes that update the data read by rays, and returns the handles to draw with. `painted`: handles of
+    /// the mask in `graph`. `feedback`: rays record the bricks that they visit.
     virtual VolumeBinding prepare(FrameGraph& graph, const DeviceMask& mask, const std::optional<MaskBinding>& painted,
                                   bool feedback) = 0;
     /// Whether prepare() would upload changes made since the last picture.
@@ -111,14 +111,14 @@ public:
     virtual void take_feedback(const Feedback& feedback, const gpu::FrameResult& result) = 0;
     /// Forgets earlier visits: only the next picture decides which bricks are needed.
     virtual void forget_visits() = 0;
-    /// Whether the rays of pictures stop and wait where a brick is not on the device (engine/passes/raycast.h,
-    /// RaysInWaiting). Visits are then the bricks they wait for, and earlier visits are dropped. In a resident volume
-    /// no ray ever waits. `is_ready`: whether a brick on the device can be drawn; null: all can.
+    /// Sets whether the rays of pictures stop and wait where a brick is not on the device (engine/passes/raycast.h,
+    /// RaysInWaiting). If so, only the bricks that rays wait for count as visited, and earlier visits are dropped. In a
+    /// resident volume no ray ever waits. `is_ready`: whether a brick on the device can be drawn; null: all can.
     virtual void let_rays_wait(bool wait, std::function<bool(const BrickKey&)> is_ready = {}) = 0;
-    /// Forgets the farthest visits until the visited bricks and those around them, as far away as `reach` gives for
-    /// their level, fit together. False if even a single visit's bricks do not fit.
+    /// Forgets the farthest visits until the remaining visited bricks fit together with the bricks within
+    /// `reach[level]` bricks of them. False if even a single visited brick does not fit with those around it.
     virtual bool limit_visits(const std::vector<int>& reach) = 0;
-    /// Whether any ray of the pictures drawn since forget_visits() waits.
+    /// Whether any ray waits in the pictures drawn since forget_visits().
     virtual bool has_rays_waiting() const = 0;
     /// Takes loaded bricks. Returns the voxels that may look different now. `wait`: waits for all requested bricks, and
     /// reports the arrived fraction to `progress`.
@@ -130,7 +130,7 @@ public:
         limited,  ///< the budget cannot hold all visited bricks
     };
     virtual State state() const = 0;
-    /// Number of bricks that rays visited and that cannot be read; coarser ones are drawn instead.
+    /// Number of bricks that rays visited but that cannot be read; coarser bricks are drawn instead.
     virtual size_t missing() const = 0;
     /// Messages about bricks that failed to load since the last call, one sentence each.
     virtual std::vector<std::string> take_messages() = 0;
@@ -145,11 +145,11 @@ public:
     virtual bool is_drawn(const BrickKey& key) const = 0;
     /// A number that changes whenever the results of is_drawn() or presence_of() may change, except through places().
     virtual uint64_t visits_revision() const = 0;
-    /// Also requests the bricks around visited ones, as far away as `reach` gives for their level, because ambient
-    /// light arrives from there. Empty: none.
+    /// Also requests the bricks within `reach[level]` bricks of visited ones, because ambient light arrives from there.
+    /// An empty `reach` requests none.
     virtual void want_around(const std::vector<int>& reach) = 0;
-    /// Loads level 0 of `voxels` before all else, because the user is likely to touch or paint there next, unless it
-    /// takes more than a quarter of the slots. Valid until the next call of this or of region().
+    /// Loads level 0 of `voxels` first, because the user is likely to touch or paint there next, unless it takes more
+    /// than a quarter of the slots. Valid until the next call of prefer() or region().
     virtual void prefer(const VoxelBox& voxels) = 0;
 
     // ---- Changes
@@ -171,7 +171,7 @@ public:
     /// Handles for kernels that work on a region of level 0.
     virtual VolumeBinding atlas(FrameGraph& graph) = 0;
     /// The bricks that overlap a box of voxels; they keep their slots until the next call. Null if some are not on the
-    /// device yet; these are loaded before all others. `wait`: reads them now, and fails if that is not possible.
+    /// device yet; the missing ones are then loaded first. `wait`: reads missing bricks now, or fails.
     virtual std::optional<RegionBricks> region(const VoxelBox& voxels, bool wait) = 0;
 
     /// Counts of paged bricks, for reports.

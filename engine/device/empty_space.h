@@ -16,21 +16,21 @@ public:
     /// Sets the look to build the grid for; its `changed` and `mask` are ignored.
     void want(const LeapGridInput& look, const glm::uvec3& cell_counts);
 
-    /// Whether there is work left that must precede a picture, and work that may follow it.
+    /// is_due(): work is left that must precede a picture. is_worth_refining(): work is left that may follow it.
     bool is_due() const { return look_ && (!holds_ || !patch_.empty()); }
     bool is_worth_refining() const { return look_ && holds_ && stage_ < LEAP_STAGES; }
-    /// Each adds one pass of its work, and may only be called while there is some. If the graph is not submitted, the
-    /// whole grid is rebuilt.
+    /// Each function adds one pass of its kind of work, and may only be called while such work is left. If the graph is
+    /// not submitted, the whole grid is rebuilt.
     void prepare(FrameGraph& graph, VolumeBinding& volume, LeapGridInput look);
     void refine(FrameGraph& graph, VolumeBinding& volume, LeapGridInput look);
 
 private:
     void forget_unless_submitted(FrameGraph& graph);
 
-    std::optional<LeapGridInput> look_;  ///< look from which the grid is built, except paint
+    std::optional<LeapGridInput> look_;  ///< look from which the grid is built; its paint is not kept here
     bool holds_ = false;                 ///< pictures are correct, except for the patch
     CellBox patch_;                      ///< changed cells that the grid does not reflect yet
-    uint32_t stage_ = 0;                 ///< the next of LEAP_STAGES
+    uint32_t stage_ = 0;                 ///< index of the next stage, up to LEAP_STAGES
     CellBox changed_;                    ///< cells covered by the stages in progress
     glm::uvec3 cell_counts_{0};          ///< the size of the whole grid
 };

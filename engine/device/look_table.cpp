@@ -13,7 +13,7 @@ namespace shvr {
 namespace {
 
 constexpr double LAST_CODE = 65535.0;
-/// Largest opacity at the end of a slope for which few entries suffice.
+/// Maximum opacity at the ends of a sloped segment for which a table of few entries suffices.
 constexpr double MAX_SLOPED = 0.999;
 
 uint32_t whole_rows(uint32_t texels)
@@ -55,7 +55,7 @@ void append_points(std::vector<glm::vec4>& texels, std::span<const ControlPoint>
         texels.emplace_back(float(window.code_of(point.intensity)), 0.0f, 0.0f, 0.0f);
 }
 
-/// The smallest multiple of `parts` that is at least MIN_TABLE_ENTRIES - 1: a table has one entry more than parts.
+/// The smallest multiple of `parts` that is at least MIN_TABLE_ENTRIES - 1. A table has one entry more than parts.
 uint32_t parts_of_at_least(uint32_t parts)
 {
     return parts * ((MIN_TABLE_ENTRIES - 2) / parts + 1);
@@ -70,7 +70,7 @@ bool has_smooth_lines(const TransferFunction& function)
         const ControlPoint &p = points[i], &q = points[i + 1];
         if (p == q) continue;
         if (p.intensity == q.intensity) return false;
-        // Where opacity rises up to 1, the opacity of a step rises too steeply as well.
+        // Where the function's opacity rises up to 1, the opacity of a step also rises too steeply.
         if (std::max(p.opacity, q.opacity) >= MAX_SLOPED && p.opacity != q.opacity) return false;
     }
     return true;
@@ -81,7 +81,7 @@ std::optional<uint32_t> entries_at_points(const TransferFunction& function, cons
                                           const TableRange& range)
 {
     if (!has_smooth_lines(function) || !(range.lower < range.upper)) return std::nullopt;
-    int64_t between = 0;  // codes: the largest number that divides all distances between points
+    int64_t between = 0;  // greatest common divisor of all distances between points, in codes
     bool are_whole = true;
     bool are_inside = false;
     for (const ControlPoint& point : function.points()) {
@@ -105,7 +105,7 @@ float opaque_scale(const TableRange& range)
     return float((gpu::OPAQUE_ENTRIES - 1) / std::max(range.upper - range.lower, 1e-6));
 }
 
-/// The map of opaque intervals and the intervals, or nothing if there are none.
+/// Appends the map of opaque intervals, then the intervals; nothing if there are none.
 void append_opaque(std::vector<glm::vec4>& texels, const std::vector<OpaqueInterval>& intervals,
                    const TableRange& range, const IntensityWindow& window)
 {
@@ -151,7 +151,7 @@ TableRange table_range(const TransferFunction& function, const IntensityWindow& 
     const double first = window.code_of(function.lower()), last = window.code_of(function.upper());
     TableRange range{
         .lower = std::clamp(first, 0.0, LAST_CODE), .upper = std::clamp(last, 0.0, LAST_CODE), .samples = {}};
-    // If nothing is cut off, keep the function's own numbers, since codes are rounded.
+    // If nothing is cut off, keeps the function's own bounds, since codes are rounded.
     range.samples.lower = range.lower == first ? function.lower() : window.intensity_of(range.lower);
     range.samples.upper = range.upper == last ? function.upper() : window.intensity_of(range.upper);
     const auto codes = std::max(uint32_t(std::ceil(range.upper - range.lower)), 1u);

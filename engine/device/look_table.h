@@ -1,6 +1,6 @@
 #pragma once
 // A transfer function as the device reads it: a table for one step length, plain or pre-integrated, and the intervals
-// of it that are visible. Baked in double on the CPU, and cached until something changes.
+// in which the function is visible. Baked in double on the CPU, and cached until something changes.
 
 #include <algorithm>
 #include <optional>
@@ -16,7 +16,7 @@
 
 namespace shvr {
 
-/// Minimum entries of the plain table, and the side of the pre-integrated one.
+/// Minimum number of entries of the plain table, and side length of the pre-integrated table.
 inline constexpr uint32_t MIN_TABLE_ENTRIES = 4096;
 inline constexpr uint32_t STEP_TABLE_SIDE = gpu::TABLE_WIDTH;
 
@@ -26,16 +26,16 @@ struct TableRange {
     Samples samples;                  ///< the same in intensities
 };
 /// The plain table has few entries if all control points are at entries, and the function is continuous and nowhere
-/// rises up to 1, so that interpolation between entries reproduces the function. Otherwise entries are at most one code
-/// apart, so a step of the function is as sharp as the codes allow; entries are whole codes if the function begins and
-/// ends at whole codes.
+/// rises up to 1: interpolation between entries then reproduces the function. Otherwise, entries are at most one code
+/// apart, so that a step of the function is as sharp as the codes allow; if the function begins and ends at whole
+/// codes, entries are at whole codes.
 TableRange table_range(const TransferFunction& function, const IntensityWindow& window, bool is_preintegrated);
 
 struct LookTable {
     std::vector<ControlPoint> points;
     double step_voxels = 0.0;  ///< in reference lengths
     bool preintegrated = false;
-    bool has_points = false;  ///< for the integral without steps
+    bool has_points = false;  ///< includes the control points, for the integral without steps
     Samples samples;
     std::vector<glm::vec4> texels;  ///< in the layout of raycast.h
     std::vector<uint32_t> visible_intervals;
@@ -45,8 +45,8 @@ struct LookTable {
 
 LookTable make_look_table(const TransferFunction& function, const IntensityWindow& window, double step_voxels,
                           bool is_preintegrated, bool has_points = false);
-/// Looks of all 256 colour groups, by number: linear RGB and opacity per step, 0 if hidden; followed by as many texels
-/// with the optical depth.
+/// Looks of all 256 colour groups, in order of number: 256 texels of linear RGB and opacity per step (0 if hidden),
+/// then 256 texels with the optical depth.
 std::vector<glm::vec4> make_group_looks(const Groups& groups, double step_voxels);
 
 /// Sets the parameters shared by all kernels that look up a transfer function table.
@@ -69,7 +69,7 @@ public:
     DeviceTable(gpu::Memory& memory, std::string name) : memory_(memory), name_(std::move(name)) {}
     /// Marks the uploaded table as stale.
     void invalidate() { is_sent_ = false; }
-    /// Returns its handle; uploads `texels` unless they are up to date.
+    /// Returns the table's handle; uploads `texels` unless they are up to date.
     Resource upload(FrameGraph& graph, std::span<const glm::vec4> texels);
 
 private:
@@ -86,7 +86,7 @@ public:
         : function_on_device_(memory, "transfer function"), groups_on_device_(memory, "groups")
     {}
 
-    /// The table for steps of that many reference lengths.
+    /// The table for steps of `step_voxels` reference lengths.
     const LookTable& table_of(const Look& look, const IntensityWindow& window, double step_voxels);
     /// Visible densities, from whichever table is cached: the step length does not matter. Excludes the guard (leap.h).
     Visibility visibility_of(const Look& look, const IntensityWindow& window);

@@ -15,10 +15,10 @@ static_assert(MAX_OCCLUSION_RADIUS == OCCLUSION_MAX_RADIUS);
 
 namespace {
 
-/// Distance in addition to the radius: the lift of rays off surfaces, half the largest cell, and the voxel itself.
+/// Reach of light beyond the radius: the lift of rays off surfaces, half the largest cell, and the voxel itself.
 constexpr double MARGIN_VOXELS = 8.0;
 
-/// For paged bricks, which take more.
+/// Scratch memory for this many paged bricks, which take more than resident ones.
 uint64_t slice_bytes(uint32_t bricks)
 {
     uint64_t bytes = occlusion_near_desc(bricks, true).bytes;
@@ -26,8 +26,8 @@ uint64_t slice_bytes(uint32_t bricks)
     return bytes;
 }
 
-/// How many bricks are renewed at once: their scratch memory is at most a sixteenth of the budget. A few suffice to
-/// keep a CPU busy, and stay in its caches.
+/// How many bricks are renewed at once: their scratch memory is at most a sixteenth of the budget. On a CPU, a few
+/// bricks suffice to keep it busy, and stay in its caches.
 uint32_t slice_for(const gpu::DeviceTraits& traits, uint64_t device_budget)
 {
     const uint64_t most = traits.is_cpu ? gpu::OCCLUSION_COLUMN : gpu::OCCLUSION_SLICE;
@@ -195,7 +195,7 @@ void Occlusion::changed(const VoxelBox& changed, int64_t apron)
         entry.needs_cells = entry.needs_cells || meet(brick, voxels);
         const auto reach = int64_t(std::ceil(look_->radius + std::ldexp(MARGIN_VOXELS, key.level)));
         entry.needs_values = entry.needs_values || meet(brick, {voxels.lower - reach, voxels.upper + reach});
-        // The change may affect whether a brick is seen: any coarse brick, and bricks of level 0 next to it.
+        // The change may affect whether bricks are seen: any coarse brick, and level 0 bricks near the change.
         const int64_t beside = int64_t{gpu::BRICK_SIZE} << key.level;
         if (key.level > 0 || meet(brick, {voxels.lower - beside, voxels.upper + beside})) entry.is_seen.reset();
     }
@@ -244,7 +244,7 @@ std::vector<int> Occlusion::reach() const
     return reach;
 }
 
-/// Whether the brick, or one within `reach` bricks of it, is painted; for coarse bricks, wherever paint may be.
+/// Whether a brick within `reach` bricks of `key` is painted; for coarse bricks, whether anything is painted at all.
 bool Occlusion::is_painted(const BrickKey& key, int reach) const
 {
     if (mask_->empty() || key.level > 0) return !mask_->empty();
@@ -264,7 +264,7 @@ bool Occlusion::shows(const BrickKey& key, const Entry& entry) const
     return look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 0);
 }
 
-/// Whether every brick that its values need is on the device, or will never be.
+/// Whether each brick that the values of `key` need either is on the device or will never be.
 bool Occlusion::has_all_around(const BrickKey& key) const
 {
     const glm::ivec3 counts = brick_counts(size_of_level(volume_->info().size, key.level));
@@ -307,7 +307,7 @@ bool Occlusion::is_seen(const BrickKey& key, Entry& entry)
     return *entry.is_seen;
 }
 
-/// An empty brick may still contain voxels next to painted ones, or next to the visible ends of a step.
+/// Whether the brick is seen. Even an empty one may be, next to painted voxels or to the visible ends of a step.
 bool Occlusion::look_whether_seen(const BrickKey& key, const Entry& entry) const
 {
     if (look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 1)) return true;
@@ -330,10 +330,10 @@ bool Occlusion::is_due()
     return false;
 }
 
-/// Queues bricks of a single level: that of the nearest brick.
+/// Queues bricks of one level only: the level of the nearest brick.
 void Occlusion::fill_queue(const glm::dvec3& eye)
 {
-    /// Enough bricks for the next slices, which then need no pass over all bricks.
+    /// Length of the queue: enough for the next slices, which then need no pass over all bricks.
     constexpr size_t MOST = size_t{4} * gpu::OCCLUSION_SLICE;
     queued_ = cause();
     queued_eye_ = eye;
@@ -380,8 +380,8 @@ std::vector<BrickKey> Occlusion::nearest(const glm::dvec3& eye, size_t most)
 
 // ---- The work -------------------------------------------------------------------------------------------------------
 
-/// An entry of the table of bricks around another (shaders/occlusion/occlusion.h): the brick itself, or the finest
-/// coarser one on the device. The key of the brick found is added to `keys`.
+/// Returns the entry of brick `key` in the table of bricks around another brick (shaders/occlusion/occlusion.h): the
+/// slot of that brick or of its finest ancestor on the device; 0 if it shows nothing. Adds the key found to `keys`.
 uint32_t Occlusion::around(const BrickKey& key, std::vector<BrickKey>* keys) const
 {
     const glm::ivec3 counts = brick_counts(size_of_level(volume_->info().size, key.level));
@@ -498,7 +498,7 @@ void Occlusion::add_values(FrameGraph& graph, const VolumeBinding& volume, Occlu
     input.params.table_entries = look_->visibility.params.table_entries;
     input.params.guard = look_->visibility.params.guard;
     input.params.rays = look_->rays;
-    // For radii below a voxel there are no near taps, but the tables still need some stretch.
+    // For radii below a voxel there are no near taps, but the tables still need a stretch.
     const double near_stretch = input.taps.taps.empty() ? 1.0 : input.taps.near_stretch;
     input.near = cells_input(level, std::ldexp(near_stretch, level), mask);
     input.params.inverse_spacing = std::min({spacing.x, spacing.y, spacing.z}) / spacing;

@@ -8,9 +8,9 @@
 //   rays, hemisphere                     -> all values
 //
 // Stale values stay until they are renewed; bricks that never had values are fully lit. Renewing only stale values
-// gives the same bits as recomputing everything. If a brick that light comes from is not on the device yet, the finest
-// coarser one stands in, and the values are renewed once it arrives: values computed with all their bricks present
-// depend on nothing else, and stay when the bricks around them are evicted. One thread, the one that owns the memory.
+// gives the same bits as recomputing everything. While a brick that light comes from is not on the device, its finest
+// ancestor there stands in; once it arrives, the values are renewed. Values computed with all their bricks present
+// depend on nothing else, and stay when those bricks are evicted. One thread, the one that owns the memory.
 
 #include <optional>
 #include <unordered_map>
@@ -39,29 +39,29 @@ public:
         uint32_t rays = 32;
         bool full_sphere = false;
         double gradient_fade = 0.0;  ///< codes per voxel
-        bool preintegrated = false;  ///< a step may show the opacity of its ends, half a step from the lit position
+        bool preintegrated = false;  ///< a step may show the opacity at its ends, half a step from the lit position
     };
 
     /// Frees all memory.
     void clear();
     /// Sets the look to compute for. Fails if the budget cannot hold the images.
     void look(const Look& look, const DeviceVolume& volume, const DeviceMask& mask);
-    /// Marks voxels that have been painted or, with an apron (in voxels of each brick's own level), whose densities
-    /// changed.
+    /// Reports a change of voxels: of their paint (`apron` 0), or of their densities (`apron` in voxels of each brick's
+    /// own level).
     void changed(const VoxelBox& voxels, int64_t apron = 0);
 
-    /// Device memory per slot of the atlas, and for scratch images under that budget.
+    /// Device memory per slot of the atlas; device memory for scratch images under a budget of `device_budget`.
     static uint64_t slot_bytes();
     static uint64_t scratch_bytes(const gpu::DeviceTraits& traits, uint64_t device_budget);
 
     bool exists_for(const DeviceVolume& volume) const { return volume_ == &volume; }
     bool has_memory() const { return bool(values_); }
-    /// Per level: how many bricks away, on each side of a brick, its light may come from.
+    /// For each level: how many bricks away from a brick its light may come from.
     std::vector<int> reach() const;
     /// Whether anything is stale.
     bool is_due();
-    /// Whether pictures show the final light of a brick: it is on the device, and its values were computed with all
-    /// bricks they need.
+    /// Whether pictures show the final light of a brick: the brick is on the device, and its values were computed with
+    /// all the bricks that they need.
     bool is_lit(const BrickKey& key);
     /// Limits of one slice.
     struct Most {
@@ -77,7 +77,7 @@ public:
     struct Counts {
         uint64_t cells = 0;   ///< bricks whose cells have been computed
         uint64_t values = 0;  ///< bricks whose values have been computed
-        uint64_t looks = 0;   ///< number of checks whether a brick is visible, by its paint and neighbours
+        uint64_t looks = 0;   ///< number of checks whether a brick is visible given its paint and neighbours
         uint64_t walks = 0;   ///< bricks checked for being due
     };
     const Counts& counts() const { return counts_; }
@@ -142,9 +142,9 @@ private:
         BrickKey key;
     };
     uint64_t changes_ = 1;            ///< incremented when entries may become due
-    Cause nothing_due_{}, queued_{};  ///< inputs for which nothing was due; inputs for which the queue was filled
+    Cause nothing_due_{}, queued_{};  ///< inputs at which nothing was due; inputs at which the queue was filled
     glm::dvec3 queued_eye_{0.0};
-    std::vector<Candidate> queue_;  ///< nearest due bricks, all of one level; the nearest is last
+    std::vector<Candidate> queue_;  ///< nearest due bricks, all of one level, sorted with the nearest last
 };
 
 }  // namespace shvr

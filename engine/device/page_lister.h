@@ -1,8 +1,8 @@
 #pragma once
-// Lists the bricks that a view needs, on its own thread: for 10^5 bricks that takes 10 ms, for which the drawing thread
-// must not wait while a camera moves. The lister has its own copy of the table of bricks, and is notified of every
-// change. A list reflects the changes noted before it was requested; its taker applies the later ones (changes_since).
-// A few lists are kept, for panes that alternate.
+// Lists the bricks that a view needs, on its own thread: for 10^5 bricks this takes 10 ms, too long for the drawing
+// thread to wait while a camera moves. The lister has its own copy of the table of bricks, and is notified of every
+// change. A list reflects the changes noted before it was requested; the caller that takes it applies later changes
+// (changes_since). A few lists are kept, for panes that alternate.
 //
 // One thread calls it and never notes changes during a request; the lister owns the other thread.
 
@@ -31,21 +31,21 @@ struct PageSight {
 
 struct BrickEvent {
     enum class Kind : uint8_t {
-        placed,   ///< the brick was uploaded; `number`: its packed slot
+        placed,   ///< the brick was uploaded; `number` is its packed slot
         gone,     ///< is no longer on the device
-        read,     ///< the brick was read; `number`: its range, as stored by KnownBricks
+        read,     ///< the brick was read; `number` is its range, as stored by KnownBricks
         unread,   ///< the brick's voxels have changed, so its range is unknown
-        painted,  ///< painted bricks changed; `number`: count of painted level 0 bricks in this brick
-        other,    ///< another change of this brick alone, with details kept elsewhere
+        painted,  ///< the brick's paint changed; `number` is its count of painted level 0 bricks
+        other,    ///< something else changed in this brick alone; details are kept elsewhere
     };
     BrickKey key;
     Kind kind = Kind::other;
     uint32_t number = 0;
 };
 
-/// What is known of a volume's paged bricks: which are on the device and where, the ranges of those that were read,
-/// which are painted. From this follow the bricks that a view needs and the stand-in drawn for a missing brick. Changes
-/// are plain data, so that two threads can each have a copy. One thread for each.
+/// The known state of a volume's paged bricks: which are on the device and where, the ranges of those that were read,
+/// and which are painted. It determines the bricks that a view needs and the stand-in drawn for a missing brick.
+/// Changes are plain data, so that two threads can each have a copy. One thread per copy.
 class KnownBricks {
 public:
     KnownBricks(const VolumeInfo& info, int levels, const IntensityWindow& window,
@@ -71,12 +71,12 @@ public:
 
     /// Whether paint may be visible in a brick, including paint of neighbouring bricks.
     bool is_painted(const PageSight& sight, const BrickKey& key) const;
-    /// Whether anything in a brick, or in the finer bricks below it, may be visible according to the file.
+    /// Whether a brick, or any of the finer bricks below it, may show anything according to the file's densities.
     bool may_show(const PageSight& sight, const BrickKey& key) const;
     /// Whether it was read and shows nothing.
     bool is_empty(const PageSight& sight, const BrickKey& key) const;
-    /// What the directory (shaders/pages.h) shows at a leaf:
-    /// nothing, its brick, or its finest ancestor on the device.
+    /// The directory's entry for a leaf (shaders/pages.h): it shows
+    /// nothing, the leaf's brick, or the brick's finest ancestor on the device.
     uint32_t entry_of(const PageSight& sight, const BrickKey& leaf) const;
 
 private:
@@ -107,13 +107,13 @@ public:
     PageLister(const PageLister&) = delete;
 
     void note(const BrickEvent& change);
-    /// Number of changes noted so far; changes after number `changes`, null if those are no longer in the log.
+    /// changes(): number of changes noted so far. changes_since(): those after `changes`; null if no longer in the log.
     uint64_t changes() const { return first_ + log_.size(); }
     std::optional<std::span<const BrickEvent>> changes_since(uint64_t changes) const;
 
-    /// Whether take() would return without waiting. If not, it starts the list unless another is in progress.
+    /// Whether take() would return without waiting. If not, starts making the list, unless another is in progress.
     bool get_ready(const PageView& view, const Visibility& visibility);
-    /// Waits for the list. Fails as the source does.
+    /// Waits for the list and returns it. Fails as the source does.
     std::shared_ptr<PageList> take(const PageView& view, const Visibility& visibility);
     /// Puts a taken list back into the cache.
     void keep(std::shared_ptr<PageList> list);

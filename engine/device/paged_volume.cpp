@@ -20,7 +20,7 @@ int64_t brick_total(const Size3& size, int level)
     return counts.x * counts.y * counts.z;
 }
 
-/// Number of slots for all bricks of all levels, plus the empty one.
+/// Number of slots for all bricks of all levels, plus the unused slot.
 uint64_t useful_slots(const VolumeInfo& info, int levels)
 {
     uint64_t useful = 1;
@@ -29,13 +29,13 @@ uint64_t useful_slots(const VolumeInfo& info, int levels)
     return useful;
 }
 
-/// As many slots as fit, in as many images as they require.
+/// The layout with as many slots as fit into `bytes`, in as many images as these slots require.
 StackedLayout layout_for(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, AtlasCodes codes,
                          uint64_t bytes)
 {
     const uint64_t useful = useful_slots(info, levels), most = bytes / BrickAtlas::slot_bytes(codes);
     const uint64_t least = std::min(useful, PagedVolume::MIN_SLOTS);
-    // Layouts round up: one for fewer slots may have more of them, or may exist where one for more slots does not.
+    // Layouts round up: a layout for fewer slots may have more slots, or exist where none for more slots does.
     for (uint64_t slots = std::min(useful, most); slots >= least; --slots)
         if (const std::optional<StackedLayout> layout = stacked_layout(slots, codes, traits))
             if (layout->count() <= most) return *layout;
@@ -50,7 +50,7 @@ int kept_levels(int levels)
     return std::min(levels, int(gpu::PAGE_MISSING));
 }
 
-/// Half of the slots are for finer bricks, unless there are slots for all bricks.
+/// Fails if finer bricks get less than half of the slots, unless there are slots for all bricks.
 void check_coarsest(const VolumeInfo& info, int levels, AtlasCodes codes, uint64_t slots)
 {
     const int64_t bricks = brick_total(info.size, levels - 1);
@@ -89,7 +89,7 @@ PagedVolume::PagedVolume(gpu::Executor& executor, gpu::Memory& memory, std::shar
     pin_coarse_levels();
 }
 
-/// Loads the coarsest level, or starts to, so that a first picture can be shown soon; requests the next levels.
+/// Loads the coarsest level, or starts loading it, for an early first picture; requests the next levels.
 void PagedVolume::pin_coarse_levels()
 {
     check_coarsest(info(), levels_, options_.codes, slots_.count());
@@ -134,7 +134,7 @@ double PagedVolume::loaded() const
 
 // ---- The view -------------------------------------------------------------------------------------------------------
 
-/// Rounds `shown` outwards to whole bricks, so that few views differ in it.
+/// Rounds `shown` outwards to whole bricks, so that small changes of `shown` rarely change the view.
 PageView PagedVolume::rounded(PageView view) const
 {
     constexpr int64_t SIZE = gpu::BRICK_SIZE;
@@ -161,7 +161,7 @@ int PagedVolume::look(const PageView& exact, const Visibility& visibility)
     return finest_level();
 }
 
-/// Makes a list current. The previous list goes back to the cache, with the changes applied to it so far.
+/// Makes a list current. Returns the previous list to the cache; it includes the changes applied to it so far.
 void PagedVolume::install(std::shared_ptr<PageList> list)
 {
     const std::shared_ptr<PageList> before = std::exchange(list_, std::move(list));

@@ -30,7 +30,7 @@ namespace shvr {
 
 class PagedVolume final : public DeviceVolume {
 public:
-    /// Enough for a region of 64^3 voxels anywhere, its surroundings, and the coarsest levels.
+    /// Enough slots for a region of 64^3 voxels anywhere, the bricks around it, and the coarsest levels.
     static constexpr uint64_t MIN_SLOTS = 64;
 
     struct Options {
@@ -48,7 +48,7 @@ public:
     bool load_on(double seconds) override;
     double loaded() const override;
 
-    /// Fails if `device_bytes` hold too few bricks of such a volume, including its coarsest level.
+    /// Fails if `device_bytes` holds too few bricks of such a volume in addition to its coarsest level.
     static void check_room(const gpu::DeviceTraits& traits, const VolumeInfo& info, int levels, AtlasCodes codes,
                            uint64_t device_bytes);
 
@@ -81,8 +81,8 @@ public:
     void prefer(const VoxelBox& voxels) override;
 
     /// Reloads the bricks of all levels that depend on the voxels. Bricks on the device are reloaded at once; if there
-    /// are too many, only the coarse ones that are always there, and the rest are requested again like missing ones.
-    /// Others are reloaded when they are needed.
+    /// are too many, only the coarse bricks that are always on the device are, and the rest are requested again like
+    /// missing bricks. Bricks that are not on the device are reloaded when needed.
     void renew(std::span<const VoxelBox> changed) override;
     void note_painted(const Mask& mask, std::span<const int64_t> bricks) override;
 
@@ -98,7 +98,7 @@ public:
 private:
     PageView rounded(PageView view) const;
     void install(std::shared_ptr<PageList> list);
-    /// An empty sight before the first look.
+    /// The sight of the current list; an empty sight before the first look().
     const PageSight& sight() const { return list_ ? list_->sight : no_sight_; }
     const PageTree& tree() const { return *list_->tree; }
     std::optional<uint32_t> leaf_of(const BrickKey& key) const
@@ -132,7 +132,7 @@ private:
     void fill_leaf(uint32_t leaf);
     void fill_directory();
     void note(const BrickEvent& change);
-    /// Notes another change of the brick that affects what is drawn in its place.
+    /// Notes another kind of change of a brick that affects what is drawn in the brick's place.
     void note_changed(const BrickKey& key) { note({.key = key}); }
     void note_all_changed();
     gpu::BrickLeapJob job_of(const BrickKey& key, uint32_t slot) const;
@@ -150,21 +150,21 @@ private:
     PageLister lister_;
     const PageSight no_sight_{};
     std::shared_ptr<PageList> list_;  ///< the current view's list
-    bool list_is_outdated_ = false;   ///< paint made other bricks necessary for the view, and they are being listed
+    bool list_is_outdated_ = false;   ///< paint has changed which bricks the view needs; a new list is being made
 
-    // By leaf.
+    // Indexed by leaf.
     std::vector<bool> is_reached_;  ///< leaves visited by rays since the view last changed
-    /// Leaves visited earlier. They count as visited until there is no room for both; otherwise, turning the camera
-    /// would keep bricks that are no longer visible.
+    /// Leaves visited earlier. They count as visited as long as there is room for both sets; without this limit,
+    /// turning the camera would keep bricks that are no longer visible.
     std::vector<bool> was_reached_;
     std::vector<uint32_t> visited_;  ///< leaves in either set
-    std::set<uint32_t> awaited_;     ///< superset of the missing bricks among them; nearest first
+    std::set<uint32_t> awaited_;     ///< superset of the visited leaves whose bricks are missing; nearest first
     bool rays_wait_ = false;
     std::function<bool(const BrickKey&)> is_ready_;
-    /// Bricks that cannot be read and that rays have waited for: coarser ones are drawn from then on.
+    /// Bricks that cannot be read and that rays have waited for; from then on, coarser bricks are drawn instead.
     std::unordered_set<BrickKey, BrickKeyHash> given_up_;
-    /// The directory is part of the list. Entries that differ from those on the device are listed here, unless all of
-    /// them do.
+    /// The directory is part of the list. This holds the indices of the entries that differ from those on the device;
+    /// it is not used while all_entries_changed_ is true.
     std::vector<uint32_t> changed_entries_;
     bool all_entries_changed_ = true;
     bool all_leaves_are_stale_ = true;
@@ -176,10 +176,10 @@ private:
     std::unordered_set<BrickKey, BrickKeyHash> region_;  ///< bricks of the last region
     std::unordered_set<BrickKey, BrickKeyHash> around_;  ///< bricks requested by want_around()
     std::vector<int> around_reach_;
-    uint64_t around_revision_ = 0;  ///< value of reached_revision_ for which around_ was made
+    uint64_t around_revision_ = 0;  ///< value of reached_revision_ at which around_ was made
     uint64_t places_revision_ = 1, reached_revision_ = 1;
     std::vector<BrickKey> coarse_;             ///< bricks that are always on the device
-    size_t coarsest_ = 0, coarsest_left_ = 0;  ///< number of bricks that `load_on` takes, and of those still to come
+    size_t coarsest_ = 0, coarsest_left_ = 0;  ///< number of bricks that `load_on` takes, and how many of them are left
     std::vector<BrickKey> leap_jobs_;
 
     BrickStore store_;  ///< declared last: loaders stop before the members they read are destroyed

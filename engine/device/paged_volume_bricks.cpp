@@ -38,7 +38,7 @@ void PagedVolume::forget_unvisited()
     std::erase_if(awaited_, [this](uint32_t leaf) { return !is_visited(leaf); });
 }
 
-/// Adds the bricks of its level that are at most `reach` away, including the brick itself.
+/// Adds the bricks of the same level that are at most `reach` bricks away from `key`, including `key` itself.
 void PagedVolume::add_around(const BrickKey& key, int reach, std::unordered_set<BrickKey, BrickKeyHash>& keys) const
 {
     const glm::ivec3 counts = brick_counts(size_of_level(info().size, key.level));
@@ -187,8 +187,8 @@ void PagedVolume::renew(std::span<const VoxelBox> changed)
     rebuild_tree();
 }
 
-/// Rebuilds the tree after the source's data has changed; keeps which bricks rays visited. The caller waits for it, as
-/// it does for the bricks on the device.
+/// Rebuilds the tree after the source's data has changed; keeps the record of which bricks rays visited. Waits for the
+/// new list, as the caller also waits for the bricks on the device.
 void PagedVolume::rebuild_tree()
 {
     lister_.forget();
@@ -197,10 +197,10 @@ void PagedVolume::rebuild_tree()
     install(lister_.take(list_->sight.view, list_->sight.visibility));
 }
 
-/// Adds the bricks that the picture lacks, nearest first. False if there are not enough slots for all.
+/// Adds the bricks that the picture lacks, nearest first. Returns false if there are too few slots for all of them.
 bool PagedVolume::list_wants(std::vector<BrickKey>& keys)
 {
-    // Counts bricks that are on the device or will be. If there are slots for all, their number does not matter.
+    // Counts bricks that are on the device or will be. The exact number does not matter if there are slots for all.
     const bool is_roomy = keys.size() + awaited_.size() + around_.size() <= slots_.free_count();
     size_t room = is_roomy ? slots_.free_count() : slots_.room();
     room -= std::min(room, keys.size());
@@ -349,9 +349,9 @@ std::optional<RegionBricks> PagedVolume::region(const VoxelBox& voxels, bool wai
     return region;
 }
 
-/// Records that a brick of any level has gained or lost paint of a brick below it. Updates the view's entries of it and
-/// of the neighbours that its paint reaches. Returns true if the view now needs other bricks; `asks`: whether to
-/// determine that.
+/// Records that a brick of any level has gained or lost paint of a level 0 brick below it. Updates the view's entries
+/// for the brick and for the neighbours that its paint reaches. Returns true if the view now needs other bricks;
+/// `asks`: whether to determine that.
 bool PagedVolume::note_painted_in(const BrickKey& key, bool is, bool asks)
 {
     std::vector<BrickKey> reached;
@@ -397,8 +397,8 @@ void PagedVolume::note_painted(const Mask& mask, std::span<const int64_t> bricks
     ++reached_revision_;
     needs_changed();
     if (!needs_others || !list_) return;
-    // Paint is visible whatever the file states about densities. The present list is drawn until the new one is ready,
-    // so that a stroke does not wait for a list in each brick it enters.
+    // Paint is visible regardless of the file's densities. The current list is drawn until the new list is ready, so
+    // that a stroke does not wait for a list in each brick that it enters.
     list_is_outdated_ = true;
     static_cast<void>(lister_.get_ready(sight().view, sight().visibility));
 }

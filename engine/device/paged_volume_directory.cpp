@@ -8,7 +8,7 @@
 
 namespace shvr {
 
-/// The directory's entry for a leaf; where rays wait, it may be the instruction to wait.
+/// The directory's entry for a leaf; if rays wait for missing bricks, the entry may instruct them to wait.
 uint32_t PagedVolume::entry_of(const BrickKey& leaf) const
 {
     if (rays_wait_) {
@@ -67,7 +67,7 @@ void PagedVolume::note(const BrickEvent& change)
     known_.apply(change);
     lister_.note(change);
     directory_is_stale_ = true;
-    // A ray that waits for a brick's light waits for its neighbours as well.
+    // A ray that waits for a brick's light also waits for the brick's neighbours.
     if (is_ready_) all_leaves_are_stale_ = true;
     const bool may_be_missing = change.kind == BrickEvent::Kind::gone || change.kind == BrickEvent::Kind::unread;
     if (const std::optional<uint32_t> leaf = may_be_missing ? leaf_of(change.key) : std::nullopt)
@@ -101,7 +101,7 @@ Resource PagedVolume::upload_directory(FrameGraph& graph)
                       "upload page directory");
 }
 
-/// Copies that upload these entries; `values` receives the data to copy.
+/// Returns the copies that upload these entries; `values` receives the data to copy.
 std::vector<BufferRegion> PagedVolume::changed_regions(std::vector<uint32_t> entries,
                                                        std::vector<uint32_t>& values) const
 {

@@ -15,7 +15,7 @@
 
 namespace shvr {
 
-/// Encodes bricks in index order, in the background of the uploading thread: batches go through a short queue.
+/// Encodes bricks in index order on a background thread; batches reach the uploading thread through a short queue.
 class ResidentVolume::Builder {
 public:
     struct Brick {
@@ -171,7 +171,7 @@ void ResidentVolume::create_images()
     for (gpu::Storage& scratch : leap_scratch_) scratch = create("leap scratch", shape->cells);
 }
 
-/// A brick at a face of the volume also supplies the border there.
+/// A brick at a face of the volume also supplies the atlas's border at that face.
 void ResidentVolume::upload(const BrickTexels& texels, const glm::uvec3& brick)
 {
     const glm::uvec3 border = gpu::code_border(), none(0);
@@ -234,7 +234,7 @@ double ResidentVolume::loaded() const
 uint64_t ResidentVolume::bytes_for(const VolumeInfo& info, AtlasCodes codes)
 {
     const glm::u64vec3 counts(brick_counts(info.size)), of_codes(codes_side_by_side(glm::uvec3(counts)));
-    constexpr uint64_t LEAP_IMAGES = 5;  // the grid, its two scratch images, and sample bits, which count twice
+    constexpr uint64_t LEAP_IMAGES = 5;  // the grid, its two scratch images, and the sample bits, which count as two
     return of_codes.x * of_codes.y * of_codes.z * code_bytes(codes) +
            counts.x * counts.y * counts.z * (BrickTexels::RANGE_BYTES * (1 + LEAP_IMAGES) + sizeof(uint32_t));
 }
@@ -336,7 +336,7 @@ void ResidentVolume::renew(std::span<const VoxelBox> changed)
 {
     renew_bricks(bricks_that_see(changed, info().size, 0));
     for (const VoxelBox& box : changed) {
-        // A cell's range covers its voxels and one around; cells beyond the volume's end use its last voxels.
+        // A cell's range covers its voxels and one voxel around; cells beyond the volume's end use its last voxels.
         const Size3 lower = glm::max(box.lower - int64_t{gpu::BRICK_APRON}, Size3(0)) / int64_t{gpu::CELL_SIZE};
         Size3 upper = (box.upper + int64_t{gpu::BRICK_APRON} - int64_t{1}) / int64_t{gpu::CELL_SIZE} + int64_t{1};
         for (int axis = 0; axis < 3; ++axis)

@@ -1,7 +1,7 @@
 #pragma once
 // A volume with all of its bricks on the device, side by side in one image; the value range of every cell; and the leap
-// grid, which is updated when visibility or paint changes. Bricks have slots, as paged ones do, for their ambient
-// light. A volume that does not fit the device budget is refused with a message before any brick is read.
+// grid, which is updated when visibility or paint changes. Bricks have slots for their ambient light, as paged bricks
+// do. A volume that does not fit the device budget is refused with a message before any brick is read.
 //
 // One thread, the one that owns the executor.
 
@@ -26,7 +26,7 @@ public:
 
     /// Device memory of such a volume, including cells and leap grid.
     static uint64_t bytes_for(const VolumeInfo& info, AtlasCodes codes);
-    /// Whether the device supports images and buffers of that size, however much memory is free.
+    /// Whether the device supports images and buffers of the required size, however much memory is free.
     static bool is_possible(const gpu::Memory& memory, const VolumeInfo& info, AtlasCodes codes);
 
     uint64_t brick_count() const;

@@ -15,26 +15,26 @@ namespace shvr {
 namespace {
 
 // Shares of the device memory that is free when a volume is loaded.
-/// A resident volume may take all of it except these shares for tables and for pictures drawn in parts.
+/// Sixteenths of that memory that a resident volume leaves free for tables and for pictures drawn in parts.
 constexpr uint64_t PICTURE_SIXTEENTHS = 1;
-/// Minimum reserved for pictures and tables: tables of one or two megabytes, the directory of bricks, parts of 64
-/// pixels a side.
+/// Minimum reserved for pictures and tables: one or two megabytes of tables, the directory of bricks, and pictures in
+/// parts of 64 pixels a side.
 constexpr uint64_t MIN_PICTURE_BYTES = uint64_t{4} << 20;
 /// Share for paged bricks, three fifths: the rest is for pictures, mask and surfaces, which may grow.
 constexpr uint64_t PAGED_FIFTHS = 3;
-/// Share for paged bricks with ambient occlusion, which then takes half as much as the bricks.
+/// Share for paged bricks if there is ambient occlusion, which takes half as much memory as the bricks.
 constexpr uint64_t PAGED_FIFTHS_WITH_OCCLUSION = 2;
-/// Limit on a CPU, whose memory is shared with files and programs: 27 000 bricks, more than a view on a common screen
-/// needs.
+/// Limit of the atlas on a CPU device, whose memory is shared with files and programs: 27 000 bricks, more than a view
+/// on a common screen needs.
 constexpr uint64_t MAX_ATLAS_BYTES_OF_CPU = uint64_t{2} << 30;
-/// Share of the host's budget for paged bricks, a quarter; half is for mapped memory, a quarter for coarser levels.
+/// A quarter of the host's budget is for paged bricks; half is for mapped memory, a quarter for coarser levels.
 constexpr uint64_t HOST_SHARES = 4;
-/// Maximum number of bricks: as many as a view may have leaves (page_tree.h).
+/// Maximum number of bricks: the maximum number of leaves of a view (page_tree.h).
 constexpr int64_t MAX_FINEST_BRICKS = int64_t{1} << 17;
 
 /// How far, in voxels, an offset affects the picture through interpolation and gradients.
 constexpr int64_t RAISED_REACH = 2;
-/// With more boxes than that, they are merged into one per cause, in case nothing collects them.
+/// Maximum number of boxes; any more are merged into one per cause, in case nothing collects them.
 constexpr size_t MAX_CHANGED = 4096;
 
 bool filters(const gpu::DeviceTraits& traits, Sampling sampling)
@@ -56,13 +56,13 @@ uint64_t bytes_for_pictures(const gpu::Memory& memory)
     return std::max(MIN_PICTURE_BYTES, memory.device_bytes_left() / 16 * PICTURE_SIXTEENTHS);
 }
 
-/// Device memory for ambient occlusion, apart from that per brick.
+/// Device memory for ambient occlusion, in addition to its memory per brick.
 uint64_t scratch_bytes(const gpu::Memory& memory, const Scene::Options& options)
 {
     return options.with_occlusion ? Occlusion::scratch_bytes(memory.traits(), memory.device_budget()) : 0;
 }
 
-/// Device memory for the ambient light of this many bricks: layouts of slots round up, and devices align rows.
+/// Device memory for the ambient light of bricks; a quarter more, since layouts round up and devices align rows.
 uint64_t light_bytes(uint64_t bricks)
 {
     return bricks * (Occlusion::slot_bytes() / 4 * 5);
@@ -91,7 +91,7 @@ int64_t finest_bricks(const VolumeInfo& info)
     return counts.x * counts.y * counts.z;
 }
 
-/// The budget in MiB that leaves `bytes` free besides the share for pictures.
+/// The budget in MiB that leaves `bytes` free in addition to the share for pictures.
 uint64_t budget_for(uint64_t bytes)
 {
     return (std::max(bytes + MIN_PICTURE_BYTES, bytes / (16 - PICTURE_SIXTEENTHS) * 16) >> 20) + 1;
@@ -111,7 +111,7 @@ uint64_t atlas_bytes(const gpu::Memory& memory, const VolumeInfo& info, AtlasCod
     const uint64_t room = left - std::min(left, beside);
     // Layouts of images round up.
     const uint64_t fewest = std::min(PagedVolume::MIN_SLOTS + 8, uint64_t(2 * finest_bricks(info) + 1)) * with_light;
-    const uint64_t rest = budget - left + reserved_bytes + fewest;  // more than half of the budget named below
+    const uint64_t rest = budget - left + reserved_bytes + fewest;  // more than half of the budget in the message
     if (room < fewest)
         throw gpu::BudgetError(
             sentence(info.name, ": a picture needs ", gpu::mebibytes(beside + fewest), " of device memory",
@@ -124,7 +124,7 @@ uint64_t atlas_bytes(const gpu::Memory& memory, const VolumeInfo& info, AtlasCod
                      std::max(left / 5 * fifths, fewest / with_light * of_slot), room / with_light * of_slot});
 }
 
-/// Device memory for a trace, an upper bound.
+/// Upper bound of the device memory for a trace.
 uint64_t trace_bytes(const TraceGraph& trace)
 {
     const size_t surfaces = trace.nodes().size() + trace.internodes().size();
@@ -179,7 +179,7 @@ void Scene::load_paged(const IntensityWindow& window, AtlasCodes codes, uint64_t
             volume_ = std::make_unique<PagedVolume>(executor_, memory_, offsets_, window, paged);
         } catch (const gpu::BudgetError&) {
             throw;
-        } catch (const gpu::MemoryError&) {  // the driver has less memory than it reports, or not in one piece
+        } catch (const gpu::MemoryError&) {  // the driver has less memory than it reports, or no block of this size
             constexpr uint64_t LEAST = uint64_t{16} << 20;
             if (paged.device_bytes / 2 < LEAST) throw;
             paged.device_bytes /= 2;
@@ -188,7 +188,7 @@ void Scene::load_paged(const IntensityWindow& window, AtlasCodes codes, uint64_t
     }
 }
 
-/// False if the driver has less memory than it reports, or other programs use it, and bricks can be paged instead.
+/// Returns false if memory is short (drivers report too much, other programs use it) and bricks can be paged.
 bool Scene::load_resident(const IntensityWindow& window)
 {
     const AtlasCodes codes = codes_of(memory_, *source_, options_);
@@ -207,7 +207,7 @@ bool Scene::load_resident(const IntensityWindow& window)
     }
 }
 
-/// Keeps `bytes` of device memory free, besides the share for pictures, by loading the volume with fewer bricks.
+/// Keeps `bytes` of device memory free, in addition to the share for pictures, by loading the volume with fewer bricks.
 void Scene::make_room(uint64_t bytes)
 {
     memory_.free_idle();
@@ -245,11 +245,11 @@ uint64_t Scene::resident_bytes(const VolumeInfo& info, AtlasCodes codes, bool wi
 AtlasCodes Scene::codes_for(const gpu::DeviceTraits& traits, VoxelType type, Sampling sampling)
 {
     if (filters(traits, sampling)) return AtlasCodes::filtered;
-    // The window of these types covers the whole type, whatever the values (window_for).
+    // For these types the window always covers the whole range of the type, whatever the values (window_for).
     return type == VoxelType::uint8 || type == VoxelType::int8 ? AtlasCodes::exact8 : AtlasCodes::exact16;
 }
 
-/// Uses several images, except with ambient light, whose values are in a single image half as large.
+/// The atlas may take several images, but only one with ambient light, whose values are in one image half as large.
 uint64_t Scene::most_atlas_bytes(const gpu::DeviceTraits& traits, AtlasCodes codes, bool with_occlusion)
 {
     const uint64_t of_image = std::min(traits.max_volume_bytes / slot_code_bytes(codes),
@@ -320,7 +320,7 @@ bool Scene::show(const Document& document, std::span<const Change> changes)
 
 void Scene::show(const Document& document, const Touched& touched, const std::optional<VoxelBox>& within)
 {
-    // Steps that may fail come last, so that no change is lost.
+    // The steps that may fail come last, so that no change is lost.
     if (!touched.raised.empty()) note_density(document.density, touched.raised);
     if (!touched.mask_bricks.empty()) update_mask(document.mask, touched.mask_bricks, within);
     renew_density();
@@ -335,7 +335,7 @@ void Scene::catch_up(const Document& document)
 void Scene::update_mask(const Mask& mask, std::span<const int64_t> bricks, const std::optional<VoxelBox>& within)
 {
     note_mask(mask, bricks, within);
-    if (mask_->is_stale()) note_mask(mask, mask.painted_bricks());  // the device holds none of it
+    if (mask_->is_stale()) note_mask(mask, mask.painted_bricks());  // the device holds none of the mask
     mask_->update(mask, bricks);
 }
 

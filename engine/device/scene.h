@@ -48,18 +48,18 @@ public:
     /// Continues loading for about `seconds`, without waiting for a disk. True: all is loaded.
     bool load_on(double seconds) { return volume_->load_on(seconds); }
     double loaded() const { return volume_->loaded(); }
-    /// Device memory needed to show a document, an upper bound.
+    /// Upper bound of the device memory needed to show a document.
     static uint64_t bytes_to_show(const Document& document);
-    /// The maximum size of the atlas of paged bricks, as limited by a budget and by a device.
+    /// Maximum sizes of the atlas of paged bricks: under a budget (atlas_share), on a device (most_atlas_bytes).
     static uint64_t atlas_share(uint64_t device_budget, bool with_occlusion);
     static uint64_t most_atlas_bytes(const gpu::DeviceTraits& traits, AtlasCodes codes, bool with_occlusion);
     /// Device memory of a resident volume, with its ambient light.
     static uint64_t resident_bytes(const VolumeInfo& info, AtlasCodes codes, bool with_occlusion);
-    /// The format in which the device holds the codes of such voxels. Fails if it does not support that sampling.
+    /// The format in which the device holds codes of voxels of `type`. Fails if the device does not support `sampling`.
     static AtlasCodes codes_for(const gpu::DeviceTraits& traits, VoxelType type, Sampling sampling);
     /// Whether an image of the device could hold all bricks of the source, however much memory is free.
     static bool can_be_resident(const gpu::Memory& memory, const VolumeSource& source, const Options& options);
-    /// Whether such a scene would be paged even if nothing else were on the device.
+    /// Whether such a scene would be paged even if the device held nothing else.
     static bool pages_alone(const gpu::Memory& memory, const VolumeSource& source, const Options& options);
     /// Whether such a scene would be resident and fits in addition to everything on the device now. Fails if the device
     /// does not support `options`.
@@ -71,10 +71,10 @@ public:
     const VolumeStatistics& statistics() const { return statistics_; }
     const gpu::DeviceTraits& traits() const { return memory_.device().traits(); }
     DeviceVolume& volume() { return *volume_; }
-    /// Whether pictures draw the finest level everywhere, because there is no other: the volume would be resident under
-    /// a larger budget, and budgets must not change pictures. Live views draw it as coarsely as the screen allows.
+    /// Whether pictures draw the finest level everywhere, as the source has no other: a larger budget would make the
+    /// volume resident, and budgets must not change pictures. Live views draw it as coarsely as the screen allows.
     bool draws_finest() const { return draws_finest_; }
-    /// Decides which voxels a brush or touch may select, where codes cannot; null: every value has its own code.
+    /// Decides which voxels a brush or touch may select where values share a code; null: every value has its own code.
     ThresholdBricks* threshold_bricks() { return threshold_bricks_.get(); }
     const DeviceMask& mask() const { return *mask_; }
     Occlusion& occlusion() { return occlusion_; }
@@ -84,13 +84,13 @@ public:
 
     // ---- Changes
 
-    /// Shows all paint and offsets of the document, and reserves memory for its trace: if there is too little, the
-    /// volume is loaded again with fewer bricks. Must be called before anything else refers to this scene's volume.
-    /// Fails if the budget cannot hold them.
+    /// Shows all paint and offsets of the document, and reserves memory for its trace. If memory is short, loads the
+    /// volume again with fewer bricks. Must be called before anything else refers to this scene's volume. Fails if the
+    /// budget cannot hold the document's content.
     void show(const Document& document);
-    /// Shows these changes, which the document already contains: paint, offsets and, once show_surfaces() has been
-    /// called, the trace. Returns whether paint or offsets are among them. Frames submitted later see them. Fails if
-    /// voxels cannot be read or memory is short; then `is_behind`.
+    /// Shows `changes`, which the document already contains: paint, offsets and, once show_surfaces() has been called,
+    /// the trace. Returns whether paint or offsets are among the changes. Frames submitted later show them. Fails if
+    /// voxels cannot be read or memory is short; is_behind() is then true.
     bool show(const Document& document, std::span<const Change> changes);
     void show(const Document& document, const Touched& touched, const std::optional<VoxelBox>& within = {});
     /// Whether paint or offsets shown are out of date because an update failed.
@@ -102,18 +102,18 @@ public:
     /// Updates the offsets in these boxes. Offsets never raise intensities above the volume's window.
     void update_density(const DensityField& field, std::span<const VoxelBox> changed);
 
-    /// Sets the opaque balls and rods that end rays: these, and those of the trace in the colours of `groups`. Fails as
-    /// `surface_tree` and gpu::Memory::create do; then the earlier ones stay. If only colours or sizes differ from what
-    /// is shown, only those are written.
+    /// Sets the opaque balls and rods that end rays: `surfaces`, and those of the trace in the colours of `groups`.
+    /// Fails as `surface_tree` and gpu::Memory::create do; the earlier surfaces then stay. If only colours or sizes
+    /// differ from the surfaces shown, only colours and sizes are written.
     void show_surfaces(std::vector<SurfaceLook> surfaces, const TraceGraph& trace, const Groups& groups);
-    /// Shows the trace after these changes. The cost is proportional to the changes, except for thousands of nodes at
-    /// once or a change of a group's radius.
+    /// Shows the trace after these changes. The cost is proportional to the number of changes, except if thousands of
+    /// nodes change at once or a group's radius changes.
     void show_trace(const TraceGraph& trace, std::span<const Change> changes);
     /// Sets these surfaces and no trace.
     void set_surfaces(const std::vector<SurfaceLook>& surfaces) { set_keyed_surfaces(keyed(surfaces)); }
     void set_keyed_surfaces(std::vector<KeyedSurface> surfaces);
-    /// Removes the surfaces with `keys` and adds `surfaces`, at a cost proportional to the change. Returns false, and
-    /// changes nothing, if `set_keyed_surfaces` is as cheap.
+    /// Removes the surfaces with `keys` and adds `surfaces`, at a cost proportional to the change. If
+    /// `set_keyed_surfaces` is as cheap, changes nothing and returns false.
     bool replace_surfaces(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces);
 
     /// Takes loaded bricks. `wait`: waits for all requested bricks.
@@ -136,14 +136,14 @@ public:
 
     /// Which densities are visible; the step length does not matter.
     Visibility visibility_of(const Look& look);
-    /// Gradients below this value fade out, in codes per voxel.
+    /// The gradient, in codes per voxel, below which gradients fade out.
     double gradient_fade_codes(const Light& light) const;
-    /// Whether the look uses ambient occlusion and memory suffices. If memory is short, warns once and draws without it
-    /// until it is switched off.
+    /// Whether the look uses ambient occlusion and memory suffices. If memory is short, warns once and draws without
+    /// ambient occlusion until the look switches it off.
     bool has_occlusion(const Look& look);
     bool occlusion_has_no_room() const { return occlusion_has_no_room_; }
     /// Frees memory that pictures can do without, and adds a message with the reason `why`. Returns false if there was
-    /// none to free. No graph that uses the scene may be under construction.
+    /// no such memory. No graph that uses the scene may be under construction.
     bool give_way(const std::string& why);
     /// Requests the bricks that the look's ambient occlusion needs.
     void want_occlusion(const Look& look);

@@ -11,7 +11,7 @@ namespace shvr {
 
 namespace {
 
-/// What the transfer of a resident volume keeps on the host: a few uploads of 5 MiB.
+/// Host memory for the transfer of a resident volume: a few uploads of 5 MiB.
 constexpr uint64_t TRANSFER_BYTES = uint64_t{25} << 20;
 
 /// "312 MiB", "4.5 GiB"
@@ -39,7 +39,7 @@ SceneEstimate estimate_scene(const VolumeSource& source, Paging paging, bool wit
                                         size_text(device_budget), ", or render.paging automatic");
         return estimate;
     }
-    // All coarser levels together take a third more; the atlas takes no more than its share.
+    // All coarser levels together take a third of the finest level. The atlas takes no more than its share.
     estimate.device_bytes =
         std::min({all / 3 * 4, Scene::atlas_share(device_budget, with_occlusion), most_atlas_bytes});
     const uint64_t levels = bytes_of_levels(source);

@@ -8,7 +8,7 @@ namespace shvr {
 
 namespace {
 
-/// Points of rays and boxes are off by a few ulps of the largest number involved; this allows 16.
+/// Points of rays and boxes are off by a few ulps of the largest number involved; this tolerance allows 16 ulps.
 constexpr double ROUNDING = 0x1p-20;
 /// Replaces infinity, since zero times infinity is NaN.
 constexpr double FAR = 1e20;
@@ -29,7 +29,7 @@ ResourceDesc desc_of(uint64_t values)
                         {TEXELS<Value> * uint32_t(std::min<uint64_t>(values, gpu::SURFACES_IN_ROW)), uint32_t(rows)});
 }
 
-/// Adds the positions of values begin ... end, which are contiguous in a buffer from `offset` on: whole rows at once.
+/// Adds copy regions for the values begin ... end, contiguous in a buffer from `offset` on; whole rows are joined.
 template <class Value>
 void add_regions(uint32_t begin, uint32_t end, uint64_t offset, std::vector<ImageRegion>& regions)
 {
@@ -60,7 +60,7 @@ Resource send(FrameGraph& graph, const std::string& name, const std::vector<Valu
 {
     std::ranges::sort(places);
     places.erase(std::unique(places.begin(), places.end()), places.end());
-    while (!places.empty() && places.back() >= values.size()) places.pop_back();  // removed since then
+    while (!places.empty() && places.back() >= values.size()) places.pop_back();  // removed since it was written
     if (places.empty()) return target;
     std::vector<Value> written;
     std::vector<ImageRegion> regions;

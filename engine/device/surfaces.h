@@ -1,6 +1,6 @@
 #pragma once
-// The opaque surfaces of a scene on the device, and the parameters for drawing them with a camera. Nothing is allocated
-// on the device while there are none. One thread, the one that owns the memory.
+// The opaque surfaces of a scene on the device, and the parameters for drawing them with a camera. Without surfaces,
+// nothing is allocated on the device. One thread, the one that owns the memory.
 
 #include <optional>
 
@@ -15,8 +15,8 @@ class SurfaceScene {
 public:
     explicit SurfaceScene(gpu::Memory& memory) : memory_(memory) {}
 
-    /// Replaces all surfaces. Fails if the budget cannot hold them; then the earlier ones stay. Waits for the device
-    /// unless there were none before.
+    /// Replaces all surfaces. If the budget cannot hold them, fails and keeps the earlier surfaces. Waits for the
+    /// device if it already holds surfaces.
     void set(SurfaceForest forest);
     /// Replaces a few surfaces, as SurfaceForest::replace does.
     bool replace(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces, const VolumeInfo& volume);
@@ -34,7 +34,7 @@ private:
     gpu::Memory& memory_;
     SurfaceForest forest_;
     gpu::Storage nodes_, list_;
-    bool is_sent_ = false;  ///< except for what `replace` wrote
+    bool is_sent_ = false;  ///< the device is up to date, except for values that `replace` wrote
 };
 
 }  // namespace shvr

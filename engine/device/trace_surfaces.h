@@ -1,6 +1,6 @@
 #pragma once
-// The surfaces of a trace: balls for nodes, rods for internodes, in the colours of their groups; and which of these a
-// command changes. Pure.
+// The surfaces of a trace (balls for nodes, rods for internodes, in the colours of their groups), and which of these
+// surfaces a command changes. Pure functions.
 
 #include <optional>
 #include <span>
@@ -13,21 +13,21 @@
 
 namespace shvr {
 
-/// Omits hidden groups. `spacing`: the volume's. Nodes without a radius are drawn with half a voxel's, along the finest
-/// axis.
+/// Omits hidden groups. `spacing`: the volume's. Nodes without a radius are drawn with a radius of half a voxel along
+/// the finest axis.
 std::vector<KeyedSurface> surfaces_of(const TraceGraph& trace, const Groups& groups, const glm::dvec3& spacing);
 
-/// The keys of the surfaces that changes affect, and those of these surfaces that exist now.
+/// The keys of all surfaces that changes affect, and those of these surfaces that still exist.
 struct ChangedSurfaces {
     std::vector<uint64_t> keys;
     std::vector<KeyedSurface> now;
 };
-/// For changes that the trace already contains. Null if they may affect the whole trace, because a group's radius has
-/// changed.
+/// `trace` already contains `changes`. Returns null if the changes may affect the whole trace, because a group's radius
+/// has changed.
 std::optional<ChangedSurfaces> changed_surfaces(const TraceGraph& trace, const Groups& groups,
                                                 const glm::dvec3& spacing, std::span<const Change> changes);
 
-/// The box that may look different after these changes, which the trace already contains; empty if none concerns a
+/// The box that may look different after `changes`, which `trace` already contains; empty if no change concerns a
 /// trace.
 VoxelBox trace_reach(const TraceGraph& trace, std::span<const Change> changes, const glm::dvec3& spacing);
 

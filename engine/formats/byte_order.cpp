@@ -39,7 +39,7 @@ uint64_t swapped64(uint64_t bits)
     return __builtin_bswap64(bits);
 }
 
-/// Counts the pairs of neighbours along x that are closer to each other in one byte order than in the other.
+/// Counts, for each byte order, the pairs of neighbours along x that are closer to each other in that order.
 struct Votes {
     int64_t little = 0;
     int64_t big = 0;

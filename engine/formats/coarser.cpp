@@ -12,7 +12,7 @@ VolumeInfo info_of_level(const VolumeSource& source, int level)
 {
     VolumeInfo info = source.info();
     const double wider = double(int64_t{1} << level);
-    // The first voxel's centre is the centre of the voxels that it covers.
+    // The first coarse voxel's centre is the centre of the fine voxels that it covers.
     info.origin += info.directions * (0.5 * (wider - 1.0) * info.spacing);
     info.size = size_of_level(info.size, level);
     info.spacing *= wider;

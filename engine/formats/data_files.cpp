@@ -11,11 +11,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Limits memory and time: each name takes a hundred bytes and a lookup of its file.
+/// Limits memory and time: each file takes a hundred bytes for its name and a lookup.
 constexpr int64_t MAX_FILES = 65536;
 
-/// The one conversion of a pattern: %d, %3d or %03d, as printf writes it. The pattern is untrusted, so it is never
-/// passed to printf.
+/// The conversion in a pattern: %d, %3d or %03d, as printf writes it. Only one is allowed. The pattern is untrusted, so
+/// it is never passed to printf.
 struct Pattern {
     std::string before{}, after{};
     size_t width = 0;
@@ -65,7 +65,7 @@ fs::path path_of(const HeaderFields& fields, const char* field, const std::strin
     return file_stated(fields.path(), name);
 }
 
-/// The words of "a pattern with spaces%03d.raw 1 93 1 2": the pattern, and up to four numbers after it.
+/// Splits "a pattern with spaces%03d.raw 1 93 1 2" into words: the pattern, and up to four numbers after it.
 std::vector<std::string_view> split_pattern(std::string_view text)
 {
     std::vector<std::string_view> numbers;

@@ -1,6 +1,6 @@
 #pragma once
-// Shared by the readers of text headers: the start of a file, fields by name, spacing and unit. Every refusal is one
-// sentence: file, field, value found, value expected. Any thread may call these.
+// Functions shared by the readers of text headers: the start of a file, fields by name, spacing and unit. Every refusal
+// is one sentence: file, field, value found, value expected. Any thread may call these.
 
 #include <filesystem>
 #include <map>
@@ -17,7 +17,7 @@ namespace shvr {
 /// The maximum length of a header.
 inline constexpr size_t MAX_HEADER_BYTES = size_t{1} << 20;
 
-/// The first bytes of a file, at most `max_bytes`. Fails if it is not a regular file or cannot be read.
+/// The first bytes of a file, at most `max_bytes`. Fails if `path` is not a regular file or cannot be read.
 std::string read_head(const std::filesystem::path& path, size_t max_bytes = MAX_HEADER_BYTES);
 
 /// The fields of one header. Names are case-insensitive.
@@ -55,8 +55,8 @@ private:
 /// in the header's folder is used instead. `stated` may be a Windows path.
 std::filesystem::path file_stated(const std::filesystem::path& header, const std::string& stated);
 
-/// Puts spacing and unit into `info`, with a warning for each that the file does not state. A spacing without a unit is
-/// taken as in `usual_unit`, unless it is 1 1 1, which means voxels.
+/// Sets spacing and unit of `info`; adds a warning for each of the two that the file does not state. A spacing without
+/// a unit is in `usual_unit`; but a spacing of 1 1 1 without a unit is in voxels.
 void apply_spacing(VolumeInfo& info, const std::optional<glm::dvec3>& spacing, const std::optional<std::string>& unit,
                    const char* usual_unit);
 

@@ -57,7 +57,7 @@ public:
         return done;
     }
 
-    /// Verifies the checksum if nothing but that is left.
+    /// Verifies the checksum if only the checksum is left to read.
     void finish()
     {
         std::byte left_over{};
@@ -105,7 +105,7 @@ private:
         stream_.avail_in = static_cast<uInt>(count);
     }
 
-    /// Continues with the next member: gzip files may be concatenated; like gzip, ignores anything else after the end.
+    /// Continues with the next member: gzip files may be concatenated. Like gzip, ignores any other trailing bytes.
     void begin_next_member()
     {
         std::array<std::byte, 2> next{};
@@ -212,7 +212,7 @@ private:
     size_t max_kept_;
 
     mutable std::mutex mutex_;
-    mutable std::unique_ptr<Decoder> decoder_;  ///< decoder at the beginning of a chunk; null: not positioned
+    mutable std::unique_ptr<Decoder> decoder_;  ///< at the beginning of a chunk; null: not positioned
     mutable std::vector<std::unique_ptr<const Decoder>> states_;
     mutable std::vector<Chunk> kept_;
 };
@@ -257,7 +257,7 @@ std::string inflated_head(const std::filesystem::path& path, size_t max_bytes)
     Decoder decoder(file, 0);
     size_t done = 0;
     try {
-        // Decodes byte by byte, to find all bytes before a damaged one.
+        // Decodes byte by byte, to get all bytes that precede a damaged one.
         while (done < max_bytes && decoder.decode(bytes.subspan(done, 1)) == 1) ++done;
     } catch (const Error&) {
         // The file's reader will report the problem.

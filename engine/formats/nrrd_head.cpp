@@ -40,7 +40,7 @@ std::string escaped(std::string_view text)
     return safe;
 }
 
-/// The number of "Segment3_Name" and the rest, "Name"; null for other keys.
+/// Splits "Segment3_Name" into its number and the rest, "Name"; null for other keys.
 std::optional<std::pair<int64_t, std::string_view>> segment_key(std::string_view key)
 {
     if (!key.starts_with(SEGMENT)) return std::nullopt;

@@ -1,7 +1,7 @@
 #pragma once
-// The header of an NRRD file as its lines (http://teem.sourceforge.net/nrrd/format.html), and the segments that 3D
-// Slicer describes in it, so that a program that replaces the file can keep the fields that it does not understand. Any
-// thread.
+// The header of an NRRD file, line by line (http://teem.sourceforge.net/nrrd/format.html), and the segments that 3D
+// Slicer describes in the header. A program that replaces the file can thus keep fields that it does not understand.
+// Any thread.
 
 #include <cstdint>
 #include <filesystem>
@@ -24,7 +24,7 @@ struct NrrdHead {
     std::vector<NrrdPair> pairs{};        ///< "key:=value", unescaped
 };
 
-/// Null if there is no such file, or it is not NRRD. Lines that are neither are left out.
+/// Null if there is no such file, or it is not NRRD. Lines that are not comments, fields or pairs are left out.
 std::optional<NrrdHead> read_nrrd_head(const std::filesystem::path& path);
 /// "key:=value", escaped.
 std::string spelled(const NrrdPair& pair);
@@ -34,15 +34,15 @@ void set_pair(std::vector<NrrdPair>& pairs, std::string_view key, std::string va
 /// A segment: "Segment3_Name", "Segment3_LabelValue" and so on.
 struct NrrdSegment {
     int64_t number = 0;       ///< 3
-    int64_t label_value = 0;  ///< value of its voxels in its layer; unstated: one more than its number
-    int64_t layer = 0;        ///< overlapping segments lie in several layers, the first axis of the file
-    /// Group of its voxels in a mask: its label value; if a segment of another layer has that too, the next free one
-    /// above all label values.
+    int64_t label_value = 0;  ///< value of its voxels in its layer; if not stated: `number` + 1
+    int64_t layer = 0;        ///< index along the file's first axis; overlapping segments lie in different layers
+    /// Group of the segment's voxels in a mask: its label value; or, if a segment of another layer has the same label
+    /// value, the next free number above all label values.
     int64_t group = 0;
     std::string name{};
-    std::string color{};  ///< "0.5 0.68 0.5": shares of sRGB; empty: not stated
+    std::string color{};  ///< "0.5 0.68 0.5": sRGB components; empty if not stated
 };
-/// In the order of their first key.
+/// The segments in the order of their first keys in the header.
 std::vector<NrrdSegment> segments_of(const NrrdHead& head);
 
 }  // namespace shvr

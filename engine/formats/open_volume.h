@@ -21,36 +21,36 @@ struct RawLayout {
 /// Fails with a `UsageError` that shows the expected form.
 RawLayout parse_raw_layout(const std::string& text);
 
-/// Whether it is a URL rather than a path, as in https://host/scan.zarr or s3://bucket/scan.zarr. Nothing is read over
-/// a network.
+/// Whether `path` is a URL rather than a file path, as in https://host/scan.zarr or s3://bucket/scan.zarr. Nothing is
+/// read over a network.
 bool is_address(std::string_view path);
 inline constexpr const char* NO_ADDRESS =
     "the path of a file or folder on this machine, since nothing is read over a network: copy it here, or mount it";
 
-/// Whether it is the path of a zipped OME-Zarr, by its name (.ozx, .zip), or leads into one, as in scan.ozx/0, which is
-/// not a path of the file system. Reads nothing.
+/// Whether `path`, judged by its name, is a zipped OME-Zarr (.ozx, .zip) or leads into one. A path into an archive,
+/// such as scan.ozx/0, does not exist in the file system. Reads nothing.
 bool leads_into_archive(const std::filesystem::path& path);
-/// A message for a project that was zipped as a whole, of which only the image is read; empty otherwise. Reads the
-/// archive's directory.
+/// A message for a project that was zipped as a whole, stating that only its image is read; empty for anything else.
+/// Reads the archive's directory.
 std::string archived_project(const std::filesystem::path& path);
 
-/// Name of the format implied by a file name, such as "NIfTI" for scan.nii.gz; empty: none. Files may be of another
-/// format, or of one without an extension of its own. Reads nothing.
+/// Name of the format implied by a file name, such as "NIfTI" for scan.nii.gz; empty: none. The file may still be of
+/// another format, or of a format without an extension of its own. Reads nothing.
 std::string_view format_of_name(std::string_view name);
 inline bool is_volume_name(std::string_view name)
 {
     return !format_of_name(name).empty();
 }
 
-/// Whether files of that name, gzipped or not, state the size of their volume, which raw voxels do not. Reads nothing.
+/// Whether files of that name, gzipped or not, state the size of their volume (raw voxels do not). Reads nothing.
 bool name_states_size(std::string_view name);
-/// The formats that state it, for dialogs: "OME-Zarr, TIFF, ... and JPEG" (`conjunction`: "and").
+/// The formats whose files state it, for dialogs: "OME-Zarr, TIFF, ... and JPEG" (`conjunction`: "and").
 std::string format_names(std::string_view conjunction);
 
-/// Fails if no reader knows the file (listing the formats tried), or if a reader knows it and finds it broken.
+/// Fails if no reader knows the file (the message lists the formats tried), or if a reader finds its file broken.
 std::unique_ptr<VolumeSource> open_volume(const std::filesystem::path& path, const OpenOptions& options = {});
 /// `path` is one file; or the first of numbered files ("head.1", "slice007.raw") with one slice each; or a folder of
-/// such files, in the order of the numbers in their names. OFFSET is skipped in each.
+/// such files, in the order of the numbers in their names. OFFSET bytes are skipped in each file.
 std::unique_ptr<VolumeSource> open_raw(const std::filesystem::path& path, const RawLayout& layout);
 
 }  // namespace shvr

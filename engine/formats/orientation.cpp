@@ -11,7 +11,7 @@
 namespace shvr {
 namespace {
 
-/// Smaller rotations are taken for rounding errors in the file's numbers.
+/// Smaller rotations are considered rounding errors in the file's numbers.
 constexpr double MIN_TURN_DEGREES = 0.05;
 constexpr double MIN_SHEAR_DEGREES = 0.1;
 

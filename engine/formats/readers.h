@@ -29,7 +29,7 @@ std::unique_ptr<VolumeSource> open_png(const std::filesystem::path& path, const 
 std::unique_ptr<VolumeSource> open_bmp(const std::filesystem::path& path, const OpenOptions& options);
 std::unique_ptr<VolumeSource> open_jpeg(const std::filesystem::path& path, const OpenOptions& options);
 
-/// Raw voxels described by a file next to them, or that side-car itself (source_side_car.cpp lists the known ones).
+/// Raw voxels described by a side-car; opens the path of either file (source_side_car.cpp lists the side-cars).
 std::unique_ptr<VolumeSource> open_raw_with_side_car(const std::filesystem::path& path, const OpenOptions& options);
 
 }  // namespace shvr

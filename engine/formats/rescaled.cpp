@@ -59,8 +59,8 @@ public:
     {
         const VoxelType stored = source_->info().type;
         const size_t count = voxels.size() / bytes_of(info().type);
-        // Stored voxels are not larger, so they are read into the end of the same memory; none is overwritten before it
-        // is used.
+        // Stored voxels are not larger than intensities, so they are read into the end of the output; no stored voxel
+        // is overwritten before it is used.
         const std::span<std::byte> tail = voxels.last(count * bytes_of(stored));
         source_->read(box, tail);
         rescale_voxels(stored, tail, rescale_, info().type, voxels);

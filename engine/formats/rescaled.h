@@ -8,7 +8,7 @@
 
 namespace shvr {
 
-/// intensity = slope * stored + intercept; both finite, slope not 0.
+/// intensity = slope * stored + intercept. Both are finite, and the slope is not 0.
 struct Rescale {
     double slope = 1.0;
     double intercept = 0.0;
@@ -17,12 +17,12 @@ struct Rescale {
     bool changes_nothing() const { return slope == 1.0 && intercept == 0.0; }
 };
 
-/// The type that holds the intensities, never smaller than the stored one. Integers stay integers if slope and
-/// intercept are whole; otherwise 8 and 16 bits and float32 become float32, and larger types float64.
+/// The type that holds the intensities, never smaller than the stored type. Integers stay integers if slope and
+/// intercept are whole numbers. Otherwise, 8- and 16-bit types and float32 become float32, and larger types float64.
 VoxelType rescaled_type(VoxelType stored, const Rescale& rescale);
 
-/// Converts `stored` to `intensities`. They may share memory, `stored` at the end of `intensities`, if `to` is not
-/// smaller than `from`. `to` must be able to hold the results.
+/// Converts `stored` to `intensities`. If `to` is not smaller than `from`, `stored` may occupy the end of the memory of
+/// `intensities`. `to` must be able to hold the results.
 void rescale_voxels(VoxelType from, std::span<const std::byte> stored, const Rescale& rescale, VoxelType to,
                     std::span<std::byte> intensities);
 

@@ -35,7 +35,7 @@ public:
     }
     std::optional<VolumeStatistics> statistics() const override
     {
-        // What the source knows was measured with its own fill value.
+        // The source's statistics were measured with its own fill value.
         return info().nodata ? std::nullopt : source_->statistics();
     }
 
@@ -65,7 +65,7 @@ bool is_same(const VolumeInfo& a, const VolumeInfo& b)
     return ((from && to) || a.unit == b.unit) && glm::all(glm::lessThanEqual(apart, TOLERANCE * b.spacing));
 }
 
-/// The value as voxels of that type have it; -3.4e38, for instance, is rounded in float32.
+/// The value as stored in voxels of `type`: -3.4e38, for instance, is rounded in float32.
 double as_voxel(VoxelType type, double value)
 {
     constexpr double MOST = std::numeric_limits<float>::max();

@@ -1,5 +1,5 @@
 #pragma once
-// Spacing, unit and fill value stated by the user, where a file states none or wrong ones. Any thread may call these.
+// Applies spacing, unit and fill value stated by the user, where a file states none or wrong ones. Any thread.
 
 #include <filesystem>
 #include <memory>
@@ -9,14 +9,14 @@
 
 namespace shvr {
 
-/// Returns `source` with that fill value (VolumeInfo::nodata), if there is one.
+/// Returns `source` with the fill value `nodata` (VolumeInfo::nodata), if that is not null.
 std::unique_ptr<VolumeSource> with_nodata(std::unique_ptr<VolumeSource> source, std::optional<double> nodata);
 
-/// Returns `source` with the fill value, the spacing and the unit of `options`; `source` itself if they state none.
-/// Warnings about missing values are dropped if the options supply them; a warning with both values is added if the
-/// file states another. An origin is converted if the file and the options state units of length. Fails if that leaves
-/// a spacing without a unit, or a unit without a spacing. Voxels, levels and what else is known about them are
-/// unchanged.
+/// Returns `source` with the fill value, the spacing and the unit of `options`; `source` itself if `options` state none
+/// of these. Drops warnings about missing values that the options supply; adds a warning with both values if the file
+/// states a different value. Converts an origin if the file and the options state units of length. Fails if the result
+/// would have a spacing without a unit, or a unit without a spacing. Voxels, levels and other known facts about them
+/// stay unchanged.
 std::unique_ptr<VolumeSource> restated(std::unique_ptr<VolumeSource> source, const std::filesystem::path& path,
                                        const OpenOptions& options);
 

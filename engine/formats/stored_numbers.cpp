@@ -53,8 +53,8 @@ public:
             source_->read_level(level, box, voxels);
             return widen_integers(number_, voxels, file_);
         }
-        // They have half the size, so they are read into the end of the same memory; none is overwritten before it is
-        // used.
+        // The stored numbers take half the space, so they are read into the end of the output; no stored number is
+        // overwritten before it is used.
         const size_t count = voxels.size() / sizeof(float);
         const std::span<std::byte> halves = voxels.last(count * sizeof(uint16_t));
         source_->read_level(level, box, halves);
@@ -119,7 +119,7 @@ std::optional<uint16_t> half_of(double value)
     if (std::isinf(size)) return uint16_t(sign | INFINITE);
     const int exponent = size > 0.0 ? std::max(std::ilogb(size), -14) : -14;
     if (exponent > 15) return std::nullopt;
-    // A fraction that is rounded up to 2048 carries into the exponent.
+    // If the fraction is rounded up to 2048, it carries into the exponent.
     const int fraction = int(std::nearbyint(std::ldexp(size, 10 - exponent)));
     const int bits = ((exponent + 14) << 10) + fraction;
     if (bits >= INFINITE) return std::nullopt;

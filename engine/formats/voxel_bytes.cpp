@@ -55,7 +55,7 @@ private:
         std::shared_ptr<const VoxelBytes> bytes{};
     };
 
-    /// Number of files kept open: enough for threads that read different parts, and far below a thousand slices.
+    /// Maximum number of open files: enough for threads that read different parts, and far below a thousand slices.
     static constexpr size_t MAX_OPEN_FILES = 16;
 
     std::shared_ptr<const VoxelBytes> part(size_t number) const
@@ -98,7 +98,7 @@ size_t InputFile::read_some(int64_t offset, std::span<std::byte> buffer) const
 
 InputFile open_input_file(const std::filesystem::path& path)
 {
-    // Without O_NONBLOCK, opening a FIFO blocks until a writer appears, before we can detect that it is a FIFO.
+    // Without O_NONBLOCK, opening a FIFO would block until a writer appears, before it can be recognised as a FIFO.
     InputFile file{.path = path, .descriptor = FileDescriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK))};
     if (!file.descriptor) fail(path.string(), ": cannot be opened: ", reason_of(errno));
     struct stat status {};

@@ -1,6 +1,6 @@
 #pragma once
-// The bytes in which a file stores its voxels, in order: raw in a file, deflated, or spread over several files.
-// source_raw.cpp turns them into voxels.
+// A volume's voxels as the sequence of bytes in which they are stored: raw in a file, deflated, or spread over several
+// files. source_raw.cpp turns the bytes into voxels.
 
 #include <filesystem>
 #include <functional>
@@ -15,7 +15,7 @@ namespace shvr {
 class VoxelBytes {
 public:
     virtual ~VoxelBytes() = default;
-    /// Fills `bytes` from `offset` on. Throws `Error` if the data ends too early. Any thread may call it.
+    /// Fills `bytes` with the data from `offset` on. Throws `Error` if the data ends too early. Any thread may call it.
     virtual void read(int64_t offset, std::span<std::byte> bytes) const = 0;
 };
 
@@ -25,19 +25,19 @@ struct InputFile {
     FileDescriptor descriptor;
     int64_t bytes = 0;
 
-    /// Reads the existing bytes from `offset` on; returns the number of bytes read, which is smaller at the end of the
-    /// file.
+    /// Reads bytes from `offset` on. Returns the number of bytes read, which is smaller than the buffer only at the end
+    /// of the file.
     size_t read_some(int64_t offset, std::span<std::byte> buffer) const;
 };
-/// Fails for folders, pipes and devices, and never blocks on one.
+/// Opens a regular file. Fails for folders, pipes and devices, and never blocks on them.
 InputFile open_input_file(const std::filesystem::path& path);
 
-/// The bytes of `file` from `offset` on. Read with pread, never mapped: truncating the file while it is open causes an
-/// `Error`, not a signal.
+/// Returns the bytes of `file` from `offset` on. They are read with pread, never mapped: truncating the file while it
+/// is open causes an `Error`, not a signal.
 std::unique_ptr<VoxelBytes> bytes_of_file(InputFile file, int64_t offset);
 
-/// `count` parts of `share_bytes` each, one after the other; `open(i)` opens part i when it is needed. A few are kept
-/// open.
+/// Joins `count` parts of `share_bytes` each, one after the other. `open(i)` opens part i when it is needed; a few
+/// parts are kept open.
 std::unique_ptr<VoxelBytes> bytes_of_parts(size_t count, int64_t share_bytes,
                                            std::function<std::unique_ptr<VoxelBytes>(size_t)> open);
 

@@ -85,7 +85,7 @@ std::optional<Family> compute_family(VkInstance instance, VkPhysicalDevice physi
     return best;
 }
 
-/// Why a device with Vulkan 1.3 cannot run the kernels; empty: it can.
+/// Returns why a device with Vulkan 1.3 cannot run the kernels; empty if it can.
 std::string why_it_cannot(VkPhysicalDevice physical)
 {
     VkPhysicalDeviceVulkan12Features has12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
@@ -116,7 +116,7 @@ std::string why_it_cannot(VkPhysicalDevice physical)
 
 namespace {
 
-/// `fault`: the driver's report; may be empty.
+/// Throws DeviceLost. `fault`: the driver's report; may be empty.
 [[noreturn]] void fail_as_lost(const char* call, const std::string& fault)
 {
     throw DeviceLost(sentence("the graphics device stopped answering (device lost at ", call,
@@ -160,7 +160,7 @@ void Device::check(VkResult result, const char* call) const
     gpu::check(result, call);
 }
 
-/// Empty if the driver reports nothing. If there are many addresses and codes, only the first ones are listed.
+/// Returns the driver's fault report; empty if there is none. Lists only the first of many addresses and codes.
 std::string Device::fault_in_words() const
 {
     constexpr uint32_t MOST = 4;
@@ -169,7 +169,7 @@ std::string Device::fault_in_words() const
     if (get_fault_(device_, &counts, nullptr) < 0) return {};
     std::vector<VkDeviceFaultAddressInfoEXT> addresses(counts.addressInfoCount);
     std::vector<VkDeviceFaultVendorInfoEXT> codes(counts.vendorInfoCount);
-    counts.vendorBinarySize = 0;  // a dump for the driver's developers
+    counts.vendorBinarySize = 0;  // the vendor binary, a dump for the driver's developers, is not requested
     VkDeviceFaultInfoEXT info{.sType = VK_STRUCTURE_TYPE_DEVICE_FAULT_INFO_EXT,
                               .pAddressInfos = addresses.data(),
                               .pVendorInfos = codes.data()};
@@ -242,7 +242,7 @@ void Device::create_instance(const DeviceOptions& options)
         .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
         .messageSeverity =
             VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
-        // Performance advice is off: it objects to the single layout (GENERAL) that avoids all transitions.
+        // Performance advice is off: it objects to using the layout GENERAL alone, which avoids all layout transitions.
         .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
         .pfnUserCallback = on_message,
         .pUserData = this};
@@ -365,9 +365,9 @@ void Device::create_device(const DeviceOptions& options)
     VkPhysicalDeviceFeatures2 has{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &has12};
     vkGetPhysicalDeviceFeatures2(physical_, &has);
 
-    // Every device has both. Robust image access makes out-of-bounds reads 0: word_at(-1) of density_exact.glsl at the
-    // atlas's edge, whose result is not used, would be undefined without it. No kernel accesses buffers out of bounds
-    // (bounds_slow_test.cpp); with robust buffers a bug there is a wrong pixel, not a lost device or corrupted paint.
+    // Every device supports both. Robust images make out-of-bounds reads 0: word_at(-1) of density_exact.glsl at the
+    // atlas's edge, whose result is unused, would otherwise be undefined. No kernel accesses buffers out of bounds
+    // (bounds_slow_test.cpp); robust buffers make such a bug a wrong pixel, not a lost device or corrupted paint.
     VkPhysicalDeviceVulkan13Features want13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
                                             .robustImageAccess = VK_TRUE,
                                             .synchronization2 = VK_TRUE,
@@ -459,7 +459,7 @@ std::vector<std::string> Device::take_validation_messages()
 VkBool32 Device::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                             const VkDebugUtilsMessengerCallbackDataEXT* data, void* self)
 {
-    // The loader also reports here, about layers that the environment adds.
+    // The loader also sends messages here, about layers that the environment adds.
     if (data->pMessageIdName && std::strcmp(data->pMessageIdName, "Loader Message") == 0) return VK_FALSE;
     Device& device = *static_cast<Device*>(self);
     const std::lock_guard lock(device.messages_mutex_);

@@ -18,30 +18,30 @@
 
 namespace shvr::gpu {
 
-/// The device stopped responding: its driver was reset, or it was removed. Everything on it is lost, and every later
-/// call fails in the same way until the device is re-created.
+/// The device stopped responding: its driver was reset, or the device was removed. All of its contents are lost, and
+/// every later call fails in the same way until the device is re-created.
 class DeviceLost : public Error {
 public:
     using Error::Error;
 };
 
-/// Out of memory: the driver has none left, or a budget (memory.h) would be exceeded.
+/// Memory ran out: the driver has none left, or a budget (memory.h) would be exceeded.
 class MemoryError : public Error {
 public:
     using Error::Error;
 };
 
-/// Throws if `result` is a failure: `DeviceLost` or `MemoryError` where it means that, otherwise `Error`. The message
-/// names the call and the result.
+/// Throws if `result` is a failure: `DeviceLost` or `MemoryError` for results that mean those, otherwise `Error`. The
+/// message names the call and the result.
 void check(VkResult result, const char* call);
 #define SHVR_VK(call) ::shvr::gpu::check(call, #call)
 
 struct DeviceOptions {
-    std::string device;        ///< part of the device's name, or its index; empty: $SHVR_DEVICE, else the best
-    bool validation = false;   ///< Khronos layer with synchronisation validation; fails where it is not installed
-    bool looks_ahead = false;  ///< on a GPU, compiles kernels that graphs expect to need later (FrameGraph::expect)
-    /// Out-of-bounds reads return 0 or data of the same buffer, and out-of-bounds writes are discarded. It hides such
-    /// accesses from the validation layer.
+    std::string device;        ///< part of the device's name, or its index; empty: $SHVR_DEVICE, or the best device
+    bool validation = false;   ///< Khronos layer with synchronisation validation; fails if it is not installed
+    bool looks_ahead = false;  ///< on a GPU, compiles in advance the kernels that graphs expect (FrameGraph::expect)
+    /// Makes out-of-bounds reads return 0 or data of the same buffer, and discards out-of-bounds writes. Robust access
+    /// hides such accesses from the validation layer.
     bool robust_buffers = true;
     std::vector<std::string> instance_extensions;  ///< instance extensions for a window's surface; if any are given,
                                                    ///< the device can present
@@ -54,27 +54,27 @@ struct DeviceTraits {
     std::string name;
     std::string driver;   ///< name and version
     bool is_cpu = false;  ///< lavapipe and other software devices
-    /// Threads of a software device: each runs an equal, contiguous share of a dispatch's workgroups (lavapipe's do, in
-    /// index order), and the dispatch ends with the slowest.
+    /// Number of threads of a software device. Each thread runs an equal, contiguous share of a dispatch's workgroups
+    /// (lavapipe's threads do, in index order), and the dispatch ends with the slowest thread.
     uint32_t cpu_threads = 1;
-    bool is_integrated = false;      ///< it shares the host's memory
+    bool is_integrated = false;      ///< whether the device shares the host's memory
     float nanoseconds_per_tick = 0;  ///< 0: no timestamps
     uint32_t timestamp_bits = 0;
     bool has_pipeline_statistics = false;
     bool linear_r16 = false;   ///< R16_UNORM can be filtered by the sampler
     bool storage_r16 = false;  ///< R16_UNORM can be read with imageLoad
-    /// The largest device-local heap, as reported; where the device is integrated, the largest heap.
+    /// Size of the largest device-local heap, as reported; for integrated devices, of the largest heap of any kind.
     uint64_t device_bytes = 0;
     VkPhysicalDeviceLimits limits{};
-    uint64_t max_allocation_bytes = 0;  ///< upper limit of one buffer or image, as each needs a single allocation
+    uint64_t max_allocation_bytes = 0;  ///< limit of one buffer or image, as each needs a single allocation
     uint64_t max_buffer_bytes = 0;
-    uint64_t max_volume_bytes = 0;     ///< upper limit of a 3-D image of codes; at most one allocation
+    uint64_t max_volume_bytes = 0;     ///< limit of a 3-D image of codes; at most the limit of an allocation
     bool tells_memory_left = false;    ///< VK_EXT_memory_budget
     bool tells_faults = false;         ///< VK_EXT_device_fault
     bool has_memory_priority = false;  ///< VK_EXT_memory_priority
 };
 
-/// For Vulkan calls that are made twice, first for the count and then for the items: returns the items.
+/// For Vulkan calls that are made twice, first for the count and then for the items. Returns the items.
 template <class T, class Call>
 std::vector<T> enumerate(Call call)
 {
@@ -101,8 +101,8 @@ public:
     const DeviceTraits& traits() const { return traits_; }
     bool looks_ahead() const { return looks_ahead_; }
     const VkPhysicalDeviceMemoryProperties& memory_properties() const { return memory_properties_; }
-    /// Free bytes of the heap counted in `device_bytes`, as granted by the driver to this program given all other
-    /// programs' use; null if it reports none.
+    /// Free bytes of the heap counted in `device_bytes`: how much more the driver grants this program, given the use by
+    /// all other programs. Null if the driver does not report it.
     std::optional<uint64_t> heap_bytes_left() const;
 
     /// Names an object for validation messages, captures and traces.
@@ -110,22 +110,22 @@ public:
     void begin_label(VkCommandBuffer commands, const std::string& name) const;
     void end_label(VkCommandBuffer commands) const;
 
-    /// As gpu::check, for calls that can report a lost device: adds the driver's fault report to the message.
+    /// Like gpu::check, for calls that can report a lost device: adds the driver's fault report to the message.
     void check(VkResult result, const char* call) const;
 
-    /// Waits for everything submitted. The second form is for places that cannot report a failure.
+    /// Waits for all submitted work. The second function is for places that cannot report a failure.
     void wait_idle();
     void wait_idle_or_lost() noexcept;
 
-    // The queue completes submissions in submission order across all submitters.
-    // A submitter takes a number for its submission afterwards and reports when
-    // its fence is signalled, so that all users of the device know its progress.
+    // The queue completes submissions in submission order across all submitters. Each submitter takes a number right
+    // after submitting, and reports it when the fence is signalled, so that all users of the device know its
+    // progress.
     uint64_t note_submission() { return ++submitted_; }
     void note_done(uint64_t number) { done_ = std::max(done_, number); }
     uint64_t submitted() const { return submitted_; }
     uint64_t done() const { return done_; }
 
-    /// Messages of the validation layer so far (warnings and errors), oldest first; empties the list.
+    /// Returns the validation layer's messages so far (warnings and errors), oldest first, and empties the list.
     std::vector<std::string> take_validation_messages();
     /// Whether the validation layer is active.
     bool is_validated() const { return messenger_ != VK_NULL_HANDLE; }

@@ -37,7 +37,7 @@ std::optional<std::string> why_too_limited(const DeviceHas& has)
 
 namespace {
 
-/// Ranks hardware devices before software, discrete before integrated.
+/// Returns a device's rank: hardware devices before software, discrete before integrated.
 int rank(VkPhysicalDeviceType type)
 {
     switch (type) {
@@ -48,7 +48,7 @@ int rank(VkPhysicalDeviceType type)
     }
 }
 
-/// Why a device cannot be used, whatever shows its pictures; empty: it can.
+/// Returns why a device cannot be used, apart from presentation to a window; empty if it can.
 std::string why_unfit(const DeviceRow& row)
 {
     if (!row.has_1_3) return "it does not support Vulkan 1.3";

@@ -1,6 +1,6 @@
 #pragma once
-// Device capabilities that the kernels require beyond Vulkan 1.3's guarantees, which some devices may lack. A test
-// compares them with the kernels (tests/unit/device/device_needs_test.cpp). Any thread.
+// Device capabilities that the kernels require, but that some devices lack because Vulkan 1.3 does not guarantee them.
+// A test compares them with the kernels (tests/unit/device/device_needs_test.cpp). Any thread.
 
 #include <cstdint>
 #include <optional>
@@ -11,10 +11,10 @@
 
 namespace shvr::gpu {
 
-/// The maximum that any one kernel binds or uses.
+/// The maximum number of resources that any one kernel binds, and the maximum sizes that any one kernel uses.
 inline constexpr uint32_t MAX_STORAGE_IMAGES = 13, MAX_STORAGE_BUFFERS = 7, MAX_SAMPLED_IMAGES = 4;
 inline constexpr uint32_t MAX_PUSH_BYTES = 128, MAX_GROUP_THREADS = 128, MAX_SHARED_BYTES = 10592;
-/// The largest buffer bound regardless of volume size: the parents of a region of 256^3 voxels (regions/).
+/// Size of the largest buffer independent of the volume's size: the parents of a region of 256^3 voxels (regions/).
 inline constexpr uint32_t MIN_BUFFER_BYTES = 64u << 20;
 
 /// Capabilities that a device reports.
@@ -24,11 +24,11 @@ struct DeviceHas {
     VkFormatFeatureFlags r8_uint = 0, r32_uint = 0;  ///< features of images with optimal tiling
 };
 
-/// Returns why such a device cannot run the kernels: a message with the value found and the value expected; null: it
+/// Returns why such a device cannot run the kernels: a message with the value found and the value expected; null if it
 /// can.
 std::optional<std::string> why_too_limited(const DeviceHas& has);
 
-/// The message if there is no driver at all.
+/// The message for a system without any Vulkan driver.
 inline constexpr const char* NO_DRIVER =
     "no Vulkan device found; expected a GPU driver, or the package mesa-vulkan-drivers (lavapipe)";
 
@@ -39,11 +39,11 @@ struct DeviceRow {
     bool has_1_3 = true;
     bool computes = true;
     bool presents = true;  ///< whether it can present to the window, if there is one
-    std::string lacks{};   ///< why it cannot run the kernels; empty: it can, or is not known to be unable
+    std::string lacks{};   ///< why it cannot run the kernels; empty if it can, or if that is unknown
 };
 /// Returns the index of the device to use: among those that meet all requirements, hardware before software, discrete
-/// before integrated. `wanted`: part of a name in any case, or an index; empty: any. `wanted_by`: where that comes
-/// from. On failure, lists the devices found, each with the reason why it cannot be used.
+/// before integrated. `wanted`: part of a name, in upper or lower case, or an index; empty: any device. `wanted_by`:
+/// the option or variable that states it. On failure, lists the devices found, each with why it cannot be used.
 size_t best_device(const std::vector<DeviceRow>& rows, const std::string& wanted,
                    const std::string& wanted_by = "--device");
 

@@ -10,8 +10,8 @@ namespace shvr::gpu {
 
 namespace {
 
-/// Rounds up to one of two sizes per power of two: uploads of a brush vary by a voxel in size, and should reuse the
-/// buffer of the previous one.
+/// Rounds up to one of two sizes per power of two. Uploads of a brush vary in size by a voxel, and rounding lets them
+/// reuse the buffer of the previous upload.
 uint64_t rounded(uint64_t bytes)
 {
     constexpr uint64_t LEAST = 1024;
@@ -47,13 +47,13 @@ Storage& Executor::take_transient(const std::string& name, const ResourceDesc& w
 {
     ResourceDesc desc = wanted;
     if (placement != Placement::device) desc.bytes = rounded(desc.bytes);
-    // Takes the least recently used suitable buffer, so that buffers which only peaks need stay in rotation, and are
-    // not freed and created again.
+    // Takes the least recently used suitable buffer: so buffers that only peaks need stay in rotation, instead of being
+    // freed and created again.
     Transient* found = nullptr;
     for (const auto& transient : transients_) {
         if (transient->taken || transient->placement != placement || !(transient->desc == desc)) continue;
-        // Counters of kernels never reuse a buffer written by a copy: validation (1.3.239) does not always know that
-        // the copy's frame was waited for, and reports a read after write.
+        // Counters of kernels never reuse a buffer written by a copy: validation (1.3.239) does not always notice that
+        // the copy's frame was waited for, and would report a read-after-write hazard.
         if (transient->is_counted_in != is_counted_in) continue;
         if (!found || transient->last_run < found->last_run) found = transient.get();
     }
@@ -71,14 +71,14 @@ void Executor::trim(uint64_t runs)
 {
     std::erase_if(transients_, [&](const auto& t) {
         if (t->taken || t->last_run + runs > runs_) return false;
-        t->storage.reset_idle();  // no longer in use: the frame that last used it is done
+        t->storage.reset_idle();  // no longer in use, because the frame that last used it is done
         return true;
     });
 }
 
 Submission Executor::submit(FrameGraph graph, const Options& options)
 {
-    constexpr uint64_t RUNS_KEPT = 512;  // buffers of sizes no longer in use are freed then
+    constexpr uint64_t RUNS_KEPT = 512;  // buffers unused for longer than this are freed
     ++runs_;
     trim(RUNS_KEPT);
     auto frame = std::make_unique<Submission::Frame>(*this, std::move(graph), options);

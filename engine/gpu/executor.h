@@ -5,10 +5,10 @@
 //     gpu::Submission frame = executor.submit(std::move(graph));      // returns at once
 //     if (frame.done()) use(frame.finish());                          // or finish(), which waits
 //
-// Frames run on the device in submission order, and each knows what earlier frames left in flight. A frame is one queue
-// submission unless its passes' past costs predict that it would take long (pass_costs.h); then it is several, split
-// between the tiles of passes and the parts of copies. Callers that must let other work run in between make several
-// small frames and keep few of them in flight. One thread at a time.
+// Frames run on the device in submission order, and each knows which accesses earlier frames left in flight. A frame is
+// one queue submission unless the past costs of its passes predict a long one (pass_costs.h). Then it is split into
+// several, between the tiles of passes and the parts of copies. Callers that must let other work run in between make
+// several small frames and keep few of them in flight. One thread at a time.
 
 #include <chrono>
 #include <memory>
@@ -22,38 +22,38 @@
 
 namespace shvr::gpu {
 
-/// Work counters per pass, as counted by the kernel (shaders/counters.h names them).
+/// Number of work counters per pass, which kernels increment (shaders/counters.h names them).
 inline constexpr size_t COUNTERS = 16;
-/// Counter rows of a pass that counts the work of every thread (a power of two): kernels spread their groups over the
-/// rows to reduce contention, and the report holds the sums.
+/// Number of counter rows of a pass that counts the work of every thread (a power of two). Kernels spread their groups
+/// over the rows to reduce contention; the report holds the sums of all rows.
 inline constexpr size_t COUNTER_ROWS = 64;
 
 struct PassReport {
     std::string name;
     std::string kernel;     ///< empty for copies and fills
-    double start_ms = 0.0;  ///< time since the first pass of the frame began
-    double gpu_ms = 0.0;    ///< 0 where the device has no timestamps, see `timed`
+    double start_ms = 0.0;  ///< time from the start of the frame's first pass to the start of this one
+    double gpu_ms = 0.0;    ///< 0 if the device has no timestamps, see `timed`
     bool timed = false;
-    std::chrono::steady_clock::time_point recorded{};  ///< when the host began to record it
-    double record_ms = 0.0;                            ///< host time to bind and record it
+    std::chrono::steady_clock::time_point recorded{};  ///< when the host began to record the pass
+    double record_ms = 0.0;                            ///< host time to bind and record the pass
     uint32_t dispatches = 0;
-    uint32_t tiles = 0;              ///< number of dispatches that its declaration asks for; slow devices split it into
-                                     ///< more
-    uint32_t submissions = 0;        ///< submissions that hold parts of it
-    uint64_t bytes = 0;              ///< total size of the bound resources: an upper bound of the bytes that it
-                                     ///< accesses
-    std::string barrier;             ///< "compute -> transfer", empty if none
-    std::vector<uint64_t> counters;  ///< empty where the kernel has none
-    uint32_t counted_rows = 0;       ///< number of rows of counters in which anything was counted
-    /// Threads that ran, as counted by the device; null: not requested, not supported, or the pass spans too many
-    /// submissions.
+    uint32_t tiles = 0;              ///< number of dispatches that the pass's declaration asks for; slow
+                                     ///< devices split it into more
+    uint32_t submissions = 0;        ///< number of submissions that contain parts of the pass
+    uint64_t bytes = 0;              ///< total size of the bound resources: an upper bound of the bytes
+                                     ///< that the pass accesses
+    std::string barrier;             ///< "compute -> transfer"; empty if there is none
+    std::vector<uint64_t> counters;  ///< empty if the kernel has no counters
+    uint32_t counted_rows = 0;       ///< number of counter rows in which anything was counted
+    /// Number of threads that ran, as counted by the device. Null if not requested or not supported, or if the pass is
+    /// split into too many submissions.
     std::optional<uint64_t> invocations;
 };
 
 struct FrameResult {
-    std::vector<std::vector<std::byte>> read_backs;  ///< by the index FrameGraph::read_back gave
+    std::vector<std::vector<std::byte>> read_backs;  ///< by index, as returned by FrameGraph::read_back
     std::vector<PassReport> passes;                  ///< in order of execution
-    double gpu_ms = 0.0;                             ///< from the first pass's start to the last one's end; 0: untimed
+    double gpu_ms = 0.0;                             ///< from the first pass's start to the last pass's end; 0: untimed
     double wall_ms = 0.0;                            ///< from first submission to completion, on the host's clock
 };
 
@@ -87,7 +87,7 @@ public:
     struct Options {
         bool timestamps = true;
         bool statistics = false;  ///< whether invocations are counted
-        bool serialize = false;   ///< a full barrier between passes, for attributable times
+        bool serialize = false;   ///< puts a full barrier between passes, so that times belong to single passes
     };
 
     Executor(Device& device, Memory& memory);
@@ -95,8 +95,8 @@ public:
     Executor(const Executor&) = delete;
     Executor& operator=(const Executor&) = delete;
 
-    /// Compiles, records and submits. Afterwards imported objects carry the states that the frame will leave. On
-    /// failure the frame is discarded, and the graph's rollbacks still run when it is destroyed
+    /// Compiles, records and submits the graph. Afterwards imported objects have the states that the frame will leave.
+    /// On failure the frame is discarded, and the graph's rollbacks still run when it is destroyed
     /// (FrameGraph::unless_submitted).
     Submission submit(FrameGraph graph, const Options& options);
     Submission submit(FrameGraph graph) { return submit(std::move(graph), Options{}); }
@@ -104,7 +104,7 @@ public:
     FrameResult run(FrameGraph graph, const Options& options) { return submit(std::move(graph), options).finish(); }
     FrameResult run(FrameGraph graph) { return run(std::move(graph), Options{}); }
 
-    /// Number of kernels expected by graphs (FrameGraph::expect) that are still to be compiled.
+    /// Number of kernels that graphs expect (FrameGraph::expect) and that are not compiled yet.
     size_t expected_kernels() const { return kernels_.expected(); }
 
     /// Frees transient resources that the last `runs` frames did not use.
@@ -117,10 +117,10 @@ private:
         Placement placement;
         uint64_t last_run = 0;
         bool taken = false;
-        bool is_counted_in = false;  ///< kernels add to counters in it
+        bool is_counted_in = false;  ///< kernels add to counters in this resource
         Storage storage;
     };
-    /// Host-visible storage may be larger than `wanted`.
+    /// Takes a transient resource. Host-visible storage may be larger than `wanted`.
     Storage& take_transient(const std::string& name, const ResourceDesc& wanted, Placement placement,
                             bool is_counted_in = false);
 
@@ -130,7 +130,7 @@ private:
     VkSampler sampler_ = VK_NULL_HANDLE;
     uint64_t runs_ = 0;
     PassCosts costs_;
-    std::vector<std::unique_ptr<FrameObjects>> idle_objects_;  ///< for reuse by the next frames
+    std::vector<std::unique_ptr<FrameObjects>> idle_objects_;  ///< ready for reuse by later frames
     std::vector<std::unique_ptr<Transient>> transients_;
 };
 

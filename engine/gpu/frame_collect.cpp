@@ -47,12 +47,12 @@ void Submission::Frame::submit()
             for (Memory::Object* image : transitioned) image->in_general_layout = true;
     }
     number = device.note_submission();
-    // Barriers are global, so they also affect imports that no kept pass uses.
+    // Barriers are global, so they also change the states of imports that no kept pass uses.
     for (uint32_t i = 0; i < compiled.final_states.size(); ++i)
         if (compiled.used[i] || graph.resources()[i].imported) object(i).state = compiled.final_states[i];
 }
 
-/// Part of the frame ran, but which part is unknown.
+/// Marks states as unknown: a part of the frame ran, but it is unknown which part.
 void Submission::Frame::note_unknown_states() const
 {
     for (uint32_t i = 0; i < compiled.used.size(); ++i)
@@ -62,7 +62,7 @@ void Submission::Frame::note_unknown_states() const
 bool Submission::Frame::done() const
 {
     if (number == 0 || number <= executor.device_.done()) return true;
-    // Has the same result as vkGetFenceStatus, and informs validation that the frame was waited for.
+    // Returns what vkGetFenceStatus would, but also tells the validation layer that the frame was waited for.
     const VkFence fence = objects->fence();
     const VkResult result = vkWaitForFences(executor.device_.handle(), 1, &fence, VK_TRUE, 0);
     executor.device_.check(result, "vkWaitForFences");
@@ -138,8 +138,8 @@ FrameResult Submission::Frame::collect()
         }
         for (size_t query = 0; query < counted_steps.size() && !prepared[i].is_counted_in_part; ++query)
             if (counted_steps[query] == i) report.invocations = report.invocations.value_or(0) + invocations[query];
-        // On a device without timestamps a pass takes at most the host time of all passes up to it. A frame that merely
-        // was not timed teaches nothing: it may have waited long, in the queue and after.
+        // On a device without timestamps, a pass takes at most the host time of all passes up to it. With timestamps,
+        // an untimed frame gives no estimate: it may have waited long, both in the queue and after completion.
         if (prepared[i].kernel && (is_timed || traits.timestamp_bits == 0))
             executor.costs_.learn(data.kernel, threads_of(data, *prepared[i].kernel),
                                   is_timed ? report.gpu_ms : result.wall_ms);

@@ -1,4 +1,4 @@
-// Copies, fills and read-backs of a graph (frame_in_flight.h), in parts that keep submissions short.
+// Copies, fills and read-backs of a graph (frame_in_flight.h), split into parts that keep submissions short.
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@ namespace shvr::gpu {
 
 namespace {
 
-/// Estimated time of a part: the maximum for a part, scaled by its share of the limits.
+/// Estimates the time of a part: the time of the largest part, scaled by how much of the limits this part uses.
 double copy_ms(const std::vector<BufferRegion>& part)
 {
     uint64_t bytes = 0;
@@ -47,13 +47,13 @@ void Submission::Frame::record_fill(const PassData& data, Prepared& state)
     record_parts(
         state, data.name, copy_parts({{0, 0, buffer.desc.bytes}}), [&](VkCommandBuffer commands, const auto& part) {
             const BufferRegion& r = part[0];
-            const bool is_last = r.target_offset + r.bytes == buffer.desc.bytes;  // its size may not be a multiple of 4
+            const bool is_last = r.target_offset + r.bytes == buffer.desc.bytes;  // the size may not be a multiple of 4
             vkCmdFillBuffer(commands, buffer.buffer, r.target_offset, is_last ? VK_WHOLE_SIZE : r.bytes,
                             data.fill_value);
         });
 }
 
-/// Clears with one command: tens of thousands of bricks as separate regions would take a driver seconds to record.
+/// Clears an image with one command: recording tens of thousands of bricks as separate regions can take seconds.
 void Submission::Frame::record_clear(const PassData& data, const Memory::Object& image, Prepared& state)
 {
     const uint32_t value = data.fill_value;

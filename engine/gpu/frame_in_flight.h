@@ -1,5 +1,5 @@
 #pragma once
-// A graph in flight, from its declaration to its results, for executor.cpp alone: the memory and driver objects it
+// A graph in flight, from its declaration to its results, for executor.cpp alone: the memory and driver objects that it
 // needs (frame_prepare.cpp), its commands (frame_record.cpp, frame_copies.cpp) and its results (frame_collect.cpp).
 
 #include <chrono>
@@ -18,21 +18,21 @@ inline uint64_t aligned(uint64_t bytes, uint64_t alignment)
     return (bytes + alignment - 1) / alignment * alignment;
 }
 
-/// Vulkan's stages and accesses of a barrier.
+/// Converts a graph's stages to Vulkan's stages, and to the accesses that a barrier between them must cover.
 VkPipelineStageFlags2 vulkan_stages(Stages stages);
 VkAccessFlags2 touched_by(Stages stages);
 void record_barrier(VkCommandBuffer commands, const Barrier& barrier);
 
-/// Groups of threads along each axis.
+/// Number of thread groups along each axis.
 inline glm::uvec3 groups_for(const glm::uvec3& threads, const glm::uvec3& local)
 {
     return (threads + local - 1u) / local;
 }
 uint64_t threads_of(const glm::uvec3& groups, const glm::uvec3& local);
-/// All threads of a pass, including those of partly filled groups.
+/// Number of threads of a pass, including idle threads of partly filled groups.
 uint64_t threads_of(const PassData& pass, const Kernel& kernel);
 
-/// One graph in flight: everything that lives until the device has finished it.
+/// One graph in flight: everything that must live until the device has finished the graph.
 struct Submission::Frame {
     Executor& executor;
     const FrameGraph graph;
@@ -48,13 +48,13 @@ struct Submission::Frame {
     uint64_t counter_bytes = 0;        // bytes per pass
     std::unique_ptr<FrameObjects> objects;
     bool is_timed = false;
-    std::vector<size_t> counted_steps;  // per query of statistics
-    uint32_t statistics_room = 0;       // capacity in queries; 0: no pool is created
+    std::vector<size_t> counted_steps;  // index of the step that each statistics query counts
+    uint32_t statistics_room = 0;       // capacity in queries; 0: no query pool is created
     bool is_in_query = false;
-    uint64_t number = 0;                  // number of its last submission; 0: none
-    std::vector<VkCommandBuffer> chunks;  // one submission each
-    double chunk_ms = 0.0;                // estimated time of the last chunk so far
-    VkPipeline in_use = VK_NULL_HANDLE;   // the pipeline bound in it
+    uint64_t number = 0;                  // number of the frame's last submission; 0: none
+    std::vector<VkCommandBuffer> chunks;  // one command buffer for each submission
+    double chunk_ms = 0.0;                // estimated time of the last chunk as recorded so far
+    VkPipeline in_use = VK_NULL_HANDLE;   // the pipeline bound in the last chunk
     std::chrono::steady_clock::time_point started;
     struct Prepared {
         const Kernel* kernel = nullptr;
@@ -67,8 +67,8 @@ struct Submission::Frame {
         std::chrono::steady_clock::time_point recorded{};
         std::chrono::steady_clock::duration recording{0};  // binding included
     };
-    std::vector<Prepared> prepared;             // per step
-    std::vector<Memory::Object*> transitioned;  // images that the first chunk takes out of the undefined layout
+    std::vector<Prepared> prepared;             // one for each step
+    std::vector<Memory::Object*> transitioned;  // images that the first chunk transitions from the undefined layout
 
     Frame(Executor& owner, FrameGraph frame_graph, const Executor::Options& frame_options)
         : executor(owner), graph(std::move(frame_graph)), options(frame_options), compiled(graph.compile())

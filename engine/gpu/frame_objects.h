@@ -1,7 +1,7 @@
 #pragma once
 // The driver objects of a frame in flight, apart from memory: a fence, command buffers, queries and descriptors. They
-// are created once and reused by later frames, because creating them costs drivers more than using them. One thread at
-// a time.
+// are created once and reused by later frames, because drivers need more time to create them than to use them. One
+// thread at a time.
 
 #include <map>
 #include <vector>
@@ -14,7 +14,7 @@ class FrameObjects {
 public:
     struct Needs {
         uint32_t queries = 0;     ///< timestamp queries
-        uint32_t statistics = 0;  ///< queries of compute invocations
+        uint32_t statistics = 0;  ///< queries that count compute invocations
         uint32_t sets = 0;
         std::map<VkDescriptorType, uint32_t> descriptors;
     };
@@ -24,7 +24,7 @@ public:
     FrameObjects& operator=(const FrameObjects&) = delete;
 
     /// Prepares the objects for another frame; the device must have finished the previous one. Throws when out of
-    /// memory, after which it may be called again.
+    /// memory; it may be called again after that.
     void renew(const Needs& needs);
     /// Begins another command buffer of this frame.
     VkCommandBuffer begin_commands();
@@ -46,7 +46,7 @@ private:
     VkFence fence_ = VK_NULL_HANDLE;
     VkCommandPool pool_ = VK_NULL_HANDLE;
     std::vector<VkCommandBuffer> commands_;
-    size_t begun_ = 0;  ///< command buffers in use
+    size_t begun_ = 0;  ///< number of command buffers in use
     Queries queries_, statistics_;
     VkDescriptorPool descriptors_ = VK_NULL_HANDLE;
     Needs room_;  ///< capacity of the descriptor pool

@@ -10,7 +10,7 @@ namespace shvr::gpu {
 
 namespace {
 
-/// Host-writable device memory may be limited to 256 MiB in total, for all programs.
+/// Returns where an upload goes. Only small ones go to host-writable device memory: it may be 256 MiB in total.
 Placement placement_of(uint64_t bytes)
 {
     constexpr uint64_t MOST = uint64_t{4} << 20;
@@ -19,8 +19,8 @@ Placement placement_of(uint64_t bytes)
 
 }  // namespace
 
-/// Whether any kernel counts the work of every thread, rather than rare events. Then counters are in device memory,
-/// where atomic additions are faster; otherwise in host memory, which needs no pass to clear or copy.
+/// Whether any kernel counts the work of every thread, rather than rare events. If so, counters are in device memory,
+/// where atomic additions are faster; otherwise in host memory, where no pass has to clear or copy them.
 bool Submission::Frame::counts_work() const
 {
     return std::ranges::any_of(compiled.steps, [this](const Step& step) {
@@ -38,7 +38,7 @@ Storage& Submission::Frame::take_resource(const FrameGraph::ResourceData& resour
     return storage;
 }
 
-/// `are_copied`: kernels count in the device's memory, otherwise in the host's.
+/// `are_copied`: kernels count in device memory, and the counters are copied to the host; otherwise in host memory.
 void Submission::Frame::take_counters(uint64_t bytes, bool are_copied)
 {
     counters = &take("counters", buffer_desc(bytes), Placement::download, !are_copied);

@@ -1,4 +1,4 @@
-// Records the commands of a graph (frame_in_flight.h): barriers, dispatches, and where one submission ends.
+// Records the commands of a graph (frame_in_flight.h): barriers and dispatches. Decides where each submission ends.
 
 #include <algorithm>
 #include <cmath>
@@ -65,8 +65,8 @@ uint64_t threads_of(const PassData& pass, const Kernel& kernel)
 
 namespace {
 
-/// The size that a pass without tiles runs at once: all of it, or slabs across its longest side that take half a
-/// submission.
+/// Returns the number of groups that a pass without tiles dispatches at once: all of them, or a slab across the longest
+/// side that takes half a submission's time.
 glm::uvec3 slab_of(const glm::uvec3& groups, double all_ms)
 {
     glm::uvec3 slab = groups;
@@ -91,7 +91,7 @@ void Submission::Frame::end_chunk()
     SHVR_VK(vkEndCommandBuffer(chunks.back()));
 }
 
-/// A query must be within one command buffer, so a pass has one per submission.
+/// Begins a statistics query. A query must stay within one command buffer, so a pass has one query per submission.
 void Submission::Frame::begin_statistics(Prepared& state)
 {
     if (statistics_room == 0 || is_in_query) return;
@@ -110,7 +110,7 @@ void Submission::Frame::end_statistics()
         vkCmdEndQuery(chunks.back(), objects->statistics(), uint32_t(counted_steps.size()) - 1);
 }
 
-/// Starts another submission if this one would take too long with the next command.
+/// Starts another submission if adding the next command to this one would make it too long.
 void Submission::Frame::make_room(double ms, Prepared& state)
 {
     const bool is_first = state.submissions == 0;
@@ -120,7 +120,7 @@ void Submission::Frame::make_room(double ms, Prepared& state)
     chunk_ms += ms;
 }
 
-/// Images are created in an undefined layout and stay in GENERAL from the first submitted frame on.
+/// Moves new images, which have an undefined layout, to GENERAL, where they stay from the first submitted frame on.
 void Submission::Frame::transition_new_images()
 {
     std::vector<VkImageMemoryBarrier2> barriers;
@@ -166,8 +166,8 @@ void Submission::Frame::record()
             record_barrier(chunks.back(), {STAGE_COMPUTE | STAGE_TRANSFER, STAGE_COMPUTE | STAGE_TRANSFER, true});
         else if (step.barrier)
             record_barrier(chunks.back(), *step.barrier);
-        // Written once all earlier submissions have completed: otherwise their remaining work would count as this
-        // pass's time.
+        // This timestamp is written once all earlier submissions have completed; otherwise their remaining work would
+        // count as time of this pass.
         if (is_timed)
             vkCmdWriteTimestamp2(chunks.back(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries, uint32_t(2 * i));
         record_pass(step, prepared[i]);
@@ -226,8 +226,8 @@ void Submission::Frame::record_dispatches(const PassData& data, Prepared& state)
                 const VkCommandBuffer commands = chunks.back();
                 executor.device_.begin_label(commands, data.name);
                 bind(data, state);
-                // Validation of hazards treats images as a whole, though each dispatch writes texels of its own. It
-                // ignores dispatches with a base, so the first tile stands for all.
+                // Validation reports hazards for an image as a whole, though each dispatch writes texels of its own. It
+                // ignores dispatches with a base, so only the first tile is validated.
                 if (at == glm::uvec3(0))
                     vkCmdDispatch(commands, count.x, count.y, count.z);
                 else
@@ -239,7 +239,7 @@ void Submission::Frame::record_dispatches(const PassData& data, Prepared& state)
     in_use = VK_NULL_HANDLE;
 }
 
-/// Binds the resources of a pass unless they are bound already, so that all tiles of a pass share them.
+/// Binds a pass's pipeline and resources unless they are bound already: all tiles of a pass share one binding.
 void Submission::Frame::bind(const PassData& data, const Prepared& state)
 {
     const Kernel& kernel = *state.kernel;

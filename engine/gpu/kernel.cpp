@@ -179,7 +179,7 @@ void Kernel::create_pipeline(PipelineCache& cache, std::span<const uint32_t> spi
 
 Kernels::Kernels(Device& device) : device_(device), cache_(device)
 {
-    // Only on GPUs: on a CPU device the cores are needed for drawing, and its driver compiles when a kernel first runs.
+    // No worker for CPU devices: drawing needs the cores, and the driver compiles each kernel when it first runs.
     if (device.traits().is_cpu || (cache_.likely().empty() && !device.looks_ahead())) return;
     expected_.assign(cache_.likely().begin(), cache_.likely().end());
     worker_ = std::thread([this] { work(); });
@@ -199,7 +199,7 @@ Kernels::~Kernels()
     cache_.save(used);
 }
 
-/// The failure is reported when the kernel is requested, by compiling it again.
+/// Compiles expected kernels. A failure is not reported here, but when the kernel is requested and compiled again.
 void Kernels::work() noexcept
 {
     for (;;) {

@@ -1,6 +1,6 @@
 #pragma once
-// Kernels: SPIR-V reflected once, and one pipeline per set of specialization constants. Bindings are matched by the
-// names in the GLSL source; a missing, unknown or wrongly used name is refused with a list of the kernel's
+// Kernels: SPIR-V, reflected once, and one pipeline per set of specialization constants. Bindings are matched by the
+// names in the GLSL source. A missing, unknown or wrongly used name is refused, and the message lists the kernel's
 // declarations.
 
 #include <array>
@@ -19,7 +19,7 @@
 
 namespace shvr::gpu {
 
-/// What a kernel declares, read from its SPIR-V.
+/// A kernel's declarations, read from its SPIR-V.
 struct KernelInterface {
     struct Slot {
         std::string name;
@@ -41,8 +41,8 @@ struct KernelInterface {
     std::vector<Constant> constants;
     std::array<uint32_t, 3> local_size{1, 1, 1};
     uint32_t push_bytes = 0;
-    /// Members of the push block and of the structs in storage blocks, by block name: tests compare the offsets with
-    /// offsetof, so that both languages agree.
+    /// Members of the push block and of the structs in storage blocks, by block name. Tests compare their offsets with
+    /// offsetof, so that GLSL and C++ agree.
     std::map<std::string, std::vector<Member>> members;
 
     const Slot* slot(const std::string& name) const;
@@ -76,8 +76,8 @@ private:
     VkPipeline pipeline_ = VK_NULL_HANDLE;
 };
 
-/// All kernels of the program, created on first use. On a GPU a worker thread compiles those used in the last run
-/// (pipeline_cache.h) from the start, then those that are expected. `get` is for one thread.
+/// All kernels of the program, created on first use. On a GPU a worker thread first compiles the kernels used in the
+/// last run (pipeline_cache.h), then those that graphs expect. Only one thread may call `get`.
 class Kernels {
 public:
     explicit Kernels(Device& device);
@@ -85,13 +85,13 @@ public:
     Kernels(const Kernels&) = delete;
     Kernels& operator=(const Kernels&) = delete;
 
-    /// On failure, lists the known kernels or constants. Waits if the worker is compiling this kernel.
+    /// Returns a kernel, after the worker has finished with it. On failure, lists the known kernels or constants.
     const Kernel& get(const std::string& name, const std::vector<std::pair<std::string, uint32_t>>& constants);
     const KernelInterface& interface(const std::string& name);
     /// Hints that these kernels are likely to be needed; the worker compiles them if the device looks ahead
     /// (gpu::DeviceOptions).
     void expect(std::span<const KernelVariant> variants);
-    /// Number of kernels that the worker has still to compile.
+    /// Number of kernels that the worker still has to compile.
     size_t expected() const;
 
 private:
@@ -102,7 +102,7 @@ private:
     struct Made {
         std::unique_ptr<Kernel> kernel;
         bool is_in_work = false;
-        bool is_used = false;  ///< `get` has returned it
+        bool is_used = false;  ///< `get` has returned this kernel
     };
     const Code& code(const std::string& name);
     Made& make(const KernelVariant& variant);
@@ -110,16 +110,16 @@ private:
 
     Device& device_;
     PipelineCache cache_;
-    mutable std::mutex mutex_;  ///< guards all members below
+    mutable std::mutex mutex_;  ///< guards all of the following members
     std::map<std::string, Code> codes_;
     std::map<KernelVariant, Made> kernels_;
-    std::deque<KernelVariant> expected_;  ///< the first is being compiled
+    std::deque<KernelVariant> expected_;  ///< the first of these kernels is being compiled
     std::condition_variable is_made_, has_work_;
     bool ends_ = false;
     std::thread worker_;
 };
 
-/// Checks the bindings of a compute pass against its kernel's declarations; fails with both lists.
+/// Checks the bindings of a compute pass against its kernel's declarations. On failure, the message lists both.
 void check_bindings(const PassData& pass, const KernelInterface& interface,
                     const std::vector<FrameGraph::ResourceData>& resources);
 

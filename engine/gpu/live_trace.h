@@ -1,7 +1,7 @@
 #pragma once
 // Sends data to Tracy (https://github.com/wolfpld/tracy), a profiler that watches a program while it runs: host spans,
 // device passes, window frames. Only in builds with -DSHVR_TRACY=FOLDER, where FOLDER holds Tracy's sources; in all
-// others nothing of it is compiled: no call, no branch, no byte (tests/cli/instruments/test_live_trace.py).
+// other builds nothing is compiled: no call, no branch, no byte (tests/cli/instruments/test_live_trace.py).
 
 #include <cstdint>
 #include <span>
@@ -15,7 +15,7 @@ inline constexpr bool IS_TRACED = true;
 inline constexpr bool IS_TRACED = false;
 #endif
 
-/// A host span, from here to the end of the block. Any thread.
+/// A host span, from its declaration to the end of the block. Any thread.
 class TraceSpan {
 public:
 #ifdef SHVR_TRACY
@@ -32,7 +32,7 @@ private:
 #endif
 };
 
-/// A device pass; times are ticks of the device's clock.
+/// A device pass. Its times are in ticks of the device's clock.
 struct TracedPass {
     std::string_view name;
     uint64_t begin = 0, end = 0;
@@ -46,10 +46,10 @@ struct DeviceClock {
 
 #ifdef SHVR_TRACY
 /// Sends the passes of a frame, in order of execution, once the device has finished it. The clocks of host and device
-/// are not calibrated against each other: the first frame of a device is shown to end when it was seen to be done,
-/// later ones follow their ticks. One thread.
+/// are not calibrated: a device's first frame is shown as if it ended when the host noticed its end, and later frames
+/// follow by the device's ticks. One thread.
 void trace_passes(const DeviceClock& clock, std::span<const TracedPass> passes);
-/// Marks that the window shows its next frame.
+/// Tells Tracy that the window shows its next frame.
 void trace_frame();
 #else
 inline void trace_passes(const DeviceClock&, std::span<const TracedPass>) {}

@@ -1,9 +1,9 @@
 #pragma once
 // Device memory with accounting: every buffer and image has a name, its bytes are counted by name, and two budgets
-// (device, host) are hard limits. Every allocation is checked against its budget first; if it does not fit, or if the
-// driver has none left, idle memory is freed. Small buffers share allocations (memory_block.h), whose number drivers
-// limit, and so do small images. Memory released while the device may still use it is freed once that use is over; no
-// caller waits for it unless its bytes are needed at once.
+// (device, host) are hard limits. Every allocation is first checked against its budget; if the budget or the driver
+// lacks memory, idle memory is freed. Small buffers share allocations (memory_block.h), whose number drivers limit;
+// small images share others. Memory released while the device may still use it is freed after that use; callers wait
+// for it only if they need its bytes at once.
 //
 // One thread at a time.
 
@@ -28,31 +28,31 @@ struct Budget {
     uint64_t host_bytes = 0;    ///< 0: 1 GiB of mapped memory
 };
 
-/// Three quarters of the device's memory, or half of it if it is shared with the host; never more than the driver
-/// reports as left by other programs.
+/// Returns three quarters of the device's memory, or half of it if it is shared with the host; never more than `left`,
+/// the bytes that the driver reports as left by other programs.
 uint64_t automatic_device_bytes(const DeviceTraits& traits, std::optional<uint64_t> left);
 
-/// The budget would be exceeded; the message names the budget and a remedy.
+/// An allocation would exceed the budget. The message names the budget and a remedy.
 class BudgetError : public MemoryError {
 public:
     using MemoryError::MemoryError;
 };
 
-/// Memory types for a placement among those that a resource allows, best first.
+/// Returns the memory types for a placement among those that a resource allows, best first.
 std::vector<uint32_t> memory_types(const VkPhysicalDeviceMemoryProperties& properties, uint32_t allowed,
                                    Placement placement);
 
-/// Priority from 0 to 1 (VK_EXT_memory_priority) for keeping such memory on the device when other programs leave too
-/// little: data that rays look up repeatedly ranks above pictures, which are written once.
+/// Returns the priority, 0 to 1 (VK_EXT_memory_priority), of keeping such memory on the device when other programs
+/// leave too little. Data that rays read repeatedly has a higher priority than pictures, which are written once.
 float memory_priority(const ResourceDesc& desc, Placement placement);
 
-/// "1.5 MiB", rounded up to a tenth.
+/// Returns a size as text, such as "1.5 MiB", rounded up to a tenth.
 std::string mebibytes(uint64_t bytes);
 
 class Memory;
 
-/// A buffer or an image that owns its memory. Move-only. It may be destroyed while the device uses it; the destructor
-/// never waits.
+/// A buffer or an image that owns its memory. Move-only. It may be destroyed while the device still uses it, and the
+/// destructor never waits.
 class Storage {
 public:
     Storage() = default;
@@ -62,12 +62,12 @@ public:
 
     explicit operator bool() const { return memory_ != nullptr; }
     const ResourceDesc& desc() const;
-    /// What a frame graph needs to import it; the state is the one left by the last submitted frame.
+    /// Returns the import for a frame graph; its state is the one left by the last submitted frame.
     Import import() const;
     /// The mapped bytes of an upload or download buffer.
     std::span<std::byte> mapped() const;
     void reset();
-    /// As reset(), for callers that know that no submission in flight uses it.
+    /// Like reset(), for callers that know that no submission in flight uses this storage.
     void reset_idle();
 
 private:
@@ -84,15 +84,15 @@ public:
     Memory(const Memory&) = delete;
     Memory& operator=(const Memory&) = delete;
 
-    /// Why the device could not hold such a resource however much memory is free, as a message; null: it can.
+    /// Returns why the device can never hold such a resource, even if all memory is free; null if it can.
     std::optional<std::string> why_not(const std::string& name, const ResourceDesc& desc,
                                        Placement placement = Placement::device) const;
     bool can_create(const ResourceDesc& desc) const { return !why_not("", desc); }
-    /// Throws BudgetError if the budget cannot hold it, MemoryError if the driver cannot, and Error if the device never
-    /// can (`why_not`). `purpose`: the use of the memory, in the user's words.
+    /// Throws BudgetError if the budget is too small, MemoryError if the driver lacks memory, and Error if the device
+    /// can never hold the resource (`why_not`). `purpose`: the use of the memory, in the user's words.
     Storage create(const std::string& name, const ResourceDesc& desc, Placement placement = Placement::device,
                    const char* purpose = "a step of the work");
-    /// Sets a function that frees allocated but idle memory; it is called before an allocation is refused.
+    /// Sets a function that frees allocated but idle memory. It is called before an allocation is refused.
     void free_idle_by(std::function<void()> free_idle) { free_idle_ = std::move(free_idle); }
     void free_idle();
 
@@ -105,19 +105,19 @@ public:
         VkImage image = VK_NULL_HANDLE;
         VkImageView view = VK_NULL_HANDLE;
         VkDeviceMemory memory = VK_NULL_HANDLE;
-        uint64_t offset = 0;           ///< in `memory`
-        MemoryBlock* block = nullptr;  ///< the block that `memory` belongs to; null: memory of this object alone
+        uint64_t offset = 0;           ///< offset in `memory`
+        MemoryBlock* block = nullptr;  ///< the block that `memory` belongs to; null: the object has its own memory
         uint64_t bytes = 0;            ///< as counted against the budget
         std::byte* mapped = nullptr;
         bool in_general_layout = false;
-        ResourceState state;  ///< accesses that the last submitted frame left in flight
+        ResourceState state;  ///< accesses left in flight by the last submitted frame
     };
     Object& object(uint32_t id);
 
     /// Frees released memory that is no longer in use.
     void collect() noexcept;
 
-    // Released memory counts as free: an allocation that needs it waits for it.
+    // Released memory counts as free. An allocation that needs it waits until the device no longer uses it.
     uint64_t device_bytes() const { return device_bytes_ - retired_device_bytes_; }
     uint64_t host_bytes() const { return host_bytes_ - retired_host_bytes_; }
     uint64_t peak_device_bytes() const { return peak_device_bytes_; }
@@ -126,7 +126,7 @@ public:
     uint64_t device_bytes_left() const { return budget_.device_bytes - device_bytes(); }
     uint64_t host_bytes_left() const { return budget_.host_bytes - host_bytes(); }
     std::map<std::string, uint64_t> bytes_by_name() const;
-    /// Number of driver allocations that exist, and of all made so far.
+    /// Number of driver allocations that exist now, and number of all allocations so far.
     uint64_t allocations() const { return allocations_; }
     uint64_t allocations_made() const { return allocations_made_; }
     Device& device() { return device_; }

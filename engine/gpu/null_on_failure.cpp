@@ -1,6 +1,6 @@
-// Handles that a failed call leaves are null. Vulkan leaves them undefined, and Dear ImGui's back end then frees memory
-// twice: it destroys a vertex buffer, fails to create a larger one and keeps the handles of the first. The linker sends
-// every call of this program here (--wrap in CMakeLists.txt).
+// Sets handles to null when a call fails. Vulkan leaves them undefined, and Dear ImGui's back end then frees memory
+// twice: it destroys a vertex buffer, fails to create a larger one, and keeps the old handles. The linker redirects all
+// such calls of this program to these functions (--wrap in CMakeLists.txt).
 #include <vulkan/vulkan.h>
 
 extern "C" {

@@ -1,6 +1,6 @@
 #pragma once
-// Learns the cost of passes on this device from measured times, so that a short graph is one queue submission, and a
-// graph long enough to look like a hang to a driver is split into several. Knows nothing of Vulkan. One thread.
+// Learns the cost of passes on this device from measured times, so that a short graph takes one queue submission, and a
+// graph so long that a driver would assume a hang is split into several. Does not depend on Vulkan. One thread.
 
 #include <cstdint>
 #include <string>
@@ -9,19 +9,19 @@
 namespace shvr::gpu {
 
 /// Maximum estimated device time of one submission, unless a single tile or part of a copy takes longer. Drivers kill
-/// submissions after about two seconds, and a pixel may cost twenty times more in one place than in another.
+/// submissions after about two seconds, and some pixels of a picture may cost twenty times more than others.
 inline constexpr double MAX_SUBMISSION_MS = 100.0;
-/// Estimated time of one part of a copy (copy_parts.h), on a slow bus where each slice of each region is a dispatch.
+/// Estimated time of one part of a copy (copy_parts.h), for a slow bus and a dispatch for each slice of each region.
 inline constexpr double COPY_PART_MS = 25.0;
 
 class PassCosts {
 public:
-    /// Estimated device time of that many threads of a kernel. For one that never ran it assumes the worst case on the
-    /// slowest device: a tile of 128 x 128 rays takes a quarter of a submission, and a kernel without tiles, whose
-    /// threads do little, a sixtieth of that per thread.
+    /// Estimates the device time of that many threads of a kernel. For a kernel that never ran, it assumes the worst
+    /// case on the slowest device: a tile of 128 x 128 rays takes a quarter of a submission, and kernels without tiles,
+    /// whose threads do little, take a sixtieth of that per thread.
     double ms(const std::string& kernel, uint64_t threads, bool has_tiles) const;
-    /// Records a measured time. The estimate rises at once; an overestimate by a factor of ten decays within four
-    /// passes.
+    /// Records a measured time. The estimate rises at once, but falls slowly: an overestimate by a factor of ten is
+    /// corrected within four passes.
     void learn(const std::string& kernel, uint64_t threads, double ms);
 
 private:

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view MAGIC = "SHVR pipelines 1\n";
 
-/// FNV-1a. Drivers only check the header of the data, and trust the rest.
+/// Computes a checksum (FNV-1a), because drivers check only the header of the data, and trust the rest.
 uint64_t sum_of(std::span<const std::byte> bytes)
 {
     uint64_t sum = 0xcbf29ce484222325;
@@ -35,7 +35,7 @@ void append_part(std::vector<std::byte>& bytes, std::span<const std::byte> part)
     append(bytes, part);
 }
 
-/// Splits off the part at the start of `bytes`; null if there are too few bytes.
+/// Splits off the sized part at the start of `bytes`; null if `bytes` end before it does.
 std::optional<std::span<const std::byte>> take_part(std::span<const std::byte>& bytes)
 {
     uint64_t size = 0;
@@ -58,7 +58,7 @@ std::string text_of(std::span<const std::byte> bytes)
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// One line per variant: "raycast PAGED 1 DEPTH 3".
+/// Lists the variants, one per line: "raycast PAGED 1 DEPTH 3".
 std::string text_of(const std::vector<KernelVariant>& variants)
 {
     std::ostringstream text;
@@ -91,7 +91,7 @@ std::filesystem::path folder_from(const char* variable)
     return value && *value == '/' ? std::filesystem::path(value) : std::filesystem::path();
 }
 
-/// Empty if the environment names no folder.
+/// Returns the folder of cache files; empty if the environment does not give one.
 std::filesystem::path cache_folder()
 {
     std::filesystem::path folder = folder_from("XDG_CACHE_HOME");
@@ -162,7 +162,7 @@ PipelineCache::~PipelineCache()
     vkDestroyPipelineCache(device_.handle(), handle_, nullptr);
 }
 
-/// Empty if there is nothing after the header, as from drivers that store nothing.
+/// Returns the driver's data; empty if nothing follows the header, as with drivers that store nothing.
 std::vector<std::byte> PipelineCache::data_of_driver() const
 {
     size_t size = 0;
@@ -185,7 +185,7 @@ void PipelineCache::save(const std::set<KernelVariant>& used) noexcept
         kept.likely.resize(std::min(kept.likely.size(), MAX_LIKELY));
         std::filesystem::create_directories(file_.parent_path());
         write_file_atomically(file_, encode(kept, driver_));
-    } catch (const std::exception&) {  // disk full or folder not writable: kernels are compiled again next time
+    } catch (const std::exception&) {  // disk full or folder not writable: the next run compiles kernels again
     }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 // Keeps compiled pipelines in a file between runs of the program: the driver's own cache data, and the list of kernels
-// that were in use, which are likely to be needed again.
+// in use, since the next run is likely to need these again.
 //
 // There is one file per device, in $XDG_CACHE_HOME/shvr or ~/.cache/shvr, written atomically. A file that is damaged,
 // belongs to another driver or has grown beyond MAX_BYTES is ignored and replaced. Nothing here ever fails: without a
@@ -24,12 +24,12 @@ namespace shvr::gpu {
 /// The contents of a file.
 struct KeptPipelines {
     std::vector<KernelVariant> likely;  ///< most recently used first
-    std::vector<std::byte> data;        ///< the driver's cache data
+    std::vector<std::byte> data;        ///< the driver's own cache data
     bool operator==(const KeptPipelines&) const = default;
 };
 /// `driver`: a string that identifies the driver and device uniquely.
 std::vector<std::byte> encode(const KeptPipelines& kept, const std::string& driver);
-/// Returns null if the bytes are damaged, or another driver's.
+/// Returns null if the bytes are damaged, or were written for another driver.
 std::optional<KeptPipelines> decode(std::span<const std::byte> bytes, const std::string& driver);
 
 class PipelineCache {
@@ -43,17 +43,17 @@ public:
     PipelineCache(const PipelineCache&) = delete;
     PipelineCache& operator=(const PipelineCache&) = delete;
 
-    /// The cache to create pipelines with, on any thread; null if the driver has no memory for it.
+    /// The cache for creating pipelines, on any thread; null if the driver has no memory for a cache.
     VkPipelineCache handle() const { return handle_; }
     const std::vector<KernelVariant>& likely() const { return kept_.likely; }
 
-    /// Counts a pipeline that was made; `was_cached`: the driver found it in the cache. Any thread.
+    /// Counts a new pipeline. `was_cached`: the driver found it in the cache. Any thread.
     void note_made(bool was_cached) { (was_cached ? cached_ : compiled_)++; }
     uint64_t compiled() const { return compiled_; }
     uint64_t cached() const { return cached_; }
 
-    /// Writes the file if it would contain more than the one that was read: something was compiled, or `used` has
-    /// kernels that were not listed as likely.
+    /// Writes the file if it would contain more than the file that was read: if something was compiled, or if `used`
+    /// has kernels that were not listed as likely.
     void save(const std::set<KernelVariant>& used) noexcept;
 
 private:

@@ -1,4 +1,4 @@
-// SPIR-V reflection through SPIRV-Cross's C interface: a kernel's declarations, under their names in the GLSL source.
+// SPIR-V reflection through SPIRV-Cross's C interface: a kernel's declarations, with their names in the GLSL source.
 
 #include <algorithm>
 
@@ -56,7 +56,7 @@ struct Reflector {
         return members;
     }
 
-    /// The members of a block. If the block holds one struct or one array of structs, the members of that struct.
+    /// Returns the members of a block, or, for a block that is just one struct or array of structs, of that struct.
     std::vector<KernelInterface::Member> block_members(spvc_type_id id) const
     {
         spvc_type block = spvc_compiler_get_type_handle(compiler, id);

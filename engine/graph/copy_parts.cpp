@@ -6,7 +6,7 @@ namespace shvr {
 
 namespace {
 
-/// Adds to the last part, or to a new one if that would become too large.
+/// Collects regions into parts: adds each region to the last part, or to a new one if the last would become too large.
 template <class Region>
 class Parts {
 public:

@@ -19,7 +19,7 @@ Stages stages_of(const PassData& pass)
     return pass.kind == PassData::Kind::compute ? STAGE_COMPUTE : STAGE_TRANSFER;
 }
 
-/// Why a pass may not use this handle, worded for that pass; null if the handle is current.
+/// Returns why a pass may not use this handle, worded for that pass; null if the handle is current.
 std::optional<std::string> fault_of(Resource resource, const FrameGraph& graph)
 {
     if (resource.index >= graph.resources().size()) return "a handle that this graph did not make";
@@ -173,7 +173,7 @@ Resource FrameGraph::create(const std::string& name, const ResourceDesc& desc)
 Resource FrameGraph::upload_bytes(const std::string& name, std::span<const std::byte> bytes)
 {
     const Resource resource = create(name, buffer_desc(bytes.size()));
-    // Needs no barrier: a submission sees all earlier host writes (Vulkan 1.3, 7.9).
+    // The upload needs no barrier: a submission sees all earlier host writes (Vulkan 1.3, 7.9).
     resources_[resource.index].contents.assign(bytes.begin(), bytes.end());
     return resource;
 }
@@ -267,13 +267,13 @@ void FrameGraph::keep(Resource resource)
 
 namespace {
 
-/// A pass is kept if it has an effect outside the frame, or if a kept pass needs its output. A write also keeps the
-/// earlier writers of the same resource, because passes may write only a part of it.
+/// Returns which passes are kept. A pass is kept if it has an effect outside the frame, or if a kept pass needs its
+/// output. A kept write also keeps earlier writers of the same resource, as passes may write only a part of it.
 std::vector<bool> living_passes(const FrameGraph& graph)
 {
     const auto& passes = graph.passes();
     const auto& resources = graph.resources();
-    std::vector<bool> needed(resources.size());  // whether a kept pass, later in order, uses it
+    std::vector<bool> needed(resources.size());  // whether a later pass that is kept uses the resource
     std::vector<bool> alive(passes.size());
     for (size_t r = 0; r < resources.size(); ++r) needed[r] = resources[r].kept;
     for (size_t i = passes.size(); i-- > 0;) {
@@ -295,7 +295,7 @@ std::optional<Barrier> barrier_before(const PassData& pass, const std::vector<Re
     for (const Binding& binding : pass.bindings) {
         const Stages stages = stages_of(pass);
         const ResourceState& state = states[binding.resource];
-        if (state.written_by && (stages & ~state.visible_to)) {  // read or write after write
+        if (state.written_by && (stages & ~state.visible_to)) {  // read after write, or write after write
             barrier.from |= state.written_by;
             barrier.to |= stages;
             barrier.memory = true;
@@ -309,7 +309,7 @@ std::optional<Barrier> barrier_before(const PassData& pass, const std::vector<Re
     return barrier;
 }
 
-/// A barrier is global, so it covers every resource in its stages, not only those that required it.
+/// Applies a barrier to the states. It is global, so it covers all resources in its stages, needed or not.
 void settle(const Barrier& barrier, std::vector<ResourceState>& states)
 {
     for (ResourceState& state : states) {
@@ -327,14 +327,14 @@ void record_use(const PassData& pass, std::vector<ResourceState>& states)
             state = {.written_by = stages};
             continue;
         }
-        // Waiting for a read that follows all others waits for those as well.
+        // Waiting for a read that follows all other reads waits for those as well.
         const bool is_after_all = (stages & ~state.after_reads) == 0;
         state.read_by = is_after_all ? stages : Stages(state.read_by | stages);
         state.after_reads = 0;
     }
 }
 
-/// Memory of resources that no later pass needs; equal resources that are first used later can take it over.
+/// Memory of resources that no later pass needs. Equal resources whose first use comes later can take it over.
 class FreeMemory {
 public:
     FreeMemory(const FrameGraph& graph, const std::vector<bool>& alive)
@@ -361,12 +361,12 @@ public:
             uint32_t& last = last_pass_[binding.resource];
             if (!is_shared(binding.resource) || last != pass) continue;
             free_.push_back(binding.resource);
-            last = NEVER;  // a pass may read it under two names
+            last = NEVER;  // a pass may read the resource under two names
         }
     }
 
 private:
-    /// Resources filled by the host are written before the first pass, so their memory is not shared.
+    /// Whether memory may be shared: not by imports, nor by resources that the host fills before the first pass.
     bool is_shared(uint32_t resource) const
     {
         return !resources_[resource].imported && resources_[resource].contents.empty();
@@ -396,7 +396,7 @@ CompiledGraph FrameGraph::compile() const
         const std::optional<uint32_t> before = free_memory.take(resource);
         if (!before) return;
         compiled.memory_of[resource] = compiled.memory_of[*before];
-        states[resource] = states[*before];  // its first use, a write, waits for the last uses of the other resource
+        states[resource] = states[*before];  // its first use, a write, waits for the last uses of the resource before
     };
 
     for (uint32_t i = 0; i < passes_.size(); ++i) {

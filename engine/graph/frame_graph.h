@@ -3,12 +3,12 @@
 //
 // A frame is declared from scratch each time, in order, by ordinary code: a pass is a function from handles to handles,
 // a condition is an `if`. Writing a resource gives a new version of its handle and invalidates the old one, so that a
-// wrong order cannot be expressed: a stale handle is refused with the resource, both versions and the line of the pass
-// that invalidated it. `compile()` drops unused passes and derives the barriers; the result is a list of steps, which
-// an executor records and which tests and `shvr profile --graph` print. A handle exists only after the pass that made
-// it, so the order of declaration is a valid order, and steps keep it.
+// wrong order cannot be expressed: a stale handle is refused, and the message names the resource, both versions and the
+// line of the pass that invalidated it. `compile()` drops unused passes and derives the barriers; the result is a list
+// of steps, which an executor records, and which tests and `shvr profile --graph` print. A handle exists only after the
+// pass that made it, so the order of declaration is a valid order, and the steps keep that order.
 //
-// Images stay in one layout (GENERAL), so hazards are global stage-to-stage memory barriers, at most one per step.
+// Images stay in one layout (GENERAL), so global stage-to-stage memory barriers suffice, at most one per step.
 //
 // One thread builds and compiles a graph. Errors in a graph are programming errors, but they are thrown as `Error` so
 // that tests can check each of them.
@@ -39,17 +39,17 @@ struct ResourceDesc {
     enum class Kind : uint8_t { buffer, image };
     Kind kind = Kind::buffer;
     Format format = Format::r32_uint;  ///< images
-    bool is_flat = false;              ///< images: 2-D, with a larger size limit than 3-D images; z is 1
-    glm::uvec3 texels{1};              ///< images; z == 1 may still be a 3-D image
+    bool is_flat = false;              ///< images: 2-D, with larger size limits than 3-D images; z is 1
+    glm::uvec3 texels{1};              ///< images; even with z == 1 an image may be 3-D
     uint64_t bytes = 0;                ///< buffers: size; images: texels * bytes per texel
     bool operator==(const ResourceDesc&) const = default;
 };
 ResourceDesc buffer_desc(uint64_t bytes);
 ResourceDesc image_desc(Format format, const glm::uvec3& texels);
-/// A 2-D image: a picture, or a table in rows.
+/// Describes a 2-D image: a picture, or a table stored in rows.
 ResourceDesc picture_desc(Format format, const glm::uvec2& texels);
 
-/// A version of a resource. Cheap to copy; valid only in the graph that made it.
+/// A handle of one version of a resource. Cheap to copy; valid only in the graph that made it.
 struct Resource {
     uint32_t index = ~0u;
     uint32_t version = 0;
@@ -63,18 +63,18 @@ inline constexpr Stages STAGE_TRANSFER = 2;
 inline constexpr Stages STAGE_HOST = 4;
 std::string names_of(Stages stages);
 
-/// Accesses in flight on a resource. Carried from frame to frame for imported resources.
+/// The accesses to a resource that are in flight. For imported resources, they are carried from frame to frame.
 struct ResourceState {
     Stages written_by = 0;   ///< stages of the last write
     Stages visible_to = 0;   ///< stages that can see the last write
     Stages read_by = 0;      ///< stages that have read since the last write
-    Stages after_reads = 0;  ///< stages ordered after all those reads
+    Stages after_reads = 0;  ///< stages ordered after all reads in `read_by`
     bool operator==(const ResourceState&) const = default;
 };
-/// State of an object whose earlier use is unknown: the first use waits for everything.
+/// The state of an object whose earlier use is unknown: its first use waits for everything.
 inline constexpr ResourceState UNKNOWN_STATE{STAGE_COMPUTE | STAGE_TRANSFER, 0, STAGE_COMPUTE | STAGE_TRANSFER, 0};
 
-/// An object that outlives the frame; `id` is the executor's name for it.
+/// An object that outlives the frame. `id`: the number by which the executor knows it.
 struct Import {
     uint32_t id = 0;
     ResourceDesc desc;
@@ -84,12 +84,12 @@ struct Import {
 struct Barrier {
     Stages from = 0;
     Stages to = 0;
-    bool memory = false;  ///< false: order only (write after read)
+    bool memory = false;  ///< false: execution order only (write after read)
     bool operator==(const Barrier&) const = default;
 };
 
 struct Binding {
-    std::string name;  ///< the GLSL variable (images) or block instance (buffers)
+    std::string name;  ///< name of the GLSL variable (images) or block instance (buffers)
     uint32_t resource = 0;
     bool reads = false;
     bool writes = false;
@@ -116,7 +116,7 @@ struct PassData {
     std::vector<std::byte> push;                                         ///< push constants
     std::vector<std::pair<std::string, std::vector<std::byte>>> blocks;  ///< small read-only buffers by block name
     glm::uvec3 threads{0};
-    glm::uvec3 tile{0};  ///< threads per dispatch, 0 = all at once; limits the time of one dispatch
+    glm::uvec3 tile{0};  ///< threads per dispatch, which limits the time of a dispatch; 0: all at once
     uint32_t fill_value = 0;
     uint32_t read_back = 0;  ///< index into FrameResult::read_backs
     std::vector<ImageRegion> image_regions;
@@ -131,25 +131,25 @@ class Pass {
 public:
     void read(const std::string& name, Resource resource);
     [[nodiscard]] Resource write(const std::string& name, Resource resource);
-    /// The pass reads and writes the resource in place.
+    /// Declares that the pass reads and writes the resource in place.
     [[nodiscard]] Resource modify(const std::string& name, Resource resource);
     void constant(const std::string& name, uint32_t value);
-    /// Push constants: at most 128 bytes; the executor checks the size against the kernel's block.
+    /// Sets push constants: at most 128 bytes. The executor checks their size against the kernel's block.
     template <class T>
     void push(const T& value)
     {
         static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= 128);
         set_push(std::as_bytes(std::span(&value, 1)));
     }
-    /// A small read-only buffer that the executor creates for this pass alone.
+    /// Adds a small read-only buffer that the executor creates for this pass alone.
     template <class T>
     void block(const std::string& name, std::span<const T> values)
     {
         static_assert(std::is_trivially_copyable_v<T>);
         add_block(name, std::as_bytes(values));
     }
-    /// `threads` counts threads, not groups: the group size comes from the kernel. A tile splits the work into several
-    /// dispatches, and into several short submissions. Tiles must be multiples of the group size.
+    /// `threads` counts threads, not groups: the group size comes from the kernel. `tile` splits the work into several
+    /// dispatches, which may go into several short submissions. Its sides must be multiples of the group size.
     void dispatch(const glm::uvec3& threads, const glm::uvec3& tile = glm::uvec3(0));
 
 private:
@@ -171,8 +171,8 @@ struct CompiledGraph {
     std::vector<Step> steps;
     std::vector<ResourceState> final_states;  ///< per resource
     std::vector<bool> used;                   ///< for each resource, whether a kept pass uses it
-    /// For each resource, the one whose memory it uses. Either itself, or an equal resource of this frame that no later
-    /// step needs (of a chain of such resources, the first).
+    /// For each resource, the index of the resource whose memory it uses: its own, or that of an equal resource of this
+    /// frame that no later step needs (in a chain of such resources, the first).
     std::vector<uint32_t> memory_of;
 };
 
@@ -180,12 +180,12 @@ class FrameGraph {
 public:
     using Location = std::source_location;
 
-    /// A resource that outlives the frame. Writing it is a side effect: such a pass is never dropped.
+    /// Adds a resource that outlives the frame. Writing it is a side effect, so a pass that writes it is never dropped.
     Resource import(const std::string& name, const Import& import);
-    /// A resource of this frame alone. It must be written before it is read.
+    /// Adds a resource of this frame alone. It must be written before it is read.
     Resource create(const std::string& name, const ResourceDesc& desc);
 
-    /// A buffer of this frame alone, filled with `values`; the executor uploads them.
+    /// Adds a buffer of this frame alone, filled with `values`; the executor uploads them.
     template <class T>
     Resource upload(const std::string& name, std::span<const T> values)
     {
@@ -193,33 +193,33 @@ public:
         return upload_bytes(name, std::as_bytes(values));
     }
 
-    /// A compute pass named after its kernel, or after `name` where one kernel runs more than once.
+    /// Adds a compute pass, named after its kernel, or `name`, which is needed where a kernel runs more than once.
     Pass compute(const std::string& kernel, const std::string& name = {}, Location at = Location::current());
-    /// Likewise for a kernel with variants (kernel_variants.h): `choices` gives a value for each macro in its line "//
-    /// variants: ...", in any order. Fails if one is unknown, missing or named twice.
+    /// Likewise for a kernel with variants (kernel_variants.h). `choices` gives a value for each macro in the kernel's
+    /// line "// variants: ...", in any order. Fails if a macro is unknown, missing or named twice.
     Pass compute(const std::string& kernel, std::initializer_list<VariantChoice> choices, const std::string& name = {},
                  Location at = Location::current());
-    /// Fills every 4 bytes of a buffer, or every texel of an integer image.
+    /// Sets every 4 bytes of a buffer, or every texel of an integer image, to `value`.
     [[nodiscard]] Resource fill(Resource target, uint32_t value, const std::string& name = "fill",
                                 Location at = Location::current());
     [[nodiscard]] Resource copy_to_image(Resource buffer, Resource image, std::vector<ImageRegion> regions,
                                          const std::string& name = "upload", Location at = Location::current());
     [[nodiscard]] Resource copy(Resource from, Resource to, std::vector<BufferRegion> regions,
                                 const std::string& name = "copy", Location at = Location::current());
-    /// Returns the whole resource to the host as bytes once the frame is done; keeps the passes that made it. The
+    /// Returns the whole resource to the host as bytes once the frame is done, and keeps the passes that wrote it. The
     /// result is an index into `FrameResult::read_backs`.
     uint32_t read_back(Resource resource, const std::string& name = {}, Location at = Location::current());
-    /// Hints that a later graph is likely to run that kernel, so that an executor may compile it in the background.
+    /// Hints that a later graph is likely to run `kernel`, so that an executor may compile it in the background.
     void expect(KernelVariant kernel) { expected_.push_back(std::move(kernel)); }
 
-    /// Keeps the passes that made `resource`, even if nothing in this graph reads it.
+    /// Keeps the passes that wrote `resource`, even if nothing in this graph reads it.
     void keep(Resource resource);
 
     CompiledGraph compile() const;
 
-    /// Registers a rollback of state that already assumes this graph will run. If the graph and all copies are
-    /// destroyed without being submitted, rollbacks run in reverse order. `undo` must not fail, and everything it
-    /// refers to must outlive the graph.
+    /// Registers a rollback of state that already assumes that this graph will run. If the graph and all of its copies
+    /// are destroyed without being submitted, the rollbacks run in reverse order. `undo` must not fail, and everything
+    /// that it refers to must outlive the graph.
     void unless_submitted(std::function<void()> undo);
     /// Marks the graph as submitted, so that no rollback runs. For executors.
     void note_submitted() const;
@@ -229,9 +229,9 @@ public:
         ResourceDesc desc;
         bool imported = false;
         uint32_t import_id = 0;
-        ResourceState state;  ///< accesses in flight before the frame; none for resources of this frame alone
+        ResourceState state;  ///< accesses in flight before the frame; none if the resource belongs to this frame alone
         uint32_t version = 0;
-        std::vector<uint32_t> writers;    ///< pass that made version i + 1
+        std::vector<uint32_t> writers;    ///< the pass that made version i + 1, at index i
         std::vector<std::byte> contents;  ///< the bytes of an upload
         bool kept = false;
     };

@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The step of each pass by its index, and for each resource the steps that use it.
+/// The step of each pass, by the pass's index, and the first and last step that use each resource.
 struct Schedule {
     struct Lifetime {
         size_t first_step = 0, last_step = 0;
@@ -74,7 +74,7 @@ std::string desc_text(const ResourceDesc& desc)
     return sentence(shvr::name_of(desc.format), " ", extent_text(desc.texels), ", ", bytes_text(desc.bytes));
 }
 
-/// A DOT string of several lines. Names may contain anything.
+/// Returns several lines as one DOT string. Names may contain any characters.
 std::string quoted(const std::vector<std::string>& lines)
 {
     std::string text = "\"";
@@ -195,13 +195,13 @@ std::string to_graphviz(const FrameGraph& graph, const CompiledGraph& compiled)
         for (const Binding& binding : pass.bindings) {
             const std::string label = " [label=" + quoted({binding.name}) + look;
             if (binding.reads) text += sentence("    resource", binding.resource, " -> pass", i, label, "];\n");
-            // The edge back from a later write points up, and must not turn the drawing upside down.
+            // A later write's edge points back up; constraint=false keeps it from changing the layout.
             const char* const ending = binding.reads || is_placed[binding.resource] ? ", constraint=false];\n" : "];\n";
             if (binding.writes) text += sentence("    pass", i, " -> resource", binding.resource, label, ending);
             is_placed[binding.resource] = true;
         }
     }
-    // Order of execution reads from the top.
+    // Invisible edges make the order of execution read from the top.
     for (size_t step = 0; step + 1 < compiled.steps.size(); ++step)
         text += sentence("    pass", compiled.steps[step].pass, " -> pass", compiled.steps[step + 1].pass,
                          " [style=invis];\n");

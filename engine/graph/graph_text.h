@@ -1,6 +1,6 @@
 #pragma once
 // A frame graph as text: for people (Graphviz) and for programs (JSON). Both show the declared graph and the result of
-// compile(): culled passes, barriers, lifetimes. Any thread may call these.
+// compile(): culled passes, barriers, lifetimes. Any thread may call these functions.
 
 #include <string>
 
@@ -8,11 +8,11 @@
 
 namespace shvr {
 
-/// A step's barrier as text: "compute -> transfer", with "(order only)" for an execution barrier without memory.
+/// Returns a step's barrier as text: "compute -> transfer", with "(order only)" if memory is not synchronised.
 std::string to_text(const Barrier& barrier);
 
-/// For `dot`: boxes are passes in order of execution; ellipses are resources, double-lined if they outlive the frame;
-/// culled items are dashed and grey. A box shows the barrier before its pass.
+/// Returns input for `dot`. Boxes are passes in order of execution, each with the barrier before it; ellipses are
+/// resources, double-lined if they outlive the frame; culled passes and resources are dashed and grey.
 std::string to_graphviz(const FrameGraph& graph, const CompiledGraph& compiled);
 
 /// {"passes": [...], "resources": [...]}; README.md lists the keys.

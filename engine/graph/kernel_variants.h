@@ -1,7 +1,7 @@
 #pragma once
-// The macros that a kernel may be compiled with: those in the line "// variants: A B" of shaders/NAME.comp. The build
-// generates the table (tools/embed_kernels.cmake) and compiles every subset, so that their order is stated in one place
-// only. Any thread.
+// The macros that a kernel may be compiled with, from the line "// variants: A B" of shaders/NAME.comp. The build
+// generates the table (tools/embed_kernels.cmake) and compiles every subset, so the order of macros is stated only in
+// that line. Any thread.
 
 #include <cstdint>
 #include <initializer_list>
@@ -23,16 +23,16 @@ struct VariantChoice {
 };
 
 struct KernelVariants {
-    std::string_view kernel;                   ///< "raycast" for shaders/rays/raycast.comp
+    std::string_view kernel;                   ///< as in "raycast" for shaders/rays/raycast.comp
     std::span<const std::string_view> macros;  ///< macros in the kernel's order; empty if it has no variants
 };
 /// The tables of all kernels that have variants.
 std::span<const KernelVariants> kernel_variants();
 
-/// The name of the compiled kernel: "raycast" with PAGED and MASKED is "raycast_paged_masked". `choices` names each
-/// macro of the kernel once, in any order; otherwise it fails and lists the kernel's macros.
+/// Returns the name of a compiled kernel: "raycast" with PAGED and MASKED is "raycast_paged_masked". `choices` must
+/// name each macro of the kernel once, in any order; otherwise it fails, and the message lists the macros.
 std::string variant_of(std::string_view kernel, std::initializer_list<VariantChoice> choices);
-/// The same, with the caller's own table.
+/// The same, but with the table given by `known`.
 std::string variant_of(std::string_view kernel, std::initializer_list<VariantChoice> choices,
                        std::span<const KernelVariants> known);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Runs long work in the background: on one worker thread, one job after the other in the order of `start`. A job
-// computes its result on the worker; the completion, which uses the result, runs on the main thread.
+// Runs long work in the background, on one worker thread, one job after the other in the order of `start`. A job
+// computes its result on the worker; its completion, which uses the result, runs on the main thread.
 //
 //   jobs.start("exporting stem.swc", [snapshot, task](ProgressReporter& reporter) -> Jobs::Completion {
 //       ExportResult result = run(task, snapshot->view(), reporter);
@@ -9,10 +9,10 @@
 //   ...
 //   for (const Jobs::Finished& job : jobs.finish()) window.say(job);    // once per frame
 //
-// Everything but a job's function and `wake` is called on the main thread, and nothing here waits for the worker except
-// `wait` and the destructor. Functions and completions are destroyed on the main thread, so they may own main-thread
-// objects. Shared between the threads, all under one lock: the queues and each job's progress; plus one atomic flag per
-// job.
+// Everything but a job's function and `wake` is called on the main thread, and nothing here waits for the worker
+// except `wait` and the destructor. Functions and completions are destroyed on the main thread, so they may own
+// objects of that thread. The threads share the queues and each job's progress, all under one lock, and one atomic
+// flag per job.
 
 #include <condition_variable>
 #include <cstdint>
@@ -30,28 +30,28 @@ namespace shvr {
 
 class Jobs {
 public:
-    using Number = uint64_t;  ///< ascending, in the order of `start`
+    using Number = uint64_t;  ///< job numbers ascend in the order of `start`
     using Completion = std::function<void()>;
-    /// Runs on the worker and reports progress often, which throws `Stopped` once it is cancelled. The completion may
-    /// be empty.
+    /// Runs on the worker and reports progress often; a report throws `Stopped` once the job is cancelled. The returned
+    /// completion may be empty.
     using Function = std::function<Completion(ProgressReporter&)>;
 
     struct Options {
-        std::function<void()> wake{};       ///< called on the worker when a job has ended: wakes a sleeping loop
-        std::function<double()> seconds{};  ///< time since any fixed moment, callable from any thread; empty: a steady
-                                            ///< clock
-        Number first = 1;                   ///< lets several workers use distinct numbers
+        std::function<void()> wake{};       ///< called on the worker when a job has ended, to wake a sleeping loop
+        std::function<double()> seconds{};  ///< time since any fixed moment, callable from any thread; empty:
+                                            ///< a steady clock
+        Number first = 1;                   ///< number of the first job; lets several workers use distinct numbers
     };
     Jobs();
     explicit Jobs(Options options);
-    /// Cancels all jobs and waits for the running one. No completion runs any more.
+    /// Cancels all jobs and waits for the running one. No completions run after this.
     ~Jobs();
     Jobs(const Jobs&) = delete;
 
-    /// `what`: title for lists and messages, as in "exporting stem.swc".
+    /// `what`: the job's title for lists and messages, as in "exporting stem.swc".
     Number start(std::string what, Function function);
-    /// A waiting job does not start; a running one ends at its next progress report. Its completion will not run, even
-    /// if its function completes. A number that is unknown or finished is ignored.
+    /// A waiting job will not start; a running job ends at its next progress report. The job's completion will not run,
+    /// even if its function completes. An unknown or finished number is ignored.
     void cancel(Number number);
     void cancel_all();
 
@@ -60,15 +60,15 @@ public:
         std::string what;
         std::string stretch;         ///< the current stage of the work, as in "writing stem.swc"; may be empty
         std::string detail;          ///< e.g. "120 MB/s"; may be empty
-        double fraction = -1.0;      ///< progress of the stage; below 0: unknown
-        double seconds = 0.0;        ///< since it began to run
-        double seconds_left = -1.0;  ///< for the stage; below 0: unknown
+        double fraction = -1.0;      ///< progress of the current stage; below 0: unknown
+        double seconds = 0.0;        ///< time since the job began to run
+        double seconds_left = -1.0;  ///< estimate for the current stage; below 0: unknown
         bool is_waiting = false;
         bool is_cancelled = false;
     };
-    /// The running job, then the waiting ones, in order. Jobs that have ended are not included.
+    /// The running job, then the waiting jobs in order. Jobs that have ended are not included.
     std::vector<State> states() const;
-    /// Whether nothing is running, waiting, or to be finished.
+    /// Whether no job is running, waiting, or ended with its completion still to run.
     bool is_idle() const;
 
     struct Finished {
@@ -79,10 +79,10 @@ public:
         bool was_cancelled = false;
         bool is_done() const { return failure.empty() && !was_cancelled; }
     };
-    /// Runs the completions of jobs that have ended since the last call, in order, and returns these jobs. A completion
+    /// Runs the completions of jobs that have ended since the last call, in order, and returns those jobs. A completion
     /// may start and cancel jobs.
     std::vector<Finished> finish();
-    /// Waits until no job is left and finishes all, in tests and before the program ends.
+    /// Waits until no job is left, and finishes all of them. For tests, and before the program ends.
     std::vector<Finished> wait();
 
 private:
@@ -94,7 +94,7 @@ private:
     std::function<void()> wake_;
     std::function<double()> seconds_;
 
-    mutable std::mutex mutex_;  ///< guards all members below, except the thread
+    mutable std::mutex mutex_;  ///< guards all of the following members except the thread
     std::condition_variable changed_;
     bool is_closing_ = false;
     Number next_ = 1;
@@ -102,7 +102,7 @@ private:
     std::unique_ptr<Job> running_;
     std::deque<std::unique_ptr<Job>> ended_;
 
-    std::thread worker_;  ///< started with the first job
+    std::thread worker_;  ///< started by the first job
 };
 
 }  // namespace shvr

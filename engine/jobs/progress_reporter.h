@@ -1,6 +1,6 @@
 #pragma once
-// Receives the progress of long work in several stages, and tells it when to stop: for a job (jobs.h), the progress
-// line of a command, or nothing. One thread at a time, the one that works.
+// Receives the progress of work in several stages, and tells the work when to stop. The progress goes to a job
+// (jobs.h), the progress line of a command, or nowhere. Used by one thread at a time, the working thread.
 
 #include <atomic>
 #include <string>
@@ -17,17 +17,17 @@ public:
     ProgressReporter(const ProgressReporter&) = delete;
     ProgressReporter& operator=(const ProgressReporter&) = delete;
 
-    /// Starts a stage, as in "writing stem.swc"; its time left is estimated from scratch. The returned function, and
-    /// this one, throw `Stopped` if the work is to stop; it must not outlive the reporter.
+    /// Starts a stage, as in "writing stem.swc", whose time left is estimated from scratch. Returns a function that
+    /// reports the stage's progress. Both throw `Stopped` if the work is to stop; the function must not outlive this.
     virtual Progress begin(const std::string& what) = 0;
-    /// Like calling that function with a fraction, with a detail, as in "120 MB/s", and a better estimate of the time
-    /// left.
+    /// Reports progress as the function returned by begin() does, but with a detail, as in "120 MB/s", and a better
+    /// estimate of the time left.
     virtual void show(double fraction, const std::string& detail, double seconds_left) = 0;
-    /// For functions that poll for themselves. It outlives the work.
+    /// The flag that asks the work to stop, for functions that poll it themselves. It outlives the work.
     virtual const std::atomic<bool>& stop_requested() const = 0;
 };
 
-/// For callers that only need the fraction of each stage, or nothing.
+/// For callers that need only the fraction of each stage, or no progress at all.
 class PlainReporter final : public ProgressReporter {
 public:
     explicit PlainReporter(Progress progress = {}) : progress_(std::move(progress)) {}

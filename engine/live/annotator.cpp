@@ -12,7 +12,7 @@ namespace shvr {
 
 namespace {
 
-/// How far, in voxels, an offset may change the picture: through samples, and through gradients.
+/// Distance, in voxels, at which an offset still changes the picture: through samples, and through gradients.
 constexpr int64_t RAISED_REACH = 2;
 
 VoxelBox reach_of_raised(const VoxelBox& raised, const Size3& size)
@@ -200,8 +200,8 @@ void Annotator::extend_stroke(const glm::dvec3& voxel)
     Stroke& stroke = strokes_.back();
     const glm::dvec3 from = stroke.last.value_or(voxel);
     const std::vector<glm::dvec3> more = stroke_positions(std::array{from, voxel});
-    // A segment starts where the previous one ended. A dab is a segment from a point to itself: two positions, one
-    // kept.
+    // A segment starts where the previous one ended. A dab is a segment from a point to itself: it has two positions,
+    // of which the second is kept.
     stroke.positions.insert(stroke.positions.end(), more.begin() + 1, more.end());
     stroke.last = voxel;
 }
@@ -253,7 +253,7 @@ std::optional<VoxelBox> Annotator::advance_first_stroke()
         if (!is_of_budget && ++strokes_.front().failed_tries < MAX_TRIES) throw;
         drop_first_stroke();
         fail(error.what(), CUT);
-    } catch (const Error& error) {  // what cannot be recorded is not painted
+    } catch (const Error& error) {  // a part that cannot be recorded is not painted
         drop_first_stroke();
         fail(error.what(), CUT);
     }
@@ -272,7 +272,7 @@ std::optional<VoxelBox> Annotator::advance_stroke()
         if (frame.regions.empty())
             stroke.next = frame.end;
         else if (stroke.query.ask(stroke.brush, std::move(frame.regions), RegionQuery::Wait::no))
-            stroke.asked_to = frame.end;  // otherwise its bricks are being loaded
+            stroke.asked_to = frame.end;  // otherwise the query was not submitted: its bricks are being loaded
     } else if (stroke.has_ended) {
         last_stroke_ = stroke.result;
         ++strokes_done_;
@@ -315,7 +315,7 @@ void Annotator::show(const Touched& touched, const std::optional<VoxelBox>& with
     try_to_show([&] { renderer_.scene().show(document(), touched, within); });
 }
 
-/// At this point the change has been made, whether or not it can be shown.
+/// Shows a change that has already been made, whether or not it can be shown.
 template <class Update>
 void Annotator::try_to_show(const Update& update)
 {
@@ -333,7 +333,7 @@ void Annotator::catch_up()
     try {
         renderer_.scene().catch_up(document());
     } catch (const gpu::BudgetError&) {
-        tries_to_show_ = MAX_TRIES;  // it stays behind until something changes
+        tries_to_show_ = MAX_TRIES;  // the picture stays behind until something changes
         throw;
     }
     ++revision_;

@@ -4,11 +4,11 @@
 //
 //   PaintOp -> positions along the stroke -> RegionQuery (device) -> VoxelSelection -> records -> Work -> device
 //
-// The device decides what a brush selects; which of these voxels change is decided where the records are made
+// The device decides which voxels a brush selects; the code that makes the records decides which of these voxels change
 // (painting.h).
 //
-// A script paints a whole stroke and waits. A user begins a stroke, extends it and ends it; it is painted as the device
-// answers, as one command however many answers that takes. One thread, the renderer's.
+// A script paints a whole stroke and waits. A user begins a stroke, extends it and ends it; parts of it are painted as
+// the device answers, all as one command, however many answers there are. One thread, the renderer's.
 
 #include <deque>
 #include <memory>
@@ -22,103 +22,103 @@
 
 namespace shvr {
 
-/// `op` as painted in a session: with an automatic offset replaced by a number, and with the session's locked groups.
-/// Everything that is painted or previewed for a user passes through here.
+/// Returns `op` as it is painted in a session: an automatic offset is replaced by a number, and the session's locked
+/// groups are added. Everything that is painted or previewed for a user passes through here.
 PaintOp in_session(PaintOp op, const Session& session);
 
-/// The files in which a session stores its work.
+/// Returns the files in which a session stores its work.
 WorkFiles work_files(const Session& session, const VolumeInfo& volume);
-/// Likewise, with the lasting settings of an `OpenedSession`, except those that `overridden` ("key=value") sets for
+/// Likewise, with the lasting settings of an `OpenedSession`, except settings that `overridden` ("key=value") sets for
 /// this run only.
 WorkFiles work_files(const Session& session, const VolumeInfo& volume, const std::vector<std::string>& overridden);
-/// Adds the kept settings, for callers that apply Work::kept_settings() and report changes to Work::keep_settings.
+/// Adds the kept settings; for callers that apply Work::kept_settings() and report changes to Work::keep_settings.
 WorkFiles with_kept_settings(WorkFiles files, const Session& session, const std::vector<std::string>& overridden);
 
 class Annotator {
 public:
-    /// Number of attempts after running out of memory: about 5 s, given the pauses of a user's window.
+    /// Number of attempts after memory ran out: about 5 s, given the pauses of a user's window.
     static constexpr int MAX_TRIES = 20;
 
-    /// The volume must be loaded; the mask starts unpainted.
+    /// The volume must be loaded. Nothing is painted at first.
     explicit Annotator(Renderer& renderer);
-    /// Continues open work, which another thread may have used before. The caller must make the scene show it.
+    /// Continues open work; another thread may have used it before. The caller must make the scene show it.
     Annotator(Renderer& renderer, std::unique_ptr<Work> work);
 
-    /// For saving, file names and the trace's selection. To change annotations, use the functions below, which show the
-    /// change on the device. If that is impossible for lack of memory, they do not fail: see `is_behind`.
+    /// For saving, file names and the trace's selection. To change annotations, use the functions below, which also
+    /// show the change on the device. If too little memory is left to show it, they do not fail: see `is_behind`.
     Work& work() { return *work_; }
     const Work& work() const { return *work_; }
-    /// Releases the work for another annotator; this one must not be used any more.
+    /// Releases the work for another annotator; after that, this annotator must not be used.
     std::unique_ptr<Work> take_work() { return std::move(work_); }
     const Document& document() const { return work_->document(); }
     const History& history() const { return work_->history(); }
     Renderer& renderer() const { return renderer_; }
-    /// Incremented by changes of groups and offsets.
+    /// Incremented by changes of painted groups and offsets.
     uint64_t revision() const { return revision_; }
 
-    /// As Work::open and Work::choose; these also update the device.
+    /// Like Work::open and Work::choose, but these also update the device.
     std::vector<Notice> open(const WorkFiles& files, const Work::Opening& opening = {});
     std::vector<Notice> choose(Belief belief);
 
-    /// The voxels that `op` selects, whatever their group.
+    /// Returns the voxels that `op` selects, whatever their group.
     VoxelSelection select(const PaintOp& op);
-    /// The exact preview: the voxels that paint(op) would change now. Paints nothing, but waits; Previewer
-    /// (engine/live/previewer.h) does not.
+    /// Returns the exact preview: the voxels that paint(op) would change now. Paints nothing, but waits for the device;
+    /// Previewer (engine/live/previewer.h) does not wait.
     PaintPreview preview(const PaintOp& op);
-    /// Likewise, from the device's answers for all regions of `op`.
+    /// Likewise, but made from the device's answers for all regions of `op`.
     PaintPreview preview(const PaintOp& op, std::span<const RegionAnswer> answers) const;
-    /// Paints, as one command. Returns how many voxels changed their group plus how many changed their offset;
-    /// `last_stroke` has details. All regions of a stroke see the volume as it was before it.
+    /// Paints `op` as one command. Returns how many voxels changed their group plus how many changed their offset;
+    /// `last_stroke` has details. All regions of a stroke see the volume as it was before the stroke.
     int64_t paint(const PaintOp& op);
 
-    /// Begins an interactive stroke; ignores `brush.path`. Does not wait: `advance` paints. Later regions may see
-    /// offsets that earlier ones have painted. The locks of `brush` apply until the stroke ends. Strokes that have
-    /// ended and are not painted yet are painted first, in order: the user need not wait for the device.
+    /// Begins an interactive stroke; ignores `brush.path`. Does not wait: `advance` paints. Later regions of a stroke
+    /// may see offsets that its earlier regions painted. The locks of `brush` apply until the stroke ends. Ended
+    /// strokes that are not painted yet are painted first, in order, so the user need not wait for the device.
     void begin_stroke(const PaintOp& brush);
     void extend_stroke(const glm::dvec3& voxel);
-    /// Interrupts the stroke: nothing is painted between the last position and the next one.
+    /// Interrupts the stroke: nothing will be painted between its last position and its next one.
     void lift_stroke()
     {
         if (stroke_is_open()) strokes_.back().last.reset();
     }
     void end_stroke();
-    /// Whether a stroke is open, or part of one has not been painted yet.
+    /// Whether a stroke is open, or any part of a stroke has not been painted yet.
     bool stroke_is_running() const { return !strokes_.empty(); }
-    /// Whether the last stroke has begun and has not ended.
+    /// Whether a stroke has begun that has not ended.
     bool stroke_is_open() const { return !strokes_.empty() && !strokes_.back().has_ended; }
-    /// Ends all strokes at once: painted parts stay, the rest is dropped.
+    /// Ends all strokes at once: painted parts stay, unpainted parts are dropped.
     void drop_strokes();
-    /// Repeats the queries that the device has not answered, after it was restarted.
+    /// Drops the queries in flight, after the device was restarted; `advance` submits them again.
     void drop_queries();
-    /// Shows changes for which memory was too short, paints a finished answer of the first stroke and submits the next
-    /// query. Returns the voxels that may look different. If the driver is out of memory it throws MemoryError and
-    /// retries when called again, up to the limit above; if a stroke cannot continue (retries exhausted, a
-    /// brush that is too large, bricks or the journal fail), it throws another error, drops the rest of the stroke, and
-    /// says so.
+    /// Shows changes that too little memory kept from being shown, paints a finished answer of the first stroke and
+    /// submits the next query. Returns the voxels that may look different. If the driver is out of memory, throws
+    /// MemoryError; the next calls retry, up to MAX_TRIES. If a stroke cannot continue (retries exhausted, a brush that
+    /// is too large, failure of bricks or the journal), drops the rest of the stroke and throws another error whose
+    /// message says so.
     std::optional<VoxelBox> advance();
-    /// Whether the picture lags behind the annotation after a failed update, which `advance` retries.
+    /// Whether the picture lags behind the annotation because an update failed; `advance` retries the update.
     bool is_behind() const { return renderer_.scene().is_behind() && tries_to_show_ < MAX_TRIES; }
-    /// Retries at once; fails if that is not possible.
+    /// Retries the update at once; fails if it is not possible.
     void catch_up();
-    /// Number of interactive strokes painted to their end.
+    /// Number of interactive strokes that were painted to their end.
     uint64_t strokes_done() const { return strokes_done_; }
-    /// The result of the last finished stroke, interactive or by `paint`.
+    /// The result of the last finished stroke, whether interactive or made by `paint`.
     const StrokeResult& last_stroke() const { return last_stroke_; }
 
-    /// Applies changes made by trace_edit.h as one command; not while a stroke is running. Returns the command, valid
-    /// until the history changes; null if `changes` is empty.
+    /// Applies changes made by trace_edit.h as one command. Must not be called while a stroke is running. Returns the
+    /// command, valid until the history changes; null if `changes` is empty.
     const Command* edit_trace(std::string label, std::vector<TraceChange> changes);
 
-    /// Applies matching changes as one command; not while a stroke is running. Null if there are none.
+    /// Applies changes as one command. Must not be called while a stroke is running. Returns null if there are none.
     const Command* perform(std::string label, std::vector<Change> changes);
 
-    /// As Work::change_settings; not while a stroke is running. The caller updates the session.
+    /// Like Work::change_settings; must not be called while a stroke is running. The caller updates the session.
     const Command* change_settings(std::string label, const SettingValues& values);
 
-    /// Returns the command undone or redone; null if none is left, or a stroke is running.
+    /// Returns the command undone or redone; null if there is none, or while a stroke is running.
     const Command* undo();
     const Command* redo();
-    /// As Work::revert; null also while a stroke is running.
+    /// Like Work::revert, but also returns null while a stroke is running.
     const Command* revert();
 
 private:
@@ -130,17 +130,17 @@ private:
     struct Stroke {
         PaintOp brush;
         RegionQuery query;
-        std::vector<glm::dvec3> positions{};  ///< regions from position `next` on have not been painted yet
+        std::vector<glm::dvec3> positions{};  ///< positions of the stroke; regions from `next` on are not painted yet
         size_t next = 0;
-        size_t asked_to = 0;               ///< end of the positions in the query
-        std::optional<glm::dvec3> last{};  ///< last position of the hand
+        size_t asked_to = 0;               ///< index of the first position after those in the query
+        std::optional<glm::dvec3> last{};  ///< position up to which the stroke has been extended
         bool has_ended = false;
-        bool is_recorded = false;  ///< the last command of the history is this stroke's
+        bool is_recorded = false;  ///< whether the history's last command is this stroke's
         StrokeTally tally{brush};
         StrokeResult result = tally.result();  ///< the painted part so far
         int failed_tries = 0;                  ///< in a row
     };
-    /// The records made from an answer.
+    /// The records that an answer leads to.
     struct Records {
         std::vector<MaskBrickChange> groups{};
         std::vector<DensityBrickChange> offsets{};
@@ -161,7 +161,7 @@ private:
     void try_to_show(const Update& update);
 
     Renderer& renderer_;
-    std::deque<Stroke> strokes_;  ///< strokes in order: the first is being painted; only the last may be open
+    std::deque<Stroke> strokes_;  ///< in order: the first is being painted; only the last may be open
     uint64_t strokes_done_ = 0;
     StrokeResult last_stroke_;
     uint64_t revision_ = 0;

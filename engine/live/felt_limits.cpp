@@ -13,7 +13,7 @@ namespace {
 
 constexpr double INF = std::numeric_limits<double>::infinity();
 
-/// Joins intervals that touch: between neighbouring numbers there is no intensity.
+/// Adds an interval; joins it to the last one if they touch, that is, if no floating-point number lies between them.
 void append(double lower, double upper, IntensityIntervals& intervals)
 {
     if (!intervals.empty() && lower <= std::nextafter(intervals.back().second, INF))
@@ -29,7 +29,7 @@ void clear_row(int64_t from, int64_t to, uint32_t* words)
 
 void clear_outside(const CutBox& cut, RelevanceBits& bits)
 {
-    // Voxel i of a level has its centre at (i + 0.5) times its width.
+    // The centre of voxel i of a level lies at (i + 0.5) times the level's voxel width.
     const double width = std::ldexp(1.0, bits.level);
     const Size3 size = bits.box.size();
     const auto first_beyond = [&](const glm::dvec3& plane) {
@@ -103,7 +103,7 @@ IntensityIntervals shown_intensities(const TransferFunction& function, const Int
         const double to = points[i + 1].intensity, first = std::nextafter(from, INF), last = std::nextafter(to, -INF);
         if ((points[i].opacity > 0.0 || points[i + 1].opacity > 0.0) && first <= last) append(first, last, shown);
     }
-    // Voxels outside the window have the look of its ends.
+    // Intensities outside the window are shown like the nearer end of the window.
     IntensityIntervals clamped;
     if (is_shown(window.lower)) append(-INF, window.lower, clamped);
     for (const auto& [lower, upper] : shown)

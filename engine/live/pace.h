@@ -1,9 +1,9 @@
 #pragma once
-// Estimates the device time of a unit of work from the last graphs, and so how many units fit into the next one.
+// Estimates the device time of a unit of work from past graphs, and thus how many units fit into the next graph.
 //
-// A pixel may cost twenty times more in one place than in another, and a graph that is too short does less harm than
-// one that is too long: the estimate rises at once, and is the maximum of the last eight. So clock ramp-ups and wrong
-// measurements are forgotten after eight graphs. One thread.
+// Some pixels cost twenty times more than others, and a graph that is too short does less harm than one that is too
+// long. So the estimate rises at once: it is the maximum of the last eight graphs. After eight graphs, slow
+// measurements, as during a clock's ramp-up, and wrong ones are forgotten. One thread.
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@ class Pace {
 public:
     static constexpr size_t GRAPHS = 8;
 
-    /// `first_ms`: assumed until something was measured.
+    /// `first_ms`: estimate until something has been measured.
     explicit Pace(double first_ms) : first_ms_(first_ms) {}
     /// Estimated time of one unit.
     double ms() const { return count_ == 0 ? first_ms_ : *std::max_element(last_.begin(), last_.begin() + known()); }
@@ -25,7 +25,7 @@ public:
         if (!(units > 0.0)) return;
         last_[count_++ % GRAPHS] = std::max(graph_ms / units, MIN_MS);
     }
-    /// How many units fit into `budget_ms`.
+    /// Returns how many units fit into `budget_ms`.
     double affords(double budget_ms) const { return budget_ms / ms(); }
 
 private:

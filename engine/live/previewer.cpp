@@ -31,7 +31,7 @@ void Previewer::want(const std::optional<PaintOp>& brush)
 {
     if (wanted_ == brush) return;
     wanted_ = brush;
-    // Before the copy, g++ 14 would derive from it that some of the copy lies outside of the path.
+    // Checked after the copy: a check before it makes g++ 14 assume that the copy reads beyond the end of the path.
     SHVR_CHECK(!wanted_ || wanted_->path.size() == 1);
     if (!wanted_) shown_.reset();
 }

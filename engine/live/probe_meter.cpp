@@ -38,7 +38,7 @@ void ProbeMeter::advance()
                        .radius_voxels = now.ball.radius_voxels};
     FrameOfRegions frame = frame_of_regions(fill, std::array{now.ball.voxel}, 0, annotator_.renderer().volume().info());
     if (frame.regions.empty()) {
-        share_.reset();  // it is outside the volume
+        share_.reset();  // the ball is outside the volume
         answered_ = now;
     } else if (query_.ask(fill, std::move(frame.regions), RegionQuery::Wait::no)) {
         asked_ = now;

@@ -1,7 +1,7 @@
 #pragma once
-// Measures how much of the probe's ball is relevant: the fraction of its voxels at or above a threshold, including
-// offsets. The device counts, as it does for a filling brush. One query is in flight at a time and nothing waits;
-// nothing is submitted while the ball and the densities stay the same. One thread, the annotator's.
+// Measures which share of the probe's ball is relevant: the fraction of its voxels at or above a threshold, offsets
+// included. The device counts the voxels, as it does for a filling brush. One query is in flight at a time and nothing
+// waits; nothing is submitted while the ball and the densities stay the same. One thread, the annotator's.
 
 #include <optional>
 
@@ -13,28 +13,28 @@ class ProbeMeter {
 public:
     explicit ProbeMeter(Annotator& annotator) : annotator_(annotator), query_(annotator.renderer()) {}
 
-    /// The ball: its centre in voxels, its radius in voxels along x. Null: no measurement is wanted.
+    /// The ball: its centre in voxels, and its radius in voxels along x. Null: no measurement is wanted.
     struct Ball {
         glm::dvec3 voxel{0.0};
         double radius_voxels = 1.0;
         double threshold = 0.0;
         bool operator==(const Ball&) const = default;
     };
-    /// Call it in every frame: it only compares while nothing has changed.
+    /// Sets the ball. Call it in every frame: while nothing has changed, it only compares.
     void want(const std::optional<Ball>& ball) { wanted_ = ball; }
     /// Collects a finished answer and submits the next query. Fails if the ball is larger than a brush may be.
     void advance();
-    /// Drops a query in flight; it is submitted again.
+    /// Drops a query in flight; `advance` submits it again.
     void drop()
     {
         query_.drop();
         asked_.reset();
     }
-    /// Relevant share, 0 ... 1, of the voxels inside the volume; null if there are none, or if the first answer is
-    /// pending. Lags behind a moving ball.
+    /// The relevant share, 0 to 1, of the ball's voxels inside the volume; null if there are no such voxels, or before
+    /// the first answer. Lags behind a moving ball.
     std::optional<double> share() const { return wanted_ ? share_ : std::nullopt; }
     bool is_current() const;
-    /// Whether a query is in flight. False while its bricks are missing: it is submitted again as they arrive.
+    /// Whether a query is in flight. False while its bricks are being loaded; it is submitted again as they arrive.
     bool is_asking() const { return query_.is_asking(); }
 
 private:

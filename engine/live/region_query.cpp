@@ -11,10 +11,10 @@ namespace shvr {
 
 namespace {
 
-/// Limits of one frame: total size of its regions' labels, and number of regions, since each has its own buffers.
+/// Limits of one frame: total bytes of its regions' labels, and number of regions, as each has buffers of its own.
 constexpr uint64_t LABEL_BYTES = uint64_t(32) << 20;
 constexpr size_t MAX_REGIONS = 64;
-/// Maximum total of bricks of a frame's regions, unless a single region needs more.
+/// Maximum number of bricks for all regions of a frame together, unless a single region needs more.
 constexpr uint32_t MAX_BRICKS = 48;
 
 gpu::RegionParams region_params(const RegionAt& asked, const PaintOp& op, uint32_t threshold_code)
@@ -85,7 +85,7 @@ FrameOfRegions frame_of_regions(const PaintOp& op, std::span<const glm::dvec3> p
         BrushRegion region = make_region(op.region, position, op.radius_voxels, volume.spacing, volume.size);
         if (region.rows.empty() || region.words_per_row() == 0) continue;
         const VoxelBox both = frame.regions.empty() ? region.box : united(around, region.box);
-        // All regions of a frame read the same bricks, which must fit at once.
+        // All regions of a frame read the same set of bricks, which must fit on the device at once.
         const glm::uvec3 bricks = bricks_around(both).counts;
         if (!frame.regions.empty() && both != around && bricks.x * bricks.y * bricks.z > MAX_BRICKS) break;
         around = both;

@@ -1,10 +1,10 @@
 #pragma once
-// Asks the device which voxels of some regions a brush selects. The caller collects the answer later, or waits for it.
+// Asks the device which voxels of given regions a brush selects. The caller collects the answer later, or waits for it.
 //
 //   positions -> frame_of_regions (CPU) -> RegionQuery::ask -> passes of the brush (device) -> RegionQuery::answer
 //
-// Voxels at or above the threshold are those whose own number is. Where several numbers share a code, the host decides
-// that (Scene::threshold_bricks); the device then only connects voxels, and a filling brush does not need it.
+// Voxels at or above the threshold are those whose exact value is. Where several values share a code, the host decides
+// this (Scene::threshold_bricks); then the device only connects voxels, and a filling brush does not need it.
 //
 // One query in flight per object. One thread, the renderer's.
 
@@ -17,18 +17,18 @@
 
 namespace shvr {
 
-/// A region of the volume, and the position that it surrounds.
+/// A region of the volume, and the position of the stroke at the region's centre.
 struct RegionAt {
     BrushRegion region;
     glm::dvec3 centre_voxel{0.0};
 };
 
-/// The regions that fit in one frame, in order.
+/// The regions that fit in one frame, in the order of their positions.
 struct FrameOfRegions {
-    std::vector<RegionAt> regions;  ///< regions that contain a voxel of the volume
-    size_t end = 0;                 ///< index of the first position without a region
+    std::vector<RegionAt> regions;  ///< only regions that contain a voxel of the volume
+    size_t end = 0;                 ///< index of the first position that is not covered yet
 };
-/// The regions of `op` around `positions`, from index `first` on.
+/// Returns the regions of `op` around `positions`, from index `first` on, that fit in one frame.
 FrameOfRegions frame_of_regions(const PaintOp& op, std::span<const glm::dvec3> positions, size_t first,
                                 const VolumeInfo& volume);
 
@@ -36,23 +36,23 @@ FrameOfRegions frame_of_regions(const PaintOp& op, std::span<const glm::dvec3> p
 struct RegionAnswer {
     BrushRegion region;
     glm::dvec3 centre_voxel{0.0};
-    std::vector<uint32_t> words;  ///< selected voxels, in rows of BrushRegion::words_per_row
+    std::vector<uint32_t> words;  ///< bits of the selected voxels, in rows of BrushRegion::words_per_row
 };
 
 class RegionQuery {
 public:
     enum class Wait { no, for_bricks };
-    /// `name`: name of the read-backs in profiles.
+    /// `name`: the name of the read-backs in profiles.
     explicit RegionQuery(Renderer& renderer, const char* name = "") : renderer_(renderer), name_(name) {}
 
-    /// Queries which voxels of `regions` (at least one) `op` selects, by its brush, threshold and connectivity. Drops
-    /// an earlier query. If bricks of the regions have not been loaded yet, either reads them, or submits nothing and
-    /// returns false.
+    /// Asks which voxels of `regions` (at least one) `op` selects, given its brush, threshold and connectivity. Drops
+    /// an earlier query. If bricks of the regions are not loaded yet, either reads them, or submits nothing and returns
+    /// false, depending on `wait`.
     bool ask(const PaintOp& op, std::vector<RegionAt> regions, Wait wait);
     bool is_asking() const { return frame_ || !known_.empty(); }
     /// Whether `answer` would return without waiting.
     bool is_answered() const { return !known_.empty() || (frame_ && frame_.done()); }
-    /// The answers, one per region, in order. Waits if necessary; afterwards no query is in flight.
+    /// Returns one answer per region, in order. Waits if necessary; afterwards no query is in flight.
     std::vector<RegionAnswer> answer();
     /// Drops the query in flight, if any.
     void drop()
@@ -70,7 +70,7 @@ private:
     const char* name_;
     std::vector<RegionAt> regions_;
     gpu::Submission frame_;
-    std::vector<RegionAnswer> known_;  ///< answers that did not need the device
+    std::vector<RegionAnswer> known_;  ///< answers that were found without the device
     double gpu_ms_ = 0.0;
 };
 

@@ -1,20 +1,20 @@
 #pragma once
-// Keeps the voxels that can be felt around the probe up to date, on its own thread, so that forces do not fade when the
-// main thread hangs. The engine does not depend on the servo: `Ends` connect it to one.
+// Keeps the voxels that can be felt around the probe up to date, on a thread of its own, so that forces do not fade
+// when the main thread hangs. The engine does not depend on the servo; `Ends` connect this class to a servo.
 //
 //   main thread: choose() ----------+                       +-> Ends::publish
 //   device (a frame or so later):   +-> bits of one cube ---+   again each iteration, with the time up to which
 //     wanted() -> Relevance -> offer()   or the host's own      they are known to be true
 //
-// Bits stay valid until the user changes threshold or voxels, so the thread updates their time stamp in each
-// iteration. Limits of what is felt (felt_limits.h) are applied to a copy of the bits, again as soon as they change: a
-// cut that moves needs no new answer. Where intensities decide, the host makes the bits. When the ball comes near the
-// cube's border or will be beyond it before an answer arrives (region_wish.h), or something changed, wanted() names a
-// new cube for the device's compute pass. The latency of answers is measured.
-// If no answer came within DEVICE_NS (four times that while the held bits still suffice), or the cube is of a coarser
-// level, or the device declined, the thread reads the voxels itself. The bits are the same (relevance_host.h).
+// Bits stay valid until the user changes threshold or voxels, so the thread renews their time stamp in each iteration.
+// Limits of what is felt (felt_limits.h) are applied to a copy of the bits, again as soon as they change: moving a cut
+// needs no new answer. Where intensities decide, the host makes the bits. When the ball comes near the cube's border,
+// will be beyond it before an answer arrives (region_wish.h), or something changed, wanted() names a new cube for the
+// device's compute pass. The latency of answers is measured.
+// If no answer came within DEVICE_NS (four times that while the held bits still suffice), if the cube is of a coarser
+// level, or if the device declined, the thread reads the voxels itself, which gives the same bits (relevance_host.h).
 //
-// choose(), wanted(), offer(), decline(), trouble(): any thread. The thread calls `Ends`.
+// Any thread may call choose(), wanted(), offer(), decline() and trouble(). Only this object's thread calls `Ends`.
 
 #include <condition_variable>
 #include <functional>
@@ -29,17 +29,17 @@
 
 namespace shvr {
 
-/// What the user chose to feel. Shared objects must not change any more.
+/// The user's choice of what to feel. Objects that it shares must not change any more.
 struct RelevanceChoice {
     std::shared_ptr<const VolumeSource> source;     ///< without offsets; null: nothing is mirrored
     std::shared_ptr<const DensityField> offsets{};  ///< null: none
-    std::shared_ptr<const Mask> mask{};             ///< if `limits` need it
-    FeltLimits limits{};                            ///< which of the voxels at or above the threshold are felt
+    std::shared_ptr<const Mask> mask{};             ///< needed only if `limits` depend on it
+    FeltLimits limits{};                            ///< which of the voxels at or above the threshold can be felt
     double threshold = 0.0;                         ///< intensity
-    double radius = 1.0;                            ///< radius of the ball, physical units
+    double radius = 1.0;                            ///< radius of the ball, in physical units
     uint32_t settings = 0;                          ///< counts changes of the threshold
-    uint64_t voxels = 0;                            ///< counts changes of offsets, mask and `limits.unpainted`
-    bool has_device = true;                         ///< a caller polls wanted() and offers answers
+    uint64_t voxels = 0;                            ///< counts changes of offsets, the mask and `limits.unpainted`
+    bool has_device = true;                         ///< whether a caller polls wanted() and offers answers
 };
 
 struct ProbeMotion {
@@ -51,11 +51,11 @@ struct ProbeMotion {
 struct MirroredRelevance {
     RelevancePlace place;
     RelevanceBits bits;
-    uint64_t sequence = 0;  ///< number of the published bits, from 1 on; unchanged if only `true_at_ns` is new
+    uint64_t sequence = 0;  ///< number of the published bits, from 1 on; the same if only `true_at_ns` is new
     uint64_t true_at_ns = 0;
     uint32_t settings = 0;
     uint64_t voxels = 0;
-    uint32_t limits = 0;  ///< counts changes of the limits of what is felt
+    uint32_t limits = 0;  ///< counts changes of the limits that decide what can be felt
     double threshold = 0.0;
     bool is_from_host = false;
 };
@@ -64,9 +64,9 @@ class RelevanceMirror {
 public:
     static constexpr uint64_t TURN_NS = 8'000'000;
     static constexpr uint64_t DEVICE_NS = 25'000'000;      ///< how long the host waits for the device
-    static constexpr double MAX_LATENCY_S = 0.1;           ///< the force has faded by then
-    static constexpr uint64_t TROUBLE_NS = 1'000'000'000;  ///< pause before voxels that could not be read are tried
-                                                           ///< again
+    static constexpr double MAX_LATENCY_S = 0.1;           ///< the force has faded out after this time
+    static constexpr uint64_t TROUBLE_NS = 1'000'000'000;  ///< pause before it retries voxels that could not be
+                                                           ///< read
 
     struct Ends {
         std::function<std::optional<ProbeMotion>()> probe;  ///< null: not known yet
@@ -75,13 +75,13 @@ public:
         std::function<void(uint64_t until_ns)> wait{};  ///< for tests; may return early
     };
     explicit RelevanceMirror(Ends ends);
-    /// Stops the thread, once it has read the voxels that it may be reading.
+    /// Stops the thread and waits for it, including for a read of voxels that it may have begun.
     ~RelevanceMirror();
     RelevanceMirror(const RelevanceMirror&) = delete;
     RelevanceMirror& operator=(const RelevanceMirror&) = delete;
 
     void choose(RelevanceChoice choice);
-    /// The cube that the device should be asked for now.
+    /// The cube that the device should be queried for now.
     struct Wanted {
         RelevancePlace place;
         double threshold = 0.0;
@@ -90,13 +90,13 @@ public:
         bool operator==(const Wanted&) const = default;
     };
     std::optional<Wanted> wanted() const;
-    /// Delivers the device's bits for a wanted cube.
+    /// Delivers the device's bits for the cube that wanted() named.
     void offer(const Wanted& wanted, RelevanceBits bits);
-    /// Reports that the device cannot answer: the host computes the bits at once.
+    /// Reports that the device cannot answer, so that the host computes the bits at once.
     void decline(const Wanted& wanted);
-    /// Why voxels could not be read last time, as a sentence; empty: no failure.
+    /// Returns why the last attempt to read voxels failed, as a sentence; empty if it did not fail.
     std::string trouble() const;
-    /// Number of cubes computed by the host so far.
+    /// Number of cubes that the host has computed so far.
     uint64_t made_on_host() const;
 
 private:
@@ -118,7 +118,7 @@ private:
 
     Ends ends_;
 
-    mutable std::mutex mutex_;  ///< guards the members below; held briefly
+    mutable std::mutex mutex_;  ///< guards the members below; never held for long
     std::condition_variable woken_;
     bool ends_now_ = false, is_woken_ = false;
     std::shared_ptr<const RelevanceChoice> choice_;
@@ -130,11 +130,11 @@ private:
     // Owned by the thread
     std::shared_ptr<const RelevanceChoice> now_;
     MirroredRelevance held_;
-    RelevanceBits unlimited_;            ///< the bits in `held_` before limits were applied; empty while there are none
-    FeltLimits limits_;                  ///< those applied
+    RelevanceBits unlimited_;            ///< the bits of `held_` before limits were applied; empty without limits
+    FeltLimits limits_;                  ///< the limits that were applied to `held_`
     std::optional<Wanted> waiting_for_;  ///< requested from the device
     uint64_t waiting_since_ns_ = 0, failed_ns_ = 0;
-    double latency_s_ = WINDOW_LATENCY_S;  ///< measured: from wanting a cube until it is held, smoothed
+    double latency_s_ = WINDOW_LATENCY_S;  ///< smoothed measurement of the time from wanting a cube until it is held
     std::shared_ptr<const VolumeSource> with_offsets_;
     std::shared_ptr<const DensityField> offsets_of_it_;
 

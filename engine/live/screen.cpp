@@ -78,7 +78,7 @@ void Screen::show_probe(const ProbeLook& probe)
                                                                                     : std::optional(probe));
 }
 
-/// Arriving bricks are those requested by one pane; the other panes are drawn with them in their turn.
+/// Takes the scene's changes. Arriving bricks were requested by one pane; other panes draw them in their own turns.
 void Screen::take_changed()
 {
     renderer_.scene().advance();
@@ -107,7 +107,7 @@ bool Screen::is_loading() const
     return renderer_.volume().state() == DeviceVolume::State::loading;
 }
 
-/// The volume loads the bricks of one pane at a time. An interrupted pane is redrawn when its turn comes again.
+/// Lets another pane load bricks; the volume loads one pane's at a time. Interrupted panes are redrawn in their turn.
 void Screen::give_turn(size_t part)
 {
     if (part == turn_) return;
@@ -136,7 +136,7 @@ void Screen::submit_ahead(double ahead_ms)
     });
     is_held_ = is_held_ && unsketched == parts_.size();
     if (next == parts_.size() || is_held_) return;
-    // One view at a time, so that little is in flight in total.
+    // Only one view draws at a time, so that little is in flight in total.
     for (size_t part = 0; part < parts_.size(); ++part)
         if (part != next && !parts_[part].view->is_idle()) return;
     give_turn(next);
@@ -162,7 +162,7 @@ std::vector<Stroke> Screen::strokes(const Part& part, const ProbeLook& probe, co
 {
     if (!part.view->shown_camera() || !shows_anything()) return {};
     Pane shown = part.pane;
-    shown.shot.camera = *part.view->shown_camera();  // so that strokes match the shown picture, which may lag
+    shown.shot.camera = *part.view->shown_camera();  // strokes must match the shown picture, which may lag behind
     const PixelBox& box = parts_[0].pane.box;
     return strokes_of(shown,
                       {.main = camera_,

@@ -1,9 +1,9 @@
 #pragma once
-// The interactive picture: its panes, each a View, which share the device in turn.
+// The interactive picture: a list of panes, each with a View. The panes take turns in using the device.
 //
 // Sketches come first, pane by pane, so that the whole screen follows the user; then the panes are drawn sharp, in
-// order. Panes share the volume, the paint and the ambient occlusion. One thread, the renderer's; no call waits for the
-// device unless its comment says so.
+// order. Panes share the volume, the paint and the ambient occlusion. One thread, the renderer's. A call waits for the
+// device only if its comment says so.
 
 #include <memory>
 
@@ -17,26 +17,26 @@ class Screen {
 public:
     Screen(Renderer& renderer, const View::Options& options) : renderer_(renderer), options_(options) {}
 
-    /// Sets the displayed content and redraws everything. Call it only if something changed.
+    /// Sets the displayed content and redraws everything. To be called only if something changed.
     void look(const Session& session, const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& probe_voxel);
-    /// Moves the camera or the probe in the same session; unchanged panes are not redrawn.
+    /// Moves the camera or the probe in the same session; panes that do not change are not redrawn.
     void look_from(const Camera& camera, const glm::dvec3& probe_voxel);
     /// Sets the probe; slices follow it.
     void show_probe(const ProbeLook& probe);
     void update_occlusion();
 
     void advance();
-    /// Submits that much more of the due work: the thread is about to wait that long for something else, and the device
-    /// should not be idle meanwhile.
+    /// Submits `ahead_ms` more of the due work, because the thread will wait that long for something else and the
+    /// device should not be idle meanwhile.
     void submit_ahead(double ahead_ms);
-    /// While another picture waits for bricks that it requested, up-to-date panes are not made sharper, since that
-    /// would request their bricks instead. Ends when a pane has to follow the user.
+    /// While held, up-to-date panes are not made sharper: they would request their bricks instead of those that another
+    /// picture requested and waits for. The hold ends when a pane has to follow the user.
     void hold(bool is_held) { is_held_ = is_held; }
     bool is_held() const { return is_held_; }
     void wait();
-    /// Frees all panes and their device memory; look() makes new ones.
+    /// Frees all panes and their device memory; look() makes new panes.
     void clear();
-    /// Like clear(), after the device was lost: does not wait.
+    /// Like clear(), for a device that was lost: does not wait.
     void drop();
     bool complete() const;
 
@@ -44,15 +44,15 @@ public:
         Pane pane;
         std::unique_ptr<View> view;
     };
-    /// The panes; the first is the camera's.
+    /// The panes; the first shows the camera's view.
     const std::vector<Part>& parts() const { return parts_; }
-    /// The lines drawn over a pane, in its pixels. `shows_cut_box`: draws the cut box even if the session hides it.
+    /// Returns the lines over a pane, in its pixels. `shows_cut_box`: draws the cut box even if the session hides it.
     std::vector<Stroke> strokes(const Part& part, const ProbeLook& probe, const TraceMarks& marks = {},
                                 bool shows_cut_box = false) const;
     /// Whether the first pane has something to show.
     bool shows_anything() const { return !parts_.empty() && parts_[0].view->shown_camera() != nullptr; }
 
-    /// Returns the picture as shown, with the lines over maps and slices but without those of the probe; waits for the
+    /// Returns the picture as shown, including the lines over maps and slices, but not the probe's lines. Waits for the
     /// device.
     Image8 read_back();
 
@@ -82,7 +82,7 @@ private:
     std::vector<Part> parts_;
     size_t turn_ = 0;  ///< index of the pane whose bricks are being loaded
     bool is_held_ = false;
-    uint64_t retired_submissions_ = 0, retired_revisions_ = 0;  ///< counts of removed panes
+    uint64_t retired_submissions_ = 0, retired_revisions_ = 0;  ///< submissions and revisions of removed panes
 };
 
 }  // namespace shvr

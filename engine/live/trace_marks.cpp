@@ -9,7 +9,7 @@ namespace shvr {
 
 namespace {
 
-/// The internodes around a node, sorted by their number of steps from it.
+/// Returns at most `most` internodes around a node, sorted by the number of steps to them.
 std::vector<uint32_t> links_about(const TraceGraph& trace, uint32_t node, size_t most)
 {
     std::vector<uint32_t> links, nodes{node};
@@ -43,13 +43,13 @@ TraceMarks trace_marks(const TraceGraph& trace, std::optional<uint32_t> nearby, 
             marks.lines.push_back({place_of(internode.a), place_of(internode.b), color});
     };
     if (nearby) add_ball(trace.node(*nearby).position, trace.node(*nearby).radius, NEARBY_COLOR);
-    // What hangs on a dragged node follows it.
+    // Internodes at a dragged node follow it.
     std::set<uint32_t> links;
     for (const uint32_t node : moved)
         for (const uint32_t number : trace.internodes_of(node)) links.insert(number);
     for (const uint32_t number : links) add_line(number, SELECTED_COLOR);
     for (const uint32_t number : selected.internodes) {
-        if (!moved.empty() || marks.lines.size() == MAX_MARKS) break;  // those are among the links
+        if (!moved.empty() || marks.lines.size() == MAX_MARKS) break;  // moved ones are already among `links`
         add_line(number, SELECTED_COLOR);
     }
     if (selected.node() && !moved_by)

@@ -12,7 +12,7 @@ namespace shvr {
 
 namespace {
 
-/// Linear light behind a translucent background.
+/// Linear light drawn behind a translucent background.
 constexpr glm::vec3 BEHIND(0.05f);
 
 double now_s()
@@ -25,7 +25,7 @@ glm::uvec2 divided(const glm::uvec2& pixels, uint32_t scale)
     return (pixels + scale - 1u) / scale;
 }
 
-/// Rounds sides up to powers of two, so that growing images are seldom re-created.
+/// Rounds width and height up to powers of two, so that images that grow are seldom re-created.
 glm::uvec2 roomy(const glm::uvec2& pixels)
 {
     return {std::bit_ceil(pixels.x), std::bit_ceil(pixels.y)};
@@ -58,7 +58,7 @@ void View::bricks_arrived(const VoxelBox& voxels)
     if (shown_sight_) mark_voxels(voxels, false);
 }
 
-/// The patch over the probe is redrawn once all occlusion is renewed (submit_occlusion).
+/// Notes that light changed. The patch over the probe is redrawn once all occlusion is renewed (submit_occlusion).
 void View::light_changed(const VoxelBox& voxels)
 {
     occlusion_was_renewed_ = true;
@@ -66,10 +66,10 @@ void View::light_changed(const VoxelBox& voxels)
     if (shown_sight_) mark_voxels(voxels);
 }
 
-/// The pixels in which one or both cameras may show the voxels.
+/// Returns the pixels in which the camera, or either of two cameras, may show the voxels.
 PixelBox View::pixels_of(const Sight& sight, const VoxelBox& voxels) const
 {
-    // A voxel's paint fills only its own cube, so nothing beyond it changes.
+    // The paint of a voxel fills only the voxel's own cube, so nothing beyond the cube changes.
     const glm::dvec3& spacing = scene().info().spacing;
     const glm::dvec3 lower = glm::dvec3(voxels.lower) * spacing, upper = glm::dvec3(voxels.upper) * spacing;
     const PixelBox one = pixels_of_box(sight.shot.camera, sight.pixels, lower, upper);
@@ -121,7 +121,7 @@ void View::reserve(gpu::Storage& image, const std::string& name, Format format, 
     }
 }
 
-/// Resets the view: nothing is shown or in progress, and no memory is held; the next picture starts from scratch.
+/// Resets the view: nothing is shown or in progress, and it uses no memory; the next picture starts from scratch.
 void View::forget()
 {
     for (const Running& running : running_) running.submission.wait();
@@ -166,7 +166,7 @@ void View::submit_sketches(double ahead_ms)
     }
 }
 
-/// If memory is short, ambient occlusion is released in favour of the picture.
+/// Submits the next work. If memory is short, frees ambient occlusion, and leaves the work to the next frame.
 bool View::submit_or_give_way(bool sketches_alone)
 {
     try {
@@ -188,7 +188,7 @@ bool View::is_listed(const Sight& sight)
                      {.pixels = sight.pixels, .always_shown = voxels_of_shell(probe_, scene().info())});
 }
 
-/// Returns the requested sight, or a recently requested one, as soon as its bricks are listed; null: not yet.
+/// Returns the requested sight, or one requested recently, as soon as its bricks are listed; null until then.
 View::SightRef View::listed_sight()
 {
     if (!coming_sight_) coming_sight_ = sight_;
@@ -197,7 +197,7 @@ View::SightRef View::listed_sight()
     return is_listed(*sight_) ? sight_ : listed;
 }
 
-/// While a sketch is drawn, the bricks of the next one are listed.
+/// Lists the bricks of the next sketch while the current one is being drawn.
 void View::list_ahead()
 {
     if (sight_ == shown_sight_ || (base_.job && base_.job->sight == sight_)) return;
@@ -210,7 +210,7 @@ bool View::submit_next(bool sketches_alone)
 {
     if (!sight_) return false;
     if (is_drawing_finer_sketch() && (sight_ != shown_sight_ || patch_is_due())) {
-        if (base_.running > 0) return false;  // temporarily, since its image is needed for something else
+        if (base_.running > 0) return false;  // try again later: the sketch's image is still being drawn
         drop_finer_sketch();
     }
     if (submit_sketch(base_, Purpose::base) || submit_sketch(patch_, Purpose::patch)) return true;
@@ -224,26 +224,26 @@ bool View::submit_next(bool sketches_alone)
         pass_times_.clear();
         changed_during_base_.clear();
         start(base_, sight, std::nullopt, options_.motion_ms);
-        if (probe_) start(patch_, sight, probe_, options_.probe_ms);  // shown together with it
+        if (probe_) start(patch_, sight, probe_, options_.probe_ms);  // shown together with the sketch of the picture
         patch_is_dirty_ = false;
         return submit_next(sketches_alone);
     }
     if (patch_is_due()) {
         patch_is_dirty_ = false;
         start(patch_, sight_, probe_, options_.probe_ms);
-        finish_sketches();  // there may be nothing to draw
+        finish_sketches();  // finishes sketches that have nothing to draw
         return submit_next(sketches_alone);
     }
     if (sketches_alone) return false;
     if (submit_occlusion()) return true;
-    if (scene().has_changed()) return false;  // must be collected first, so that no tile is drawn twice
+    if (scene().has_changed()) return false;  // changes must be collected first, so that no tile is drawn twice
     if (patch_is_due()) return submit_next(sketches_alone);
     if (submit_finer_sketch()) return submit_next(sketches_alone);
     if (submit_tiles()) return true;
     if (std::ranges::any_of(tiles_, [this](const Tile& tile) { return may_draw(tile); }))
-        return false;  // their bricks are being listed
+        return false;  // the bricks of these tiles are being listed
     if (running_.empty() && patch_.shown.share < 1.0 && !patch_.shown.part.empty()) {
-        start(patch_, sight_, probe_, std::numeric_limits<double>::infinity());  // nothing moves: draw it sharp
+        start(patch_, sight_, probe_, std::numeric_limits<double>::infinity());  // nothing moves, so it is drawn sharp
         return submit_next(sketches_alone);
     }
     return running_.empty() && submit_refinement();
@@ -269,8 +269,8 @@ Resource View::draw(FrameGraph& graph, const PicturePart& part, Import light, Ru
 {
     const Sight& sight = *running.sight;
     PicturePart shown = part;
-    shown.always_shown = voxels_of_shell(probe_, scene().info());  // shown in all parts of the view, even those without
-                                                                   // the probe
+    shown.always_shown = voxels_of_shell(probe_, scene().info());  // all parts show these voxels, even those
+                                                                   // without the probe
     Drawn drawn = shvr::draw(graph, scene(), sight.look, sight.shot, shown, graph.import("light", light));
     running.pace = &rays_;
     running.units = double(running.pixels);
@@ -294,7 +294,7 @@ bool View::occlusion_is_due() const
            scene().occlusion().is_due();
 }
 
-/// Submits a slice of ambient occlusion. Bricks overlap on the screen, so sharp tiles wait until all slices are done.
+/// Submits a slice of ambient occlusion. Bricks overlap on screen, so sharp tiles wait for the last slice.
 bool View::submit_occlusion()
 {
     constexpr double LEAST = 2.0, MOST = 256.0;
@@ -302,7 +302,7 @@ bool View::submit_occlusion()
     const Sight& sight = *shown_sight_;
     if (sight.shot.is_slice) return false;
     if (!sight.look.light.occlusion.automatic && !occlusion_is_asked_for_) return false;
-    constexpr double CELL_BRICKS = 8.0;  // the cells of this many bricks cost about as much as the values of one
+    constexpr double CELL_BRICKS = 8.0;  // computing this many bricks' cells costs about as much as one brick's values
     const Occlusion::Counts before = scene().occlusion().counts();
     std::optional<FrameGraph> slice = next_occlusion(scene(), sight.look, sight.shot.camera,
                                                      {.bricks = bricks, .cell_bricks = size_t(CELL_BRICKS) * bricks});
@@ -312,14 +312,14 @@ bool View::submit_occlusion()
         occlusion_was_renewed_ = false;
         return false;
     }
-    const Occlusion::Counts& after = scene().occlusion().counts();  // it may be less than requested
+    const Occlusion::Counts& after = scene().occlusion().counts();  // the difference may be less than requested
     const double units = double(after.values - before.values) + double(after.cells - before.cells) / CELL_BRICKS;
     submit(std::move(*slice), {.purpose = Purpose::preparation, .pace = &occlusion_, .units = units});
     return true;
 }
 
-/// Selects the tiles of the next batch: those nearest to the focus, enough that few batches make up the picture, or all
-/// remaining tiles if they take only a moment.
+/// Selects the tiles of the next batch, nearest to the focus first: enough that a few batches complete the picture, or
+/// all remaining tiles if they take only a moment.
 void View::choose_batch(const glm::dvec2& focus)
 {
     constexpr size_t BATCHES = 6;
@@ -337,7 +337,7 @@ void View::choose_batch(const glm::dvec2& focus)
     for (size_t i = 0; i < count; ++i) tiles_[left[i].second].is_in_batch = true;
 }
 
-/// Shows the tiles of the batch once all of it is drawn.
+/// Shows the tiles of the batch, if all of them are drawn.
 void View::show_batch()
 {
     const auto is_missing = [](const Tile& tile) { return tile.is_in_batch && !tile.is_drawn; };
@@ -358,7 +358,7 @@ bool View::may_draw(const Tile& tile) const
     return !more_comes || now_s() - tile.drawn_s > AGAIN_S;
 }
 
-/// Returns whether memory suffices for sharp tiles. If it does not, reports that once per view.
+/// Returns whether memory suffices for sharp tiles. If it does not, this is reported once per view.
 bool View::has_room_for_tiles()
 {
     if (unsharp_sight_ == shown_sight_) return false;
@@ -379,7 +379,7 @@ bool View::has_room_for_tiles()
     }
 }
 
-/// Replaces sharp tiles, which do not fit in memory, by a new sketch of the whole picture.
+/// Draws a new sketch of the whole picture in place of sharp tiles, which do not fit in memory.
 bool View::submit_sketch_instead()
 {
     start(base_, shown_sight_, std::nullopt, options_.motion_ms);
@@ -387,7 +387,7 @@ bool View::submit_sketch_instead()
     return submit_sketch(base_, Purpose::base);
 }
 
-/// As many tiles around a due one as fit in one step: first neighbours in its row, then adjacent rows.
+/// Returns as many tiles around a due tile as fit in one step: first neighbours in its row, then adjacent rows.
 PixelBox View::strip_of_tiles(const glm::uvec2& nearest) const
 {
     constexpr uint32_t MAX_TILES = (1u << 20) / (TILE * TILE);  // 16 MiB of light
@@ -414,7 +414,7 @@ PixelBox View::strip_of_tiles(const glm::uvec2& nearest) const
     return strip;
 }
 
-/// Image for the light of the sharp tiles drawn next.
+/// Returns the image for the light of the next sharp tiles.
 Import View::strip_light(const glm::uvec2& pixels)
 {
     if (!has_no_strips_) try {
@@ -455,7 +455,7 @@ bool View::submit_tiles()
         }
     if (!nearest) return false;
     if (!has_room_for_tiles()) return submit_sketch_instead();
-    if (!is_listed(*shown_sight_)) return false;  // paint or the probe's shell has reached another brick
+    if (!is_listed(*shown_sight_)) return false;  // paint or the probe's shell has reached a brick that is not listed
     if (submit_preparation(*shown_sight_)) return true;
 
     const PixelBox strip = strip_of_tiles(*nearest);
@@ -467,7 +467,7 @@ bool View::submit_tiles()
     const glm::uvec2 size = part.end - part.begin;
     FrameGraph graph;
     const Import light_of_strip = strip_light(size);
-    // Imported in each of these graphs, so that their barriers are known to settle the earlier graphs' light as well.
+    // These graphs also import the other tiles' light, so that their barriers cover earlier graphs' accesses to it.
     for (const gpu::Storage& other : strips_)
         if (other && other.import().id != light_of_strip.id)
             static_cast<void>(graph.import("light of other tiles", other.import()));
@@ -481,7 +481,7 @@ bool View::submit_tiles()
     submit(std::move(graph), std::move(running));
     for (const uint32_t index : running_.back().tiles) {
         Tile& tile = tiles_[index];
-        if (tile.is_urgent) tile.is_in_batch = false;  // changed voxels are shown at once
+        if (tile.is_urgent) tile.is_in_batch = false;  // changed voxels are shown at once, without waiting for a batch
         tile.is_due = tile.is_urgent = false;
         tile.drawn_s = now_s();
     }
@@ -518,9 +518,9 @@ void View::account(const gpu::FrameResult& result, const Running& done)
     busy_since_ = now;
     if (!host_tells_time())
         for (const gpu::PassReport& pass : result.passes) note(pass.name, pass.gpu_ms, waits(pass));
-    // Passes may overlap, so their sum can exceed the total time.
+    // Passes may overlap, so the sum of their times can exceed the total time.
     const double ms = host_tells_time() ? host_ms : result.gpu_ms;
-    // If only the host can measure time, all of it is attributed to the most expensive pass.
+    // If only the host can measure time, the most expensive pass is charged with all of it.
     if (host_tells_time() && !result.passes.empty()) {
         const auto rays = std::ranges::find(result.passes, "raycast", &gpu::PassReport::name);
         const bool has_rays = rays != result.passes.end();

@@ -1,20 +1,20 @@
 #pragma once
 // An interactive picture: coarse at once, then sharp, tile by tile, nearest to the probe first.
 //
-//   look changed      the bricks of the view are listed in the background; while the camera moves faster than that, the
-//                     picture follows at the pace of the lists
-//                     sketch of the whole picture, at a scale that takes about `motion_ms`   -> shown when all is done
-//                     and at most the session's `interaction.resolution`
+//   look changed      the view's bricks are listed in the background; if the camera moves faster than they are listed,
+//                     the picture follows at the pace of the lists;
+//                     then a sketch of the whole picture, at a scale that takes about `motion_ms` and is at most the
+//                     session's `interaction.resolution`                                     -> shown when all is done
 //   probe moved       sketch of the pixels its ball may cover, drawn over everything else    -> shown when done
-//   still             a finer sketch of the whole picture, where that is a small part of the work
+//   nothing moves     a finer sketch of the whole picture, if it is a small part of the work;
 //                     then sharp tiles, until the picture equals that of `Renderer::render` bit for bit. They are shown
-//                     a large part of the picture at a time, so that no seam runs through it
-//   voxels changed    the tiles that show them, again
+//                     in batches that cover a large part of the picture, so that no seam runs through it
+//   voxels changed    the tiles that show these voxels are drawn again
 //   occlusion due     ambient occlusion, nearest bricks first, before the sharp tiles that show it
 //
-// Everything is drawn in small graphs of about `step_ms` each, with at most about `in_flight_ms` of them in flight, so
+// Everything is drawn in small graphs of about `step_ms` each, with about `in_flight_ms` of them in flight at most, so
 // that a user interface, a brush or a relevance pass on the same queue waits no longer than that. Nothing is submitted
-// when nothing changed. One thread, the renderer's; no call waits for the device.
+// while nothing changes. One thread, the renderer's; only the calls whose comments say so wait for the device.
 
 #include <array>
 #include <chrono>
@@ -34,16 +34,16 @@ public:
 
     struct Options {
         double step_ms = 2.0;        ///< device time of one graph
-        double in_flight_ms = 3.5;   ///< device time of the graphs in flight
-        double motion_ms = 40.0;     ///< for a sketch of the whole picture
-        double probe_ms = 20.0;      ///< time limit for a sketch of the pixels that the probe may cover
-        double moment_ms = 300.0;    ///< sharp tiles that take less are shown all at once
-        bool swap_red_blue = false;  ///< in the shown images
+        double in_flight_ms = 3.5;   ///< total device time of the graphs in flight
+        double motion_ms = 40.0;     ///< device time of a sketch of the whole picture
+        double probe_ms = 20.0;      ///< device time of a sketch of the pixels that the probe may cover
+        double moment_ms = 300.0;    ///< sharp tiles that take less than this are shown all at once
+        bool swap_red_blue = false;  ///< swaps red and blue in the shown images
     };
     View(Renderer& renderer, const Options& options) : renderer_(renderer), options_(options) {}
     explicit View(Renderer& renderer) : View(renderer, Options{}) {}
 
-    /// Sets the displayed content and redraws everything. Call it only if something changed.
+    /// Sets the displayed content and redraws everything. To be called only if something changed.
     void look(const Look& look, const InteractionSettings& interaction, const Shot& shot, const glm::uvec2& pixels);
     void look(const Session& session, const Shot& shot, const glm::uvec2& pixels)
     {
@@ -52,8 +52,8 @@ public:
     void show_probe(const std::optional<ProbeLook>& probe);
     /// Reports that the user has changed these voxels.
     void changed(const VoxelBox& voxels);
-    /// Reports that finer paged bricks of these voxels have arrived. While more arrive, tiles drawn without them are
-    /// redrawn a few times a second.
+    /// Reports that finer paged bricks of these voxels have arrived. While more bricks arrive, tiles that were drawn
+    /// without them are redrawn a few times a second.
     void bricks_arrived(const VoxelBox& voxels);
     /// Reports that the ambient occlusion of these voxels has been renewed.
     void light_changed(const VoxelBox& voxels);
@@ -65,41 +65,41 @@ public:
     void advance();
     // advance() in steps, for owners of several views, who take the scene's changes and report them to each view.
     void collect() { reap(); }
-    // `ahead_ms`: extra time beyond `in_flight_ms` that may be in flight, since the caller will not poll for that long.
-    void submit_sketches(double ahead_ms = 0.0);  ///< only the work that is_sketched() waits for
+    // `ahead_ms`: device time that may be in flight beyond `in_flight_ms`, as the caller will not poll for that long.
+    void submit_sketches(double ahead_ms = 0.0);  ///< submits only the work that is_sketched() waits for
     void submit_due(double ahead_ms = 0.0);
-    /// Whether the whole picture is shown, perhaps coarsely.
+    /// Whether the whole picture is shown for the requested sight, even if coarsely.
     bool is_sketched() const { return sight_ == shown_sight_ && !base_.job && !patch_.job && !patch_is_due(); }
-    /// Whether nothing is due or in flight; bricks may still arrive.
+    /// Whether no work is due or in flight. Bricks may still arrive.
     bool is_finished() const;
     bool is_idle() const { return running_.empty(); }
 
-    /// Waits for the graphs in flight, about `in_flight_ms`.
+    /// Waits for the graphs in flight, which takes about `in_flight_ms`.
     void wait();
-    /// Whether the picture is as sharp as the budget allows, and nothing is due or in flight.
+    /// Whether the picture is as sharp as the budget allows, and no work is due or in flight.
     bool complete() const;
     /// The camera of the picture in layers(); null before the first picture.
     const Camera* shown_camera() const { return shown_sight_ ? &shown_sight_->shot.camera : nullptr; }
-    /// Changes whenever layers() does, for callers that show them.
+    /// Changes whenever the result of layers() changes, for callers that show the layers.
     uint64_t revision() const { return revision_; }
 
     /// Images to copy over each other, back to front. Each is an rgba8_unorm image (with red and blue swapped if the
-    /// options say so); source and target have the same size.
+    /// options say so). Source and target of a copy have the same size.
     struct Layer {
         Import image;
         PixelBox source, target;
     };
     std::vector<Layer> layers() const;
-    /// The layers combined, as a screen would show them; waits for the device.
+    /// Returns the layers combined, as a screen would show them. Waits for the device.
     Image8 read_back();
 
-    /// Device time of one pass, in the current picture or the last one.
+    /// Device time of one pass in the current picture, or else in the last one.
     struct PassTime {
         std::string name;
         uint64_t runs = 0;
         double total_ms = 0.0;
         double longest_ms = 0.0;
-        uint64_t waits = 0;  ///< runs that had to wait for results of earlier passes
+        uint64_t waits = 0;  ///< number of runs that had to wait for results of earlier passes
     };
     const std::vector<PassTime>& pass_times() const { return pass_times_; }
     uint64_t submissions() const { return submissions_; }
@@ -114,20 +114,20 @@ private:
     using SightRef = std::shared_ptr<const Sight>;
 
     /// A part of a picture at some scale, in its own image. Double-buffered: one image is shown while the other is
-    /// drawn.
+    /// being drawn.
     struct Sketch {
         struct Content {
             SightRef sight;
             std::optional<ProbeLook> probe;
-            double share = 1.0;    ///< scale relative to the screen along each axis; 1: sharp
-            glm::uvec2 pixels{0};  ///< size of the whole picture, scaled
+            double share = 1.0;    ///< size relative to the screen along each axis; 1: sharp
+            glm::uvec2 pixels{0};  ///< size of the whole picture at this scale
             PixelBox part;         ///< scaled pixels; may be empty
-            PixelBox target;       ///< screen pixels that it covers
+            PixelBox target;       ///< screen pixels that `part` covers
         };
         std::array<gpu::Storage, 2> images;
         uint32_t front = 0;
-        Content shown;               ///< the picture in images[front]; its sight is null if there is none
-        std::optional<Content> job;  ///< drawn into the other image
+        Content shown;               ///< the content of images[front]; its sight is null if there is none
+        std::optional<Content> job;  ///< the content that is being drawn into the other image
         uint32_t next_row = 0;       ///< next row of the job to draw
         uint32_t next_encoded = 0;   ///< next row of the target to encode
         uint32_t running = 0;        ///< graphs in flight
@@ -138,10 +138,10 @@ private:
     };
     struct Tile {
         bool is_shown = false;
-        bool is_drawn = false;  ///< drawn, and shown together with the other tiles of its batch
+        bool is_drawn = false;  ///< whether it is drawn; it is shown once its whole batch is drawn
         bool is_in_batch = false;
         bool is_due = false;
-        bool is_urgent = false;  ///< changed by painting
+        bool is_urgent = false;  ///< changed by painting, so it is drawn first
         double drawn_s = 0.0;    ///< host time of the last submission
     };
     enum class Purpose : uint8_t { preparation, base, patch, tiles };
@@ -149,8 +149,8 @@ private:
         gpu::Submission submission;
         Purpose purpose = Purpose::preparation;
         double estimate_ms = 0.0;
-        Pace* pace = nullptr;         ///< updated with its time, if any
-        double units = 0.0;           ///< in units of that pace
+        Pace* pace = nullptr;         ///< the estimate that learns from the graph's time, if any
+        double units = 0.0;           ///< work in units of that estimate
         uint64_t pixels = 0;          ///< number of pixels ray-cast
         std::vector<uint32_t> tiles;  ///< indices
         SightRef sight;
@@ -201,7 +201,7 @@ private:
     void reserve(gpu::Storage& image, const std::string& name, Format format, const glm::uvec2& pixels);
     bool patch_is_due() const;
     double cost_ms(uint64_t pixels) const { return double(pixels) * rays_.ms(); }
-    /// The host's clock is used on lavapipe, whose timestamps are wrong during a window's render passes.
+    /// Whether to use the host's clock: it is on lavapipe, whose timestamps are wrong during a window's render passes.
     bool host_tells_time() const
     {
         const gpu::DeviceTraits& traits = renderer_.device().traits();
@@ -214,22 +214,22 @@ private:
     SightRef sight_;                  ///< the requested state
     SightRef shown_sight_;            ///< the state shown by base, tiles and patch
     SightRef coming_sight_;           ///< a requested state whose bricks are being listed
-    SightRef cut_short_sight_;        ///< the last state with rays that stopped before their end
+    SightRef cut_short_sight_;        ///< the last sight for which some rays stopped before their end
     std::optional<ProbeLook> probe_;  ///< the requested probe
     Sketch base_, patch_;
     bool patch_is_dirty_ = false;  ///< paint under the probe has changed
     gpu::Storage work_;            ///< linear light of the sketch being drawn
-    /// Linear light of sharp tiles: for the graphs in flight and the next one, so that none waits for another.
+    /// Linear light of sharp tiles: an image for each graph in flight and for the next one, so that none waits.
     std::array<gpu::Storage, 3> strips_;
     size_t next_strip_ = 0;
     bool has_no_strips_ = false;  ///< set when out of memory: tiles are drawn in `work_`
     gpu::Storage sharp_;          ///< all sharp tiles
     std::vector<Tile> tiles_;
     std::vector<VoxelBox> changed_during_base_;
-    SightRef finer_sight_;    ///< the last state for which a finer sketch was begun
-    SightRef unsharp_sight_;  ///< the last state whose sharp tiles did not fit in memory
+    SightRef finer_sight_;    ///< the last sight for which a finer sketch was begun
+    SightRef unsharp_sight_;  ///< the last sight whose sharp tiles did not fit in memory
     bool occlusion_is_asked_for_ = false;
-    bool occlusion_was_renewed_ = false;  ///< set while the pixels under the probe do not show it yet
+    bool occlusion_was_renewed_ = false;  ///< set until the pixels under the probe show the renewed occlusion
     std::deque<Running> running_;
     double in_flight_ms_ = 0.0;
     // Initial estimates, measured on two cores of a server.

@@ -1,4 +1,4 @@
-// Sketches of a view (view.h): the whole picture, and the pixels that the probe may cover, as coarse as time requires.
+// Sketches of a view (view.h), as coarse as time demands: the whole picture, and the pixels the probe may cover.
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,8 @@ namespace {
 
 constexpr double MAX_SCALE = 8.0;
 
-/// Pixels of a sketch per pixel of the screen, along each axis, so that it takes `target_ms`; at most `most`, and no
-/// coarser than is useful. Whole pictures take `ms`.
+/// Returns the pixels of a sketch per screen pixel, along each axis, with which it takes `target_ms`: at most `most`,
+/// and no coarser than is useful. `ms`: its time with one pixel per screen pixel.
 double share_for(double ms, double target_ms, double most)
 {
     return std::clamp(std::sqrt(target_ms / std::max(ms, 1e-9)), std::min(1.0 / MAX_SCALE, most), most);
@@ -33,7 +33,7 @@ void View::start(Sketch& sketch, const SightRef& sight, const std::optional<Prob
         if (const auto& eye = sight->shot.right_eye)
             part = united(part, pixels_of_ball(*eye, sight->pixels, probe->center, probe->reach(spacing)));
     }
-    // Without motion the sketch is drawn sharp, whatever it costs.
+    // An infinite `target_ms` means that nothing moves: the sketch is drawn sharp, whatever it costs.
     const double most = std::isinf(target_ms) ? 1.0 : sight->interaction.resolution;
     const double share = share_for(double(part.area()) * average_ms_per_pixel_, target_ms, most);
     start(sketch, {.sight = sight, .probe = probe, .share = share}, part);
@@ -62,11 +62,11 @@ void View::start(Sketch& sketch, Sketch::Content content, PixelBox part)
     sketch.job = std::move(content);
 }
 
-/// Draws a finer sketch before the sharp tiles, whose edges stand out less next to it. Once per sight, and only if it
-/// adds little to the picture's total time.
+/// Draws a finer sketch before the sharp tiles, so that their edges stand out less. Does so once per sight, and only if
+/// the sketch adds little to the picture's total time.
 bool View::submit_finer_sketch()
 {
-    constexpr double SHARE = 0.18;  // share of the pixels along each axis: 3 % of all pixels
+    constexpr double SHARE = 0.18;  // of the pixels along each axis; 3 % of all pixels
     if (finer_sight_ == shown_sight_ || !(base_.shown.share < 0.8 * SHARE)) return false;
     finer_sight_ = shown_sight_;
     start(base_, {.sight = shown_sight_, .probe = {}, .share = SHARE}, {glm::uvec2(0), shown_sight_->pixels});
@@ -80,7 +80,7 @@ void View::drop_finer_sketch()
     if (unsharp_sight_ == shown_sight_) mark_due({glm::uvec2(0), shown_sight_->pixels}, false);
 }
 
-/// Submits the next graph of a sketch; false if all are in flight, or if its bricks are still being listed.
+/// Submits the next graph of a sketch. Returns false if all are in flight, or if bricks are still being listed.
 bool View::submit_sketch(Sketch& sketch, Purpose purpose)
 {
     if (!sketch.job) return false;
@@ -110,8 +110,8 @@ void View::submit_rows(Sketch& sketch, Purpose purpose)
     Running running{.purpose = purpose, .pixels = uint64_t(width) * rows, .sight = job.sight};
     const Resource light = draw(graph, part, work_.import(), running);
     const uint32_t end = sketch.next_row + rows;
-    const bool encodes = job.share == 1.0;  // otherwise rows are enlarged together with their neighbours, once all are
-                                            // drawn
+    const bool encodes = job.share == 1.0;  // otherwise rows are enlarged with their neighbours, once all
+                                            // are drawn
     if (encodes) encode_rows(graph, light, sketch, sketch.next_encoded, end);
     submit(std::move(graph), std::move(running));
     sketch.next_row = end;
@@ -132,7 +132,7 @@ void View::submit_encoding(Sketch& sketch, Purpose purpose)
     ++sketch.running;
 }
 
-/// Encodes rows of the sketch's target from `light`, which starts at the sketch's part.
+/// Encodes rows of the sketch's target. `light` begins at the first pixel of the sketch's part.
 void View::encode_rows(FrameGraph& graph, Resource light, const Sketch& sketch, uint32_t begin, uint32_t end)
 {
     const Sketch::Content& job = *sketch.job;
@@ -158,7 +158,7 @@ void View::flip(Sketch& sketch)
 void View::finish_sketches()
 {
     if (!base_.is_drawn() || !patch_.is_drawn()) return;
-    // The picture and its probe are shown at the same time.
+    // The sketches of the picture and of its probe are shown at the same time.
     if (patch_.job) flip(patch_);
     if (!base_.job) return;
     average_ms_per_pixel_ = sketch_ms_ / double(base_.job->part.area());

@@ -1,5 +1,5 @@
 #pragma once
-// The look of a volume: the inputs of pictures except camera and probe. Plain values.
+// The look of a volume: all inputs of a picture except camera and probe. Plain values.
 
 #include "engine/look/groups.h"
 #include "engine/look/panes.h"

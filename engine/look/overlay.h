@@ -1,7 +1,7 @@
 #pragma once
-// Lines over a picture: the main camera's frustum in maps, the positions of slices, and the probe if something hides it
-// or it is out of sight. They are computed once, as straight strokes in pixels; the window draws them with its own
-// renderer, and `draw_strokes` draws them into image files. Pure; any thread.
+// Lines over a picture: the main camera's frustum in maps, the positions of slices, and the probe if it is hidden or
+// out of sight. They are computed once, as straight strokes in pixels. The window draws the strokes with its own
+// renderer; `draw_strokes` draws them into image files. Pure; any thread.
 
 #include <optional>
 #include <span>
@@ -21,13 +21,13 @@ struct Stroke {
 
 /// The objects from which strokes are made.
 struct OverlayScene {
-    Camera main;                ///< camera whose frustum maps show
+    Camera main;                ///< the camera whose frustum the maps show
     glm::uvec2 main_pixels{1};  ///< size of the main pane
     struct Probe {
         glm::dvec3 center{0.0};   ///< volume space
         double radius = 1.0;      ///< physical units
         glm::dvec3 color{1.0};    ///< linear light
-        bool is_outlined = true;  ///< draw its silhouette
+        bool is_outlined = true;  ///< draws the probe's silhouette
         bool has_arrow = true;    ///< draws an arrow if the probe is out of sight
     };
     Probe probe;
@@ -43,26 +43,26 @@ struct OverlayScene {
     };
     std::vector<Ball> balls{};
     std::vector<Line> lines{};
-    /// A box in volume space whose edges are drawn: the part that the cutting planes keep.
+    /// The box, in volume space, that the cutting planes keep; its edges are drawn.
     struct Box {
         glm::dvec3 lower{0.0}, upper{0.0};
     };
     std::optional<Box> box{};
 };
-/// The part of a volume that the cutting planes keep.
+/// Returns the part of a volume that the cutting planes keep.
 OverlayScene::Box box_of(const CutBox& cut, const VolumeInfo& volume);
 
 std::vector<Stroke> strokes_of(const Pane& pane, const OverlayScene& scene, const VolumeInfo& volume);
 
-/// The silhouette of a ball as a closed line: the circle in which lines from the eye touch it. Empty if the eye is
-/// inside the ball, or if a part of the ball is level with or behind the eye.
+/// Returns the silhouette of a ball as a closed line: the circle in which lines from the eye touch the ball. Empty if
+/// the eye is inside the ball, or if a part of the ball is level with the eye or behind it.
 std::vector<glm::dvec2> silhouette_of(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& center,
                                       double radius);
 
 /// Draws anti-aliased strokes over premultiplied light. `pane`: the pixels of the picture that stroke coordinates refer
-/// to; nothing is drawn outside. `image` holds some or all of the picture's rows, from `first_row` on.
+/// to; nothing is drawn outside of it. `image` holds all rows of the picture, or some, beginning with `first_row`.
 void draw_strokes(ImageF& image, std::span<const Stroke> strokes, const PixelBox& pane, uint32_t first_row = 0);
-/// The same for a screen's opaque pixels.
+/// Likewise, over the opaque pixels of a screen.
 void draw_strokes(Image8& image, std::span<const Stroke> strokes, const PixelBox& pane);
 
 }  // namespace shvr

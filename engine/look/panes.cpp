@@ -10,8 +10,8 @@ namespace shvr {
 namespace {
 
 constexpr uint32_t MIN_PANE = 16;      ///< pixels a side
-constexpr double SLICE_MARGIN = 1.05;  ///< around the volume
-constexpr double MAP_MARGIN = 1.5;     ///< around the volume; a map also contains the camera that looks at it
+constexpr double SLICE_MARGIN = 1.05;  ///< height of a slice's view relative to the volume
+constexpr double MAP_MARGIN = 1.5;     ///< likewise for a map, which also shows the camera that looks at the volume
 
 PixelBox part_of(const glm::uvec2& pixels, const glm::uvec2& counts, const glm::uvec2& at)
 {
@@ -23,13 +23,13 @@ glm::uvec2 size_of(const PixelBox& box)
     return box.end - box.begin;
 }
 
-/// The height of an orthographic view that contains `extent` (width, height).
+/// Returns the height of an orthographic view that contains `extent` (width, height).
 double height_for(const glm::dvec2& extent, const glm::uvec2& pixels)
 {
     return std::max(extent.y, extent.x * pixels.y / pixels.x);
 }
 
-/// The whole volume from a side; `around`: height of the view relative to the volume's.
+/// Returns a map, the whole volume from a side. `around`: height of the view relative to that of the volume.
 Pane map_pane(const std::string& side, const PixelBox& box, const VolumeInfo& volume, double around)
 {
     Camera camera = camera_looking(side, volume);
@@ -41,7 +41,7 @@ Pane map_pane(const std::string& side, const PixelBox& box, const VolumeInfo& vo
     return {.kind = Pane::Kind::map, .shot = camera, .box = box, .name = side};
 }
 
-/// The voxel at the centre of slices.
+/// Returns the voxel at the centre of slices.
 glm::dvec3 middle_of(const SliceSettings& slices, const VolumeInfo& volume, const glm::dvec3& probe_voxel)
 {
     const glm::dvec3 size(volume.size);
@@ -49,15 +49,15 @@ glm::dvec3 middle_of(const SliceSettings& slices, const VolumeInfo& volume, cons
     return glm::clamp(slices.center.value_or(probe_voxel), glm::dvec3(0.0), size);
 }
 
-/// The axis of the volume that lies along a direction.
+/// Returns the axis of the volume that is closest to a direction.
 int axis_along(const glm::dvec3& direction)
 {
     const glm::dvec3 size = glm::abs(direction);
     return size.x > size.y ? (size.x > size.z ? 0 : 2) : size.y > size.z ? 1 : 2;
 }
 
-/// The plane through the probe perpendicular to `axis`, seen as the volume's sides are: z from the top, y from the
-/// front, x from the right.
+/// Returns the slice through the probe that is perpendicular to `axis`, seen from the same side as the volume: z from
+/// the top, y from the front, x from the right.
 Pane slice_pane(int axis, const PixelBox& box, const VolumeInfo& volume, const glm::dvec3& probe_voxel,
                 const SliceSettings& slices)
 {
@@ -66,8 +66,8 @@ Pane slice_pane(int axis, const PixelBox& box, const VolumeInfo& volume, const g
     Camera& camera = pane.shot.camera;
     const glm::dvec3 forward = glm::normalize(camera.target - camera.eye);
     const glm::dvec3 size(volume.size);
-    // Slightly below the volume's end, even in a kernel's floats: a plane at the end has no inside, and is drawn
-    // without an edge.
+    // Slightly below the volume's end, even after rounding to a kernel's floats: a plane exactly at the end has no
+    // inside, and would be drawn without an edge.
     constexpr double LAST = 1.0 - 1e-6;
     const double voxel = std::clamp(probe_voxel[axis], 0.0, LAST * size[axis]);
     if (slices.center || slices.zoom > 1.0) {
@@ -118,7 +118,7 @@ std::pair<Camera, Camera> eyes_of(const Camera& camera, const StereoSettings& se
         const glm::dvec3 way = double(side) * half * axes.right;
         eye.eye += way;
         if (half > 0.0 && (settings.toe_in || !is_perspective)) {
-            eye.up = axes.up;  // the eyes rotate about the up vector, so that neither rolls
+            eye.up = axes.up;  // both eyes rotate about the up vector, so that neither rolls
             continue;
         }
         eye.target += way;
@@ -187,7 +187,7 @@ SliceSettings slices_following(const SliceSettings& slices, const std::vector<Pa
 {
     const glm::dvec3 seen = glm::clamp(probe_voxel, glm::dvec3(0.0), glm::dvec3(volume.size)) * volume.spacing;
     glm::bvec3 follows(false);
-    int held_axis = -1;  // normal axis of the slice under the mouse; the slices do not move along it
+    int held_axis = -1;  // normal axis of the slice under the mouse, if any; slices then move only along it
     for (size_t i = 0; i < panes.size(); ++i) {
         const Pane& pane = panes[i];
         if (!pane.shot.is_slice) continue;

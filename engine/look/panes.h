@@ -1,5 +1,5 @@
 #pragma once
-// The views that make up a picture: a single one; two for two eyes; maps that show where the camera is; or slices
+// The views that make up a picture: a single view; one for each eye; maps that show where the camera is; or slices
 // through the probe. A picture is a list of panes; each pane is a camera and a rectangle. Pure; any thread.
 
 #include <optional>
@@ -13,9 +13,9 @@ namespace shvr {
 
 enum class Arrangement {
     single,
-    stereo,    ///< a pane for each eye, or both in one
+    stereo,    ///< a pane for each eye, or one pane for both
     overview,  ///< the camera's view, and the volume from the top, the front and the right, with the camera's frustum
-    slices     ///< the camera's view, and the planes through the probe across z, y and x
+    slices     ///< the camera's view, and three planes through the probe, perpendicular to z, y and x
 };
 inline constexpr Spelling<Arrangement> ARRANGEMENTS[] = {{Arrangement::single, "single"},
                                                          {Arrangement::stereo, "stereo"},
@@ -37,15 +37,15 @@ constexpr std::span<const Spelling<StereoOutput>> spellings_of(StereoOutput)
 
 struct StereoSettings {
     StereoOutput output = StereoOutput::side_by_side;
-    double eye_distance = 1.0 / 30.0;  ///< distance between the eyes, as a share of that to the target, where both eyes
-                                       ///< see the same point
+    double eye_distance = 1.0 / 30.0;  ///< distance between the eyes, as a share of the distance to the target,
+                                       ///< where both eyes see the same point
     bool toe_in = false;               ///< rotates the eyes towards the target, an older method; false: off-axis
     bool operator==(const StereoSettings&) const = default;
 };
 
 struct SliceSettings {
     std::optional<double> black, white;  ///< intensities; default: the ends of the volume's range
-    double paint_share = 0.5;            ///< share of a painted voxel's colour that comes from its group
+    double paint_share = 0.5;            ///< share of the group's colour in the colour of a painted voxel
     double zoom = 1.0;                   ///< zoom of the slices; 1: the whole volume fits
     std::optional<glm::dvec3> center;    ///< voxel at their centre; default: the volume's centre, or the probe if
                                          ///< zoomed in
@@ -60,16 +60,16 @@ struct ViewSettings {
     bool volume = true;           ///< false: voxels are shown only in slices
     bool meshes = true;           ///< a trace, surfaces and the probe's ball
     bool cut_box = false;         ///< draws the edges of the box that the cutting planes keep
-    std::optional<uint8_t> solo;  ///< draws only this group and its descendants; 0: only unpainted voxels
+    std::optional<uint8_t> solo;  ///< if set, draws only this group and its descendants; 0: only unpainted voxels
     bool operator==(const ViewSettings&) const = default;
 };
 
 /// The contents of a pane.
 struct Shot {
-    Shot(const Camera& seen_from) : camera(seen_from) {}  // implicit: a camera is a shot
+    Shot(const Camera& seen_from) : camera(seen_from) {}  // implicit, because a camera alone is a complete shot
     Camera camera;
-    std::optional<Camera> right_eye;  ///< for an anaglyph: `camera` gives red, this one green and blue
-    bool is_slice = false;            ///< draws the voxels half-way between the camera's clip planes unshaded, in grey
+    std::optional<Camera> right_eye;  ///< for an anaglyph: `camera` gives red, this camera green and blue
+    bool is_slice = false;            ///< draws voxels half-way between the camera's clip planes, unshaded and in grey
     bool operator==(const Shot&) const = default;
 };
 
@@ -77,32 +77,32 @@ struct Pane {
     enum class Kind { main, left_eye, right_eye, map, slice };
     Kind kind = Kind::main;
     Shot shot;
-    PixelBox box;      ///< axis perpendicular to the slice; -1 if this is no slice
+    PixelBox box;      ///< pixels of the picture that the pane covers
     std::string name;  ///< "top", "slice across z", ...
-    int axis = -1;     ///< slices: the axis perpendicular to it
+    int axis = -1;     ///< the axis perpendicular to the slice; -1 if the pane is no slice
     glm::uvec2 pixels() const { return box.end - box.begin; }
 };
 
-/// The panes of a picture; the first is the view of `main`. They cover the picture, except for a row or column if it
-/// does not divide evenly. `probe_voxel`: the point that slices go through. A picture too small to divide has one pane.
+/// Returns the panes of a picture; the first is the view of `main`. They cover all but a row or column of pixels if the
+/// picture does not divide evenly. `probe_voxel`: a point on all slices. A picture too small to divide has one pane.
 std::vector<Pane> panes_of(const ViewSettings& settings, const Camera& main, const glm::uvec2& pixels,
                            const VolumeInfo& volume, const glm::dvec3& probe_voxel);
 
-/// Zooms slices by `factor` about the point at a pixel of one of them, which stays fixed. Zooming out stops at the
-/// whole volume, which is then centred.
+/// Zooms all slices by `factor` about the point at a pixel of one of them; that point stays fixed. Zooming out stops
+/// when the whole volume fits, which is then centred.
 SliceSettings slices_zoomed(const SliceSettings& slices, const Pane& slice, const glm::dvec2& pixel, double factor,
                             const VolumeInfo& volume, const glm::dvec3& probe_voxel);
-/// Moves slices so that one of them follows a mouse motion of `way` pixels.
+/// Moves slices so that the given one follows a mouse motion of `way` pixels.
 SliceSettings slices_moved(const SliceSettings& slices, const Pane& slice, const glm::dvec2& way,
                            const VolumeInfo& volume, const glm::dvec3& probe_voxel);
-/// Moves slices along the axes along which the probe is outside one of them. `held`: index of the pane under the mouse,
-/// which does not move as long as the probe is visible in it.
+/// Moves slices along those axes along which the probe is outside the visible part of one of them. `held`: index of the
+/// pane under the mouse, which does not move as long as the probe is visible in it.
 SliceSettings slices_following(const SliceSettings& slices, const std::vector<Pane>& panes, std::optional<size_t> held,
                                const VolumeInfo& volume, const glm::dvec3& probe_voxel);
 
-/// The cameras of two eyes, left and right. Off-axis, both see a point at the target's depth at the same pixel, and
-/// there is no vertical parallax. With `toe_in`, and for orthographic cameras, which have no other parallax, the eyes
-/// rotate about the target instead.
+/// Returns the cameras of two eyes, left and right. With off-axis cameras, both eyes see a point at the target's depth
+/// at the same pixel, and there is no vertical parallax. With `toe_in`, and for orthographic cameras, which would
+/// otherwise have no parallax, the eyes rotate about the target instead.
 std::pair<Camera, Camera> eyes_of(const Camera& camera, const StereoSettings& settings);
 
 }  // namespace shvr

@@ -10,8 +10,8 @@ namespace shvr {
 
 namespace {
 
-/// Extinction at which the opacity of a reference length rounds to 1: the smallest part of the shortest step is opaque,
-/// and differences of its integrals are still exact to 1e-8.
+/// Extinction at which the opacity of a reference length rounds to 1: even the smallest part of the shortest step is
+/// opaque, yet differences of the extinction's integrals are still exact to 1e-8.
 constexpr double OPAQUE = 1e6;
 constexpr uint32_t MAX_PARTS = 16;
 
@@ -20,7 +20,7 @@ double extinction_of(double opacity)
     return opacity >= 1.0 ? OPAQUE : std::min(-std::log1p(-opacity), OPAQUE);
 }
 
-/// Exactly `from` if both are the same.
+/// Interpolates linearly; returns exactly `from` if `from` and `to` are equal.
 double between(double from, double to, double share)
 {
     return std::min(from + (to - from) * share, 1.0);
@@ -30,7 +30,7 @@ double between(double from, double to, double share)
 double mean_extinction(double from, double to)
 {
     const double a = 1.0 - from, b = 1.0 - to;
-    // Simpson's rule where the closed form cancels: its error there is below 1e-13 of the value.
+    // Where the closed form cancels, uses Simpson's rule, whose error there is below 1e-13 of the value.
     if (std::abs(a - b) <= 1e-3 * std::max(a, b))
         return (extinction_of(from) + 4.0 * extinction_of(0.5 * (from + to)) + extinction_of(to)) / 6.0;
     const auto integral = [](double u) { return u > 0.0 ? u - u * std::log(u) : 0.0; };
@@ -65,7 +65,7 @@ Integrals integrals_of(const TransferFunction& function, const Samples& samples)
             const double s0 = extinction_of(o0), middle = extinction_of(0.5 * (o0 + o1)), s1 = extinction_of(o1);
             const double sum = s0 + 4.0 * middle + s1;
             const double own = is_opaque ? 0.0 : (end - x) * mean_extinction(o0, o1);
-            // Colours change little in such a short part: weighted by Simpson's rule.
+            // Colours change little in such a short part, so Simpson's rule weights them.
             const double back = sum > 0.0 ? (2.0 * middle + s1) / sum : 0.5;
             extinction += own;
             light += own * glm::mix(p.color, q.color, glm::mix(from, to, back));
@@ -77,7 +77,7 @@ Integrals integrals_of(const TransferFunction& function, const Samples& samples)
             x = end;
         }
     }
-    sums.extinction.resize(side, extinction);  // entries missing due to rounding, or to a function of zero width
+    sums.extinction.resize(side, extinction);  // entries missing due to rounding, or if the function has zero width
     sums.light.resize(side, light);
     return sums;
 }
@@ -107,7 +107,7 @@ glm::dvec4 step_between(const Integrals& sums, double step, uint32_t front, uint
         light += through * opacity * color;
         through *= 1.0 - opacity;
     }
-    // The opacity of a part is not computed by subtraction from 1: small ones would cancel.
+    // The opacity of a part is not computed by subtraction from 1, because small opacities would cancel.
     return glm::dvec4(light, -std::expm1(-depth_between(sums, step, front, back)));
 }
 
@@ -145,7 +145,7 @@ std::vector<uint32_t> visible_intervals_of_steps(std::span<const glm::vec4> tabl
                                                  std::span<const OpaqueInterval> opaque)
 {
     const uint32_t side = samples.entries;
-    size_t next = 0;  // the first opaque interval that does not end before
+    size_t next = 0;  // the first opaque interval that does not end before this sample
     const auto opacity = [&](uint32_t front, uint32_t back) { return table[size_t(back) * side + front].a; };
     std::vector<uint32_t> visible_before(side, 0);
     for (uint32_t k = 1; k < side; ++k) {

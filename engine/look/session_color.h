@@ -1,5 +1,5 @@
 #pragma once
-// Colours as spelled in files: "#rrggbb" or "#rrggbbaa", sRGB, to and from linear light. Alpha is straight and linear.
+// Converts colours as spelled in files, "#rrggbb" or "#rrggbbaa" (sRGB), to and from linear light. Alpha is linear.
 // Any thread.
 
 #include <optional>

@@ -1,5 +1,5 @@
 #pragma once
-// Settings of a picture, except camera, transfer function and groups, as plain values. Pure; any thread.
+// Settings of a picture, except camera, transfer function and groups, as plain values. Pure functions; any thread.
 
 #include <cstdint>
 #include <optional>
@@ -12,10 +12,10 @@
 
 namespace shvr {
 
-/// The largest OcclusionSettings::radius; limited by the bricks gathered around a brick (engine/passes/occlusion.h).
+/// The largest OcclusionSettings::radius. The bricks gathered around a brick limit it (engine/passes/occlusion.h).
 inline constexpr double MAX_OCCLUSION_RADIUS = 60.0;
 
-/// A point of the curve from arriving light to visible light; linear in between, constant outside.
+/// A point of the curve that maps arriving light to visible light; the curve is constant outside, linear in between.
 struct OcclusionPoint {
     double arrives = 0.0, seen = 0.0;  ///< shares
     bool operator==(const OcclusionPoint&) const = default;
@@ -25,12 +25,12 @@ inline constexpr size_t MAX_OCCLUSION_POINTS = 16;
 /// How much of the ambient light reaches a point (shaders/occlusion/occlusion.h).
 struct OcclusionSettings {
     double strength = 0.0;                  ///< 0: off; 1: fully blocked places get no ambient light
-    double radius = 16.0;                   ///< distance that light comes from, in reference lengths
+    double radius = 16.0;                   ///< distance from which light arrives, in reference lengths
     uint32_t rays = 32;                     ///< per voxel
     bool full_sphere = false;               ///< also rays from behind surfaces
     double curve = 1.0;                     ///< exponent applied to the arriving light; above 1 is darker
-    bool automatic = true;                  ///< false: the window renews it on request
-    std::vector<OcclusionPoint> mapping{};  ///< replaces `curve`, sorted by `arrives`; empty: none
+    bool automatic = true;                  ///< false: the window updates occlusion only on request
+    std::vector<OcclusionPoint> mapping{};  ///< replaces `curve`; sorted by `arrives`; empty: no mapping
     bool operator==(const OcclusionSettings&) const = default;
 };
 
@@ -92,16 +92,16 @@ struct RenderSettings {
     glm::dvec4 background{1.0, 1.0, 1.0, 1.0};  ///< linear light, straight alpha
     Sampling sampling = Sampling::automatic;
     Paging paging = Paging::automatic;
-    double detail = 1.0;  ///< minimum voxels per pixel, if the volume has several levels; 0: always the finest
+    double detail = 1.0;  ///< minimum voxels per pixel, if the volume has several levels; 0: always the finest level
     bool skip_empty_space = true;
     bool preintegration = false;  ///< classifies steps by both of their ends (preintegration.h); for steps of at most 1
     /// Integrates light between borders of voxels and points of the transfer function, instead of sampling steps
-    /// (shaders/rays/integral.comp); for steps of at most 1, and exact sampling. Takes the place of preintegration.
+    /// (shaders/rays/integral.comp). For steps of at most 1 and exact sampling; overrides preintegration.
     bool exact_integral = false;
-    /// Smooth borders of painted groups: between voxels, the label with the largest weight among the eight around a
-    /// sample, instead of the nearest voxel's. Slices and occlusion use the nearest voxel.
+    /// Smooth borders of painted groups: between voxels, a sample takes the label with the largest weight among its
+    /// eight neighbouring voxels, not the nearest voxel's label. Slices and occlusion use the nearest voxel.
     bool smooth_borders = false;
-    double saturation = 1.0;  ///< saturation of everything drawn, before lines over it; 0: greys of the same luminance
+    double saturation = 1.0;  ///< saturation of everything drawn, except lines over it; 0: greys of the same luminance
     bool classifies_steps() const { return preintegration && !exact_integral; }
     bool operator==(const RenderSettings&) const = default;
 };

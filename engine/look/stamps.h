@@ -18,10 +18,10 @@ struct Stamp {
     glm::dvec3 color{1.0};          ///< linear light
 };
 
-/// Draws stamps in order over premultiplied light. `pane`: the pixels of the picture that stamps refer to; nothing is
-/// drawn outside. `image` holds some or all of the picture's rows, from `first_row` on.
+/// Draws stamps in order over premultiplied light. Stamps lie relative to `pane`, a box of pixels of the picture, and
+/// are clipped to it. `image` holds some or all of the picture's rows, starting at `first_row`.
 void draw_stamps(ImageF& image, std::span<const Stamp> stamps, const PixelBox& pane, uint32_t first_row = 0);
-/// The same for a screen's opaque pixels.
+/// Draws stamps over a screen's opaque pixels, in the same way.
 void draw_stamps(Image8& image, std::span<const Stamp> stamps, const PixelBox& pane);
 
 }  // namespace shvr

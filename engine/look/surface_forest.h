@@ -1,7 +1,7 @@
 #pragma once
 // The surfaces of a scene, with cheap changes of a few at a time: a large hierarchy of boxes that only loses surfaces,
-// followed by a small one with those added since, which is rebuilt on each change. A search continues from the first
-// into the second, so kernels see one hierarchy. Plain data; one thread at a time.
+// followed by a small hierarchy of the surfaces added since, which is rebuilt on each change. A search continues from
+// the large hierarchy into the small one, so kernels see a single hierarchy. Plain data; one thread at a time.
 
 #include <cstdint>
 #include <span>
@@ -18,18 +18,18 @@ public:
     static constexpr size_t MAX_SURFACES_ADDED = 2048;
 
     SurfaceForest() = default;
-    /// Keys must differ. Fails as `surface_tree` does. `max_in_leaf` is for tests.
+    /// Keys must differ. Fails under the same conditions as `surface_tree`. `max_in_leaf` is for tests.
     SurfaceForest(std::vector<KeyedSurface> surfaces, const VolumeInfo& volume,
                   size_t max_in_leaf = gpu::SURFACES_IN_LEAF);
 
-    /// Removes the surfaces with `keys`, if present, and adds `surfaces`. Returns false, and changes nothing, if a new
-    /// forest is as cheap. Fails as `surface_tree` does, and then changes nothing. Memory and time are proportional to
-    /// the changes and MAX_SURFACES_ADDED, not to the forest.
+    /// Removes the surfaces with `keys`, if present, and adds `surfaces`. Returns false, and changes nothing, if
+    /// building a new forest is as cheap. Fails like `surface_tree`, and then changes nothing. Memory and time are
+    /// proportional to the changes and MAX_SURFACES_ADDED, not to the size of the forest.
     bool replace(std::span<const uint64_t> keys, std::span<const KeyedSurface> surfaces, const VolumeInfo& volume);
 
-    /// Changes the looks of existing surfaces: `surfaces`, sorted by key, are all of them. Returns false, and changes
-    /// nothing, if the keys differ, or if a new forest is as cheap. Fails as `surface_tree` does, and then changes
-    /// nothing. Writes only surfaces that look different, and boxes in which a size changed.
+    /// Changes the looks of existing surfaces; `surfaces`, sorted by key, must be all of them. Returns false, and
+    /// changes nothing, if the keys differ or if building a new forest is as cheap. Fails like `surface_tree`, and then
+    /// changes nothing. Writes only surfaces that look different, and boxes whose size changed.
     bool restyle(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume);
 
     const std::vector<gpu::SurfaceNode>& nodes() const { return nodes_; }
@@ -45,7 +45,7 @@ public:
     Written take_written() { return std::exchange(written_, {}); }
 
 private:
-    /// Whether the forest is large enough to be changed; smaller ones are rebuilt as fast as the small hierarchy.
+    /// Whether the forest is large enough to be changed; a smaller forest is rebuilt as fast as the small hierarchy.
     bool may_grow() const { return base_list_ > 2 * MAX_SURFACES_ADDED; }
     void remove(uint64_t key);
     void set_added(const SurfaceTree& tree);
@@ -55,8 +55,8 @@ private:
     std::vector<gpu::Surface> list_;
     size_t base_nodes_ = 0, base_list_ = 0;  ///< sizes of the large hierarchy, which precedes the small one
     std::vector<uint64_t> keys_;             ///< keys of the surfaces of the large hierarchy, in the order of `list_`
-    std::vector<uint32_t> leaves_;           ///< their leaf nodes
-    /// Keys of the large hierarchy, sorted, with their index in `list_`; GONE: removed.
+    std::vector<uint32_t> leaves_;           ///< leaf node of each surface in `keys_`
+    /// Sorted keys of the large hierarchy, each with its index in `list_`; GONE: removed.
     struct Place {
         uint64_t key;
         uint32_t at;

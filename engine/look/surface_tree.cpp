@@ -15,7 +15,7 @@ namespace shvr {
 namespace {
 
 constexpr double NEAREST = -double(MAX_SIDE), FARTHEST = 2.0 * double(MAX_SIDE), MAX_RADIUS = double(MAX_SIDE);
-/// If one ball of a rod contains the other up to this share of their difference, only the larger one is drawn.
+/// If one ball of a rod contains the other, within this share of their difference, only the larger ball is drawn.
 constexpr double CONTAINED = 1e-5;
 
 struct Box {
@@ -44,8 +44,8 @@ std::string name_of(uint64_t key)
     return KINDS[key >> 32] + std::to_string(uint32_t(key));
 }
 
-/// The device's tie-breaking number, which includes the kind. Some numbers above 2^30 coincide, which affects ties
-/// only.
+/// The device's tie-breaking number of a surface, which includes its kind. Some numbers above 2^30 coincide; this
+/// affects only ties.
 uint32_t order_of(uint64_t key)
 {
     return uint32_t(key >> 32) << 30 | (uint32_t(key) & 0x3fffffffu);
@@ -118,7 +118,7 @@ public:
         : items_(items), max_in_leaf_(max_in_leaf), nodes_(nodes)
     {}
 
-    /// Adds items begin ... end. Every split leaves at least a sixteenth on each side, so the depth is bounded.
+    /// Adds items begin ... end. Every split leaves at least a sixteenth on each side, which bounds the depth.
     void add(size_t begin, size_t end)
     {
         Box box;
@@ -245,7 +245,7 @@ SurfaceTree surface_tree(std::span<const KeyedSurface> surfaces, const VolumeInf
 std::vector<uint32_t> refit(std::span<gpu::SurfaceNode> nodes, std::span<const gpu::Surface> list)
 {
     std::vector<uint32_t> changed;
-    for (size_t node = nodes.size(); node-- > 0;) {  // children follow their parents
+    for (size_t node = nodes.size(); node-- > 0;) {  // children come after their parents
         gpu::SurfaceNode& parent = nodes[node];
         glm::vec3 lower(INFINITY), upper(-INFINITY);
         for (size_t child = node + 1; child < parent.skip; child = nodes[child].skip) {

@@ -1,6 +1,6 @@
 #pragma once
 // Opaque surfaces of a scene, as a user specifies them and as the device searches them: a hierarchy of boxes in
-// depth-first order with a skip link in each. Plain data; any thread.
+// depth-first order, with a skip link in each box. Plain data; any thread.
 
 #include <cstdint>
 #include <span>
@@ -13,7 +13,7 @@
 
 namespace shvr {
 
-/// A ball, if both ends are the same, or a rod: the convex hull of two balls.
+/// A ball, if `from` equals `to`, or a rod: the convex hull of two balls.
 struct SurfaceLook {
     glm::dvec3 from{0.0}, to{0.0};              ///< volume space, physical units
     double radius_from = 1.0, radius_to = 1.0;  ///< physical units, above 0
@@ -22,7 +22,7 @@ struct SurfaceLook {
 };
 
 /// The owner of a surface. Sort order: a session's surfaces by index, then nodes and internodes of the trace by number.
-/// If two surfaces are at the same length along a ray, the earlier one is visible.
+/// If two surfaces are equally far along a ray, the surface that sorts first is visible.
 enum class SurfaceKind : uint8_t { session, node, internode };
 constexpr uint64_t surface_key(SurfaceKind kind, uint32_t number)
 {
@@ -37,7 +37,7 @@ struct KeyedSurface {
 /// Uses each surface's index as its key.
 std::vector<KeyedSurface> keyed(std::span<const SurfaceLook> surfaces);
 
-/// 60 bytes each, and at most as many bytes of nodes: below the smallest buffer limit of any device, 128 MiB.
+/// A surface takes 60 bytes, and its nodes at most as many: below the smallest buffer limit of any device, 128 MiB.
 inline constexpr size_t MAX_SURFACES = 1'000'000;
 
 struct SurfaceTree {
@@ -46,15 +46,15 @@ struct SurfaceTree {
     std::vector<uint64_t> keys;      ///< keys of `list`
 };
 
-/// Fails, naming the surface, if there are more than MAX_SURFACES, or if one is not finite, has no size, or is farther
-/// than 2^20 reference lengths from any place the volume may be. `max_in_leaf` is for tests.
+/// Fails if there are more than MAX_SURFACES, or if a surface, which the message names, is not finite, has no size, or
+/// is farther than 2^20 reference lengths from any place the volume may be. `max_in_leaf` is for tests.
 SurfaceTree surface_tree(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume,
                          size_t max_in_leaf = gpu::SURFACES_IN_LEAF);
 
-/// Encodes one surface as in the tree's list. Fails as `surface_tree` does.
+/// Encodes one surface as in the tree's list. Fails under the same conditions as `surface_tree`.
 gpu::Surface surface_on_device(const KeyedSurface& surface, const VolumeInfo& volume);
 
-/// Fits the boxes of `nodes`, which are whole trees, to the surfaces in their leaves. Returns the nodes that changed.
+/// Fits the boxes of `nodes`, made of whole trees, to the surfaces in their leaves. Returns the nodes that changed.
 std::vector<uint32_t> refit(std::span<gpu::SurfaceNode> nodes, std::span<const gpu::Surface> list);
 
 }  // namespace shvr

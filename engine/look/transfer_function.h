@@ -24,9 +24,9 @@ struct ControlPoint {
 class TransferFunction {
 public:
     TransferFunction() = default;
-    /// Sorts by intensity; points at the same intensity keep their order and make a step (the last one holds at the
-    /// intensity itself). Fails if a number is not finite, an opacity or colour lies outside [0, 1], or an intensity
-    /// outside the range of float32 (no voxel holds such a value).
+    /// Sorts by intensity; points at the same intensity keep their order and make a step (the last of them applies at
+    /// the intensity itself). Fails if a number is not finite, an opacity or colour lies outside [0, 1], or an
+    /// intensity lies outside the range of float32 (no voxel has such a value).
     explicit TransferFunction(std::vector<ControlPoint> points);
 
     std::span<const ControlPoint> points() const { return points_; }
@@ -47,11 +47,11 @@ private:
 /// has opacity 0.
 double opacity_of_step(double opacity, double step_voxels);
 
-/// Optical depth of such a step, sigma times length; infinite for opacity 1.
+/// Optical depth of a step `step_voxels` reference lengths long, sigma times length; infinite for opacity 1.
 double depth_of_step(double opacity, double step_voxels);
 
-/// Intensities at which a function is sampled: `entries` (2 or more) of them, evenly from `lower` to `upper`, both
-/// included.
+/// Intensities at which a function is sampled: `entries` (2 or more) intensities, evenly spaced from `lower` to
+/// `upper`, both included.
 struct Samples {
     double lower = 0.0, upper = 0.0;
     uint32_t entries = 2;
@@ -61,15 +61,15 @@ struct Samples {
 /// Samples from function.lower() to function.upper().
 Samples whole_range(const TransferFunction& function, uint32_t entries);
 
-/// Samples of the function: linear RGB, and opacity of one step. Samples, not averages: a spike between two of them is
-/// lost.
+/// Samples of the function: linear RGB and the opacity of one step. These are not averages: a spike between two samples
+/// is lost.
 struct BakedTable {
     std::vector<glm::vec4> looks;
-    std::vector<float> depths;  ///< optical depth of one step, gpu::OPAQUE_DEPTH at most
+    std::vector<float> depths;  ///< optical depth of one step, at most gpu::OPAQUE_DEPTH
 };
 BakedTable bake_table(const TransferFunction& function, double step_voxels, const Samples& samples);
 
-/// An interval of intensities, or a single one, at which opacity is 1: rays that pass through it end there.
+/// An interval of intensities, or a single intensity, at which opacity is 1: rays that pass through it end there.
 struct OpaqueInterval {
     double lower = 0.0, upper = 0.0;
     glm::dvec3 lower_color{0.0}, upper_color{0.0};  ///< linear light
@@ -77,12 +77,12 @@ struct OpaqueInterval {
 /// All opaque intervals, sorted by intensity.
 std::vector<OpaqueInterval> opaque_intervals(const TransferFunction& function);
 
-/// For each k, the number of table intervals [j, j+1] with j < k in which the table's opacity is above 0; `entries`
-/// long. Interval j..k contains something visible exactly if result[k+1] - result[j] > 0. Integers, so there is no
-/// cancellation.
+/// For each k, counts the table intervals [j, j+1] with j < k in which the table's opacity is above 0; the result has
+/// `entries` elements. Interval j..k contains something visible exactly if result[k+1] - result[j] > 0. The counts are
+/// integers, so nothing cancels.
 std::vector<uint32_t> visible_intervals(std::span<const glm::vec4> table);
-/// The same for the function itself, whose peaks may lie between two samples; an intensity between two intervals counts
-/// in both.
+/// Counts the visible intervals of the function itself, whose peaks may lie between two samples; an intensity on the
+/// border of two intervals counts in both.
 std::vector<uint32_t> visible_intervals(const TransferFunction& function, const Samples& samples);
 
 }  // namespace shvr

@@ -5,8 +5,8 @@
 
 namespace shvr {
 
-/// Writes `size` pixels of `color`, starting at texel `target`; `left` and `right` have that size. All rgba32_float,
-/// linear light. Returns the new version of `color`.
+/// Writes `size` pixels of `color`, starting at texel `target`; `left` and `right` have the same size. All are
+/// rgba32_float, linear light. Returns the new version of `color`.
 Resource anaglyph(FrameGraph& graph, Resource left, Resource right, Resource color, const glm::uvec2& size,
                   const glm::uvec2& target);
 

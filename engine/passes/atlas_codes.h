@@ -1,6 +1,6 @@
 #pragma once
-// The layout of codes in the atlas: paged bricks in slots, with aprons; the bricks of a resident volume side by side,
-// within a border (shaders/bricks.h). Whatever the layout, kernels see the same 16-bit codes.
+// The layout of codes in the atlas: paged bricks lie in slots, with aprons; the bricks of a resident volume lie side by
+// side, within a border (shaders/bricks.h). In every layout, kernels see the same 16-bit codes.
 
 #include <cstdint>
 
@@ -12,7 +12,7 @@ namespace shvr {
 enum class AtlasCodes : uint8_t {
     exact16,   ///< r32ui, two codes along x in a texel, for exact sampling
     exact8,    ///< r32ui, four codes along x in a texel: for volumes of bytes, whose codes are multiples of 257
-    filtered,  ///< R16_UNORM, for the device's filter
+    filtered,  ///< R16_UNORM, for the device's texture filter
 };
 
 /// Size of one code.

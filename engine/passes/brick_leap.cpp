@@ -9,7 +9,7 @@ namespace shvr {
 
 namespace {
 
-/// Bricks of one dispatch: bounds its time on a slow device.
+/// Number of bricks in one dispatch, limited to bound the time of a dispatch on a slow device.
 constexpr size_t BATCH = 2048;
 
 }  // namespace
@@ -18,7 +18,7 @@ bool Visibility::shows(double lower_code, double upper_code) const
 {
     const double lower = double(params.table_lower), upper = double(params.table_upper);
     if (params.skipping == 0) return true;
-    // Adds one code on each side to the kernels' guard: nothing visible may be excluded here.
+    // Adds one code on each side to the kernels' guard, because nothing visible may be excluded here.
     const double beside = 1.0 + double(params.guard), from = lower_code - beside, to = upper_code + beside;
     if (params.table_entries < 2 || to < lower || from > upper) return false;
     const double last = double(params.table_entries - 1);
@@ -40,7 +40,7 @@ bool operator==(const Visibility& a, const Visibility& b)
 void brick_leap(FrameGraph& graph, VolumeBinding& volume, const Visibility& visibility,
                 const std::optional<MaskBinding>& mask, std::span<const gpu::BrickLeapJob> jobs)
 {
-    graph.expect({variant_of("brick_leap", {{"MASKED", true}}), {}});  // once something is painted
+    graph.expect({variant_of("brick_leap", {{"MASKED", true}}), {}});  // needed once something is painted
     for (size_t first = 0; first < jobs.size(); first += BATCH) {
         const std::span<const gpu::BrickLeapJob> batch = jobs.subspan(first, std::min(BATCH, jobs.size() - first));
         Pass pass = graph.compute("brick_leap", {{"MASKED", mask.has_value()}});

@@ -1,5 +1,5 @@
 #pragma once
-// Computes how far rays may leap within bricks (shaders/brick_leap.comp): one workgroup per brick, run when bricks
+// Computes how far rays may leap within bricks (shaders/brick_leap.comp): one workgroup per brick. Runs when bricks
 // arrive, and for all bricks on the device when the transfer function or the groups change.
 
 #include <array>

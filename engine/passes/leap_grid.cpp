@@ -6,12 +6,12 @@ namespace shvr {
 
 namespace {
 
-/// The cells that a stage must compute: those that the changed cells can affect, and those that later stages read
-/// around them.
+/// The cells that a stage must compute: the cells that the changed cells can affect, and the cells around them that
+/// later stages read.
 CellBox cells_of_stage(const CellBox& changed, const glm::uvec3& counts, uint32_t stage)
 {
-    // A distance is at most LEAP_LIMIT, so the last stage covers one reach around the change. Stage s is read along the
-    // axes of the stages after it: x by stage 1, y by stage 2, z by stage 3.
+    // A distance is at most LEAP_LIMIT, so the last stage covers LEAP_LIMIT cells around the change. Later stages read
+    // the result of stage s along their axes: stage 1 along x, stage 2 along y, stage 3 along z.
     const glm::uvec3 reach = gpu::LEAP_LIMIT * (1u + glm::uvec3(stage < 1, stage < 2, stage < 3));
     return {changed.begin - glm::min(changed.begin, reach), glm::min(changed.end + reach, counts)};
 }
@@ -32,7 +32,7 @@ void occupancy(FrameGraph& graph, const VolumeBinding& volume, const LeapGridInp
     params.cell_begin = cells.begin;
     params.cell_end = cells.end;
     params.empty_distance = empty_distance;
-    graph.expect({variant_of("leap_occupancy", {{"MASKED", true}}), {}});  // once something is painted
+    graph.expect({variant_of("leap_occupancy", {{"MASKED", true}}), {}});  // needed once something is painted
     graph.expect({"leap_bound", {}});
     pass.push(params);
     pass.dispatch(cells.end - cells.begin);
@@ -50,25 +50,25 @@ void distance(FrameGraph& graph, const VolumeBinding& volume, uint32_t axis, con
     to = pass.write("leap", to);
 }
 
-/// The maximum by which a sample's code may exceed the codes of its voxels (leap.h): its largest distance from them,
-/// summed over the axes, times the largest difference of codes.
+/// The maximum by which a sample's code may exceed the codes of its voxels (leap.h): the sample's largest distance from
+/// them, summed over the axes, times the largest difference of codes.
 float guard_of_sample_bits(const glm::uvec3& cell_counts)
 {
     constexpr double CODES = 65535.0, EPSILON = 0x1p-24;
     const glm::uvec3 size = gpu::CELL_SIZE * cell_counts;
     const double side = std::max({size.x, size.y, size.z}), reach = gpu::SAMPLE_BITS_REACH;
-    // In floats: a length along the ray, its product and its sum with the ray's start; for the two samples from which
-    // the distance between is measured.
+    // Rounding of floats: of a length along the ray, its product, and its sum with the ray's start; for both of the
+    // samples between which a distance is measured.
     const double of_floats = 2.0 * EPSILON * side * (3.0 * reach + (1.0 + reach));
     const double of_parts = (0.5 * gpu::SAMPLE_BITS_AHEAD + 1.0) / gpu::SAMPLE_BIT_PARTS;
     return float(1.0 + CODES * (3.0 * of_floats + of_parts * (1.0 + 1.0 / 4.0 + 1.0 / 16.0)));
 }
 
-/// A sample between the voxels of two cells has its bit in the upper cell.
+/// Computes the sample bits. A sample between the voxels of two cells has its bit in the upper cell.
 void sample_bits(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input)
 {
     if (!volume.sample_bits) return;
-    // Cells on either side of the changed ones read their voxels, or whether they are empty.
+    // The cells on either side of a changed cell read its voxels, or whether it is empty.
     const CellBox cells{input.changed.begin - glm::min(input.changed.begin, glm::uvec3(1)),
                         glm::min(input.changed.end + 1u, volume.cell_counts)};
     Pass pass = graph.compute("sample_bits");
@@ -99,7 +99,7 @@ void leap_grid_stage(FrameGraph& graph, VolumeBinding& volume, const LeapGridInp
 
 void leap_grid_patch(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input)
 {
-    // As in the last stage: the cells whose distance may be limited by the changed ones.
+    // As in the last stage: the cells whose distance the changed cells may limit.
     const CellBox cells = cells_of_stage(input.changed, volume.cell_counts, LEAP_STAGES - 1);
     Pass pass = graph.compute("leap_bound");
     pass.push(gpu::LeapBoundParams{cells.begin, cells.end, input.changed.begin, input.changed.end});

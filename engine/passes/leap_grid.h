@@ -1,16 +1,16 @@
 #pragma once
 // Builds the leap grid of shaders/leap.h from the value ranges of the cells: four stages over the cells, run when the
-// transfer function, the visible groups or the painted bricks change. Cost: one thread per cell and stage, at most 2 *
-// LEAP_LIMIT loads each. Each stage is a separate pass, so that other work can run in between; where only some cells
-// changed, the stages cover only the cells that these can affect.
+// transfer function, the visible groups or the painted bricks change. Cost: one thread per cell and stage, with at most
+// 2 * LEAP_LIMIT loads per thread. Each stage is a separate pass, so that other work can run between stages. If only
+// some cells changed, each stage covers only the cells that the change can affect.
 //
 //   occupancy -> scratch[0] -> distance along x -> scratch[1] -> along y -> scratch[0] -> along z -> leap
 //
-// The sample bits, where the volume has room for them, follow the last stage and every patch: at most 84 loads
-// per cell.
+// If the volume has room for sample bits, they are computed after the last stage and after every patch: at most 84
+// loads per cell.
 //
-// A patch makes the grid correct at once after a few cells changed, but some leaps are shorter than necessary until the
-// four stages have run. One thread per cell, few loads.
+// After a few cells changed, a patch makes the grid correct at once, but some leaps stay shorter than necessary until
+// the four stages have run. A patch takes one thread per cell and few loads.
 
 #include <array>
 #include <optional>
@@ -38,8 +38,8 @@ struct LeapGridInput {
 
 inline constexpr uint32_t LEAP_STAGES = 4;
 
-/// Adds one stage, 0 ... LEAP_STAGES - 1, and updates the handles of `volume` that it writes. The leap grid and the
-/// sample bits are valid after the last stage, provided that all four ran in order with the same input.
+/// Adds one stage, 0 ... LEAP_STAGES - 1, and updates the handles of `volume` that the stage writes. The leap grid and
+/// the sample bits are valid after the last stage, if all four ran in order with the same input.
 void leap_grid_stage(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input, uint32_t stage);
 
 /// Patches the grid so that it is correct for the new contents of the changed cells.

@@ -1,6 +1,6 @@
 #pragma once
-// Local ambient occlusion (shaders/occlusion/occlusion.h): the opacity of bricks, and the light that reaches their
-// voxels.
+// Local ambient occlusion (shaders/occlusion/occlusion.h): computes the opacity of bricks, and the light that reaches
+// their voxels.
 
 #include <span>
 #include <vector>
@@ -11,42 +11,42 @@
 namespace shvr {
 
 struct OcclusionBinding {
-    Resource values;  ///< r8ui, in slots of BRICK_TEXELS a side, as many as in the density atlas
-    /// r32ui; a brick is half of BRICK_SIZE a side, and a quarter. Paged bricks are in slots, those of a resident
-    /// volume side by side as in the volume.
+    Resource values;  ///< r8ui, in slots with BRICK_TEXELS a side, as many slots as in the density atlas
+    /// r32ui; a brick takes half of BRICK_SIZE a side in the first image, a quarter in the second. Paged bricks lie in
+    /// slots; bricks of a resident volume lie side by side as in the volume.
     std::array<Resource, gpu::OCCLUSION_SIZES> cells{};
 };
 
 /// Temporary data gathered for a slice of bricks: images for up to OCCLUSION_SLICE jobs.
 struct OcclusionScratch {
-    Resource near;                                        ///< r32ui, ramps
+    Resource near;                                        ///< r32ui, opacity ramps
     std::array<Resource, gpu::OCCLUSION_SIZES> around{};  ///< r32ui, cells with aprons; for paged bricks
 };
 ResourceDesc occlusion_near_desc(uint32_t jobs, bool is_paged);
 ResourceDesc occlusion_around_desc(uint32_t size, uint32_t jobs);
 
-/// The places along a ray where opacity is sampled, and the weight of each sample. Lengths in units of the brick's
+/// The places along a ray where opacity is sampled, and the weight of each sample. Lengths are in units of the brick's
 /// level.
 struct OcclusionTaps {
     double radius = 0.0;
-    double first = 0.0;                   ///< initial length that never blocks light
+    double first = 0.0;                   ///< length at the start of a ray that never blocks light
     std::vector<gpu::OcclusionTap> taps;  ///< from near to far; their stretches and `first` add up to the radius
-    std::array<uint32_t, gpu::OCCLUSION_SIZES + 1> end{};          ///< end of the near taps, then of each cell size's
+    std::array<uint32_t, gpu::OCCLUSION_SIZES + 1> end{};          ///< end of the near taps, then one per cell size
     double near_stretch = 0.0;                                     ///< ray length covered by the first near tap
     std::array<double, gpu::OCCLUSION_SIZES> stretches{1.0, 1.0};  ///< ray length covered by one tap, per cell size
-    std::array<uint32_t, gpu::OCCLUSION_SIZES> aprons{};           ///< cells around a brick that taps may reach
+    std::array<uint32_t, gpu::OCCLUSION_SIZES> aprons{};           ///< cells around a brick, as far as taps may reach
 };
 /// The largest radius, in voxels of any level.
 inline constexpr double OCCLUSION_MAX_RADIUS = gpu::OCCLUSION_REACH * gpu::BRICK_SIZE - 4.0;
-/// Radii below 1 have no tap: light reaches every voxel. `is_paged`: rays may also begin in a brick's apron.
+/// Radii below 1 have no taps: light reaches every voxel. `is_paged`: rays may also begin in a brick's apron.
 OcclusionTaps occlusion_taps(double radius, bool is_paged = false);
 
-/// How many bricks away, on each side of a brick, its light may come from.
+/// Distance in bricks, on each side of a brick, from which its light may arrive.
 uint32_t occlusion_reach(double radius);
 
 /// Sets `slots` to fully lit.
 void occlusion_reset(FrameGraph& graph, OcclusionBinding& occlusion, std::span<const uint32_t> slots);
-/// Initializes new images to fully lit and transparent; slot 0, which stands in for missing bricks, stays so.
+/// Initializes new images to fully lit and transparent; slot 0, the substitute for missing bricks, keeps these values.
 void occlusion_begin(FrameGraph& graph, OcclusionBinding& occlusion);
 
 struct OcclusionCellsInput {
@@ -55,19 +55,19 @@ struct OcclusionCellsInput {
     std::optional<MaskBinding> mask;
     std::vector<float> group_opacities;  ///< 256; used with a mask
 };
-/// The jobs must be of one level. Updates the handles of `occlusion` that it writes.
+/// All jobs must be in one level. Updates the handles of `occlusion` that it writes.
 void occlusion_cells(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& occlusion,
                      const OcclusionCellsInput& input, std::span<const gpu::OcclusionCellsJob> jobs);
 
 struct OcclusionInput {
-    gpu::OcclusionBakeParams params;  ///< complete except for data that follow from the other inputs
+    gpu::OcclusionBakeParams params;  ///< complete except for the data derived from the other inputs
     OcclusionTaps taps;
     std::vector<uint32_t> visible_intervals;                                      ///< engine/look/transfer_function.h
     std::array<float, gpu::OCCLUSION_SIZES * gpu::OCCLUSION_LEVELS> exponents{};  ///< as in OcclusionGatherParams
-    OcclusionCellsInput near;  ///< opacities for the stretch of the first near tap
+    OcclusionCellsInput near;  ///< opacities for the length covered by the first near tap
 };
-/// The jobs must be of one level, at most OCCLUSION_SLICE. `around`: for each job the bricks around it, see
-/// OcclusionJob.
+/// All jobs must be in one level; there may be at most OCCLUSION_SLICE. `around`: for each job, the bricks around its
+/// brick, see OcclusionJob.
 void occlusion_bake(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& occlusion,
                     OcclusionScratch& scratch, const OcclusionInput& input, std::span<const gpu::OcclusionJob> jobs,
                     std::span<const uint32_t> around);

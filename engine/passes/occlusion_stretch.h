@@ -1,14 +1,14 @@
 #pragma once
-// Samples of ambient occlusion where voxels are no cubes (STRETCHED of shaders/occlusion/occlusion_bake.comp).
+// Samples of ambient occlusion for voxels that are not cubes (STRETCHED of shaders/occlusion/occlusion_bake.comp).
 
 #include "engine/passes/occlusion.h"
 
 namespace shvr {
 
-/// Largest radius, in voxels of any level, up to which all samples in cells are in those of two voxels.
+/// Largest radius, in voxels of any level, up to which all samples in cells use cells of two voxels.
 inline constexpr double OCCLUSION_MAX_RADIUS_OF_2 = 26.0;
 
-/// Like occlusion_taps(), for voxels of these lengths.
+/// Like occlusion_taps(), for voxels with edge lengths `spacing`.
 OcclusionTaps occlusion_taps_of(const glm::dvec3& spacing, double radius, bool is_paged = false);
 
 }  // namespace shvr

@@ -126,7 +126,7 @@ namespace {
 Resource flood(FrameGraph& graph, const gpu::RegionParams& params, const Labelled& bits)
 {
     const Labelled region = region_merge(graph, params, bits);
-    return region_select(graph, params, region, region.bits, gpu::KEEP_SEED);  // a flood fill reads no marks
+    return region_select(graph, params, region, region.bits, gpu::KEEP_SEED);  // a flood fill does not read marks
 }
 
 Resource speckles(FrameGraph& graph, const gpu::RegionParams& params, std::span<const gpu::RowSpan> rows,

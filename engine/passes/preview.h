@@ -12,26 +12,26 @@
 namespace shvr {
 
 struct PreviewInput {
-    gpu::RaycastParams params;  ///< the ray caster's parameters; pixels, light and distance blending are used
+    gpu::RaycastParams params;  ///< the ray caster's parameters; only pixels, light and distance blending are used
     gpu::PreviewParams preview;
     std::span<const uint32_t> words;   ///< one bit per voxel, in rows of params.words_per_row
-    std::optional<Resource> surfaces;  ///< for the same pixels; not in slices
+    std::optional<Resource> surfaces;  ///< surfaces for the same pixels; not in slices
     bool slice = false;
     PixelGroups pixel_groups;
 };
 
 struct PreviewSeen {
-    std::optional<Resource> surfaces;  ///< input for the ray caster, with the preview added; none in slices
+    std::optional<Resource> surfaces;  ///< the ray caster's surfaces, with the preview added; null in slices
     Resource seen;                     ///< for `preview_over`
 };
-/// All its resources are transient: valid in this frame only.
+/// All resources of the result are transient: valid in this frame only.
 PreviewSeen preview(FrameGraph& graph, const PreviewInput& input);
 
 /// Hints that a preview is likely to be drawn soon.
 void expect_preview(FrameGraph& graph, const PreviewInput& input);
 
-/// Draws the preview over the picture in `target`, which the ray caster made with those surfaces. Returns its new
-/// version.
+/// Draws the preview over the picture in `target`, which the ray caster has drawn with PreviewSeen::surfaces. Returns
+/// the new version of `target`.
 Resource preview_over(FrameGraph& graph, Resource seen, Resource target, const gpu::PreviewOverParams& params);
 
 }  // namespace shvr

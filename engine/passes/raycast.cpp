@@ -16,17 +16,17 @@ uint32_t shininess_squarings(float shininess)
 
 namespace {
 
-/// Number of threads that run in lockstep on devices that abort long loops (MAX_TURNS): each of these may make all of
-/// them take an iteration. With sixteen, the total stays below 65535.
+/// Number of threads that run in lockstep on devices that abort long loops (MAX_TURNS). Each of these threads may make
+/// all of them take an iteration. Even with sixteen, the total stays below 65535.
 constexpr uint64_t LANES = 8;
 constexpr uint64_t MAX_BLOCKS = 4096;
-/// Margin around the pixels of an iso-surface: rays are rounded, and groups of threads are as wide as possible.
+/// Margin around the pixels of an iso-surface, for rounding of rays; alignment, for thread groups as wide as possible.
 constexpr double SHELL_MARGIN = 1.0, SHELL_ALIGNED = 16.0;  // pixels
 
-constexpr double MAX_PIECES = 64.0;  ///< pieces of a stretch for its light alone: 2^HALVINGS (integral.glsl)
+constexpr double MAX_PIECES = 64.0;  ///< maximum pieces of a stretch when only its light is integrated: 2^HALVINGS
 
-/// Maximum iterations in a step of a ray that is integrated (integral.glsl). Lanes do not wait for others: each passes
-/// a stretch in an iteration.
+/// Maximum number of iterations per step of a ray that is integrated (integral.glsl). Lanes do not wait for each other:
+/// each passes a stretch per iteration.
 double turns_of_integral(const gpu::RaycastParams& params, uint64_t levels)
 {
     const double stretches = 2.0 * std::sqrt(3.0) * double(params.step) + 4.0;
@@ -37,19 +37,19 @@ double turns_of_integral(const gpu::RaycastParams& params, uint64_t levels)
 /// Number of steps of a ray that one dispatch may take.
 uint64_t steps_of_block(const VolumeBinding& volume, const RaycastInput& input, bool is_shelled)
 {
-    // Maximum iterations to find a place, which is a loop of its own: in paged bricks it takes one per level of the
-    // directory. Loops of fixed length are unrolled (mask.glsl, groups.glsl, search.glsl) and count none.
+    // Maximum number of iterations to find a place. This is a loop of its own: in paged bricks it takes one iteration
+    // per level of the directory. Unrolled loops, of fixed length, do not count (mask.glsl, groups.glsl, search.glsl).
     const uint64_t levels = volume.pages ? volume.pages->depth : 0;
     const uint64_t to_leap = 1 + levels;
     const uint64_t to_search = to_leap + 1 + gpu::SEARCH_AHEAD * levels;  // each but the last advances by as many steps
     const uint64_t to_take = 1 + 2 * levels + (is_shelled ? 2 * (to_leap + 1) : 0);
-    // Every iteration advances at least one lane by a step, except those in which all lanes find that they have to
+    // Every iteration advances at least one lane by a step, except iterations in which all lanes find that they must
     // continue elsewhere.
     double turns = input.integrated && !input.pick
                        ? turns_of_integral(input.params, levels)
                        : double(LANES * std::max(to_leap, to_take) + 1 + to_leap + to_search + to_take);
-    // An iso-surface is searched cell by cell: at most three per reference length, and one where the ray enters. Before
-    // each, cells of four voxels a side are passed, of which there are a quarter.
+    // An iso-surface is searched cell by cell: at most three cells per reference length, and one where the ray enters.
+    // Before each cell, the ray passes cells of four voxels a side, a quarter as many.
     if (is_shelled) turns += 2.25 * double(LANES * (to_leap + 1)) * (3.0 * double(input.params.step) + 1.0);
     return std::max(uint64_t(double(gpu::MAX_TURNS) / turns), uint64_t{1});
 }
@@ -60,7 +60,7 @@ uint64_t steps_of_ray(const gpu::RaycastParams& params)
     constexpr double ROUNDING = 1.0 + 1e-5, MOST = 2147483648.0;
     const double longest = glm::length(glm::dvec3(params.box_upper - params.box_lower) * glm::dvec3(params.spacing));
     const double steps = longest / double(params.step) * ROUNDING + 1.0;
-    return uint64_t(steps < MOST ? steps : MOST);  // also for NaN
+    return uint64_t(steps < MOST ? steps : MOST);  // NaN also gives the maximum
 }
 
 std::vector<std::byte> bytes_of(const RaycastOcclusion& occlusion)
@@ -72,20 +72,20 @@ std::vector<std::byte> bytes_of(const RaycastOcclusion& occlusion)
     return bytes;
 }
 
-/// Shorter steps, in reference lengths, are added by compensated sums: plain ones are 1.5e-7 / step off.
+/// Below this step, in reference lengths, sums are compensated: plain sums have an error of 1.5e-7 / step.
 constexpr float MIN_PLAIN_STEP = 0.05f;
 
 /// The inputs that select the kernel and its constants.
 struct Choice {
     bool is_paged, is_filtered, is_masked, is_occluded, is_surfaced;
-    std::vector<std::pair<std::string, uint32_t>> of_codes;  ///< constants
+    std::vector<std::pair<std::string, uint32_t>> of_codes;  ///< constants that describe the codes
     uint32_t shell = gpu::SHELL_NONE;
     bool feedback, has_sample_bits, is_shaded, picks, is_integrated;
     uint32_t kept = gpu::KEPT_NOTHING;
 };
 
-/// Whether all rays of the part are short enough for sample bits (shaders/leap.h), which holds unless the angle of view
-/// is extreme.
+/// Whether all rays of the part are short enough for sample bits (shaders/leap.h). This is true unless the angle of
+/// view is extreme.
 bool finds_sample_bits(const gpu::RaycastParams& params)
 {
     const glm::vec3& limit = params.position_limit;
@@ -158,7 +158,7 @@ KernelVariant pick_kernel(const Choice& choice, const RaycastInput& input)
     return with(with(kernel, constants_of_steps(choice, input)), {{"HAS_SURFACES", choice.is_surfaced}});
 }
 
-/// Name of the kernel: colours along rays, one sample of each, or the picked point.
+/// Returns the kernel: colours along rays, one sample per ray, or the picked point.
 KernelVariant kernel_of(const Choice& choice, const RaycastInput& input)
 {
     if (input.slice) return slice_kernel(choice, input);
@@ -189,7 +189,7 @@ KernelVariant kernel_of(const Choice& choice, const RaycastInput& input)
     return kernel;
 }
 
-/// Hints for likely next actions: painting, bringing an iso-surface or an opaque surface into the picture, clicking.
+/// Hints at likely next actions: painting, an iso-surface or an opaque surface entering the picture, or a click.
 /// `kept_of_shell`: the KEPT constant of pictures with an iso-surface.
 void expect_next(FrameGraph& graph, const Choice& now, const RaycastInput& input, uint32_t kept_of_shell)
 {
@@ -222,8 +222,8 @@ struct Area {
     bool is_empty() const { return begin.x >= end.x || begin.y >= end.y; }
 };
 
-/// Rays that never meet the iso-surface would cost twice as much with it, so their pixels are drawn without it: above,
-/// below, and on both sides of the surface's pixels.
+/// Drawing a ray with the iso-surface kernel costs twice as much even if the ray never meets the iso-surface, so the
+/// pixels above, below and on both sides of the surface's pixels are drawn without it.
 std::vector<Area> areas_of(const RaycastInput& input, bool is_shelled)
 {
     const glm::uvec2 size = input.params.pixel_end - input.params.pixel_begin;
@@ -261,19 +261,19 @@ void bind_volume(Pass& pass, VolumeBinding& volume, const RaycastInput& input)
     }
 }
 
-/// Binds what rays read that march.
+/// Binds what marching rays read.
 void bind_steps(Pass& pass, const VolumeBinding& volume, const RaycastInput& input)
 {
     pass.read("table", input.table);
     if (!volume.pages && !volume.is_filtered() && (input.pick || !input.integrated))
         pass.read("sample_bits", volume.sample_bits.value_or(volume.leap));  // a stand-in is never read
     if (input.pick)
-        pass.read("surfaces", input.surfaces.value_or(input.table));  // likewise
+        pass.read("surfaces", input.surfaces.value_or(input.table));  // also a stand-in that is never read
     else if (input.surfaces)
         pass.read("surfaces", *input.surfaces);
 }
 
-/// Binds the image of values that rays keep between blocks; one texel if they keep none.
+/// Binds the image of values that rays keep between blocks, or an image of one texel if rays keep no values.
 void bind_rays(FrameGraph& graph, Pass& pass, const RaycastInput& input, std::optional<Resource>& rays, bool is_begun)
 {
     const bool is_first = input.params.first_step == 0;
@@ -283,7 +283,7 @@ void bind_rays(FrameGraph& graph, Pass& pass, const RaycastInput& input, std::op
         rays = is_first && (!is_begun || !input.waiting) ? pass.write("rays", *rays) : pass.modify("rays", *rays);
 }
 
-/// `is_begun`: whether other pixels of the target, and of `rays`, have been drawn before.
+/// `is_begun`: whether other pixels of the target, and of `rays`, have already been drawn.
 Resource raycast_block(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& input, bool is_shelled,
                        Resource target, std::optional<Resource>& rays, bool is_begun)
 {
@@ -319,7 +319,7 @@ ShellPixels shell_pixels(const gpu::RaycastParams& params)
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec3 side(corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0);
         const glm::dvec3 point = glm::dvec3(params.shell_center) + side * glm::dvec3(params.shell_reach);
-        // The plane through the point parallel to those on which rays begin and end.
+        // The plane through the point, parallel to the planes on which rays begin and end.
         const double t = glm::dot(normal, point - near) / depth;
         const auto between = [&](const glm::vec3& a, const glm::vec3& b) {
             return (1.0 - t) * glm::dvec3(a) + t * glm::dvec3(b);
@@ -353,7 +353,7 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
     for (const Area& area : areas_of(input, is_shelled)) {
         const uint64_t steps_each = steps_of_block(volume, input, area.is_shelled);
         const uint64_t blocks = std::min((steps + steps_each - 1) / steps_each, MAX_BLOCKS);
-        std::optional<Resource> of_area;  ///< unless all rays wait
+        std::optional<Resource> of_area;  ///< null if all rays wait
         if (!input.waiting && area.is_shelled && blocks > 1)
             of_area = graph.create(
                 "rays", picture_desc(Format::rgba32_float, input.params.pixel_end - input.params.pixel_begin));
@@ -372,7 +372,7 @@ Resource raycast(FrameGraph& graph, VolumeBinding& volume, const RaycastInput& i
     const bool shell_keeps_rays = input.waiting || steps > steps_of_block(volume, input, true);
     const Choice shelled = choice_of(volume, input, true, shell_keeps_rays);
     if (is_shelled) expect_next(graph, shelled, input, shelled.kept);
-    // Also around an iso-surface's region.
+    // Draws the pixels without the iso-surface, including those around its region.
     const Choice plain = choice_of(volume, input, false, input.waiting);
     if (is_shelled) graph.expect(kernel_of(plain, input));
     expect_next(graph, plain, input, shelled.kept);

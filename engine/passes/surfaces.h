@@ -12,21 +12,21 @@ namespace shvr {
 
 /// Surfaces on the device, and the hierarchy of boxes around them.
 struct SurfaceList {
-    Resource nodes;  ///< gpu::SurfaceNode, in depth-first order; params.node_count of them
-    Resource list;   ///< gpu::Surface; like `nodes`, an rgba32_uint picture in rows of gpu::SURFACES_IN_ROW
+    Resource nodes;  ///< gpu::SurfaceNode, params.node_count nodes in depth-first order
+    Resource list;   ///< gpu::Surface; like `nodes`, an rgba32_uint image with rows of gpu::SURFACES_IN_ROW
 };
 
 /// Maximum number of nodes that one dispatch may visit: some devices abort a thread's loops after 65535 iterations in
-/// total. Each node costs one iteration, plus, if lanes run in lockstep, one per surface of any leaf that a lane
-/// visits; lists add a few hundred. A lower limit would cost more dispatches, and a dispatch that finds nothing still
-/// sets up every ray.
+/// total. Each node costs one iteration. If lanes run in lockstep, it also costs one per surface of any leaf that a
+/// lane visits; lists add a few hundred. A lower limit would cost more dispatches, and a dispatch that finds nothing
+/// still sets up every ray.
 inline constexpr uint32_t NODES_IN_DISPATCH = 60'000 / (2 + gpu::SURFACES_IN_LEAF);
 
 struct SurfacesInput {
-    gpu::RaycastParams params;  ///< the ray caster's parameters; pixels, light and distance blending are used
+    gpu::RaycastParams params;  ///< the ray caster's parameters; only pixels, light and distance blending are used
     gpu::SurfaceParams scene;
     std::optional<SurfaceList> listed;
-    bool probe = false;  ///< scene.probe_* are set
+    bool probe = false;  ///< requires scene.probe_* to be set
     PixelGroups pixel_groups;
     uint32_t nodes_in_dispatch = NODES_IN_DISPATCH;  ///< other values are for tests
 };
@@ -34,8 +34,8 @@ struct SurfacesInput {
 /// Device bytes per tile of a part, in addition to the image.
 inline constexpr uint64_t SURFACE_TILE_BYTES = sizeof(uint32_t) * gpu::SURFACE_TILE * gpu::SURFACE_TILE;
 
-/// Returns an image of the part's size: lit colour in linear light, and the length along each pixel's ray at which a
-/// surface ends it, gpu::NO_SURFACE if none does. Valid in this frame only.
+/// Returns an image of the part's size: lit colour in linear light, and the distance along each pixel's ray at which a
+/// surface ends the ray, or gpu::NO_SURFACE. Valid in this frame only.
 Resource surfaces(FrameGraph& graph, const SurfacesInput& input);
 
 }  // namespace shvr

@@ -18,7 +18,7 @@ struct PageBinding {
     Resource directory;
     Resource cell_leap;     ///< r8ui per cell of every slot
     Resource reached;       ///< one bit per entry, set by rays that visit its brick
-    bool feedback = false;  ///< whether rays mark them
+    bool feedback = false;  ///< whether rays mark the entries of `reached`
     glm::uvec3 counts{1};
     uint32_t cell_shift = 0;
     uint32_t depth = 0;
@@ -26,14 +26,14 @@ struct PageBinding {
 
 struct VolumeBinding {
     Resource atlas;  ///< bricks with their aprons, in the layout of `codes`
-    /// Images of the same size stacked on top of it (shaders/library/atlas.glsl); for paged volumes.
+    /// Further images of the same size, stacked on top of the atlas (shaders/library/atlas.glsl); for paged volumes.
     std::vector<Resource> more_atlases;
     Resource cell_ranges;  ///< r32ui per cell of the volume, or of every slot: minimum | maximum << 16
     // Resident volumes:
     Resource page_table;                   ///< uint per brick: slot
     Resource leap;                         ///< r32ui per cell, see shaders/leap.h
-    std::array<Resource, 2> leap_scratch;  ///< intermediate results of its stages
-    std::optional<Resource> sample_bits;   ///< r32ui, two per cell (shaders/leap.h); optional, and only with exact
+    std::array<Resource, 2> leap_scratch;  ///< intermediate results of the stages of the leap grid
+    std::optional<Resource> sample_bits;   ///< r32ui, two per cell (shaders/leap.h); optional, only for exact
                                            ///< texels
     // Paged volumes:
     std::optional<PageBinding> pages;
@@ -55,8 +55,8 @@ inline std::vector<std::pair<std::string, uint32_t>> constants_of_codes(const Vo
     return constants;
 }
 
-/// Binds the atlas to a kernel that supports stacked images. Bindings without an image get the first one and are never
-/// read.
+/// Binds the atlas to a kernel that supports stacked images. Bindings without an image of their own get the first
+/// image, and are never read.
 inline void bind_stacked_atlas(Pass& pass, const VolumeBinding& volume)
 {
     pass.read("atlas", volume.atlas);

@@ -15,16 +15,16 @@ namespace shvr {
 
 namespace {
 
-/// A tile bounds the time of a single submission on a slow device. On a GPU, squares keep similar rays together; a CPU
-/// serves rows of bricks from its caches, and waits for its slowest thread at the end of each tile. Powers of two make
-/// the number of dispatches independent of the number of threads.
+/// A tile bounds the time of a single submission on a slow device. On a GPU, square tiles keep similar rays together. A
+/// CPU serves rows of bricks from its caches, and waits for its slowest thread at the end of each tile. Powers of two
+/// make the number of dispatches independent of the number of threads.
 PixelGroups pixel_groups_of(const gpu::DeviceTraits& traits)
 {
     if (!traits.is_cpu) return {.width = 8, .layers = 1, .tile = {128, 128}};
     return {.width = 16, .layers = std::min(std::bit_ceil(traits.cpu_threads), 64u), .tile = {256, 256}};
 }
 
-/// Opacity of a preview hidden by something else, and of one in slices.
+/// Opacity of a preview hidden by something else, and opacity of a preview in slices.
 constexpr float PREVIEW_SHARE = 0.55f, PREVIEW_SLICE_SHARE = 0.7f;
 
 RaycastOcclusion raycast_occlusion(Resource values, const OcclusionSettings& settings)
@@ -90,7 +90,7 @@ Prepared prepare(FrameGraph& graph, Scene& scene, const Look& look, const Shot& 
     return prepared;
 }
 
-/// Surfaces where the rays of a part end, including the probe's ball; null if there are none.
+/// Draws the surfaces at which the rays of a part end, including the probe's ball; null if there are none.
 std::optional<Resource> draw_surfaces(FrameGraph& graph, Scene& scene, const Prepared& prepared,
                                       const RaycastInput& input, const RayPlanes& planes, const PicturePart& part)
 {
@@ -105,13 +105,13 @@ std::optional<Resource> draw_surfaces(FrameGraph& graph, Scene& scene, const Pre
     return surfaces(graph, wanted);
 }
 
-/// Whether the objects behind the probe's ball are drawn, too: two pictures are then mixed.
+/// Whether objects behind the probe's ball are drawn, too. Two pictures are then mixed.
 bool is_translucent(const std::optional<ProbeLook>& probe)
 {
     return probe && probe->ball_share > 0.0 && probe->ball_opacity > 0.0 && probe->ball_opacity < 1.0;
 }
 
-/// The part with the probe's ball removed.
+/// Returns the part without the probe's ball.
 PicturePart without_ball(PicturePart part)
 {
     if (part.probe) part.probe->ball_share = 0.0;
@@ -141,7 +141,7 @@ PreviewSeen draw_preview(FrameGraph& graph, const RaycastInput& input, const Ray
     return preview(graph, wanted);
 }
 
-/// Draws the volume and its contents. A preview is computed before the rays, so that they end at it, and then drawn
+/// Draws the volume and its contents. A preview is computed before the rays, so that rays end at it, and then drawn
 /// over the picture.
 Resource draw_contents(FrameGraph& graph, Scene& scene, Prepared& prepared, RaycastInput input, const Camera& camera,
                        const PicturePart& part, Resource target, const WaitingRays* rays, size_t which)
@@ -167,7 +167,7 @@ Resource draw_contents(FrameGraph& graph, Scene& scene, Prepared& prepared, Rayc
                          .share = input.slice ? PREVIEW_SLICE_SHARE : PREVIEW_SHARE});
 }
 
-/// Draws through a translucent ball: mixes pictures with an opaque ball and without it.
+/// Draws through a translucent ball: mixes a picture with an opaque ball and a picture without the ball.
 Resource draw_through_ball(FrameGraph& graph, Scene& scene, Prepared& prepared, const RaycastInput& input,
                            const Camera& camera, const PicturePart& part, Resource target, const WaitingRays* rays,
                            size_t eye)

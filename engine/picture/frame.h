@@ -10,7 +10,7 @@
 //   preview    [preview]                                               (what a brush would change)
 //   rays       raycast, one thread per pixel
 //   preview    [preview_over]
-//   ball       [surfaces to preview_over again, without the probe's ball, then mix]     (a translucent one)
+//   ball       [surfaces to preview_over again, without the probe's ball, then mix]    (if it is translucent)
 //   colours    [saturation]
 //   anaglyph   [surfaces to colours once per eye, then anaglyph]
 //
@@ -33,10 +33,10 @@ struct PicturePart {
     glm::uvec2 pixels{0};         ///< size of the whole picture
     glm::uvec2 begin{0}, end{0};  ///< the pixels that are drawn
     glm::uvec2 target{0};         ///< texel that `begin` is drawn to
-    glm::uvec2 detail_pixels{0};  ///< size of the picture that sets the bricks' level of detail; 0: this one
+    glm::uvec2 detail_pixels{0};  ///< picture size that determines the bricks' level of detail; 0: `pixels`
     std::optional<ProbeLook> probe{};
     /// Voxels whose paged bricks the view always needs, even if the transfer function hides them: a shell may lie where
-    /// nothing else is visible (voxels_of_shell). Equal for all parts of a view.
+    /// nothing else is visible (voxels_of_shell). All parts of a view have the same box.
     std::optional<VoxelBox> always_shown{};
 };
 
@@ -46,7 +46,7 @@ class WaitingRays {
 public:
     /// Device bytes per pixel and picture.
     static constexpr uint64_t PIXEL_BYTES = 2 * 4 * sizeof(float);
-    /// `pixels`: size of the drawn part; `pictures`: its pictures_of(). Fails if the budget cannot hold them.
+    /// `pixels`: size of the drawn part. `pictures`: result of pictures_of(). Fails if the budget is too small.
     WaitingRays(gpu::Memory& memory, const glm::uvec2& pixels, int pictures);
     RaysInWaiting import(FrameGraph& graph, size_t picture) const;
     void have_begun() { have_begun_ = true; }
@@ -56,47 +56,47 @@ private:
     bool have_begun_ = false;
 };
 
-/// Number of ray-cast pictures per shot: one per eye, each with and without a translucent ball of the probe.
+/// Number of ray-cast pictures per shot: one per eye; twice as many with a translucent ball of the probe.
 int pictures_of(const Shot& shot, const std::optional<ProbeLook>& probe);
 
-/// The result of adding a part to a graph: the target's new version, and the feedback for the volume when the graph is
-/// done.
+/// The result of adding a part to a graph: the target's new version, and the feedback that the volume gets when the
+/// graph is done.
 struct Drawn {
     Resource target;
     DeviceVolume::Feedback feedback;
 };
 /// Adds the passes that draw a part of a shot into `target`, an rgba32_float picture: linear light, premultiplied, over
 /// the background. The graph must be submitted before any graph made later. `waiting`: rays resume where the previous
-/// graph left them waiting for bricks; the part is the same and the volume lets rays wait. Null: the volume no longer
-/// lets rays wait.
+/// graph left them waiting for bricks; the part must be the same, and the volume must let rays wait. If `waiting` is
+/// null, the volume no longer lets rays wait.
 Drawn draw(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part,
            Resource target, bool count_work = false, WaitingRays* waiting = nullptr);
-/// A graph with the preparation shared by all parts of a shot, whatever their size: tables, directory, surfaces. It
-/// must be submitted before any graph made later. Optional: draw() does this as well.
+/// Returns a graph with the preparation shared by all parts of a shot, whatever their size: tables, directory,
+/// surfaces. It must be submitted before any graph made later. Optional: draw() also makes this preparation.
 FrameGraph prepared(Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);
-/// Adds the passes that find the visible point at one pixel; returns a one-texel image: its position and 1, or 0 if no
-/// point is visible.
+/// Adds the passes that find the visible point at one pixel. Returns a one-texel image: the point's position and 1, or
+/// 0 if no point is visible.
 Resource pick(FrameGraph& graph, Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);
 
-/// Number of drawn rays that stopped before their end although nothing opaque ended them. Their pixels are wrong.
+/// Number of drawn rays that stopped before their end without meeting anything opaque. Their pixels are wrong.
 uint64_t rays_cut_short(const std::vector<gpu::PassReport>& passes);
-/// A warning about such rays, as a sentence.
+/// Returns a sentence that warns about rays cut short.
 std::string cut_short_sentence(uint64_t rays, const Look& look);
 
 /// Whether draw() of a part, or look_at(), would return without waiting for the list of the view's bricks. If not,
-/// listing starts in the background: ask again.
+/// listing starts in the background, and the caller should ask again.
 bool get_ready(Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);
 /// Sets the volume's view, as draw() does. Returns the sample distance in reference lengths, which is larger for coarse
 /// bricks.
 double look_at(Scene& scene, const Look& look, const Shot& shot, const PicturePart& part);
 
-/// One short graph of work that must precede drawing parts of this look; null when all is ready. Without these calls
-/// the first draw() does it all. The graph must be submitted before the next call.
+/// Returns one short graph of work that must precede drawing parts of this look; null when all is ready. Optional:
+/// without these calls, the first draw() does all this work. The graph must be submitted before the next call.
 std::optional<FrameGraph> next_preparation(Scene& scene, const Look& look);
-/// Likewise for idle time: work that makes later pictures faster without changing them.
+/// Like next_preparation(), for idle time: work that makes later pictures faster without changing them.
 std::optional<FrameGraph> next_refinement(Scene& scene, const Look& look);
-/// Likewise for the next slice of the look's ambient occlusion, nearest to the camera first; null if the look uses none
-/// or all is done. Pictures are drawn with the occlusion available so far.
+/// Like next_preparation(), for the next slice of the look's ambient occlusion, nearest to the camera first; null if
+/// the look uses none or all is done. Pictures are drawn with the occlusion available so far.
 std::optional<FrameGraph> next_occlusion(Scene& scene, const Look& look, const Camera& camera,
                                          const Occlusion::Most& most);
 

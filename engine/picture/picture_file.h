@@ -1,7 +1,7 @@
 #pragma once
 // Draws a picture and writes it to a file at the same time: a worker thread encodes rows while the next band is drawn,
-// so that memory holds two bands of the picture, however large it is. The file appears once it is complete; a picture
-// that fails or is abandoned leaves the old file as it was. One thread, the renderer's.
+// so that memory holds two bands of the picture, however large it is. The file appears once it is complete; if the
+// picture fails or is abandoned, an existing file stays unchanged. One thread, the renderer's.
 
 #include <filesystem>
 #include <functional>
@@ -16,22 +16,22 @@ namespace shvr {
 class PictureFile {
 public:
     /// `path`: .png, or .pfm for linear light. `texts`: stored in a .png file. Fails if the file cannot be written.
-    /// `over`: draws over rows of the picture from `first_row` on, on the worker thread.
+    /// `over`: draws over rows of the picture, starting at `first_row`, on the worker thread.
     using Over = std::function<void(ImageF& rows, uint32_t first_row)>;
     PictureFile(const std::filesystem::path& path, Renderer& renderer, const Session& session, const Camera& camera,
                 const RenderOptions& options, const PictureTexts& texts = {}, Over over = {});
 
     bool is_drawn() const { return job_.is_done(); }
-    /// Whether the worker is busy: a step that completes the next band, or commit(), would wait for it.
+    /// Whether the worker is busy, so that commit(), or a step that completes the next band, would wait for it.
     bool is_writing() const;
-    /// As PictureJob::step; also fails if rows cannot be written.
+    /// Like PictureJob::step; also fails if rows cannot be written.
     void step(bool waits = true) { job_.step(waits); }
     bool is_waiting() const { return job_.is_waiting(); }
     double progress() const { return job_.progress(); }
     bool is_complete() const { return job_.is_complete(); }
-    /// The picture without its image. Call it after the last step.
+    /// Returns the picture without its image. Call it after the last step.
     Picture take() { return job_.take(); }
-    /// Once everything is drawn: writes the rest on the worker thread, and renames the file to its final name.
+    /// Call it once everything is drawn. Writes the rest on the worker thread, and renames the file to its final name.
     void begin_commit();
     bool is_committing() const { return is_committing_; }
     /// Waits for the commit, after starting it if necessary. Fails if the file cannot be written.

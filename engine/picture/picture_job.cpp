@@ -26,7 +26,7 @@ void append(std::vector<gpu::PassReport>& sum, std::vector<gpu::PassReport> pass
         known->submissions += pass.submissions;
         known->dispatches += pass.dispatches;
         known->tiles += pass.tiles;
-        // Within one pass, some kernels count and others do not (slice.comp).
+        // Within one pass, some kernels have counters and others do not (slice.comp).
         known->counters.resize(std::max(known->counters.size(), pass.counters.size()));
         for (size_t i = 0; i < pass.counters.size(); ++i) known->counters[i] += pass.counters[i];
         known->invocations = known->invocations && pass.invocations
@@ -37,12 +37,12 @@ void append(std::vector<gpu::PassReport>& sum, std::vector<gpu::PassReport> pass
 
 /// Bytes per pixel of a picture's read-back.
 constexpr uint64_t PIXEL_BYTES = 4 * sizeof(float);
-/// Maximum host memory for the band being drawn, while another one may still be being written.
+/// Maximum host memory for the band being drawn; another band may still be in the process of being written.
 constexpr uint64_t MAX_BAND_BYTES = uint64_t{32} << 20;
 /// Device memory in addition to a part's own images: tables and the directory of bricks.
 constexpr uint64_t BESIDE_PARTS = uint64_t{8} << 20;
 
-/// Maximum pixels of parts drawn by rays that wait, whose state takes WaitingRays::PIXEL_BYTES per pixel.
+/// Maximum size in pixels of a part drawn by rays that wait; their state takes WaitingRays::PIXEL_BYTES per pixel.
 constexpr uint64_t MAX_WAITING_PIXELS = 64 * 64;
 
 /// Device bytes per pixel of a part, as frame.cpp allocates images.
@@ -60,7 +60,7 @@ uint64_t device_bytes_per_pixel(const Scene& scene, const Shot& shot, const std:
     return PIXEL_BYTES + (shot.right_eye ? 2 * (PIXEL_BYTES + of_eye) : of_eye);
 }
 
-/// Splits some rows of a pane into parts, the first one last.
+/// Splits some rows of a pane into parts, in reverse order: the first part to draw comes last.
 std::vector<PicturePart> parts_of(const PicturePart& whole, const PixelBox& rows, uint32_t side)
 {
     std::vector<PicturePart> parts;
@@ -74,7 +74,7 @@ std::vector<PicturePart> parts_of(const PicturePart& whole, const PixelBox& rows
     return parts;
 }
 
-/// The four quarters of a part, next to draw last.
+/// Returns the four quarters of a part in reverse order: the next one to draw comes last.
 std::vector<PicturePart> quarters_of(const PicturePart& part)
 {
     std::vector<PicturePart> quarters;
@@ -139,17 +139,17 @@ void PictureJob::begin_band()
     band_begin_ = band_end_;
     band_end_ = std::min(band_begin_ + band_rows_, size_.y);
     const size_t values = size_t(size_.x) * (band_end_ - band_begin_) * 4;
-    // The receiver of the rows may hold one band while the next one is drawn, and a part is copied once more.
+    // While the next band is drawn, the receiver of the rows may still hold one; a part's pixels are copied once more.
     constexpr uint64_t BANDS = 2;
     renderer_.note_picture_bytes(BANDS * values * sizeof(float) +
                                  PIXEL_BYTES * options_.part_pixels * std::min(options_.part_pixels, band_rows_));
     band_ = {int(size_.x), int(band_end_ - band_begin_), std::vector<float>(values)};
     pane_ = 0;
     begin_parts();
-    if (parts_.empty()) end_band();  // a row that no pane covers
+    if (parts_.empty()) end_band();  // when no pane covers these rows
 }
 
-/// Lists the parts of the pane within the band, or of the next pane if it has none there.
+/// Lists the parts of the current pane within the band; if there are none, the parts of the next pane with any.
 void PictureJob::begin_parts()
 {
     for (; pane_ < panes_.size(); ++pane_) {
@@ -167,7 +167,7 @@ void PictureJob::begin_parts()
     }
 }
 
-/// The largest side of parts of which the remaining memory holds two: parts at borders have images of their own.
+/// Returns the largest side such that memory holds two parts: parts at borders have images of their own.
 uint32_t PictureJob::part_side()
 {
     gpu::Memory& memory = renderer_.memory();
@@ -180,7 +180,7 @@ uint32_t PictureJob::part_side()
     };
     static_cast<void>(!pane().shot.is_slice && scene().has_occlusion(look_));  // allocates its memory
     if (fits(BESIDE_PARTS)) return uint32_t(side);
-    // Data that is needed for any part size is made now, so that the remaining memory is known.
+    // Allocates the data that every part size needs, so that the remaining memory is known.
     renderer_.executor().run(
         prepared(
             scene(), look_, pane().shot,
@@ -202,14 +202,14 @@ void PictureJob::end_band()
     renderer_.note_picture_bytes(0);
 }
 
-/// Takes the requested bricks. Returns false if some are still to come and it did not wait.
+/// Loads the requested bricks. Returns false if some are still to come and `waits` is false.
 bool PictureJob::load(const Progress& progress, bool waits)
 {
     scene().advance(waits, progress);
     return waits || scene().volume().state() != DeviceVolume::State::loading;
 }
 
-/// Loads the bricks from which light comes, as far as there are slots.
+/// Loads the bricks from which light arrives, as far as there are slots.
 bool PictureJob::load_around(const Progress& progress, bool waits)
 {
     if (pane().shot.is_slice || !scene().has_occlusion(look_)) return true;
@@ -217,8 +217,8 @@ bool PictureJob::load_around(const Progress& progress, bool waits)
     return load(progress, waits);
 }
 
-/// Completes the ambient occlusion of the look, as far as the loaded bricks allow. Returns false if there is more to do
-/// and it did not wait.
+/// Completes the ambient occlusion of the look, as far as the loaded bricks allow. Returns false if more remains to be
+/// done and `waits` is false.
 bool PictureJob::renew_occlusion(const Progress& progress, bool waits)
 {
     constexpr Occlusion::Most MOST{.bricks = gpu::OCCLUSION_SLICE, .cell_bricks = 512};
@@ -235,7 +235,7 @@ bool PictureJob::renew_occlusion(const Progress& progress, bool waits)
     return true;
 }
 
-/// Progress of a part drawn for the nth time: the number of rounds is unknown, so each counts as half of the rest.
+/// Progress of a part drawn for the nth time. The number of rounds is unknown, so each counts as half of the rest.
 Progress PictureJob::progress_of(const PicturePart& part, int round)
 {
     if (!options_.progress) return {};
@@ -252,7 +252,7 @@ void PictureJob::step(bool waits)
     SHVR_CHECK(!is_done());
     const PicturePart part = rounds_ ? rounds_->part : parts_.back();
     if (!rounds_) parts_.pop_back();
-    // No drawing ahead on a CPU, which also copies the pixels: it would only need more memory.
+    // Draws ahead on a GPU only: a CPU also copies the pixels, so drawing ahead would only cost memory.
     const bool is_paged = scene().volume().counts().has_value(), is_ahead = !is_paged && !scene().traits().is_cpu;
     try {
         if (is_ahead)
@@ -274,7 +274,7 @@ void PictureJob::step(bool waits)
     if (parts_.empty()) end_band();
 }
 
-/// If memory is short: frees ambient light, then uses smaller parts.
+/// Called if memory is short. Frees ambient light, or else splits the part. Returns false if neither is possible.
 bool PictureJob::has_given_way(const PicturePart& part, const std::string& why)
 {
     if (scene().give_way(why)) {
@@ -300,7 +300,7 @@ PictureJob::UnderWay PictureJob::begin(const PicturePart& part, WaitingRays* wai
                                                 .serialize = options_.serialize})};
 }
 
-/// Copies its pixels, and reports the visited bricks to the volume.
+/// Copies the pixels of the part, and reports the visited bricks to the volume.
 std::vector<gpu::PassReport> PictureJob::take(UnderWay part)
 {
     gpu::FrameResult result = part.submission.finish();
@@ -310,7 +310,7 @@ std::vector<gpu::PassReport> PictureJob::take(UnderWay part)
     const size_t row_bytes = size_t(size.x) * 4 * sizeof(float);
     for (uint32_t y = 0; y < size.y; ++y, row += row_bytes)
         std::memcpy(&band_.rgba[4 * (origin.x + size_t(size_.x) * (origin.y - band_begin_ + y))], row, row_bytes);
-    // If two parts are in flight, the time that both took counts once.
+    // If two parts are in flight, the time during which both are drawn counts once.
     const double now_ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
     picture_.wall_ms += std::min(result.wall_ms, now_ms - last_taken_ms_.value_or(-HUGE_VAL));
@@ -323,8 +323,8 @@ std::vector<gpu::PassReport> PictureJob::draw(const PicturePart& part, WaitingRa
     return take(begin(part, waiting));
 }
 
-/// One drawing completes a part; the previous part is copied once the device has this one. The first part is waited
-/// for, because its time decides how the others are divided.
+/// Completes a part with one drawing; copies the previous part once the device has received this part. Waits for the
+/// first part, because its time determines how the others are divided.
 void PictureJob::draw_ahead(const PicturePart& part)
 {
     look_at(scene(), look_, pane().shot, part);
@@ -347,11 +347,11 @@ void PictureJob::catch_up()
     finish(part, take(std::move(last)));
 }
 
-/// Draws a part with all bricks that its rays visit, or splits it into quarters. False: the next step continues it.
+/// Draws a part with all bricks that its rays visit, or splits it. Returns false if the next step continues it.
 bool PictureJob::draw_completely(const PicturePart& part, bool waits)
 {
     DeviceVolume& volume = scene().volume();
-    // Other callers may have set the view since the last step; the drawing is then stale, and is repeated.
+    // Other callers may have set the view since the last step. The drawing is then stale, and is repeated.
     look_at(scene(), look_, pane().shot, part);
     if (!rounds_) {
         if (area_of(part) != PixelBox{glm::uvec2(0), part.pixels}.area()) volume.forget_visits();
@@ -388,11 +388,11 @@ bool PictureJob::draw_rounds(bool waits)
             rounds_->is_drawn = true;
         }
         if (!load(progress, waits)) return false;
-        // Bricks visited again may have been lit while there were no slots for the bricks around them.
+        // Bricks visited again may have been lit when there were no slots for the bricks around them.
         if (!load_around(progress, waits)) return false;
         rounds_->is_drawn = false;
         if (volume.state() == State::limited) return true;
-        if (!pane().shot.is_slice && scene().occlusion().is_due()) continue;  // of bricks visited for the first time
+        if (!pane().shot.is_slice && scene().occlusion().is_due()) continue;  // for bricks visited for the first time
         if (volume.state() == State::complete && !volume.is_stale()) return true;
     }
 }
@@ -405,9 +405,9 @@ void PictureJob::begin_waiting()
     rounds_->waits_for_light = !pane().shot.is_slice && scene().has_occlusion(look_);
 }
 
-/// Draws a part whose rays need more bricks than fit. In every round the bricks that rays wait for are loaded, nearest
-/// first, as many as fit; so some ray advances, and bricks are passed from near to far. If others have drawn since the
-/// last step, the awaited bricks are determined again.
+/// Draws a part whose rays need more bricks than fit. Every round loads as many as fit of the bricks that rays wait
+/// for, nearest first. So at least one ray advances, and rays pass bricks from near to far. If others have drawn since
+/// the last step, the list of awaited bricks is determined again.
 bool PictureJob::draw_waiting(bool waits)
 {
     DeviceVolume& volume = scene().volume();
@@ -418,7 +418,7 @@ bool PictureJob::draw_waiting(bool waits)
             append(rounds_->passes, draw(rounds_->part, &*rounds_->rays));
             if (!volume.has_rays_waiting()) return true;
             if (rounds_->waits_for_light && !volume.limit_visits(scene().occlusion().reach())) {
-                // No progress: rays continue with the light available.
+                // Without progress, rays continue with the light available so far.
                 note_limited();
                 volume.let_rays_wait(false);
                 volume.want_around({});
@@ -432,7 +432,7 @@ bool PictureJob::draw_waiting(bool waits)
     }
 }
 
-/// The light of one brick needs more bricks than fit.
+/// Reports that the light of one brick needs more bricks than fit.
 void PictureJob::note_limited()
 {
     picture_.complete = false;

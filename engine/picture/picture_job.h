@@ -1,6 +1,6 @@
 #pragma once
 // Renders a picture part by part and delivers it in bands of rows, so that it may exceed the memory of device and host,
-// and other work can run in between. The parts together equal a picture drawn whole, bit for bit. One thread, the
+// and other work can run between parts. The parts together equal, bit for bit, the picture drawn whole. One thread, the
 // renderer's.
 //
 //   picture -> bands of rows, as high as host memory allows -> panes that a band meets -> parts, as large as device
@@ -28,12 +28,12 @@ public:
     /// Draws the next part. For a paged volume, waits for the part and for bricks: a part is drawn again until all
     /// bricks that its rays visit are on the device. A part that needs more bricks than fit is split into quarters, or
     /// drawn by rays that wait for bricks. For a resident volume on a GPU, waits only for the previous part, so that
-    /// the device stays busy while that part's pixels are copied. Delivers the rows of each finished band.
+    /// the device stays busy while the previous part's pixels are copied. Delivers the rows of each finished band.
     ///
-    /// With `waits` false it waits for no brick being read; the next step continues with the part, and other callers
-    /// may set the volume's view and draw in between.
+    /// If `waits` is false, does not wait for bricks that are being read. The next step then continues with the part;
+    /// other callers may set the volume's view and draw in between.
     void step(bool waits = true);
-    /// Whether the last step left a part whose bricks, or whose light, are still to come.
+    /// Whether the last step left a part unfinished, because its bricks or its light are still to come.
     bool is_waiting() const { return rounds_.has_value(); }
     /// The fraction of all pixels drawn so far.
     double progress() const { return double(drawn_pixels_) / double(uint64_t(size_.x) * size_.y); }
@@ -51,7 +51,7 @@ private:
     struct UnderWay {
         PicturePart part;
         glm::uvec2 origin;  ///< its first pixel in the picture
-        uint32_t pixels;    ///< the read-back
+        uint32_t pixels;    ///< index of the read-back
         DeviceVolume::Feedback feedback;
         gpu::Submission submission;
     };
@@ -86,12 +86,12 @@ private:
     uint32_t band_begin_ = 0, band_end_ = 0;  ///< rows of the picture
     ImageF band_;
     size_t pane_ = 0;
-    std::vector<PicturePart> parts_;  ///< parts of the pane within the band still to be drawn, next one last
+    std::vector<PicturePart> parts_;  ///< parts of the pane within the band still to be drawn; the next one comes last
     /// A part that is drawn until no brick is missing.
     struct Rounds {
         PicturePart part;
-        int round = 0;          ///< each round renews its light, draws it, and loads its bricks
-        bool is_drawn = false;  ///< in this round
+        int round = 0;          ///< each round renews the part's light, draws the part, and loads its bricks
+        bool is_drawn = false;  ///< whether the part is drawn in this round
         std::vector<gpu::PassReport> passes{};
         /// The state of rays that wait for bricks, or also for their light.
         std::optional<WaitingRays> rays{};
@@ -103,7 +103,7 @@ private:
     Picture picture_;
     uint64_t drawn_pixels_ = 0;
     uint64_t rays_cut_short_ = 0;
-    double told_ = 0.0;  ///< progress last reported, which never falls
+    double told_ = 0.0;  ///< progress last reported, which never decreases
 };
 
 }  // namespace shvr

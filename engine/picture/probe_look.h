@@ -13,8 +13,8 @@ namespace shvr {
 /// A thin-shell iso-surface in the probe's region (shaders/library/shell.glsl).
 struct ShellLook {
     double threshold = 0.0;  ///< intensity
-    double opacity = 0.4;    ///< of one crossing of the surface
-    bool is_box = false;     ///< the region's shape; otherwise a ball
+    double opacity = 0.4;    ///< opacity of one crossing of the surface
+    bool is_box = false;     ///< whether the region is a box; otherwise it is a ball
     bool operator==(const ShellLook&) const = default;
 };
 
@@ -28,19 +28,19 @@ struct ProbeLook {
     std::optional<ShellLook> shell;
     std::shared_ptr<const PaintPreview>
         preview;  ///< voxels that its brush would change, also shown in slices; null: not shown
-    bool has_silhouette = true, has_arrow = true;  ///< lines over the picture, where lines are drawn
+    bool has_silhouette = true, has_arrow = true;  ///< lines drawn over the picture, if it has such lines
     bool operator==(const ProbeLook&) const = default;
-    /// The radius of a ball that encloses all of it. `spacing`: the volume's.
+    /// Returns the radius of a ball that encloses all drawn parts. `spacing`: the volume's.
     double reach(const glm::dvec3& spacing) const;
 };
-/// Size of the ball inside a shell, small enough not to hide it.
+/// Radius of the ball inside a shell, as a share of `radius`, small enough not to hide the shell.
 inline constexpr double BALL_IN_SHELL = 0.12;
-/// The probe's own colour, or its group's; grey where it erases.
+/// Returns the probe's own colour, or its group's colour; grey if it erases.
 glm::dvec3 probe_color(const Session& session, uint8_t group);
 /// How pictures of a session show its probe.
 std::optional<ProbeLook> shown_probe(const Session& session, const VolumeInfo& volume,
                                      const VolumeStatistics& statistics);
-/// The voxels around a probe's shell, which is drawn whatever the transfer function hides; null without a shell.
+/// The voxels around a probe's shell, which is drawn even where the function hides voxels; null without a shell.
 std::optional<VoxelBox> voxels_of_shell(const std::optional<ProbeLook>& probe, const VolumeInfo& volume);
 
 }  // namespace shvr

@@ -23,7 +23,7 @@ glm::dvec3 light_direction(const Light& light, const Camera& camera)
     return glm::normalize(local.x * right + local.y * up + local.z * back);
 }
 
-/// Brighter than the resulting paint; a warning colour where paint would be removed.
+/// Returns a colour brighter than the resulting paint, or a warning colour where paint would be removed.
 glm::dvec3 preview_color(const ProbeLook& probe)
 {
     constexpr glm::dvec3 WARNING(1.0, 0.52, 0.0), RAISED(0.2, 0.85, 0.95);

@@ -1,5 +1,5 @@
 #pragma once
-// Parameters of the kernels that trace rays, from a look, a camera and a probe. Computed in double; pure.
+// Parameters of the kernels that trace rays, from a look, a camera and a probe. Computed in double; pure functions.
 
 #include "engine/device/scene.h"
 #include "engine/passes/preview.h"
@@ -12,7 +12,7 @@ namespace shvr {
 /// `step_voxels`: sample distance in reference lengths.
 gpu::RaycastParams raycast_params(const Look& look, const Camera& camera, Scene& scene, const VolumeBinding& binding,
                                   const PicturePart& part, double step_voxels);
-/// Sets the parameters that depend on the camera: rays, their entry into the volume, light and depth.
+/// Sets the parameters that depend on the camera: rays, their entry points into the volume, light and depth.
 void set_rays(gpu::RaycastParams& params, const Look& look, const Camera& camera, const VolumeInfo& info,
               const glm::uvec2& pixels);
 /// Sets the parameters of a slice, which shows the whole volume in grey, ignoring cuts.

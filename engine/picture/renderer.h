@@ -15,17 +15,17 @@
 
 namespace shvr {
 
-/// Any call here may throw this; then only restart() helps.
+/// Any call of Renderer may throw DeviceLost; only restart() helps then.
 using gpu::DeviceLost;
 
 struct RenderOptions {
     std::optional<ProbeLook> probe;
-    bool outlines_probe = false;  ///< draws its outline over whatever hides it, or an arrow if it is out of sight
+    bool outlines_probe = false;  ///< outlines the probe over whatever hides it; draws an arrow if it is out of sight
     bool count_work = false;      ///< keeps the exact work counters (a little slower)
     bool serialize = false;       ///< a full barrier between passes
     bool timestamps = true;
     bool statistics = false;  ///< counts kernel invocations, if the device supports it
-    /// Maximum side in pixels of the parts that are drawn one at a time: smaller if memory is short.
+    /// Maximum side, in pixels, of the parts drawn one at a time. If memory is short, parts are smaller.
     uint32_t part_pixels = 1024;
     Progress progress{};
 };
@@ -43,8 +43,8 @@ class Renderer {
 public:
     struct Options {
         gpu::DeviceOptions device;
-        /// Half of the host bytes (0: 2 GiB) are for mapped memory, a quarter for bricks kept on the host and a quarter
-        /// for coarser levels of files without any.
+        /// Half of the host bytes (0: 2 GiB) are for mapped memory, a quarter for bricks kept on the host, and a
+        /// quarter for coarser levels made in memory for files without levels.
         gpu::Budget budget;
         int threads = 0;  ///< workers that build bricks; 0: one per core
     };
@@ -53,54 +53,54 @@ public:
     gpu::Device& device() { return on_device_->device; }
     gpu::Memory& memory() { return on_device_->memory; }
     gpu::Executor& executor() { return on_device_->executor; }
-    /// Re-creates a lost device, without a scene. All objects of the old one must have been released: storages,
-    /// submissions, the window's. On failure there is no device: try again, or terminate.
+    /// Re-creates a lost device, without a scene. All objects of the old device must have been released: storages,
+    /// submissions and the window's objects. On failure there is no device: try again, or terminate.
     void restart();
     /// The host's part of the budget, in bytes.
     uint64_t host_budget() const { return host_budget_; }
     /// Host bytes in use: mapped memory, bricks kept on the host, and a picture that is being made.
     uint64_t host_bytes() const;
     uint64_t peak_host_bytes() const;
-    /// Reports the size of the picture being rendered, for these totals.
+    /// Reports the host bytes of the picture being rendered, for host_bytes().
     void note_picture_bytes(uint64_t bytes);
 
-    /// Replaces the scene by one of this volume. The `settings` for sampling and paging decide how the device holds the
-    /// bricks. `with_occlusion`: reserves memory for ambient occlusion. On failure the previous scene stays if both fit
-    /// in memory together; otherwise it was destroyed first, and there is none.
+    /// Replaces the scene by a scene of this volume. The `settings` for sampling and paging decide how the device
+    /// stores the bricks. `with_occlusion`: reserves memory for ambient occlusion. On failure the previous scene stays
+    /// if both scenes fit in memory together; otherwise the previous scene was destroyed first, and there is none.
     void load(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
               const RenderSettings& settings = {}, bool with_occlusion = false, const Progress& progress = {});
-    /// Likewise in time slices, for a loop that keeps running: starts loading a second scene, if fits_beside() holds,
-    /// or the only one after take_scene(); when its load_on() is done, show() it. `document`: the annotation that it
-    /// will show. The source should already have its levels (with_levels); otherwise they are made here.
+    /// Starts loading in time slices, for a loop that keeps running: a second scene, if fits_beside() returns true, or
+    /// the only scene after take_scene(). When load_on() of the scene is done, show() it. `document`: the annotation
+    /// that it will show. The source should already have its levels (with_levels), or they are made here.
     std::unique_ptr<Scene> begin_loading(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
                                          const RenderSettings& settings, bool with_occlusion, const Document& document);
     bool fits_beside(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion);
-    /// The source, with coarser levels added if it would be paged and has too few: reads it once. Any thread.
+    /// Returns the source; adds coarser levels, reading it once, if it would be paged and has too few. Any thread.
     std::shared_ptr<const VolumeSource> with_levels(std::shared_ptr<const VolumeSource> source,
                                                     const RenderSettings& settings, bool with_occlusion,
                                                     const Progress& progress = {}) const;
-    /// Memory needed to load it, with nothing else loaded. Reads no voxels. Any thread.
+    /// Memory needed to load the source while nothing else is loaded. Reads no voxels. Any thread.
     SceneEstimate estimate(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion) const;
-    /// Removes or replaces the scene, and returns the previous one; null: none.
+    /// Removes the scene and returns it; null if there was none.
     std::unique_ptr<Scene> take_scene() { return std::move(scene_); }
     std::unique_ptr<Scene> show(std::unique_ptr<Scene> scene) { return std::exchange(scene_, std::move(scene)); }
-    /// Fails if the sizes alone imply that load() would; reads no voxels.
+    /// Fails if the sizes alone already imply that load() would fail; reads no voxels.
     void check_sizes(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion);
     Scene& scene() const;
     DeviceVolume& volume() const { return scene().volume(); }
     const VolumeStatistics& statistics() const { return scene().statistics(); }
 
-    /// Draws `session` (its look and its panes) from `camera`. Waits for the device. Fails if the host's budget cannot
-    /// hold the picture.
+    /// Draws `session` (its look and its panes) from `camera`. Waits for the device. Fails if the picture exceeds the
+    /// host's budget.
     Picture render(const Session& session, const Camera& camera, const RenderOptions& options = {});
-    /// The point visible at a pixel. Samples along its ray form runs: a run ends where opacity has fallen to a quarter
-    /// of its maximum in the run and then doubles. The point lies in the run that contributes most to the ray's
-    /// opacity, at the sample that contributes most (after Wiebel et al. 2012, "WYSIWYP: What You See Is What You
-    /// Pick"); a surface that ends the ray is a run of its own. Null if no run contributes enough to be
+    /// Returns the point visible at a pixel. Samples along the pixel's ray form runs: a run ends where opacity has
+    /// fallen to a quarter of its maximum in the run and then doubles. The point lies in the run that contributes most
+    /// to the ray's opacity, at the sample that contributes most (after Wiebel et al. 2012, "WYSIWYP: What You See Is
+    /// What You Pick"). A surface that ends the ray is a run of its own. Null if no run contributes enough to be
     /// visible (PICK in shaders/raycast.h). `probe`: drawn as in the picture. Waits for the device.
     struct Seen {
         glm::dvec3 point{0.0};  ///< volume space
-        double opacity = 0.0;   ///< total of the ray
+        double opacity = 0.0;   ///< total opacity of the ray
     };
     std::optional<Seen> pick(const Look& look, const Camera& camera, const glm::uvec2& pixels, const glm::uvec2& pixel,
                              const std::optional<ProbeLook>& probe = {});
@@ -120,8 +120,8 @@ private:
     gpu::DeviceOptions device_options_;
     uint64_t device_budget_, host_budget_;
     int threads_;
-    mutable std::mutex device_mutex_;  ///< guards the next member: a worker calls with_levels() while restart()
-                                       ///< re-creates the device
+    mutable std::mutex device_mutex_;  ///< guards on_device_: a worker calls with_levels() while restart() re-creates
+                                       ///< the device
     std::unique_ptr<OnDevice> on_device_;
     uint64_t picture_bytes_ = 0, peak_picture_bytes_ = 0;
     std::unique_ptr<Scene> scene_;

@@ -64,7 +64,7 @@ int exchange_names(const fs::path& one, const fs::path& other)
     return ::renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE);
 }
 
-/// Tries it with two empty folders.
+/// Tests with two empty folders whether the file system can exchange names.
 bool exchanges_names(const fs::path& container, const fs::path& target)
 {
     const fs::path one = container / "one", other = container / "other";
@@ -100,7 +100,7 @@ fs::path move_to_old_name(const fs::path& folder, const fs::path& path)
 {
     for (;;) {
         const fs::path old = free_old_name(path);
-        // A folder is never renamed over a file, nor over a folder that is not empty.
+        // rename() never replaces a file by a folder, and replaces a folder only if it is empty.
         if (std::rename(folder.c_str(), old.c_str()) == 0) return old;
         if (errno != EEXIST && errno != ENOTEMPTY && errno != ENOTDIR) refuse_folder(old, errno);
     }
@@ -127,7 +127,7 @@ AtomicFolder::~AtomicFolder()
     remove_remains();
 }
 
-/// Writing into a folder that was moved has made new folders at its old place, unless it failed.
+/// If the folder was moved while being written, writing has made new folders at its old place: removes them and fails.
 void AtomicFolder::expect_in_place()
 {
     struct stat held {
@@ -136,7 +136,7 @@ void AtomicFolder::expect_in_place()
     const bool is_found = ::stat(container_.c_str(), &found) == 0;
     if (is_held && is_found && held.st_dev == found.st_dev && held.st_ino == found.st_ino) return;
     remove_remains();
-    // Only empty ones: that of the labels, and that of the project.
+    // Removes only empty folders: the labels' folder and the project's folder.
     ::rmdir(target_.parent_path().c_str());
     ::rmdir(target_.parent_path().parent_path().c_str());
     fail(target_.string(),
@@ -160,8 +160,8 @@ void AtomicFolder::commit(const std::string& entry)
     remove_remains();
 }
 
-/// The new content gets the old one's future name before the exchange, so that a process killed in between leaves no
-/// old content in the hidden folder, which the next writer clears.
+/// Gives the new content the old content's future name before the exchange. Otherwise a process killed in between would
+/// leave the old content in the hidden folder, which the next writer clears.
 fs::path AtomicFolder::commit_and_keep_old(const std::string& entry)
 {
     fs::path old;
@@ -194,7 +194,7 @@ void AtomicFolder::exchange(const fs::path& with)
     sync_folder(target_);
 }
 
-/// The entry file decides; content without one that names it is never read.
+/// Replacing the entry file decides: readers never read content that the entry file does not name.
 void AtomicFolder::enter(const std::string& entry)
 {
     const std::vector<std::byte> content = read_file(path_ / entry, MAX_ENTRY_BYTES);
@@ -203,7 +203,7 @@ void AtomicFolder::enter(const std::string& entry)
     sync_folder(moved);
     write_file_atomically(target_ / entry, content);
     collect_temporary_files(target_);
-    std::error_code ignored;  // the next version removes what stays
+    std::error_code ignored;  // the next version removes what remains
     for (const fs::directory_entry& old : fs::directory_iterator(target_, ignored))
         if (old.is_directory(ignored) && old.path() != moved) move_out(old.path());
 }
@@ -220,15 +220,15 @@ fs::path AtomicFolder::copy_old()
     return old;
 }
 
-/// Moves something inside the target into the hidden folder, which is removed: a process killed meanwhile leaves no
-/// half of it in the target.
+/// Moves something inside the target into the hidden folder, which is then removed. If the process is killed meanwhile,
+/// no partly deleted content is left in the target.
 void AtomicFolder::move_out(const fs::path& inside) const
 {
     std::error_code ignored;
     fs::rename(inside, container_ / free_name(container_), ignored);
 }
 
-/// What cannot be removed is harmless, and is cleared by the next writer.
+/// Removes the hidden folder. Files that cannot be removed are harmless; the next writer clears them.
 void AtomicFolder::remove_remains()
 {
     std::error_code ignored;

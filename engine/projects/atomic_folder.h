@@ -1,19 +1,19 @@
 #pragma once
-// Writes a folder all or nothing: its content is built in a hidden folder next to the target, and takes the target's
-// place at the end, in one exchange of names. At every moment a reader finds either the old or the new folder, even if
-// the program is killed. Without `commit` the target stays as it was.
+// Writes a folder all or nothing: builds its content in a hidden folder next to the target, and finally exchanges the
+// names of the two. At every moment a reader finds either the old or the new folder, even if the program is killed.
+// Without `commit` the target stays unchanged.
 //
-// A folder that was moved away while it was written, with the folders around it, is not made again at its old place:
-// `commit` fails, and what is there then is left as it is.
+// If the folder, or a folder around it, is moved away while it is written, it is not created again at its old place:
+// `commit` fails, and leaves whatever is there unchanged.
 //
-// The hidden folder `.NAME.shvr-part` has no content of its own that readers of Zarr would list. It is locked while
-// a process works on it; what a killed process left there is cleared by the next one.
+// The hidden folder `.NAME.shvr-part` has no content of its own that readers of Zarr would list. It is locked while a
+// process works on it. If a process is killed, the next one clears the remains.
 //
-// Some network file systems cannot exchange names. There a folder that exists keeps its place: new content comes into
-// a folder inside it, under a free name (`inner`), and counts from the moment that one file, which names it, is
-// replaced. Old content that is to be kept is copied first.
+// Some network file systems cannot exchange names. There an existing folder keeps its place: new content goes into a
+// folder inside it, under a free name (`inner`), and becomes valid at the moment the entry file, which names that
+// folder, is replaced. Old content to be kept is copied first.
 //
-// Symbolic links are followed, and stay. Every failure is one sentence with the target's path and the system's reason.
+// Symbolic links are followed, not replaced. Every failure is a sentence with the target's path and the system's text.
 // One thread at a time.
 
 #include <filesystem>
@@ -33,15 +33,15 @@ public:
     AtomicFolder(const AtomicFolder&) = delete;
     AtomicFolder& operator=(const AtomicFolder&) = delete;
 
-    /// The new content's folder, empty at first.
+    /// The folder for the new content, empty at first.
     const std::filesystem::path& path() const { return path_; }
-    /// Empty if `commit` exchanges names. Otherwise "v1" or the like: everything but the entry file and the files
-    /// that are equal in every version belongs into this folder inside `path`.
+    /// Empty if `commit` exchanges names. Otherwise "v1" or the like: the folder inside `path` for everything except
+    /// the entry file and the files that are equal in every version.
     const std::string& inner() const { return inner_; }
-    /// Syncs the content, and puts it into the target's place; deletes the old content. `entry`: the file, directly in
+    /// Syncs the content, moves it to the target's place, and deletes the old content. `entry`: the file, directly in
     /// the folder, that leads readers to all other content.
     void commit(const std::string& entry);
-    /// The same, but keeps the old content under another name, which is returned (free_old_name).
+    /// Like commit(), but keeps the old content under another name, and returns that name (free_old_name).
     std::filesystem::path commit_and_keep_old(const std::string& entry);
 
 private:
@@ -58,9 +58,9 @@ private:
     std::optional<FileDescriptor> lock_;
 };
 
-/// "paint.old", or "paint.old2" and so on: the first name that is free.
+/// "paint.old", or "paint.old2" and so on: the first name that is not taken.
 std::filesystem::path free_old_name(const std::filesystem::path& path);
-/// Renames a folder of this process to the `free_old_name` of a path, and returns that.
+/// Renames a folder of this process to the `free_old_name` of `path`, and returns the new name.
 std::filesystem::path move_to_old_name(const std::filesystem::path& folder, const std::filesystem::path& path);
 
 }  // namespace shvr

@@ -1,7 +1,7 @@
 #pragma once
 // One dimension of a separable filter with symmetric weights, for import_prepare.cpp. Any thread may call these.
 //
-// Sums run from the middle outwards, adding both neighbours at a time, so a mirrored volume gives the mirrored result
+// Sums run from the middle outwards and add both neighbours at a time. So a mirrored volume gives the mirrored result,
 // bit for bit.
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace shvr {
 
-/// Rows are filtered in blocks of this many numbers, which the compiler keeps in registers; buffer lengths are a
-/// multiple of it.
+/// Number of elements in the blocks in which rows are filtered, few enough that the compiler keeps them in registers.
+/// Buffer lengths are multiples of it.
 inline constexpr size_t BLUR_BLOCK = 16;
 
 inline constexpr size_t padded_length(size_t length)
@@ -28,7 +28,7 @@ void filter_rows(std::span<const Number> weights, const Number* middle, const Nu
 {
     constexpr size_t LANES = 16 / sizeof(Number);
     constexpr size_t VECTORS = BLUR_BLOCK / LANES;
-    // Every x86-64 and ARM64 processor has such registers (GCC's and Clang's vector extension).
+    // Every x86-64 and ARM64 processor has 16-byte registers (GCC's and Clang's vector extension).
     using Vector [[gnu::vector_size(16)]] = Number;
     const auto load = [](const Number* from) {
         Vector vector;
@@ -51,8 +51,8 @@ void filter_rows(std::span<const Number> weights, const Number* middle, const Nu
     }
 }
 
-/// Along one row. `row` points at its first number; weights.size() - 1 more precede and follow the row, which is
-/// readable up to padded_length(length) beyond.
+/// Filters along one row. `row` points at its first number; weights.size() - 1 more numbers precede and follow the row,
+/// and the buffer is readable up to padded_length(length) beyond.
 template <class Number>
 void filter_row(std::span<const Number> weights, const Number* row, Number* out, size_t length)
 {

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using SortedJson = nlohmann::json;
 
-/// The attributes that SHVR writes. Those of OME-Zarr 0.5 are compared as if they were not under "ome".
+/// The attributes that SHVR writes. Attributes of OME-Zarr 0.5 are compared as if they were not nested under "ome".
 const std::set<std::string, std::less<>> OWN_KEYS{
     "version",
     "multiscales",
@@ -78,13 +78,13 @@ bool is_version_folder(const std::string& name)
     return name.starts_with("v") && is_number(std::string_view(name).substr(1));
 }
 
-/// Left by a process that died while writing (engine/base/atomic_writer.h).
+/// Whether a process that died while writing has left the file (engine/base/atomic_writer.h).
 bool is_temporary(const std::string& name)
 {
     return name.starts_with(".shvr-");
 }
 
-/// The attributes in the content of .zattrs or zarr.json, those under "ome" moved to the top.
+/// Returns the attributes in the content of .zattrs or zarr.json; attributes under "ome" move to the top.
 SortedJson merged_attributes(const SortedJson& document, bool is_3)
 {
     if (!is_3) return document;
@@ -121,7 +121,7 @@ public:
         if (expected) at_values(attributes, merged_attributes(SortedJson::parse(*expected), is_3_), "", name);
     }
 
-    /// `inner`: "" or the folder of a version, which has the levels of its own image.
+    /// `inner`: "" or the folder of a version, which has its own image's levels.
     void at_folder(const fs::path& inner)
     {
         const fs::path folder = image_ / inner;
@@ -196,7 +196,7 @@ private:
         }
     }
 
-    /// The journal's position changes with every save, and the folder of levels where names cannot be exchanged.
+    /// Ignores what changes with every save: the journal's position, and the levels' folder without name exchange.
     void at_values(const SortedJson& old, const SortedJson& now, const std::string& key, const std::string& file)
     {
         if (key == "shvr") return;
@@ -225,7 +225,7 @@ private:
         return value;
     }
 
-    /// The metadata of a level; null if SHVR did not write them.
+    /// Returns the metadata of a level; null if SHVR did not write them.
     std::optional<ZarrMetadata> own_metadata(const fs::path& folder, int64_t level) const
     {
         try {
@@ -264,7 +264,7 @@ private:
 
     const fs::path& image_;
     bool is_3_ = false;
-    bool has_levels_ = false;  ///< images of numbers have level 0 alone
+    bool has_levels_ = false;  ///< images of numbers only have level 0
     ForeignContent found_;
 };
 
@@ -275,7 +275,7 @@ bool is_desktop_file(const fs::path& path)
     constexpr std::array<std::string_view, 6> NAMES{".ds_store",   "thumbs.db",  "ehthumbs.db",
                                                     "desktop.ini", ".directory", ".localized"};
     const std::string name = path.filename().string();
-    // "._NAME" holds what macOS knows about NAME, on disks that are not its own.
+    // On foreign file systems, macOS stores its own metadata about the file NAME in "._NAME".
     return name.starts_with("._") || std::ranges::find(NAMES, lower_case(name)) != NAMES.end();
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// The part of a source that is imported, optionally reversed. For import_prepare.cpp and import_filter.cpp. One thread
-// at a time, the one that owns the pool.
+// Reads the part of a source that is imported, optionally reversed. For import_prepare.cpp and import_filter.cpp. One
+// thread at a time, the one that owns the pool.
 
 #include <span>
 
@@ -10,10 +10,10 @@
 
 namespace shvr {
 
-/// The most that sources keep of decoded blocks.
+/// Maximum bytes of decoded blocks that sources keep.
 inline constexpr double SOURCE_CACHE_BYTES = double(64 << 20);
 
-/// As double, which any size fits.
+/// Number of voxels as double, which does not overflow for any size.
 inline double voxels_in(const Size3& extent)
 {
     return double(extent.x) * double(extent.y) * double(extent.z);
@@ -21,8 +21,8 @@ inline double voxels_in(const Size3& extent)
 
 class ImportBox {
 public:
-    /// `source` must outlive it. If voxels are to be reversed, the constructor first reads all of them to find their
-    /// range, and reports that to `progress`.
+    /// `source` must outlive this object. If voxels are to be reversed, the constructor first reads all of them to find
+    /// their range, and reports its progress to `progress`.
     ImportBox(const VolumeSource& source, const VoxelBox& box, bool reverses, const Progress& progress = {});
 
     VoxelType type() const { return source_.info().type; }
@@ -32,8 +32,8 @@ public:
 
     /// Reads the voxels of `part`, counted from the box's first voxel, x fastest, with all workers.
     void read(const VoxelBox& part, std::span<std::byte> voxels, WorkPool& pool) const;
-    /// An upper bound of the memory, in bytes, that this takes for a part of that size: the source's decoded blocks,
-    /// and what workers hold of them.
+    /// An upper bound of the memory, in bytes, for reading a part of this size: the source's decoded blocks, and the
+    /// workers' copies of blocks.
     double bytes(const Size3& extent, int workers) const;
 
 private:
@@ -47,7 +47,7 @@ private:
     double ends_ = 0.0;  ///< smallest plus largest value of the source, for reversing
 };
 
-/// Reads as declared in import_prepare.h; `progress` reports the pass that finds the range for reversing.
+/// Like make_preparation in import_prepare.h; `progress` reports the pass that finds the range for reversing.
 std::unique_ptr<Preparation> make_preparation(const VolumeSource& source, const PreparationOptions& options,
                                               const Progress& progress);
 

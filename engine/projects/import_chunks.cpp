@@ -23,12 +23,12 @@ static_assert(std::endian::native == std::endian::little, "indices of shards are
 
 bool consists_of(Bytes voxel, Bytes chunk)
 {
-    // Compares the chunk with itself, shifted by one voxel.
+    // Compares the chunk with a copy of itself shifted by one voxel.
     return std::memcmp(chunk.data(), voxel.data(), voxel.size()) == 0 &&
            std::memcmp(chunk.data(), chunk.data() + voxel.size(), chunk.size() - voxel.size()) == 0;
 }
 
-/// Chunks of a full shard.
+/// Returns the chunks along each axis of a full shard.
 Size3 shard_chunks(const ZarrVolume& volume)
 {
     const std::vector<int64_t>& shape = volume.metadata().sharding->shape;

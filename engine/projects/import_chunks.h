@@ -1,6 +1,6 @@
 #pragma once
-// The chunks of all levels of a project under construction, as files in its folder, and their checksums. Chunks of a
-// level with shards are loose files in PROJECT/shvr/chunks until they are packed into shards.
+// The files and checksums of the chunks of all levels of a project under construction. Chunks of a level with shards
+// are loose files in PROJECT/shvr/chunks until they are packed into shards.
 
 #include <atomic>
 #include <filesystem>
@@ -22,17 +22,17 @@ public:
                  const ZarrCompressor& compressor, bool has_shards, int workers, const FillVoxel& fill = {});
 
     /// Compresses and writes the voxels of a chunk; writes no file if all of them are the fill value. Different workers
-    /// may write different chunks at once, each once.
+    /// may write different chunks at the same time; each chunk may be written once.
     void write(int level, const Size3& chunk, std::span<const std::byte> voxels, int worker);
-    /// To be called once all chunks of all levels are written; the members below are valid from then on.
+    /// Call once all chunks of all levels are written; only then are the members below valid.
     void finish();
 
-    /// The shards of a level that have chunks, by number; none if the level has no shards.
+    /// The numbers of the shards of a level that contain chunks; empty if the level has no shards.
     std::vector<int64_t> shards(int level) const;
-    /// Merges the files of a shard's chunks into the shard's file, and removes them. Does nothing if that is done
-    /// already. Any thread may pack any shard.
+    /// Merges the files of a shard's chunks into the shard's file, and removes them. Does nothing if the shard is
+    /// already packed. Any thread may pack any shard.
     void pack(int level, int64_t shard);
-    /// To be called once all shards are packed.
+    /// Call once all shards are packed.
     void remove_loose() const;
 
     int levels() const { return int(levels_.size()); }
@@ -41,18 +41,18 @@ public:
     /// The chunks that have a file, ascending.
     const std::vector<StoredChunk>& written(int level) const { return of(level).written; }
 
-    int64_t all() const;                      ///< chunks
-    int64_t stored() const;                   ///< chunks that have a file
+    int64_t all() const;                      ///< number of chunks
+    int64_t stored() const;                   ///< number of chunks that have a file
     int64_t bytes() const { return bytes_; }  ///< total size of the files
 
-    /// To be called only while nothing is being written.
+    /// Call only while nothing is being written.
     void save(StateWriter& state) const;
     void load(StateReader& state);
 
 private:
     struct Level {
-        ZarrVolume volume;  ///< used for names and places; nothing is read through it
-        ZarrVolume loose;   ///< the same array without shards, into which `write` puts chunks
+        ZarrVolume volume;  ///< only provides names and places; nothing is read through it
+        ZarrVolume loose;   ///< the same array without shards, to which `write` writes chunks
         std::vector<StoredChunk> written{};
     };
     std::filesystem::path loose_folder() const { return project_ / "shvr" / "chunks"; }
@@ -63,7 +63,7 @@ private:
     std::vector<Level> levels_;
     FillVoxel fill_;
     std::vector<std::vector<std::byte>> compressed_;  ///< by worker
-    std::mutex mutex_;                                ///< of `written`
+    std::mutex mutex_;                                ///< guards `written`
     std::atomic<int64_t> bytes_ = 0;
 };
 

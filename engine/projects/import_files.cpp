@@ -21,13 +21,13 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Increment when the layout of an import's files or of its state changes.
+/// Increment this when the layout of an import's files or of its state changes.
 constexpr int LAYOUT = 4;
 
-/// Chunks per shard along an axis: 512 voxels. So a scan of 2048^3 is 64 files, and a shard's index takes 8 KiB.
+/// Chunks per shard along an axis, 512 voxels: a scan of 2048^3 has 64 shard files, and a shard's index takes 8 KiB.
 constexpr int64_t SHARD_CHUNKS = 8;
 
-/// In the array's order: z, y, x.
+/// Returns the components in the order of the array: z, y, x.
 Json zyx(const glm::dvec3& vector)
 {
     return {vector.z, vector.y, vector.x};
@@ -48,7 +48,7 @@ std::string signature_of(const fs::path& path)
                     status.st_mtim.tv_nsec);
 }
 
-/// https://ngff.openmicroscopy.org/0.5/#labels-md; our own attributes are stored next to those of OME-Zarr.
+/// Follows https://ngff.openmicroscopy.org/0.5/#labels-md; our own attributes are stored next to those of OME-Zarr.
 void describe_labels(const LabelImage& labels, Json& label, Json& attributes)
 {
     Json colors = Json::array(), properties = Json::array();
@@ -68,7 +68,7 @@ void describe_labels(const LabelImage& labels, Json& label, Json& attributes)
         {"name", name}, {"record", labels.journal->record}, {"checksum", labels.journal->checksum_digits()}};
 }
 
-/// The attributes of IMAGE/labels; empty if there is no such group.
+/// Returns the attributes of IMAGE/labels; empty if that group does not exist.
 Json listed_labels(const fs::path& folder)
 {
     const std::optional<ZarrNode> node = read_zarr_node(folder);
@@ -78,7 +78,7 @@ Json listed_labels(const fs::path& folder)
     return node->version == 2 ? node->document.value() : node->document.value()["attributes"];
 }
 
-/// Fails if the list cannot be continued.
+/// Fails if an image cannot be added to the existing list.
 void check_list_of_labels(const fs::path& folder)
 {
     std::error_code ignored;
@@ -103,7 +103,7 @@ std::string text_of(const Json& document, int indent)
     return document.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-/// The file and those next to it with the same stem (headers refer to other files), or the content of the folder.
+/// Signatures of the file and those next to it with its stem (headers refer to other files), or of a folder's files.
 Json signatures_of(const fs::path& origin)
 {
     std::error_code ignored;
@@ -162,11 +162,11 @@ std::vector<std::pair<std::string, std::string>> group_files(OmeZarrVersion vers
 std::string import_attributes(OmeZarrVersion version, const std::string& name, const VolumeInfo& info, int levels,
                               Halving how, const LabelImage* labels, const std::string& folder)
 {
-    const bool has_own_versions = version == OmeZarrVersion::v0_4;  // OME-Zarr 0.5 and later state one version for all
+    const bool has_own_versions = version == OmeZarrVersion::v0_4;  // from OME-Zarr 0.5 on, all share one version
     Json datasets = Json::array();
     for (int level = 0; level < levels; ++level) {
         const double factor = double(int64_t{1} << level);
-        // The centre of voxel 0, which is the middle of the voxels it covers.
+        // The centre of the level's voxel 0 is the middle of the voxels of level 0 that it covers.
         const glm::dvec3 translation = ome_translation(info) + 0.5 * (factor - 1.0) * info.spacing;
         datasets.push_back({{"path", folder + std::to_string(level)},
                             {"coordinateTransformations",

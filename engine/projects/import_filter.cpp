@@ -13,7 +13,7 @@
 namespace shvr {
 namespace {
 
-/// Memory for voxels as read from the source, and for slices waiting for the blur along z.
+/// Memory for voxels as read from the source, and (PLANE_BYTES) for slices waiting for the blur along z.
 constexpr int64_t READ_BYTES = int64_t{32} << 20;
 constexpr int64_t PLANE_BYTES = int64_t{96} << 20;
 constexpr int64_t TASK_ROWS = 8;
@@ -21,7 +21,7 @@ constexpr int64_t TASK_ROWS = 8;
 template <class T>
 using Number = std::conditional_t<std::is_integral_v<T> && sizeof(T) <= 2, float, double>;
 
-/// Converts rows of T to rows of numbers and back, in blocks of a length known at compile time.
+/// Converts rows of T to rows of numbers and back, in blocks whose length is known at compile time.
 template <class T>
 void widen(const T* from, Number<T>* to, size_t length)
 {
@@ -36,8 +36,8 @@ void widen(const T* from, Number<T>* to, size_t length)
     for (; i < length; ++i) to[i] = static_cast<Number<T>>(from[i]);
 }
 
-/// Adding and subtracting 1.5 * 2^23 (2^52) rounds to nearest, ties to even, for every value of a type of up to 16 (32)
-/// bits.
+/// Adding and subtracting 1.5 * 2^23 in float (1.5 * 2^52 in double) rounds to nearest, ties to even, for every value
+/// of a type of up to 16 (32) bits.
 template <class T>
 T to_voxel(Number<T> number)
 {
@@ -73,12 +73,12 @@ bool all_finite(std::span<const T> voxels)
     return true;
 }
 
-/// A slice blurred along x and y, rows padded_length(size.x) apart.
+/// A slice blurred along x and y; its rows are padded_length(size.x) apart.
 template <class T>
 struct Plane {
     std::vector<Number<T>> values;
-    // Only if a voxel is not finite: the blurred fraction of finite voxels, which divides the values, and the original
-    // slice.
+    // Used only if a voxel is not finite: the blurred fraction of finite voxels, by which values are divided, and the
+    // original slice.
     std::vector<Number<T>> shares;
     std::vector<T> original;
 };
@@ -135,8 +135,8 @@ public:
         const double plane = numbers * double(rows_held);
         const double slice = double(size_.x) * double(rows_read) * sizeof(T);
         const double most = std::min(double(slices * factor_), std::max(1.0, double(PLANE_BYTES) / plane));
-        // Spare planes are those that the blur along z has just left behind. Values that are not finite need the
-        // blurred share of those that are, and the original.
+        // Spare planes are planes that the blur along z has already passed. If values are not finite, a plane also
+        // needs the blurred share of finite values, and the original values.
         const double planes = most + double(factor_ + 4 * reach(2) + 1);
         const double kinds = std::is_floating_point_v<T> ? 2.0 * plane + slice : plane;
         const auto at_once = double(std::max<int64_t>(1, box_.block().z));
@@ -183,7 +183,7 @@ private:
         }
     }
 
-    /// Reusing memory saves allocating it from the system.
+    /// Takes a spare plane if possible, to avoid allocating memory from the system.
     Plane<T> take_spare()
     {
         if (spare_.empty()) return {};
@@ -223,7 +223,7 @@ private:
         const auto around = size_t(reach(0));
         const auto rows_in = size_t(upper_row - lower_row);
         out.resize(pitch_ * size_t(upper_row_ - lower_row_));
-        // Without a blur along y the rows already form the plane.
+        // Without a blur along y, the rows already are the plane.
         std::vector<Number<T>>& rows = reach(1) > 0 ? scratch.rows : out;
         rows.resize(pitch_ * rows_in);
         scratch.line.resize(2 * around + pitch_ + BLUR_BLOCK);
@@ -261,8 +261,8 @@ private:
         return planes_[size_t(std::clamp<int64_t>(z, 0, size_.z - 1) - first_plane_)];
     }
 
-    /// Filters rows of a slice, from the first of `planes_`, along z. `of` selects a member of the plane; for
-    /// planes without it, all its numbers count as 1.
+    /// Filters a row of a slice along z; row 0 is the first row that the planes contain. `of` selects a member of the
+    /// planes; in planes that lack this member, all its numbers count as 1.
     void filter_z(int64_t z, int64_t row, std::vector<Number<T>> Plane<T>::*of, Number<T>* out) const
     {
         const auto row_of = [&](int64_t at) {
@@ -280,7 +280,7 @@ private:
         filter_rows<Number<T>>(weights_[2], row_of(z), before, after, out, pitch_);
     }
 
-    /// A blurred row of a slice, with NaN where the source has NaN.
+    /// Makes a blurred row of a slice, with NaN where the source has NaN.
     void blurred_row(int64_t z, int64_t row, std::vector<Number<T>>& out, std::vector<Number<T>>& shares) const
     {
         filter_z(z, row, &Plane<T>::values, out.data());
@@ -335,7 +335,7 @@ private:
             }
         }
         for (size_t x = 0; x < sums.size(); ++x) {
-            const double mean = sums[x] / double(counts[x]);  // 0 / 0: NaN, as intended
+            const double mean = sums[x] / double(counts[x]);  // 0 / 0 gives NaN, as intended
             if constexpr (std::is_floating_point_v<T>) {
                 out[x] = static_cast<T>(mean);
             } else {
@@ -351,7 +351,7 @@ private:
     std::array<std::vector<Number<T>>, 3> weights_;
     std::vector<Number<T>> ones_;
 
-    int64_t lower_row_ = 0, upper_row_ = 0;  ///< rows of the box that are held in the planes
+    int64_t lower_row_ = 0, upper_row_ = 0;  ///< rows of the box that the planes contain
     int64_t first_plane_ = 0;
     std::deque<Plane<T>> planes_;
     std::vector<Plane<T>> spare_;

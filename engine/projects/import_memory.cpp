@@ -15,13 +15,13 @@ namespace shvr {
 namespace {
 
 constexpr int64_t SLAB_BYTES = int64_t{64} << 20;
-/// The state of XXH3 for each slice of a slab.
+/// Size of the XXH3 state of one slice; every slice of a slab has such a state.
 constexpr double HASHER_BYTES = 1024.0;
 constexpr double MIB = 1048576.0;
-/// Bricks that a lone chunk and the voxel around it touch.
+/// Maximum number of bricks that meet an isolated chunk and the voxels next to it.
 constexpr double MAX_BRICKS = 64.0;
 
-/// What is kept of all levels until the end.
+/// Data of all levels that is kept until the end.
 struct Kept {
     double levels = 0.0;         ///< voxels of coarser levels, and ranges below them
     double tables = 0.0;         ///< ranges of bricks, checksums of chunks
@@ -47,18 +47,18 @@ Kept kept_of(const VolumeInfo& info)
     return kept;
 }
 
-/// Values that are too many to count each are measured at the end, in pieces; and slices are hashed in pieces.
+/// Memory for measuring, at the end and in pieces, types with too many values to count; also for hashing slices.
 double measuring_bytes(const VolumeInfo& info)
 {
     const double all = voxels_in(info.size) * double(bytes_of(info.type));
     return std::min(all, (bytes_of(info.type) > 2 ? 128.0 : 32.0) * MIB);
 }
 
-/// A chunk, its levels with ranges, and the buffers of its compression.
+/// Memory of a worker: a chunk, its levels with ranges, and the buffers of its compression.
 double worker_bytes(const VolumeInfo& info)
 {
     const auto chunk = double(IMPORT_CHUNK * IMPORT_CHUNK * IMPORT_CHUNK * int64_t(bytes_of(info.type)));
-    const double levels = 4.0 / 3.0;  // rows keep their length, so each level takes a quarter of the one before
+    const double levels = 4.0 / 3.0;  // a level takes a quarter of the previous one, since rows keep their length
     const double counts = bytes_of(info.type) <= 2 ? 8.0 * double(int64_t{1} << (8 * bytes_of(info.type))) : 0.0;
     return 3.0 * levels * chunk + 4.0 * chunk + counts;
 }
@@ -81,7 +81,7 @@ double dense_import_bytes(const Preparation& preparation, int threads, bool keep
     const Kept kept = kept_of(info);
     const double hashes = 16.0 * double(info.size.z) + HASHER_BYTES * double(slices) +
                           2.0 * sizeof(ChunkHasher::Digest) * voxels_in(size_of_level(info.size, IMPORT_REACH));
-    // The state is gathered, and compressed, as a whole, each time in memory that grows by copying.
+    // The state is gathered as a whole, and compressed as a whole; each of these buffers grows by copying.
     const double state = keeps_state ? 3.0 * (kept.levels + kept.tables + hashes) : 0.0;
     const double table = 3.0 * kept.largest_table;
     return IMPORT_PROGRAM_BYTES + measuring_bytes(info) + places * slab + kept.levels + kept.tables + hashes +

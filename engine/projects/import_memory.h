@@ -1,5 +1,5 @@
 #pragma once
-// The host memory of an import, estimated from sizes alone before any of it is taken. Any thread may call these.
+// Estimates the host memory of an import from sizes alone, before any memory is taken. Any thread may call these.
 
 #include <filesystem>
 
@@ -8,26 +8,26 @@
 
 namespace shvr {
 
-/// The rows of a slab of 64 slices that are held at once, twice: one batch is read while the previous one is
-/// compressed. Whole chunks, or all rows.
+/// Returns the number of rows of a slab of 64 slices that are in memory at once, in whole chunks, or all rows. Memory
+/// holds two such batches: one is read while the previous one is compressed.
 int64_t import_rows(const VolumeInfo& info);
 
-/// An upper bound of the memory, in bytes, of an import that reads every slab. `keeps_state`: whether it can be
-/// resumed, for which its levels are written as they are. As double, since sizes that would overflow are to be
-/// refused, too.
+/// An upper bound of the memory, in bytes, of an import that reads every slab. `keeps_state`: whether the import can be
+/// resumed; its state then contains copies of its levels. The result is double, so that sizes that would overflow an
+/// integer are refused, too.
 double dense_import_bytes(const Preparation& preparation, int threads, bool keeps_state);
 
-/// The same of an import of stored chunks alone.
+/// An upper bound of the memory, in bytes, of an import that reads only stored chunks.
 double sparse_import_bytes(const VolumeSource& source, const VolumeInfo& info, const StoredChunks& stored, int threads);
 
-/// The program, its libraries and the memory that freed blocks leave unusable.
+/// Memory of the program, its libraries and the heap fragmentation that freed blocks leave.
 inline constexpr double IMPORT_PROGRAM_BYTES = double(48 << 20);
 
-/// `wanted`, or three quarters of the machine's memory if that is 0.
+/// Returns `wanted`, or three quarters of the machine's memory if `wanted` is 0.
 double import_budget(int64_t wanted);
 
-/// Fails, naming size, estimate, budget and the options that help, if `bytes` exceed the budget. `info` describes the
-/// volume as it would be stored.
+/// Fails if `bytes` exceed the budget; the message has size, estimate, budget and the options that help. `info`
+/// describes the volume as it would be stored.
 void check_import_budget(const std::filesystem::path& project, const VolumeInfo& info, double bytes, int64_t wanted);
 
 }  // namespace shvr

@@ -1,7 +1,7 @@
 #pragma once
-// Going through the voxels of a volume: makes the chunks of all levels, and what else a project knows of its volume.
-// Either all voxels in slabs, or only the chunks in which the source stores something; the results are equal. For
-// import_volume.cpp. One thread, which owns the pool, calls all but `done`.
+// A pass over the voxels of a volume: makes the chunks of all levels, and the other data of a project that depends on
+// the voxels. It visits either all voxels in slabs, or only the chunks in which the source stores something; the
+// results are equal. For import_volume.cpp. One thread, the owner of the pool, calls everything except `done`.
 
 #include <functional>
 #include <memory>
@@ -23,23 +23,23 @@ class ImportPass {
 public:
     virtual ~ImportPass() = default;
 
-    /// Keeps the state from time to time, for which no work may be in progress.
+    /// Saves the state from time to time. No work may be in progress while it is saved.
     struct Keeper {
         std::function<bool()> is_due;
         std::function<void()> keep;
     };
-    /// Writes all chunks that the state lacks.
+    /// Writes all chunks that the loaded state lacks.
     virtual void run(const Keeper& keeper) = 0;
 
-    virtual int64_t all() const = 0;    ///< chunks of level 0 to be gone through
-    virtual int64_t done() const = 0;   ///< any thread
-    virtual double voxels() const = 0;  ///< in all of them
-    virtual bool is_begun() const = 0;  ///< whether a loaded state has some of them
+    virtual int64_t all() const = 0;    ///< number of chunks of level 0 to visit
+    virtual int64_t done() const = 0;   ///< number of chunks visited; any thread
+    virtual double voxels() const = 0;  ///< number of voxels in all chunks to visit
+    virtual bool is_begun() const = 0;  ///< whether a loaded state already has some chunks
 
     // ---- Once it has run ----
-    /// The ranges of the bricks of a level, as they are stored.
+    /// Returns the ranges of the bricks of a level in their stored form.
     virtual ProjectTable ranges(int level) = 0;
-    /// Null if the type has too many values to count each.
+    /// Returns null if the type has too many values to count each.
     virtual std::optional<VolumeStatistics> statistics() const = 0;
     virtual std::string content_hash() = 0;
 
@@ -52,16 +52,16 @@ struct ImportSetup {
     Halving halving = Halving::mean;
     FillVoxel fill{};  ///< value of voxels in chunks that are not stored
     int threads = 1;
-    ImportChunks& chunks;  ///< for one worker more than there are threads
+    ImportChunks& chunks;  ///< made for one worker more than `threads`
     WorkPool& pool;
 };
 
 std::unique_ptr<ImportPass> make_dense_pass(Preparation& preparation, const ImportSetup& setup);
-/// `origin`: the first voxel of the part of `source` that is imported, with which `stored` is aligned.
+/// `origin`: the first voxel of the imported part of `source`; `stored` is aligned with it.
 std::unique_ptr<ImportPass> make_sparse_pass(const VolumeSource& source, const Size3& origin, StoredChunks stored,
                                              const ImportSetup& setup);
 
-/// A table of ranges without its elements.
+/// Returns a table of ranges that has no elements yet.
 inline ProjectTable ranges_table(const VolumeInfo& info, int level)
 {
     return {.kind = "ranges",
@@ -69,7 +69,7 @@ inline ProjectTable ranges_table(const VolumeInfo& info, int level)
             .element_bytes = 2 * bytes_of(info.type),
             .counts = size_of_level(size_of_level(info.size, level), 5)};
 }
-/// Whether the tables of a volume have every element, whatever is stored.
+/// Whether the tables of a volume have an element for every brick and chunk, whatever is stored.
 inline bool has_small_tables(const VolumeInfo& info)
 {
     return voxel_count(info) <= MAX_VOXELS_IN_SLICES;

@@ -17,14 +17,14 @@
 namespace shvr {
 namespace {
 
-/// With a larger share of all chunks stored, going through all voxels takes no longer. The hash's kind changes there,
-/// too (content_hash.h).
+/// If a larger share of all chunks is stored, visiting all voxels takes no longer. The kind of the hash changes at the
+/// same share (content_hash.h).
 constexpr double MAX_SHARE_STORED = 0.125;
 /// Memory per block while chunks are listed.
 constexpr int64_t LISTED_BYTES = 256;
 
-/// Whether the mean of voxels of this value, however many, is this value, bit for bit: not so for a few numbers of 64
-/// bits, whose sums are rounded.
+/// Whether the mean of any number of voxels with this value equals this value, bit for bit. This is false for a few
+/// 64-bit numbers, whose sums are rounded.
 template <class T>
 bool is_own_mean(T voxel, Halving how)
 {
@@ -50,7 +50,7 @@ bool is_kept_by_levels(const FillVoxel& fill, VoxelType type, Halving how)
     });
 }
 
-/// Whether the blocks that meet one chunk fit into the source's cache, so that none is decoded again and again.
+/// Whether the blocks that meet one chunk fit into the source's cache, so that no block is decoded repeatedly.
 bool fit_chunks(const VolumeSource& source)
 {
     double bytes = double(bytes_of(source.info().type));
@@ -83,7 +83,7 @@ void check_all_tables(const std::filesystem::path& project, const VolumeInfo& in
 ImportPlan plan_import(const VolumeSource& source, const std::filesystem::path& project, const ImportOptions& options)
 {
     PreparationOptions preparation = options.preparation;
-    preparation.reverse = false;  // not measured here, since that would require a pass over all voxels
+    preparation.reverse = false;  // reversal is not measured here, since that would require a pass over all voxels
     const std::unique_ptr<Preparation> prepared = make_preparation(source, preparation);
     const VolumeInfo& info = prepared->info();
     static_cast<void>(voxel_count(info));

@@ -12,14 +12,14 @@ namespace shvr {
 
 struct ImportPlan {
     FillVoxel fill{};                      ///< value of voxels in chunks that are not stored
-    std::optional<StoredChunks> stored{};  ///< the chunks that alone are gone through; null: all voxels are
+    std::optional<StoredChunks> stored{};  ///< the only chunks to visit; null: all voxels are visited
 };
 
-/// Stored chunks alone if the source knows them, they are at most an eighth of all, and their preparation is at most
-/// --crop. Fails if the import would take more memory than its budget, or makes tables that are too large.
+/// Selects only the stored chunks if the source can list them, they are at most an eighth of all, and --crop is the
+/// only preparation. Fails if the import would take more memory than its budget, or make tables that are too large.
 ImportPlan plan_import(const VolumeSource& source, const std::filesystem::path& project, const ImportOptions& options);
 
-/// Fails if the ranges or checksums of all bricks or chunks, which going through all voxels gathers, are too large.
+/// Fails if a pass over all voxels would make too large tables of brick ranges or chunk checksums.
 void check_all_tables(const std::filesystem::path& project, const VolumeInfo& info);
 
 int import_threads(int wanted);

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// With more than an eighth of all chunks stored, a dense import with all threads takes no longer than a sparse one.
+/// If more than an eighth of all chunks is stored, a dense import with all threads takes no longer than a sparse one.
 constexpr int64_t MIN_GAIN = 8;
 
 Size3 chunk_counts(const Size3& size)
@@ -36,13 +36,13 @@ Size3 ancestor(const Size3& chunk, int levels)
 
 struct SparseLevelFiles {
     int levels = 1;
-    int64_t chunks = 0;  ///< number in all levels
-    int64_t stored = 0;  ///< that have a file
-    int64_t bytes = 0;   ///< total size of these files
+    int64_t chunks = 0;  ///< number of chunks in all levels
+    int64_t stored = 0;  ///< number of chunks that have a file
+    int64_t bytes = 0;   ///< total size of the chunks' files and of metadata
 };
 
-/// Makes the non-empty chunks of a level and of all levels below: depth first, so that one chunk of each level is in
-/// memory.
+/// Makes the non-empty chunks of a level and of all finer levels, depth first, so that memory holds one chunk of each
+/// level.
 template <class T>
 class Levels {
 public:
@@ -73,7 +73,7 @@ public:
     }
 
 private:
-    /// The first chunks of `rest` that lie below the same chunk `levels` above.
+    /// Takes from `rest` its first chunks that share an ancestor `levels` levels above.
     static std::span<const Size3> take_below(std::span<const Size3>& rest, int levels)
     {
         const Size3 above = ancestor(rest.front(), levels);
@@ -84,7 +84,7 @@ private:
         return taken;
     }
 
-    /// `below`: the chunks of level 0 that lie below the chunk, at least one.
+    /// `below`: the chunks of level 0 below the chunk that is made; at least one.
     void make(int level, std::span<const Size3> below)
     {
         const Size3 chunk = ancestor(below.front(), level), origin = chunk * IMPORT_CHUNK;
@@ -138,7 +138,7 @@ private:
     const VolumeInfo& info_;
     const ZarrCompressor& compressor_;
     const Progress& progress_;
-    std::vector<ZarrVolume> volumes_;  ///< used for names and places; nothing is read through them
+    std::vector<ZarrVolume> volumes_;  ///< only provide names and places; nothing is read through them
     std::vector<ImportCube<T>> cubes_;
     ImportCube<T> half_;
     std::vector<T> voxels_;
@@ -167,7 +167,7 @@ int64_t write_text(const fs::path& path, const std::string& text)
 
 struct WrittenImage {
     ImportReport report;
-    std::string kept;  ///< as returned by save_label_image
+    std::string kept;  ///< the message that save_label_image returns
 };
 
 std::string kept_in_words(const fs::path& image, const ForeignContent& content, const fs::path& old)
@@ -179,7 +179,7 @@ std::string kept_in_words(const fs::path& image, const ForeignContent& content, 
         old.string(), ", copy from there what is still needed");
 }
 
-/// An image as a whole. `attributes(folder)` are those of an image whose levels are in that folder.
+/// Writes a whole image. `attributes(folder)` returns the attributes of an image whose levels are in that folder.
 WrittenImage write_image(const VolumeSource& source, const VolumeInfo& info, int levels, const fs::path& target,
                          const std::vector<Size3>& chunks, const ImportOptions& options,
                          const std::function<std::string(const std::string& folder)>& attributes,
@@ -207,7 +207,7 @@ WrittenImage write_image(const VolumeSource& source, const VolumeInfo& info, int
     switch (foreign) {
         case Foreign::excluded: content = desktop_files_in(target); break;
         case Foreign::kept: content = foreign_content(target, text); break;
-        case Foreign::refused:  // checked again: the work took a while
+        case Foreign::refused:  // checks again, because the work took a while
             expect_no_foreign_content(target);
             content = foreign_content(target);
             break;
@@ -221,7 +221,7 @@ WrittenImage write_image(const VolumeSource& source, const VolumeInfo& info, int
     return {std::move(report), {}};
 }
 
-/// Calls `progress` of the options at most every 100 ms; throws where they say that it is cancelled.
+/// Calls the `progress` of the options at most every 100 ms; throws if the options' `cancel` is set.
 class ToldImport {
 public:
     ToldImport(const fs::path& target, const VolumeInfo& info, const ImportOptions& options)

@@ -1,7 +1,7 @@
 #pragma once
-// Writes OME-Zarr images of the stored blocks of a source, and levels of only these: for 2^20 voxels a side and one
-// stored chunk, 16 chunks are written. The files equal those of a dense import, byte for byte. The image replaces an
-// old one as a whole (atomic_folder.h). Any thread may call these.
+// Writes OME-Zarr images of the stored blocks of a source, with coarser levels of only these blocks: for 2^20 voxels a
+// side and one stored chunk, it writes 16 chunks. The files equal those of a dense import, byte for byte. The image
+// replaces an old one as a whole (atomic_folder.h). Any thread may call these.
 
 #include <filesystem>
 #include <optional>
@@ -12,31 +12,31 @@
 
 namespace shvr {
 
-/// The chunks of IMPORT_CHUNK^3 voxels that stored blocks touch, in an order in which those below one chunk of a
-/// coarser level are adjacent. Null if the source cannot list its stored blocks, or if the fill value is not 0.
+/// Returns the chunks of IMPORT_CHUNK^3 voxels that stored blocks touch. Chunks below the same chunk of a coarser level
+/// are adjacent. Null if the source cannot list its stored blocks, or if the fill value is not 0.
 std::optional<std::vector<Size3>> stored_chunks(const VolumeSource& source);
-/// Whether writing these chunks alone takes less time than a dense import with all threads: up to an eighth of all.
+/// Whether writing only these chunks takes less time than a dense import with all threads: up to an eighth of all.
 bool are_few(const std::vector<Size3>& chunks, const Size3& size);
 
-/// What is done with an image that is replaced and holds content of other programs (foreign_content.h).
+/// The handling of an image that is to be replaced but contains content of other programs (foreign_content.h).
 enum class Foreign {
     refused,   ///< the write fails
     kept,      ///< the old image gets another name (free_old_name)
-    excluded,  ///< there is none, since the image is as SHVR wrote it: nothing is compared
+    excluded,  ///< the image is known to be as SHVR wrote it: nothing is compared
 };
 
-/// Writes a label image of these chunks; a voxel of a coarser level is the most frequent label of those below it.
-/// `target` and `options` are those of `export_label_image`, checked and completed.
+/// Writes a label image of these chunks; a voxel of a coarser level gets the most frequent label of the voxels below
+/// it. `target` and `options` are those of `export_label_image`, already checked and completed.
 ImportReport write_label_image(const VolumeSource& labels, const std::filesystem::path& target,
                                const std::vector<Size3>& chunks, const ImportOptions& options);
 
-/// Like `export_label_image`, for a source that can list its stored blocks, at a cost proportional to these, on one
-/// thread. Returns a sentence if the old image is kept under another name.
+/// Like `export_label_image`, on one thread, for a source that can list its stored blocks, with a cost proportional to
+/// the number of blocks. Returns a sentence if the old image is kept under another name.
 std::string save_label_image(const VolumeSource& labels, const std::filesystem::path& folder, const LabelImage& image,
                              const ImportOptions& options = {}, Foreign foreign = Foreign::refused);
 
-/// Saves numbers, from a source that can list its stored blocks, as an OME-Zarr 0.4 of level 0 alone, whose attribute
-/// "shvr" is {"shvr_KIND": 1}. Replaces an image of that kind; anything else at that path is refused. Returns the same.
+/// Saves numbers, from a source that can list its stored blocks, as an OME-Zarr 0.4 image with level 0 only and the
+/// attribute "shvr": {"shvr_KIND": 1}. Replaces an image of that kind only. Returns like save_label_image.
 std::string save_number_image(const VolumeSource& numbers, const std::filesystem::path& folder, const std::string& kind,
                               const Progress& progress = {}, Foreign foreign = Foreign::refused);
 

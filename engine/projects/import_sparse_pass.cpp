@@ -1,5 +1,5 @@
-// Only the chunks in which the source stores something, in an order in which those below one chunk of a coarser level
-// are adjacent. Level 0 is made by all workers; coarser levels follow in order, one unfinished chunk of each in memory.
+// Visits only the chunks in which the source stores something, so that chunks below the same chunk of a coarser level
+// are adjacent. All workers make level 0; coarser levels follow in order, each with one unfinished chunk in memory.
 
 #include <algorithm>
 #include <array>
@@ -54,7 +54,7 @@ public:
         while (merged_ < stored_.keys.size()) {
             pool_.wait(batch);
             const size_t next = std::min(merged_ + at_once_, stored_.keys.size());
-            // A state must not contain a part of a batch.
+            // A saved state must not contain a part of a batch.
             const bool keeps = next < stored_.keys.size() && keeper.is_due();
             if (!keeps) batch = start(next, 1 - place);
             for (size_t i = merged_; i < next; ++i) merge(stored_.at(i), halves_[place][i - merged_]);
@@ -138,13 +138,13 @@ public:
     }
 
 private:
-    /// A chunk of a coarser level, of which some chunks below are missing yet.
+    /// A chunk of a coarser level for which some chunks below are still missing.
     struct Open {
         std::optional<Size3> at{};
         ImportCube<T> cube;
     };
 
-    /// The part of a source that is imported.
+    /// The part of a source that is imported, as a source of its own.
     class BoxOf final : public VolumeSource {
     public:
         BoxOf(const VolumeSource& source, VolumeInfo info, const Size3& origin, const StoredChunks& stored)
@@ -224,7 +224,7 @@ private:
         return {chunk.x >> levels, chunk.y >> levels, chunk.z >> levels};
     }
 
-    /// All of it consists of the fill value at first.
+    /// Begins a chunk of a coarser level, filled with the fill value.
     void begin(size_t i, const Size3& at)
     {
         ImportCube<T>& cube = open_[i].cube;
@@ -251,7 +251,7 @@ private:
         open.at.reset();
     }
 
-    /// Puts the halved chunk into the chunk of the next level, one of whose octants it is.
+    /// Copies the halved chunk into its octant of the chunk of the next level.
     static void put(const ImportCube<T>& half, const Size3& chunk, Open& into)
     {
         const Size3 to = (chunk - *into.at * int64_t{2}) * (IMPORT_CHUNK / 2);
@@ -272,17 +272,17 @@ private:
     FillVoxel fill_;
     T fill_voxel_{};
     Halving halving_;
-    int merger_;  ///< the owner's number as a worker
+    int merger_;  ///< the owner's worker number
     ImportChunks& chunks_;
     WorkPool& pool_;
 
     ValueCounts counts_;
-    std::optional<ChunkHasher> hasher_;                     ///< of volumes that are hashed in chunks
+    std::optional<ChunkHasher> hasher_;                     ///< for volumes that are hashed in chunks
     std::vector<std::unique_ptr<SparseRanges<T>>> tables_;  ///< by level
     std::vector<ImportCube<T>> cubes_;                      ///< by worker
     std::vector<std::vector<T>> read_;                      ///< by worker
-    size_t at_once_;                                        ///< chunks of a batch
-    std::array<std::vector<ImportCube<T>>, 2> halves_;      ///< two batches
+    size_t at_once_;                                        ///< number of chunks in a batch
+    std::array<std::vector<ImportCube<T>>, 2> halves_;      ///< halved chunks of two batches
     std::vector<Open> open_;
     ImportCube<T> half_;
     size_t merged_ = 0;

@@ -14,15 +14,15 @@
 
 namespace shvr {
 
-/// How often each value occurs, for types of 8 and 16 bits; for others it counts nothing. Different workers may add at
-/// once.
+/// Counts how often each value occurs, for types of 8 and 16 bits; counts nothing for other types. Different workers
+/// may add at the same time.
 class ValueCounts {
 public:
     ValueCounts(VoxelType type, int workers);
     void add(std::span<const std::byte> voxels, int worker);
-    /// Voxels that are not gone through one by one.
+    /// Adds `times` voxels with the value `voxel`, without visiting them one by one.
     void add(std::span<const std::byte> voxel, int64_t times, int worker);
-    /// Null if the type has too many values to count each.
+    /// Returns null if the type has too many values to count each.
     std::optional<VolumeStatistics> statistics() const;
     void save(StateWriter& state) const { state.put_all(total()); }
     void load(StateReader& state) { state.take_all(counts_[0]); }
@@ -39,16 +39,16 @@ public:
     /// Between two calls of `finish`, rows of up to `slices_at_once` slices may arrive.
     ImportTally(const VolumeInfo& info, int64_t slices_at_once, int workers);
 
-    /// The next rows of slice `slice`. Different workers may add rows of different slices at once.
+    /// Adds the next rows of slice `slice`. Different workers may add rows of different slices at the same time.
     void add(int64_t slice, std::span<const std::byte> rows, int worker);
     /// Call once all rows of the slices from `lower` to `upper` have been added.
     void finish(int64_t lower, int64_t upper);
 
-    /// The hash of the whole volume, once all slices are finished.
+    /// Returns the hash of the whole volume, once all slices are finished.
     std::string content_hash() const;
     std::optional<VolumeStatistics> statistics() const { return counts_.statistics(); }
 
-    /// Only while no slice is partly added.
+    /// Call only while no slice is partly added.
     void save(StateWriter& state) const;
     void load(StateReader& state);
 
@@ -56,7 +56,7 @@ private:
     SliceHasher& hasher_of(int64_t slice);
 
     std::vector<SliceHash> hashes_;     ///< by slice
-    std::vector<SliceHasher> hashers_;  ///< hashers of unfinished slices, by slice number modulo their number
+    std::vector<SliceHasher> hashers_;  ///< hashers of unfinished slices, by slice number modulo their count
     ValueCounts counts_;
 };
 

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using Bytes = std::span<const std::byte>;
 
-/// The state is written each time this multiple of its writing time has passed, so that it costs 5 %.
+/// Interval between saves of the state, as a multiple of the time that a save takes, so that saving costs 5 %.
 constexpr double STATE_INTERVAL = 20.0;
 
 double seconds_since(Clock::time_point begin)
@@ -33,7 +33,7 @@ double seconds_since(Clock::time_point begin)
     return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// Refuses processing that would create new label numbers.
+/// Refuses processing of labels that would create new label numbers.
 void check_labels(const VolumeInfo& info, const PreparationOptions& preparation)
 {
     if (info.type == VoxelType::float32 || info.type == VoxelType::float64)
@@ -128,7 +128,7 @@ private:
         state_seconds_ = seconds_since(begin);
     }
 
-    /// Written last: everything that it refers to is already on disk.
+    /// Writes the state last, after everything that it refers to is on disk.
     void write_state()
     {
         StateWriter state;
@@ -138,13 +138,13 @@ private:
         state.write(folder_.state());
     }
 
-    /// Resumes from a saved state; false if there was none. Clears a damaged state, or one of another import.
+    /// Resumes from a saved state; returns false if there was none. Deletes a damaged state, or another import's state.
     bool resume(const std::vector<std::string>& warnings)
     {
         report_.warnings = warnings;
         std::error_code ignored;
         const bool is_begun = fs::exists(folder_.state(), ignored);
-        // Labels come from sources whose changes are not reflected in any file.
+        // Label images are never resumed: changes of their sources are not reflected in any file.
         if (is_begun && !options_.label_image) {
             folder_.clear_temporary();
             try {
@@ -176,7 +176,7 @@ private:
         }
     }
 
-    /// Chunks have separate files until all are written: a shard spans many slabs, and is not changed once written.
+    /// Packs all chunks, written as separate files, into shards: a shard spans many slabs, and is written only once.
     void pack_shards()
     {
         for (int level = 0; level < chunks_->levels(); ++level) {
@@ -235,7 +235,7 @@ private:
         report_.bricks = chunks_->all();
         report_.bricks_stored = chunks_->stored();
         report_.bytes = chunks_->bytes() + other_bytes_;
-        if (options_.label_image) expect_no_foreign_content(origin_);  // checked again: the work took a while
+        if (options_.label_image) expect_no_foreign_content(origin_);  // checks again, because the work took a while
         folder_.finish();
         report_.project = folder_.path();
     }
@@ -276,21 +276,21 @@ private:
     std::unique_ptr<Preparation> preparation_;
     VolumeInfo info_;
     std::string identity_;
-    PartFolder folder_;  ///< declared last: if any member above fails to be created, no folder is made
+    PartFolder folder_;  ///< declared last, so that no folder is made if creating any member above fails
     int threads_;
     ImportReport report_;
 
     std::unique_ptr<ImportChunks> chunks_;
     std::unique_ptr<ImportPass> pass_;
-    int64_t other_bytes_ = 0;  ///< of files other than chunks
+    int64_t other_bytes_ = 0;  ///< total size of files other than chunks
     int64_t done_at_start_ = 0;
     Clock::time_point begin_{}, told_{}, state_written_{};
     double state_seconds_ = 0.0;
 
-    WorkPool pool_;  ///< last: its tasks use all members above
+    WorkPool pool_;  ///< declared last: its tasks use all members above
 };
 
-/// Where unfinished work could not be removed, a sentence about it; otherwise empty.
+/// Returns a sentence if unfinished work could not be removed; otherwise empty.
 std::string remains_of(const fs::path& part)
 {
     std::error_code error;

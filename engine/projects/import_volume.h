@@ -3,8 +3,8 @@
 //
 // The source is read once, slab by slab; memory depends on the size of a slice, not on their number. Chunks have 64^3
 // voxels, are compressed with blosc (zstd, bytes shuffled), and are not written if all their voxels are 0. The project
-// appears complete: until then it is PROJECT.part, with a state from which the same call resumes after it was stopped,
-// killed, or the disk was full. Equal input gives equal bytes, whether in one run or in several.
+// appears only when complete: until then it is PROJECT.part, with a state from which the same call resumes if it was
+// stopped, killed, or the disk was full. Equal input gives equal bytes, whether in one run or in several.
 
 #include <array>
 #include <atomic>
@@ -43,12 +43,12 @@ struct LabelImage {
         std::string name;  ///< may be empty
     };
     std::vector<Color> colors{};
-    std::string source{};  ///< the image they belong to, as a path relative to the folder of labels; empty: not stated
-    /// The hash of that image's voxels (content_hash.h), which distinguishes a mask from masks of other images of the
-    /// same size; empty: not stated.
+    std::string source{};  ///< the image of these labels, as a path relative to the folder of labels; empty: not stated
+    /// The hash of the voxels of the image that was painted on (content_hash.h). It distinguishes a mask from masks of
+    /// other images of the same size; empty: not stated.
     std::string painted_on{};
-    /// The journal of the work with which it was saved: the file's name, and number and checksum of the last record
-    /// then.
+    /// The journal of the work at the time of saving: its file's name, and the number and checksum of its last record
+    /// at that time.
     struct Journal {
         std::string name;
         uint64_t record = 0, checksum = 0;
@@ -56,19 +56,19 @@ struct LabelImage {
         /// As 16 hexadecimal digits in JSON, since some readers do not support 64-bit integers.
         std::string checksum_digits() const;
     };
-    std::optional<Journal> journal{};  ///< stated if `painted_on` is
+    std::optional<Journal> journal{};  ///< stated only if `painted_on` is stated
 };
 
 struct ImportOptions {
     PreparationOptions preparation{};
-    Halving halving = Halving::mean;  ///< how coarser levels are made; labels are whole numbers and stay unchanged
+    Halving halving = Halving::mean;  ///< how coarser levels are made; keeps labels whole numbers
     std::string choice{};  ///< how the file was read: channel, frame, layout; only compared with an earlier run
     bool overwrites = false;
     std::optional<LabelImage> label_image{};  ///< with Halving::label; see export_label_image
     int threads = 0;                          ///< 0: one per core
     int64_t budget_host_bytes = 0;            ///< 0: three quarters of the machine's memory; see import_memory.h
     ZarrCompressor compressor{.kind = ZarrCompressor::Kind::blosc};
-    /// Null: 0.4; for label images, the version of their image, or else of the label image they replace.
+    /// Null: 0.4; for label images, the version of the image they belong to, or else of the label image they replace.
     std::optional<OmeZarrVersion> version{};
     bool has_shards = false;  ///< OME-Zarr 0.5 only: stores up to 512 chunks in a file (import_files.h)
     std::function<void(const ImportProgress&)> progress{};  ///< called about every 100 ms, on the calling thread
@@ -86,18 +86,18 @@ struct ImportReport {
     std::vector<std::string> warnings;
 };
 
-/// `origin` is the file that `source` was opened from. Fails with one sentence; throws `ImportStopped` if cancelled.
+/// `origin` is the file from which `source` was opened. Fails with one sentence; throws `ImportStopped` if cancelled.
 ImportReport import_volume(const VolumeSource& source, const std::filesystem::path& origin,
                            const std::filesystem::path& project, const ImportOptions& options);
 
-/// Whether labels at this path are a label image, by its name: NAME.zarr, or IMAGE/labels/NAME.
+/// Whether the name of this path is that of a label image: NAME.zarr, or IMAGE/labels/NAME.
 bool is_label_image(const std::filesystem::path& path);
 
-/// Exports labels (whole numbers) as an OME-Zarr label image with its levels and nothing else: no folder shvr/. It
-/// appears complete and replaces an existing label image; anything else at that path is refused. If the path is
-/// IMAGE/labels/NAME, it is added to the list in IMAGE/labels, and the label image refers to IMAGE, whose version it
-/// must have. Of `options` only threads, compressor, version, progress and cancel are used. A failed export leaves
-/// nothing behind.
+/// Exports labels (whole numbers) as an OME-Zarr label image with its levels, without a folder shvr/. The image appears
+/// only when complete and replaces an existing label image; any other content of that path is refused. If the path is
+/// IMAGE/labels/NAME, the label image is added to the list in IMAGE/labels, refers to IMAGE, and must have the version
+/// of IMAGE. Uses only threads, compressor, version, progress and cancel of `options`. A failed export leaves nothing
+/// behind.
 ImportReport export_label_image(const VolumeSource& labels, const std::filesystem::path& folder,
                                 const LabelImage& image, const ImportOptions& options = {});
 

@@ -63,7 +63,7 @@ bool is_zarr(const fs::path& folder)
     return std::ranges::any_of(METADATA, [&](const char* name) { return is_there(folder / name); });
 }
 
-/// Whether it is found directly in a project or another Zarr folder: metadata, arrays, groups, chunks, and our shvr.
+/// Whether a project or another Zarr folder may directly contain it: metadata, arrays, groups, chunks, our shvr.
 bool belongs_to_zarr(const fs::path& path)
 {
     const std::string name = path.filename().string();
@@ -72,14 +72,14 @@ bool belongs_to_zarr(const fs::path& path)
            name == "OME" || is_zarr(path);
 }
 
-/// Whether it is left by a process that died while writing (engine/base/atomic_writer.h).
+/// Whether a process that died while writing has left the file (engine/base/atomic_writer.h).
 bool is_temporary(const fs::path& path)
 {
     return path.filename().string().starts_with(".shvr-");
 }
 
-/// Entries that are no part of a project or another Zarr folder, and that no file browser has left: they must not be
-/// deleted with the folder. At most MAX_FOREIGN_NAMES.
+/// Returns entries that neither belong to a project or another Zarr folder nor come from a file browser: they must not
+/// be deleted with the folder. At most MAX_FOREIGN_NAMES.
 std::vector<std::string> entries_foreign_to_zarr(const fs::path& folder)
 {
     std::vector<std::string> names;
@@ -111,7 +111,7 @@ PartFolder::PartFolder(const fs::path& target, bool overwrites)
     refuse_target();
     if (!is_there(part_)) make_folder(part_);
     lock_.emplace(locked(part_));
-    // A folder that merely has that name is not ours to clear. Ours contains the state, or has hardly begun.
+    // A folder that merely has this name must not be cleared. Our folder contains the state, or little else yet.
     if (is_there(state())) return;
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(part_, error)) {
@@ -163,7 +163,7 @@ void PartFolder::sync() const
 void PartFolder::finish()
 {
     sync();
-    refuse_target();  // checked again: the work took a while
+    refuse_target();  // checks again, because the work took a while
     if (is_there(target_) && !is_empty_folder(target_)) {
         // Exchanges the names atomically, so that a project exists at every moment.
         if (::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
@@ -176,11 +176,11 @@ void PartFolder::finish()
         refuse_write(target_, errno);
     }
     part_ = target_;
-    std::error_code ignored;  // leaving it there is harmless
+    std::error_code ignored;  // a remaining state does no harm
     fs::remove(state(), ignored);
-    fs::remove(state().parent_path(), ignored);  // only if it is empty
+    fs::remove(state().parent_path(), ignored);  // removes it only if it is empty
     const FileDescriptor parent(::open(target_.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    // EINVAL: a file system that cannot sync folders. EACCES: a folder we may write to but not list.
+    // EINVAL: the file system cannot sync folders. EACCES: we may write to the folder but not list it.
     if (parent && ::fsync(parent.number()) != 0 && errno != EINVAL && errno != EACCES) {
         fail(target_.string(),
              ": is written, but a power cut could lose it; its folder cannot be synced: ", reason_of(errno));
@@ -215,7 +215,7 @@ void write_part_file(const fs::path& path, std::span<const std::byte> content)
     while (!content.empty()) {
         const ssize_t count = ::write(file.number(), content.data(), content.size());
         if (count < 0 && errno == EINTR) continue;
-        // Some network file systems report "nothing written" for "full".
+        // Some network file systems report a full disk as "nothing written".
         if (count <= 0) refuse_write(path, count < 0 ? errno : ENOSPC);
         content = content.subspan(size_t(count));
     }

@@ -28,7 +28,7 @@ bool ends_with(const fs::path& path, const char* extension)
     return lower_case(path.extension().string()) == extension;
 }
 
-/// "scan" for scan.labels.zarr, scan.zarr and scan.mask.
+/// Returns "scan" for scan.labels.zarr, scan.zarr and scan.mask.
 fs::path stem_of(const fs::path& mask)
 {
     fs::path stem = mask.has_filename() ? mask : mask.parent_path();
@@ -42,7 +42,7 @@ fs::path with_suffix(fs::path stem, const char* suffix)
     return stem += suffix;
 }
 
-/// A file next to a mask; in the folder shvr for IMAGE/labels, which holds label images alone.
+/// Returns a file next to a mask; for IMAGE/labels, which may contain only label images, a file in the folder shvr.
 fs::path beside(const fs::path& mask, const char* suffix)
 {
     const fs::path stem = stem_of(mask), folder = stem.parent_path();
@@ -50,7 +50,7 @@ fs::path beside(const fs::path& mask, const char* suffix)
     return with_suffix(is_among_labels ? folder.parent_path() / "shvr" / stem.filename() : stem, suffix);
 }
 
-/// "paint", "paint-2" and so on: the first that is free with this suffix.
+/// Returns the first of "paint", "paint-2" and so on that is free with this suffix.
 fs::path free_name(const fs::path& stem, const char* suffix)
 {
     fs::path name = with_suffix(stem, suffix);
@@ -64,7 +64,7 @@ bool is_within(const fs::path& path, const fs::path& folder)
     return !relative.empty() && *relative.begin() != "..";
 }
 
-/// The folder that a session owns, as it is named.
+/// Returns the folder that a session owns, as the path names it.
 fs::path folder_of_session(const fs::path& session_file)
 {
     const fs::path folder = fs::absolute(session_file).lexically_normal().parent_path();
@@ -72,7 +72,7 @@ fs::path folder_of_session(const fs::path& session_file)
     return is_project ? folder.parent_path() : folder;
 }
 
-/// The first symbolic link on the way from the folder to a path in it; empty: there is none.
+/// Returns the first symbolic link on the way from the folder to a path inside it; empty if there is none.
 fs::path link_on_way(const fs::path& path, const fs::path& folder)
 {
     const fs::path whole = fs::absolute(path).lexically_normal();
@@ -86,7 +86,7 @@ fs::path link_on_way(const fs::path& path, const fs::path& folder)
     return {};
 }
 
-/// Whether the command line sets a key of the section "annotation", alone or with the whole section.
+/// Whether the command line sets this key of the section "annotation", or the whole section.
 bool is_set(const std::vector<std::string>& settings, const std::string& key)
 {
     return std::ranges::any_of(settings, [&](const std::string& setting) {
@@ -109,7 +109,7 @@ std::string files_outside(const Session& session, const fs::path& session_file,
         words += (words.empty() ? "" : ", ") + what + ", which is " + target.string();
         if (!link.empty()) words += ", since " + link.string() + " is a link";
     };
-    // Unnamed files lie next to the mask.
+    // Files that the session does not name lie next to the mask.
     const bool is_mask_set = is_set(settings, "mask");
     const auto goes_with_mask = [&](const fs::path& path) {
         return is_mask_set && (path == trace_beside(session.mask_path) || path == offsets_beside(session.mask_path));

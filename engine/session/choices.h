@@ -5,7 +5,7 @@
 
 namespace shvr {
 
-/// The choices that an opening error carries; empty if it has another reason.
+/// Returns the choices that an opening error carries; empty if the error has another reason.
 inline std::vector<Choice> choices_of(const Error& error)
 {
     const auto* const several = dynamic_cast<const ChoiceNeeded*>(&error);

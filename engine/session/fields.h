@@ -1,6 +1,6 @@
 #pragma once
 // Keys of JSON objects, each defined once: its name, the value it stands for, its range, unit and meaning. A function
-// `fields(Fields&, Value&)` visits them in the order in which they are written; reading, writing and tables of
+// `fields(Fields&, Value&)` visits keys in the order in which they are written; reading, writing and the tables of
 // documentation are visitors:
 //
 //   void fields(Fields& f, Light& light)
@@ -33,8 +33,8 @@ struct About {
     bool is_required = false;
 };
 
-/// Visits values by their keys. Unset optional values and empty texts and paths are not written; a value whose key is
-/// missing from a file stays unchanged.
+/// Visits values by their keys. Unset optional values and empty texts and paths are not written. If a key is missing
+/// from a file, its value stays unchanged.
 class Fields {
 public:
     using Visit = std::function<void(Fields&)>;
@@ -53,7 +53,7 @@ public:
         any_whole(name, number, lower, upper, about);
         value = Whole(number.value_or(int64_t(value)));
     }
-    /// An enumeration that has `spellings_of`.
+    /// An enumeration for which `spellings_of` exists.
     template <class Value>
     void choice(std::string_view name, Value& value, const About& about)
     {
@@ -82,7 +82,7 @@ public:
     virtual void any_flag(std::string_view name, std::optional<bool>& value, const About& about) = 0;
     virtual void any_whole(std::string_view name, std::optional<int64_t>& value, int64_t lower, int64_t upper,
                            const About& about) = 0;
-    /// A value with its own format: `read` parses it; `written` returns its JSON, or null.
+    /// A value with its own format: `read` parses it; `written` returns its JSON, or null for no value.
     virtual void other(std::string_view name, const std::function<void(const JsonNode&)>& read,
                        const std::function<std::optional<std::string>()>& written, const About& about) = 0;
 
@@ -94,7 +94,7 @@ public:
         section(
             name, [&](Fields& f) { fields(f, value); }, about);
     }
-    /// An array of objects, at most `most`.
+    /// An array of at most `most` objects.
     virtual void items(std::string_view name, size_t count, size_t most, const VisitItem& visit,
                        const About& about) = 0;
     template <class Value>
@@ -106,15 +106,15 @@ public:
         };
         items(name, values.size(), most, visit, about);
     }
-    /// An object of objects. `about` describes each; `placeholder` stands for its key in the table.
+    /// An object of objects. `about` describes each of them; `placeholder` stands for their keys in the table.
     virtual void entries(std::string_view name, std::vector<std::string> keys, std::string_view placeholder,
                          const VisitEntry& visit, const About& about) = 0;
 
-    /// Whether a key is present: when reading, in the file; when writing, `is_set`.
+    /// Whether a key is present: in the file, when reading; if `is_set`, when writing.
     virtual bool has(std::string_view name, bool is_set) = 0;
-    /// A key that is valid here, but not visited this time.
+    /// Mentions a key that is valid in this object, but is not visited this time.
     virtual void mention(std::string_view name, const About& about) = 0;
-    /// A key of earlier versions: reading ignores its value, and nothing writes it.
+    /// A key of earlier versions: reading ignores its value, and writing leaves it out.
     virtual void retired(std::string_view /*name*/) {}
     /// Refuses the input unless the condition holds; an empty `name` means the section itself.
     virtual void check(std::string_view /*name*/, bool /*holds*/, const std::string& /*expected*/) {}
@@ -125,7 +125,7 @@ public:
 /// Reads an object by its keys. Fails on keys that are unknown, missing or have invalid values. Paths are relative to
 /// `folder`.
 void read_fields(const JsonNode& node, const std::filesystem::path& folder, const Fields::Visit& visit);
-/// The object as one line of JSON. Fails if a text is not valid UTF-8.
+/// Returns the object as one line of JSON. Fails if a text is not valid UTF-8.
 std::string write_fields(const std::filesystem::path& folder, const Fields::Visit& visit);
 
 }  // namespace shvr

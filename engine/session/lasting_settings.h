@@ -8,14 +8,14 @@
 
 namespace shvr {
 
-/// The JSON of each section, as in a session file: colours are rounded to the 8 bits of their spelling. "picture" holds
-/// the keys of a file's `render` that affect how the picture looks rather than how it is computed.
+/// The JSON of each section, as in a session file: colours are rounded to the 8 bits of their spelling. "picture" has
+/// the keys of a file's `render` that affect the picture's look rather than how it is computed.
 SettingValues lasting_settings(const Session& session);
-/// Sets the sections of `values`; others stay. Fails, changing nothing, if one cannot be read.
+/// Sets the sections of `values`; others stay. Fails, changing nothing, if a section cannot be read.
 void set_lasting_settings(Session& session, const SettingValues& values);
-/// `values` as this version of the program writes them. Fails like set_lasting_settings.
+/// Returns `values` as this version of the program writes them. Fails like set_lasting_settings.
 SettingValues normalized_settings(const SettingValues& values);
-/// `values`, lasting or kept ones, except for the sections that these "key=value" settings set.
+/// Returns `values`, lasting or kept settings, without the sections that the "key=value" `settings` set.
 SettingValues without_overridden(SettingValues values, const std::vector<std::string>& settings);
 /// Copies the members that "picture" covers.
 void take_picture(RenderSettings& to, const RenderSettings& from);

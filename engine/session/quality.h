@@ -1,5 +1,5 @@
 #pragma once
-// Four trade-offs between a picture's time and its errors, as data: offered by the window and set by `render.quality`.
+// Four trade-offs between a picture's time and its errors, as data: offered by the window, set by `render.quality`.
 // Pure; any thread.
 
 #include <optional>
@@ -12,7 +12,7 @@ namespace shvr {
 
 struct Quality {
     const char* name = "";
-    const char* note = "";  ///< its purpose and its errors (MEASURED.md)
+    const char* note = "";  ///< the quality's purpose and errors (MEASURED.md)
     double step_voxels = 0.5;
     double opacity_limit = 1.0;
     Sampling sampling = Sampling::automatic;
@@ -22,7 +22,7 @@ struct Quality {
     bool exact_integral = false;
 };
 
-/// From the fastest to the most exact.
+/// All qualities, from the fastest to the most exact.
 std::span<const Quality> qualities();
 void take(RenderSettings& render, const Quality& quality);
 /// The quality with exactly these settings; null if the user chose others.

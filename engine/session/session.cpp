@@ -42,15 +42,15 @@ JsonDocument document_for_volume(const fs::path& path)
     return document;
 }
 
-/// A project's session as at the import, if its file is missing: annotation is found, and looks are the program's
-/// defaults.
+/// Makes a project's session as at the import, if its session file is missing: finds the annotation, and sets looks to
+/// the program's defaults.
 JsonDocument document_for_project(const fs::path& session_file, std::vector<std::string>& losses)
 {
     losses.push_back(sentence(session_file.string(),
                               ": is missing; expected the project's session with its looks; a new project's is taken, "
                               "which finds volume and annotation, and saving in the window writes it"));
     JsonDocument document = session_document(import_session(), session_file.string());
-    // Projects of earlier versions, unless they were upgraded.
+    // Also handles projects of earlier versions that were not upgraded.
     const fs::path folder = session_file.parent_path();
     std::error_code ignored;
     if (fs::exists(folder / "paint.mask", ignored) && !fs::exists(folder.parent_path() / "labels" / "paint", ignored))
@@ -62,7 +62,7 @@ JsonDocument document_for_project(const fs::path& session_file, std::vector<std:
 
 namespace {
 
-/// Linear between points, so that multiplying the points multiplies the function.
+/// Multiplies the points: the function is linear between points, so this multiplies the whole function.
 TransferFunction multiplied(const TransferFunction& function, double factor)
 {
     std::vector<ControlPoint> points(function.points().begin(), function.points().end());
@@ -86,7 +86,7 @@ Look Session::look() const
     const bool shows_unpainted = unpainted.visible && view.solo.value_or(0) == 0;
     const double factor = shows_unpainted ? unpainted.opacity : 0.0;
     if (factor != 1.0) look.transfer_function = multiplied(transfer_function, factor);
-    // Everything is cut away except slices, which ignore cuts, and surfaces.
+    // Cuts everything away; slices, which ignore cuts, and surfaces stay visible.
     if (!view.volume) look.cut.upper = look.cut.lower;
     return look;
 }
@@ -127,7 +127,7 @@ void expect_volume_of_picture(const fs::path& picture, const Session& session)
          "with --set volume.path=...");
 }
 
-/// A setting that a later one replaces would never be read, however wrong it is; so it is read with those before it.
+/// Reads each setting that a later one replaces, with the settings before it; otherwise it would not be checked.
 void check_replaced_settings(const JsonDocument& document, const std::vector<std::string>& settings,
                              const fs::path& folder)
 {
@@ -177,7 +177,7 @@ std::pair<JsonDocument, UnmeasuredSession> open_unmeasured(const fs::path& path,
     if (session_file.empty() && !picture) {
         if (std::string sentence = archived_project(path); !sentence.empty()) opened.losses.push_back(sentence);
     }
-    // A project with a valid record already has its statistics.
+    // A project with a valid record already has its statistics, so they need not be measured.
     const fs::path record = session.volume_path / PROJECT_RECORD;
     if (!session.procedural && opened.source->statistics() && fs::exists(record, ignored))
         session.volume_hash = read_project_record(record).content_hash;
@@ -193,7 +193,7 @@ UnmeasuredSession open_unmeasured_session(const fs::path& path, const std::vecto
 
 namespace {
 
-/// Points of a transfer function are float32, on the device and in files.
+/// Checks that the points of a transfer function fit float32, their type on the device and in files.
 void expect_range_of_points(const Session& session, const VolumeStatistics& statistics)
 {
     constexpr double LARGEST = std::numeric_limits<float>::max();

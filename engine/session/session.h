@@ -33,15 +33,15 @@ constexpr std::span<const Spelling<Pivot>> spellings_of(Pivot)
 
 /// Settings of the interactive window.
 struct InteractionSettings {
-    double resolution = 0.7;          ///< fraction of the screen's along each axis during motion; less if that is slow
+    double resolution = 0.7;          ///< share of the screen's resolution along each axis in motion; lower if too slow
     double frames_per_second = 30.0;  ///< upper limit
     uint32_t screenshot_scale = 4;    ///< scale of large screenshots: pixels per pixel of the window, along each axis
-    double workspace_scale = 1.0;     ///< scale of the probe's motion relative to that of a haptic device's hand
+    double workspace_scale = 1.0;     ///< scale of the probe's motion relative to the hand's motion on a haptic device
     Pivot pivot = Pivot::target;
     // Lines and text that the window draws over its pictures
     bool scale_bar = true;
     bool axes = true;
-    bool probe_label = true;        ///< shows the probe's depth, and how much of its ball is relevant
+    bool probe_label = true;        ///< shows the probe's depth, and the relevant share of its ball
     bool group_legend = true;       ///< lists colours and names of the groups that are drawn
     bool screenshot_marks = false;  ///< screenshots show scale bar, axes, groups and distances like the window
     bool operator==(const InteractionSettings&) const = default;
@@ -54,13 +54,13 @@ inline constexpr double MIN_WORKSPACE_SCALE = 0.01, MAX_WORKSPACE_SCALE = 100.0;
 ///   turn      turns the volume
 ///   paint     paints with the active group while held
 ///   erase     removes paint while held, whatever the active group is
-///   trace     a click away from all nodes adds one, linked to the selected one; on a node it selects, a drag moves it
+///   trace     a click away from all nodes adds a node, linked to the selected node; on a node, it selects or drags it
 ///   select    selects the node or internode that is clicked
-///   measure   clicks set the two ends of a distance in turn
+///   measure   clicks set the two ends of a distance, one after the other
 ///
-/// F, the stylus, and in the turn tool the right button, paint; they erase in the erase tool, and add a node in the
-/// trace tool. Alt + left rotates with every tool, and so do the middle and the right button outside the turn tool;
-/// Shift + left and Shift + middle pan, as the middle button does in the turn tool.
+/// F, the stylus and, with the turn tool, the right button paint; they erase with the erase tool, and add a node with
+/// the trace tool. Alt + left rotates with every tool, and so do the middle and the right button with all tools except
+/// turn. Shift + left and Shift + middle pan, as the middle button does with the turn tool.
 enum class Tool { turn, paint, erase, trace, select, measure };
 inline constexpr Spelling<Tool> TOOLS[] = {{Tool::turn, "turn"},     {Tool::paint, "paint"},
                                            {Tool::erase, "erase"},   {Tool::trace, "trace"},
@@ -83,17 +83,17 @@ constexpr std::span<const Spelling<TouchPlane>> spellings_of(TouchPlane)
 struct FeelSettings {
     TouchMode mode = TouchMode::proximity;
     double strength = 1.0;        ///< factor of the force
-    double surface_share = 0.4;   ///< share of the probe's ball above which a surface holds
+    double surface_share = 0.4;   ///< share of the ball that must be relevant for a surface to hold the probe
     double stiffness = 300.0;     ///< N/m, for a probe of 2.5 mm in the hand's space
     double damping = 1.0;         ///< N s/m
-    std::vector<uint8_t> groups;  ///< groups that can be felt, ascending, 0: unpainted voxels; empty: everything
-    bool at_proxy = false;        ///< tools act at the centre of the touched structure
-    bool overlap_radius = false;  ///< new nodes get a radius derived from the filled share of the ball
-    bool to_nodes = false;        ///< tools act at a node that lies in the ball
+    std::vector<uint8_t> groups;  ///< groups that can be felt, ascending; 0: unpainted voxels; empty list: everything
+    bool at_proxy = false;        ///< tools act at the centre of the structure that the probe touches
+    bool overlap_radius = false;  ///< derives the radius of new nodes from the filled share of the ball
+    bool to_nodes = false;        ///< tools act at a node, if one lies in the ball
     bool to_lines = false;        ///< tools act at the nearest point of a centre line that passes through the ball
-    bool clicks = false;          ///< a short pulse of the device when contact begins
+    bool clicks = false;          ///< the device gives a short pulse when contact begins
     TouchPlane plane = TouchPlane::none;
-    /// What pictures do not show is felt, too: what is cut away, transparent, or in hidden groups.
+    /// Makes structures felt that pictures do not show because they are cut away, transparent, or in hidden groups.
     bool feels_hidden = false;
     bool operator==(const FeelSettings&) const = default;
 };
@@ -104,53 +104,53 @@ struct ProbeSettings {
     std::optional<glm::dvec3> voxel;  ///< the probe's centre; default: the volume's centre
     BrushSettings brush;
     std::optional<double> haptic_threshold;  ///< intensity; default: the brush's threshold
-    bool shown = false;                      ///< in pictures; the window always shows it
-    /// Shows an iso-surface at the brush's threshold in the probe's region: the voxels that density painting would
-    /// raise above it.
+    bool shown = false;                      ///< shown in pictures; the window always shows it
+    /// Shows an iso-surface in the probe's region, at the brush's threshold. It shows which voxels density painting
+    /// would raise above the threshold.
     bool shell = false;
-    double shell_opacity = 0.4;  ///< of one crossing of the surface
+    double shell_opacity = 0.4;  ///< opacity of one crossing of the surface
     bool preview = false;        ///< draws the brush's effect at the probe
     Tool tool = Tool::turn;
     bool guided = false;
     ProxyLaw guidance = ProxyLaw::potential;
     FeelSettings touch;
-    std::optional<glm::dvec3> color;           ///< linear light; default: its group's
-    double opacity = 1.0;                      ///< opacity of its ball
-    bool silhouette = true;                    ///< outlines it over objects that hide it
+    std::optional<glm::dvec3> color;           ///< linear light; default: the colour of its group
+    double opacity = 1.0;                      ///< opacity of the probe's ball
+    bool silhouette = true;                    ///< outlines the probe over objects that hide it
     bool arrow = true;                         ///< draws an arrow to the probe when it is out of sight
     std::optional<double> node_radius_voxels;  ///< radius of new nodes along x; default: chosen for the volume
-    bool measured_radius = false;              ///< new nodes get the radius of the structure around them, if it can be
-                                               ///< measured
-    bool centered_nodes = true;                ///< clicked nodes are placed at the centre of the visible structure, not
-                                               ///< on its wall
+    bool measured_radius = false;              ///< new nodes get the measured radius of the structure around them, if
+                                               ///< measuring succeeds
+    bool centered_nodes = true;                ///< places clicked nodes at the centre of the visible structure, not on
+                                               ///< its wall
     /// The group that painting assigns to voxels: the active group, or 0.
     uint8_t painted_group() const { return tool == Tool::erase ? uint8_t(0) : brush.group; }
     bool operator==(const ProbeSettings&) const = default;
 };
 
-/// Limit per file.
+/// Maximum number of surfaces in one session file.
 inline constexpr size_t MAX_SESSION_SURFACES = 100'000;
 
-/// A distance between two points measured by the user, in voxels: it follows corrections of the spacing.
+/// A distance that the user measured between two points, in voxels, so that it follows corrections of the spacing.
 struct Measurement {
     glm::dvec3 from{0.0}, to{0.0};
     bool operator==(const Measurement&) const = default;
 };
-/// Limited because each step of the history stores all of them, before and after.
+/// Limited because each step of the history stores all measurements, before and after the step.
 inline constexpr size_t MAX_MEASUREMENTS = 1000;
 
 struct Session {
     std::filesystem::path volume_path;  ///< absolute, or empty if `procedural` is set
     std::optional<ProceduralSpec> procedural;
-    std::optional<RawLayout> raw_layout;  ///< for bare voxels
+    std::optional<RawLayout> raw_layout;  ///< layout of a file of bare voxels
     OpenOptions open_options;             ///< selects from files that hold more than one volume
-    /// Hash of the volume's voxels (content_hash.h), computed by `open_session`; empty if it did not visit all voxels,
-    /// and in a session that was only read. Not written.
+    /// Hash of the volume's voxels (content_hash.h), computed by `open_session`. Empty if `open_session` did not visit
+    /// all voxels, or if the session was only read. Not written to files.
     std::string volume_hash;
     std::map<std::string, CameraSpec> cameras;  ///< by name; may be empty
-    std::string camera_name;                    ///< name of the one in use, as accepted by `camera_named`; may be empty
+    std::string camera_name;                    ///< name of the current camera, as for `camera_named`; may be empty
     TransferFunction transfer_function;
-    std::string transfer_preset;  ///< `open_session` converts it into a function and clears it
+    std::string transfer_preset;  ///< preset name; `open_session` converts it into a function and clears it
     Groups groups;
     Unpainted unpainted;
     Light light;
@@ -162,35 +162,35 @@ struct Session {
     std::vector<Measurement> measurements;  ///< at most MAX_MEASUREMENTS
     ProbeSettings probe;
     std::vector<SurfaceLook> surfaces;  ///< opaque balls and rods; at most MAX_SESSION_SURFACES in a file
-    std::filesystem::path mask_path;    ///< path of the mask: absolute; empty: none; the file need not exist yet
-    /// Likewise for the trace, in a form that `load_trace` reads; default: next to the mask.
+    std::filesystem::path mask_path;    ///< absolute path of the mask, which need not exist yet; empty: none
+    /// Path of the trace, in a form that `load_trace` reads; default: next to the mask. The file need not exist yet.
     std::filesystem::path trace_path;
-    std::filesystem::path density_path;  ///< likewise, for density offsets
+    std::filesystem::path density_path;  ///< path of the density offsets, likewise
     /// The journal next to the session file (engine/annotation/work/work.h); empty if a bare volume was opened.
     std::filesystem::path journal_path;
     bool operator==(const Session&) const = default;
 
-    /// The part that pictures depend on.
+    /// Returns the part of the session on which pictures depend.
     Look look() const;
-    /// The groups as pictures show them: with `view.solo`, all others are hidden.
+    /// Returns the groups as pictures show them: with `view.solo`, all other groups are hidden.
     Groups shown_groups() const;
 };
 
-/// `path`: a session file (.json), a project folder (its shvr/session.json), or a volume file (a session is made for
-/// it: its path, and a transfer function from its statistics, which `warnings` reports). `settings`: "key=value" with
-/// dotted keys ("render.step_voxels=0.25"), applied to the JSON before it is read. Relative paths in the file are
-/// relative to the file. A session file without a transfer function gets the same automatic one as a volume file.
-/// Session files hold at most 16 MiB. A picture made by this program holds the session from which it was made
-/// (picture_session.h).
+/// `path`: a session file (.json), a project folder (its shvr/session.json is opened), or a volume file. For a volume
+/// file a session is made, with its path and a transfer function from its statistics, as `warnings` reports.
+/// `settings`: "key=value" with dotted keys ("render.step_voxels=0.25"), applied to the JSON before it is read.
+/// Relative paths in the file are relative to the file. A session file without a transfer function gets the same
+/// automatic function as a volume file. Session files have at most 16 MiB. A picture made by this program contains the
+/// session from which it was made (picture_session.h).
 struct OpenedSession {
     Session session;
     std::shared_ptr<const VolumeSource> source;
     VolumeStatistics statistics;
-    std::vector<std::string> warnings;   ///< about the session; those about the volume are in `source->info().warnings`
+    std::vector<std::string> warnings;   ///< about the session; the volume's warnings are in `source->info().warnings`
     std::vector<std::string> losses;     ///< saved data that is missing
-    std::filesystem::path pictured{};    ///< for a picture: the session or project from which it was made; else
+    std::filesystem::path pictured{};    ///< for a picture: the session or project from which it was made; otherwise
                                          ///< empty
-    std::vector<std::string> removed{};  ///< settings of earlier versions, which are ignored (removed_keys_in)
+    std::vector<std::string> removed{};  ///< settings of earlier versions that are ignored (removed_keys_in)
 };
 struct OpeningOptions {
     MeasureOptions measure{};
@@ -199,8 +199,8 @@ struct OpeningOptions {
 };
 OpenedSession open_session(const std::filesystem::path& path, const std::vector<std::string>& settings = {},
                            const OpeningOptions& options = {});
-/// Skips everything that needs a pass over the voxels: the transfer function is the file's, and only projects have a
-/// hash.
+/// A session opened without any pass over the voxels: it has the transfer function of its file, and a hash only for
+/// projects.
 struct UnmeasuredSession {
     Session session;
     std::shared_ptr<const VolumeSource> source;
@@ -211,48 +211,48 @@ struct UnmeasuredSession {
 UnmeasuredSession open_unmeasured_session(const std::filesystem::path& path,
                                           const std::vector<std::string>& settings = {});
 
-/// The session file that `path` refers to: itself, or a project's, which may be missing; empty for a volume. Fails if
-/// there is nothing at `path`.
+/// Returns the session file that `path` refers to: `path` itself, or a project's session file, which may be missing;
+/// empty for a volume. Fails if nothing exists at `path`.
 std::filesystem::path session_file_of(const std::filesystem::path& path);
-/// "scan.journal" for "scan.json".
+/// Returns "scan.journal" for "scan.json".
 std::filesystem::path journal_beside(const std::filesystem::path& session_file);
 
-/// Likewise from text; relative paths are relative to `folder`, `origin` names the text in messages.
+/// Reads a session from text; relative paths are relative to `folder`, `origin` names the text in messages.
 Session parse_session(const std::string& text, const std::filesystem::path& folder, const std::string& origin,
                       const std::vector<std::string>& settings = {});
 std::unique_ptr<VolumeSource> open_source(const Session& session);
 
-/// The upper end of the darker of two classes of voxels, the air around a scanned object (Otsu's threshold, but never
-/// less than half of all voxels), and the 90th percentile of the rest.
+/// `lower` is the upper end of the darker of two classes of voxels, the air around a scanned object (Otsu's threshold,
+/// but never below the median of the voxels). `upper` is the 90th percentile of the other voxels.
 struct TissueRange {
     double lower = 0.0, upper = 1.0;  ///< intensities, lower < upper
 };
 TissueRange tissue_range(const VolumeStatistics& statistics);
 
-/// A ramp from grey to warm that excludes the darker of two classes of voxels (Otsu's threshold, but never less than
+/// A ramp from grey to warm that excludes the darker of two classes of voxels (split by Otsu's threshold, but at least
 /// half of all voxels), so that the air around a scanned object is invisible. Equal statistics give equal functions.
 TransferFunction automatic_transfer_function(const VolumeStatistics& statistics);
 
-/// Halfway between a transfer function's lowest point and its mean intensity, weighted by opacity, within the volume's
-/// range: the brush's default threshold.
+/// The brush's default threshold: half-way between a transfer function's lowest point and its opacity-weighted mean
+/// intensity, clamped to the volume's range.
 double automatic_threshold(const TransferFunction& function, const VolumeStatistics& statistics);
 
-/// The default radius of new nodes in voxels along x: 1/500 of the volume's diagonal, at least a voxel.
+/// The default radius of new nodes in voxels along x: 1/500 of the volume's diagonal, but at least a voxel.
 double automatic_node_radius(const VolumeInfo& info);
 
-/// Default intensities drawn black and white in slices: all but the darkest 0.5 % and the brightest 0.35 % of the
-/// voxels lie between them, to the precision of a histogram bin. The whole range if there is no histogram.
+/// Default intensities drawn black and white in slices. Between them lie all but the darkest 0.5 % and the brightest
+/// 0.35 % of the voxels, to the precision of a histogram bin. Without a histogram: the whole range.
 ValueRange automatic_contrast(const VolumeStatistics& statistics);
 
-/// Returns the camera of that name: a named one of the session, a side of `camera_looking`, or a JSON object. Empty:
-/// the session's camera "front", or else one that looks at the side_of_largest_face.
+/// Returns the camera of that name: a camera of the session, a side of `camera_looking`, or a JSON object. For an empty
+/// name: the session's camera "front" if it exists, or else a camera that looks at the side_of_largest_face.
 Camera camera_named(const Session& session, const std::string& name_or_json, const VolumeInfo& volume);
 
 /// The names that `camera_named` accepts: cameras of the session, then sides.
 std::vector<std::string> camera_names(const Session& session);
 
-/// Writes every key in the form that `parse_session` reads. Paths inside `folder` (if that is a project's shvr: inside
-/// the project) are relative to it, others absolute. Colours are rounded to the 8 bits of their spelling.
+/// Writes every key in the form that `parse_session` reads. Paths inside `folder` (or inside the project, if `folder`
+/// is a project's shvr) are relative to it, others absolute. Colours are rounded to the 8 bits of their spelling.
 std::string to_text(const Session& session, const std::filesystem::path& folder);
 
 }  // namespace shvr

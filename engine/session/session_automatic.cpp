@@ -17,7 +17,7 @@ ControlPoint point(double intensity, const char* color, double opacity)
     return {intensity, glm::dvec3(color_of(color).value()), opacity};
 }
 
-/// Otsu 1979: the number of bins in the lower class that maximizes the variance between the two classes.
+/// Otsu 1979: returns the number of bins in the lower class that maximizes the variance between the two classes.
 size_t otsu_split(const std::vector<int64_t>& histogram)
 {
     double count = 0.0;
@@ -45,7 +45,7 @@ size_t otsu_split(const std::vector<int64_t>& histogram)
     return best_split;
 }
 
-/// The number of bins, counted from `first`, that hold at least `share` of the voxels in and above `first`.
+/// Returns how many bins, starting at `first`, contain at least `share` of the voxels in `first` and all higher bins.
 size_t quantile_split(const std::vector<int64_t>& histogram, size_t first, double share)
 {
     const auto begin = histogram.begin() + std::ptrdiff_t(first);
@@ -78,7 +78,7 @@ double automatic_node_radius(const VolumeInfo& info)
 
 namespace {
 
-/// A session requires black to be below white: widens the range of a volume with only one value.
+/// Widens the range of a volume with a single value, because a session requires black to be below white.
 ValueRange contrast_between(double black, double white)
 {
     if (black < white) return {black, white};
@@ -120,7 +120,7 @@ TransferFunction automatic_transfer_function(const VolumeStatistics& statistics)
 {
     const TissueRange tissue = tissue_range(statistics);
     const auto [minimum, maximum] = statistics.range();
-    // A thin haze, so that something is visible.
+    // Shows a thin haze, so that something is visible.
     if (!(minimum < maximum) || statistics.histogram.size() < 4)
         return TransferFunction({point(tissue.lower, "#808080", 0.02), point(tissue.upper, "#808080", 0.02)});
     return TransferFunction(

@@ -84,7 +84,7 @@ void spacing_fields(Fields& f, glm::dvec3& spacing, std::string& unit)
     f.check("unit", !has_controls(unit), "the name of a unit");
 }
 
-/// Spacing and unit of a file, which may state them itself.
+/// Fields for the spacing and the unit of a file; the file itself may state them, too.
 void spacing_fields(Fields& f, OpenOptions& options)
 {
     f.vector("spacing", options.spacing, above_zero(MIN_SPACING, MAX_SPACING), SPACING);
@@ -94,7 +94,7 @@ void spacing_fields(Fields& f, OpenOptions& options)
 
 constexpr std::string_view NO_NODATA = "none";
 
-/// Infinity stands for "none" (OpenOptions).
+/// Infinity represents the text "none" (OpenOptions).
 void nodata_field(Fields& f, std::optional<double>& nodata)
 {
     const auto read = [&](const JsonNode& node) {
@@ -155,7 +155,7 @@ void raw_fields(Fields& f, std::filesystem::path& path, std::optional<RawLayout>
 
 constexpr int MAX_LEVEL = 23;
 
-/// One of three forms: a procedural function, bare voxels, or a file in a known format.
+/// A volume in one of three forms: a procedural function, bare voxels, or a file in a known format.
 void volume_fields(Fields& f, Session& session)
 {
     if (f.has("procedural", session.procedural.has_value())) {
@@ -467,7 +467,7 @@ void fields(Fields& f, SurfaceLook& surface)
 
 namespace {
 
-/// Separate from the cuts, since files have other sections between them.
+/// A function of its own, since files have other sections between the look and the cuts.
 void look_fields(Fields& f, Session& session)
 {
     f.section("transfer_function", [&](Fields& transfer) { transfer_fields(transfer, session); });
@@ -499,7 +499,7 @@ void work_fields(Fields& f, Session& session)
     f.list("measurements", session.measurements, MAX_MEASUREMENTS, MEASUREMENTS);
 }
 
-/// In addition to cameras, user settings that are not part of the work.
+/// Fields of user settings that are not part of the work, other than cameras.
 void passing_fields(Fields& f, Session& session)
 {
     f.section("view", session.view);
@@ -520,7 +520,7 @@ void kept_fields(Fields& f, Session& session)
     f.section("cameras", [&](Fields& cameras) { camera_fields(cameras, session); });
     f.section("render", [&](Fields& render) {
         rendering_fields(render, session.render);
-        for (const std::string_view key : PICTURE_KEYS) render.mention(key, {});  // older journals have them here
+        for (const std::string_view key : PICTURE_KEYS) render.mention(key, {});  // older journals have these keys here
     });
     passing_fields(f, session);
 }

@@ -10,7 +10,7 @@
 namespace shvr {
 namespace {
 
-/// Collects the keys that an object may have. Reads only those values that decide which other keys are valid.
+/// Collects the keys that an object may have. Reads only those values that determine which other keys are valid.
 class KnownKeys : public Fields {
 public:
     explicit KnownKeys(const JsonNode& node) : node_(node) {}
@@ -65,7 +65,7 @@ public:
     void mention(std::string_view name, const About&) override { know(name); }
     void retired(std::string_view name) override
     {
-        if (node_[name].exists()) know(name);  // otherwise refusals would offer it
+        if (node_[name].exists()) know(name);  // otherwise error messages would suggest it
     }
 
 private:
@@ -76,7 +76,7 @@ private:
 
 class Reader : public Fields {
 public:
-    /// Refuses keys that are unknown, then reads.
+    /// Refuses unknown keys, then reads the others.
     static void read(const JsonNode& node, const std::filesystem::path& folder, const Visit& visit)
     {
         KnownKeys known(node);
@@ -200,7 +200,7 @@ public:
 private:
     Reader(const JsonNode& node, const std::filesystem::path& folder) : node_(node), folder_(folder) {}
 
-    /// The value of a key, which may be missing; reading a missing value that is required fails.
+    /// The value of a key, which may be missing. Reading a required value fails if it is missing.
     struct Member : JsonNode {
         bool is_taken;
         explicit operator bool() const { return is_taken; }

@@ -1,5 +1,5 @@
-// "--set key=value": dotted keys into the JSON of a session. The table of keys gives the type: texts are taken
-// verbatim, anything else is JSON.
+// "--set key=value": sets values in the JSON of a session by dotted keys. The table of keys determines the type: text
+// values are taken verbatim, all others are JSON.
 
 #include <charconv>
 
@@ -20,7 +20,7 @@ struct Setting {
     json value;
 };
 
-/// The value of a text key may also be a JSON string.
+/// Returns the value of a setting. The value of a text key may also be spelled as a JSON string.
 json value_of(const std::string& key, const std::string& text, const std::string& setting)
 {
     static const std::vector<SessionKey> keys = session_keys();
@@ -36,7 +36,7 @@ template <class... Parts>
     throw UsageError(sentence("--set ", setting, ": ", parts...));
 }
 
-/// Messages quote keys and values, which must therefore be valid UTF-8.
+/// Whether a text is valid UTF-8, as required of keys and values because messages quote them.
 bool is_utf8(const std::string& text)
 {
     try {
@@ -65,7 +65,7 @@ Setting parse_setting(const std::string& setting)
     return parsed;
 }
 
-/// The member or element `key` of `container`; created if an object lacks it.
+/// Returns the member or element `key` of `container`; creates it if an object lacks it.
 json& member_of(json& container, const std::string& key, const std::string& container_key, const std::string& setting)
 {
     if (container.is_object()) return container[key];
@@ -78,13 +78,13 @@ json& member_of(json& container, const std::string& key, const std::string& cont
     return container[index];
 }
 
-/// A missing array that has a default ("render.size") starts from it, so that one of its elements can be set.
+/// Returns a copy of the default if it is an array ("render.size"), so that one of its elements can be set.
 json missing_container(const json* fallback)
 {
     return fallback && fallback->is_array() ? *fallback : json::object();
 }
 
-/// A quality replaces the keys that were given before.
+/// Erases the keys that a quality sets, because a quality replaces keys that were given before it.
 void erase_keys_of_quality(json& render)
 {
     for (const std::string_view key : keys_of_quality()) render.erase(std::string(key));

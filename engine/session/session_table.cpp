@@ -1,4 +1,4 @@
-// The table of keys, for README.md and for --set, which needs to know which values are texts.
+// The table of keys, for README.md and for --set, which uses it to find out which values are texts.
 
 #include <algorithm>
 #include <cmath>
@@ -17,12 +17,12 @@ std::string in_code(std::string_view text)
 
 std::string range_text(double lower, double upper)
 {
-    // 0.0001, not 1e-04, the shortest form
+    // prints 0.0001, not 1e-04, the shortest form
     const auto digits = [](double value) { return value == std::floor(value) ? digits_of(value) : sentence(value); };
     return digits(lower) + " ... " + digits(upper);
 }
 
-/// Visits a new session. `takes_optional_forms` selects between keys that exclude each other.
+/// Visits a new session. `takes_optional_forms` selects one of two forms where keys exclude each other.
 class Table : public Fields {
 public:
     Table(std::vector<SessionKey>& rows, std::string prefix, bool takes_optional_forms)

@@ -16,7 +16,7 @@ std::string path_text(const std::filesystem::path& path, const std::filesystem::
 {
     const std::filesystem::path whole = std::filesystem::absolute(folder / ".").lexically_normal();
     const std::filesystem::path relative = path.lexically_relative(whole);
-    // A project's files are in its folder shvr or next to it and move together with it.
+    // The files of a project lie in its folder shvr or next to that folder, and move together with it.
     const bool is_project = whole.parent_path().filename() == "shvr";
     auto step = relative.begin();
     if (is_project && step != relative.end() && *step == "..") ++step;
@@ -93,7 +93,7 @@ public:
     void entries(std::string_view name, std::vector<std::string> keys, std::string_view, const VisitEntry& visit,
                  const About&) override
     {
-        // Appended: an ordered object searches all of its members for a key, and there may be 100,000 cameras.
+        // Appends to the list: inserting by key would search all members, and there may be 100,000 cameras.
         OrderedJson::object_t members;
         for (const std::string& key : keys)
             members.emplace_back(key, write(folder_, [&](Fields& f) { visit(f, key); }));
@@ -115,7 +115,7 @@ bool is_row(const OrderedJson& value)
     return std::ranges::none_of(value, [](const OrderedJson& member) { return member.is_structured(); });
 }
 
-/// Indented by two spaces, with arrays of plain values and the control points on one line each.
+/// Returns the JSON text, indented by two spaces; arrays of plain values and control points take one line each.
 std::string laid_out(const OrderedJson& value, const std::string& indent, bool may_be_row)
 {
     if (!value.is_structured() || value.empty() || (is_row(value) && (value.is_array() || may_be_row)))
@@ -131,7 +131,7 @@ std::string laid_out(const OrderedJson& value, const std::string& indent, bool m
     return value.is_array() ? "[" + text + "]" : "{" + text + "}";
 }
 
-/// A value in human-readable form. Points and the like, whose numbers say little individually, are counted.
+/// Returns a value in human-readable form. States only the number of points and similar items.
 std::string in_words(const OrderedJson& value)
 {
     if (value.is_number_float()) return sentence(value.get<double>());
@@ -144,14 +144,14 @@ std::string in_words(const OrderedJson& value)
 }
 
 struct ChangedKey {
-    std::string path, from, to;  ///< words; empty if there is no value
+    std::string path, from, to;  ///< values in words; empty if there is no value
 };
 
-/// The keys of a section that differ. An array is one value.
+/// Adds the keys of a section that differ. An array counts as one value.
 void add_changes(const OrderedJson& was, const OrderedJson& is, const std::string& path, std::vector<ChangedKey>& found)
 {
     if (!was.is_object() || !is.is_object()) {
-        // For a whole object that is added or removed, its name suffices.
+        // For a whole object that is added or removed, its name is sufficient.
         const auto words = [](const OrderedJson& value) {
             return value.is_null() || value.is_object() ? std::string() : in_words(value);
         };
@@ -173,14 +173,14 @@ std::string in_words(const ChangedKey& changed)
 {
     std::string path = changed.path;
     std::ranges::replace(path, '_', ' ');
-    if (path == "occlusion mapping") path = "occlusion curve";  // the window's name for both
+    if (path == "occlusion mapping") path = "occlusion curve";  // the window uses one name for both
     if (changed.from == changed.to) return path;
     if (changed.to.empty()) return sentence(path, " ", changed.from, " given up");
     if (changed.from.empty()) return sentence(path, " ", changed.to);
     return sentence(path, " ", changed.from, " to ", changed.to);
 }
 
-/// Describes one section's difference: its name and, if few values differ, which.
+/// Describes the difference of one section: its name and, if only a few values differ, the names of these values.
 std::string difference_of(std::string name, const std::string& before, const std::string& after)
 {
     constexpr size_t MOST = 3;
@@ -217,13 +217,13 @@ std::string write_fields(const std::filesystem::path& folder, const Fields::Visi
 
 SettingValues lasting_settings(const Session& session)
 {
-    Session written = session;  // fields take a mutable session
+    Session written = session;  // a copy, because fields take a mutable session
     return sections_of(Writer::write({}, [&](Fields& f) { lasting_fields(f, written); }));
 }
 
 SettingValues kept_settings(const Session& session)
 {
-    // A copy, as above, but without surfaces, of which there may be many: this is called often.
+    // A copy, as above, but without surfaces: there may be many, and this is called often.
     Session written;
     take_kept_sections(written, session);
     return sections_of(Writer::write({}, [&](Fields& f) { kept_fields(f, written); }));
@@ -242,7 +242,7 @@ std::string difference_of(const SettingValues& before, const SettingValues& afte
 
 std::string to_text(const Session& session, const std::filesystem::path& folder)
 {
-    Session written = session;  // `fields` takes a mutable session
+    Session written = session;  // a copy, because `fields` takes a mutable session
     try {
         const OrderedJson document = Writer::write(folder, [&](Fields& f) { fields(f, written); });
         return laid_out(document, "", false) + "\n";

@@ -89,7 +89,7 @@ std::filesystem::path preset_file(const std::filesystem::path& folder, const std
     return folder / (name + ".json");
 }
 
-/// Colours are rounded to the 8 bits of their spelling, fractions are not.
+/// Colours are rounded to the 8 bits of their spelling; fractions are not rounded.
 TransferPreset preset_of(const TransferFunction& function, const std::string& name, const VolumeStatistics& statistics)
 {
     const TissueRange tissue = tissue_range(statistics);
@@ -108,7 +108,7 @@ TransferPreset preset_of(const TransferFunction& function, const std::string& na
 
 std::string text_of(const TransferPreset& preset)
 {
-    TransferPreset written = preset;  // fields take mutable objects
+    TransferPreset written = preset;  // a copy, because fields take mutable objects
     return write_fields({},
                         [&](Fields& f) {
                             f.text("note", written.note, {});

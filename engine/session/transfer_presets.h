@@ -11,29 +11,29 @@ namespace shvr {
 
 struct TransferPreset {
     std::string name, note;
-    std::vector<ControlPoint> points;  ///< `intensity` of a point is the fraction `at` of the file
+    std::vector<ControlPoint> points;  ///< the `intensity` of a point is the fraction `at` in the preset's file
     bool extends = true;               ///< the last point's look extends to the volume's largest intensity
-    bool is_own = false;               ///< made by the user, not shipped
+    bool is_own = false;               ///< made by the user, not shipped with the program
 };
 
-/// All presets, by name; none if the program finds no assets. Fails if a file is broken.
+/// Returns all presets, sorted by name; none if the program finds no assets. Fails if a file is malformed.
 std::vector<TransferPreset> transfer_presets();
-/// The user's own presets, from a folder that need not exist; broken files are left out, with the reason.
+/// Returns the user's own presets, from a folder that need not exist; leaves out malformed files, with the reason.
 std::vector<TransferPreset> own_transfer_presets(const std::filesystem::path& folder,
                                                  std::vector<std::string>& warnings);
 TransferPreset read_transfer_preset(const std::filesystem::path& file);
-/// The function as a preset that restores it, except for rounding, in the volume with these statistics.
+/// Returns the function as a preset that restores it, except for rounding, in the volume with these statistics.
 TransferPreset preset_of(const TransferFunction& function, const std::string& name, const VolumeStatistics& statistics);
-/// The text in the form that `parse_transfer_preset` reads.
+/// Returns the text of a preset in the form that `parse_transfer_preset` reads.
 std::string text_of(const TransferPreset& preset);
-/// The file of a preset name in a folder. Fails if the name is not valid for a file.
+/// Returns the path of the file of a preset name in a folder. Fails if the name is not valid for a file.
 std::filesystem::path preset_file(const std::filesystem::path& folder, const std::string& name);
-/// Fails with a list of the names if there is no such preset.
+/// Returns the preset with this name; if there is none, fails with a list of the names.
 TransferPreset transfer_preset_named(const std::string& name);
-/// A preset's text; `origin` names it in messages.
+/// Parses a preset's text; `origin` names the text in messages.
 TransferPreset parse_transfer_preset(const std::string& text, const std::string& name, const std::string& origin);
 
-/// The preset, scaled to the intensities of a volume.
+/// Returns the preset's function, scaled to the intensities of a volume.
 TransferFunction transfer_function_of(const TransferPreset& preset, const VolumeStatistics& statistics);
 
 }  // namespace shvr

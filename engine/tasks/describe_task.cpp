@@ -24,7 +24,7 @@ DescribeResult run(const DescribeTask& task, ProgressReporter& reporter)
     const OpeningOptions opening{.measure = {.exact = task.exact,
                                              .progress = reporter.begin("measuring " + task.input.string()),
                                              .gaps = &gaps}};
-    // Opening a session would compute an unneeded transfer function for a bare volume and report it.
+    // For a bare volume, opening a session would compute and report a transfer function that is not needed.
     if (is_bare) {
         if (task.settings.empty()) {
             opened.source = open_volume(task.input);

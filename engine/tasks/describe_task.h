@@ -10,9 +10,9 @@ struct DescribeTask {
 
     std::filesystem::path input;
     bool exact = false;                     ///< measures all voxels, even if a sample or a coarser level would suffice
-    bool allows_incomplete = false;         ///< voxels that cannot be read are left out
+    bool allows_incomplete = false;         ///< leaves out voxels that cannot be read
     std::vector<std::string> settings;      ///< "key=value" settings of a session
-    OptionNames names = OptionNames::keys;  ///< in messages; not an option
+    OptionNames names = OptionNames::keys;  ///< how messages name options; not an option itself
 };
 void fields(Fields& f, DescribeTask& task);
 
@@ -22,7 +22,7 @@ struct DescribeResult {
     int levels = 1;
     int64_t voxels_not_read = 0;
     std::filesystem::path mask;         ///< the session's mask; empty: none
-    std::vector<std::string> warnings;  ///< also those of `info`
+    std::vector<std::string> warnings;  ///< including the warnings of `info`
     std::vector<std::string> losses;    ///< saved data that is missing
 };
 

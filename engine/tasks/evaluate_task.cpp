@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Maps the groups of a file to those they are read as.
+/// Maps each group of a file to the group as which it is read.
 struct GroupMap : std::array<uint8_t, 256> {
     GroupMap() { std::iota(begin(), end(), uint8_t{0}); }
 };
@@ -63,7 +63,7 @@ std::string groups_in_words(const std::map<uint8_t, int64_t>& voxels)
     return text;
 }
 
-/// The voxels of a project's volume are not groups, unless it was imported from a mask and has none of its own.
+/// Refuses a project with a mask. Only a project imported from a mask, without its own mask, has groups as voxels.
 void expect_no_annotated_project(const fs::path& path)
 {
     std::error_code ignored;
@@ -94,7 +94,7 @@ public:
     }
 
 private:
-    /// The space of `volume`, or else of the first trace or mask that states one.
+    /// Returns the space of `volume`, or else the space of the first trace or mask that states one.
     std::optional<TraceSpace> find_space() const
     {
         const auto space_at = [&](const fs::path& path) {
@@ -150,7 +150,7 @@ private:
         return mask_of(space->size, load_mask(path, space->size));
     }
 
-    /// The Dice scores of two bare masks, whose shape may be unknown.
+    /// Computes the Dice scores of two bare masks, whose shape may be unknown.
     Dice dice_of_files(const GroupMap& groups_of_truth)
     {
         const Progress progress = reporter_.begin("comparing masks");
@@ -192,7 +192,7 @@ private:
         take(dice_of(truth, mask));
     }
 
-    /// Warns if the two have groups, but none in common.
+    /// Warns if both masks have groups, but none in common.
     void take(const Dice& dice)
     {
         result_.dice = dice;

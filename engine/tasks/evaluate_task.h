@@ -11,12 +11,12 @@ struct EvaluateTask {
     static constexpr const char* TITLE = "Compare with a reference";
 
     std::filesystem::path truth_mask, mask, truth_trace, trace;
-    std::filesystem::path volume;           ///< the volume of all inputs: size, spacing and unit if no file states them
+    std::filesystem::path volume;           ///< gives all inputs size, spacing and unit, if no file states them
     std::vector<std::string> truth_groups;  ///< "FROM=TO"
     std::optional<double> slack;            ///< slack in the unit of the volume; null: the longest side of a voxel
-    bool allows_incomplete = false;         ///< voxels of masks that cannot be read count as unpainted
-    std::vector<std::string> settings;      ///< "key=value" of a session, for `volume`
-    OptionNames names = OptionNames::keys;  ///< in messages; not an option
+    bool allows_incomplete = false;         ///< counts voxels of masks that cannot be read as unpainted
+    std::vector<std::string> settings;      ///< "key=value" settings of a session, for `volume`
+    OptionNames names = OptionNames::keys;  ///< how messages name options; not an option itself
 };
 void fields(Fields& f, EvaluateTask& task);
 
@@ -27,7 +27,7 @@ struct EvaluateResult {
     std::optional<BallScores> nodes, internodes;
     std::optional<TraceComparison> traces;
     std::optional<double> slack;
-    int64_t voxels_not_read = 0;  ///< of both masks
+    int64_t voxels_not_read = 0;  ///< number in both masks together
     std::vector<std::string> warnings;
 };
 

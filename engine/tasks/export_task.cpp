@@ -15,7 +15,7 @@ namespace shvr {
 
 namespace {
 
-/// PROJECT/labels/mask; empty if not requested.
+/// Returns PROJECT/labels/mask; empty if not requested.
 std::filesystem::path project_labels(const ExportTask& task, const std::filesystem::path& project)
 {
     if (!task.labels) return {};

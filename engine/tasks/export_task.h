@@ -1,9 +1,9 @@
 #pragma once
-// Exports annotation for other programs, in formats given by the file extensions, for `shvr export`.
+// Exports annotation for other programs, for `shvr export`. File extensions determine the formats.
 //
 // The annotation is passed by reference. To export in the background while the user goes on painting, take an
-// `AnnotationSnapshot` on the main thread and export that on another one: bricks of mask and offsets are shared and
-// immutable (sparse_bricks.h), so a snapshot costs the tables of bricks and a copy of the trace (MEASURED.md).
+// `AnnotationSnapshot` on the main thread and export it on another. A snapshot shares the bricks of mask and offsets,
+// which are immutable (sparse_bricks.h), so it costs the tables of bricks and a copy of the trace (MEASURED.md).
 
 #include <functional>
 #include <map>
@@ -27,15 +27,15 @@ struct ExportTask {
 
     // Files to write; empty: not written.
     std::filesystem::path mask, offset, trace, mesh, metrics;
-    bool labels = false;       ///< writes the mask also as labels/mask in the project
+    bool labels = false;       ///< also writes the mask as labels/mask in the project
     bool break_loops = false;  ///< removes loops of the trace, for formats that can only hold trees
     Positions space = Positions::physical;
     std::optional<OmeZarrVersion> version;
 
-    OptionNames names = OptionNames::keys;  ///< in messages; not an option
+    OptionNames names = OptionNames::keys;  ///< how messages name options; not an option itself
 };
 void fields(Fields& f, ExportTask& task);
-/// Existing files that the task would replace.
+/// Returns the existing files that the task would replace.
 std::vector<std::filesystem::path> replaced_files(const ExportTask& task);
 
 /// The exported data, which must not change until `run` returns.
@@ -46,17 +46,17 @@ struct AnnotationView {
     const TraceGraph& trace;
     const Groups& groups;
     std::string volume_hash{};            ///< as Session::volume_hash
-    std::filesystem::path project{};      ///< as it was opened; for `labels`
-    std::filesystem::path volume_path{};  ///< as Session::volume_path, which no output may replace
-    std::filesystem::path trace_path{};   ///< path as in Session::trace_path; for messages if there is no trace
+    std::filesystem::path project{};      ///< path as it was opened; for `labels`
+    std::filesystem::path volume_path{};  ///< as Session::volume_path; no output may replace it
+    std::filesystem::path trace_path{};   ///< path as in Session::trace_path; used in messages if there is no trace
 };
 
-/// An independent copy. Any thread may read it, and destroy it.
+/// An independent copy of the annotation. Any thread may read and destroy it.
 class AnnotationSnapshot {
 public:
     explicit AnnotationSnapshot(const AnnotationView& view);
     AnnotationSnapshot(const AnnotationSnapshot&) = delete;
-    /// Refers to this object.
+    /// Returns a view of this object, which must outlive the view.
     AnnotationView view() const;
 
 private:
@@ -70,20 +70,20 @@ private:
 };
 
 struct ExportResult {
-    std::vector<std::string> written;   ///< paths, in order
-    std::vector<std::string> left_out;  ///< a sentence for each internode that a format could not hold
+    std::vector<std::string> written;   ///< paths of the written files, in order
+    std::vector<std::string> left_out;  ///< a sentence for each internode that a format could not represent
     std::map<int, int64_t> voxels_by_group;
     size_t nodes = 0, internodes = 0;
     std::map<int, double> length_by_group;  ///< in `unit`
     std::string unit;
 };
 
-/// Checks names and folders, and whether the data to be written exists.
+/// Checks names and folders, and whether there is data to write.
 void check(const ExportTask& task);
 void check(const ExportTask& task, const AnnotationView& annotation);
 
-/// Checks, then writes each file atomically; files written
-/// before a failure stay. `wrote` is called after each file.
+/// Checks, then writes each file atomically; files written before a failure stay. Calls `wrote` after each
+/// file.
 ExportResult run(const ExportTask& task, const AnnotationView& annotation, ProgressReporter& reporter,
                  const std::function<void(const ExportResult& so_far)>& wrote = {});
 

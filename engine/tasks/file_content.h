@@ -22,15 +22,15 @@ enum class FileContent {
 };
 struct WhatItIs {
     std::optional<FileContent> content;
-    /// A volume of the open volume's size that does not state whether it is another scan, a mask or offsets; `content`
-    /// is empty then, and the user is asked.
+    /// Whether the file is a volume of the open volume's size that does not state whether it is another scan, a mask or
+    /// offsets. If so, `content` is empty, and the user is asked.
     bool may_be_annotation = false;
-    std::string why_not{};  ///< if the content is none of these: a sentence with the path
+    std::string why_not{};  ///< if the content is unknown: a sentence about it, with the path
 };
 /// `open`: the currently open volume, whose size identifies masks and offsets; null: none.
 WhatItIs what_is(const std::filesystem::path& path, const VolumeInfo* open);
 /// Determines the content of a file that is to be loaded into the open volume: never a volume, session, project or
-/// picture. A volume of another size is refused with both sizes; one of unsigned integers is a mask.
+/// picture. Refuses a volume of another size, stating both sizes; a volume of unsigned integers is a mask.
 WhatItIs what_annotation_is(const std::filesystem::path& path, const VolumeInfo& open);
 
 }  // namespace shvr

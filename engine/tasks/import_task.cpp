@@ -38,8 +38,8 @@ std::unique_ptr<VolumeSource> open_as_told(const ImportTask& task)
     return open_raw(volume, layout);
 }
 
-/// A project that is replaced is removed with all annotations in it, so it must not be or contain the imported file, by
-/// any path.
+/// Refuses a project that is, or contains, the imported file, by any path: replacing the project would remove
+/// everything in it, including all annotations.
 void refuse_own_source(const ImportTask& task)
 {
     std::error_code error;
@@ -49,11 +49,11 @@ void refuse_own_source(const ImportTask& task)
             fail(task.project.string(), ": holds the volume to import, ", task.volume.string(),
                  "; expected another name for the new project, since --overwrite removes this one with its annotation");
         if (path == path.parent_path()) return;
-        error.clear();  // no project is there yet
+        error.clear();  // no project exists there yet
     }
 }
 
-/// Two stages if voxels are reversed, as their range is found first; otherwise one.
+/// Reports progress in two stages if voxels are reversed, since their range is found first; otherwise in one.
 class ImportListener {
 public:
     ImportListener(const ImportTask& task, VoxelType type, ProgressReporter& reporter)
@@ -71,7 +71,7 @@ public:
             reporter_.show(told.fraction, sentence(std::fixed, std::setprecision(rate < 10.0 ? 1 : 0), rate, " MB/s"),
                            told.seconds_left);
         } catch (const Stopped&) {
-            // The import polls for a stop itself, and keeps finished chunks.
+            // The import itself polls for cancellation, and keeps finished chunks.
         }
     }
 
@@ -160,7 +160,7 @@ ImportResult run(const ImportTask& task, ProgressReporter& reporter)
 {
     using Clock = std::chrono::steady_clock;
     check(task);
-    // Replacing a project also deletes its annotation, so no process may be writing it.
+    // Replacing a project also deletes its annotation, so no other process may be writing the annotation.
     const std::filesystem::path session = task.project / "shvr" / "session.json";
     const std::shared_ptr<Hold> hold = task.overwrite ? Hold::take(journal_beside(session), task.program) : nullptr;
     if (hold && !hold->doubtful().empty())

@@ -29,7 +29,7 @@ std::string form_of(const fs::path& path)
     return is_in_project ? ".zarr" : lower_case(plain.extension().string());
 }
 
-/// The folder of an output; a project's "labels" may not exist yet.
+/// Returns the folder of an output. For a project, "labels" may not exist yet.
 fs::path folder_of(const fs::path& path)
 {
     fs::path folder = fs::absolute(path).lexically_normal();
@@ -39,7 +39,7 @@ fs::path folder_of(const fs::path& path)
     return folder.filename() == "labels" && !fs::exists(folder, ignored) ? folder.parent_path() : folder;
 }
 
-/// One byte per voxel, as in masks.
+/// Writes one byte per voxel, as in masks.
 void write_mask(const LabelTask& task, const VolumeSource& labels, const Progress& progress)
 {
     const VolumeInfo& info = labels.info();
@@ -123,7 +123,7 @@ void check(const LabelTask& task)
 
 void check(const LabelTask& task, const VolumeSource& source, const fs::path& volume)
 {
-    // More voxels of a sparse volume can be labelled than can be written.
+    // A sparse volume can have more labelled voxels than can be written to a file.
     constexpr int64_t MAX_VOXELS_WRITTEN = int64_t{1} << 44;
     check(task);
     check_output_is_not(volume, task.output);

@@ -13,19 +13,19 @@ struct LabelTask {
     Connectivity connectivity = Connectivity::faces;
     int64_t fewest_voxels = 1;     ///< smaller components are left out
     int64_t largest = 0;           ///< keeps only the largest N; 0: all
-    std::filesystem::path output;  ///< .zarr, .nrrd, .tif, .mask, or IMAGE/labels/NAME; empty: only counts
+    std::filesystem::path output;  ///< .zarr, .nrrd, .tif, .mask, or IMAGE/labels/NAME; empty: the task only counts
     std::optional<OmeZarrVersion> version;
-    bool allows_incomplete = false;  ///< voxels that cannot be read get the lowest value of their type
+    bool allows_incomplete = false;  ///< gives voxels that cannot be read the lowest value of their type
     int threads = 0;
 
-    OptionNames names = OptionNames::keys;  ///< in messages; not an option
+    OptionNames names = OptionNames::keys;  ///< how messages name options; not an option itself
 };
 void fields(Fields& f, LabelTask& task);
 
 struct LabelResult {
     Components::Counts counts;
     double seconds = 0.0;
-    double label_seconds = 0.0;     ///< without writing
+    double label_seconds = 0.0;     ///< seconds of labelling, without writing
     std::optional<VoxelType> type;  ///< type of the labels; null if none are written
     int64_t voxels_not_read = 0;
     std::vector<std::string> warnings;  ///< about voxels that could not be read
@@ -33,11 +33,11 @@ struct LabelResult {
 
 /// Checks options and names.
 void check(const LabelTask& task);
-/// Also checks whether the output can be written for such a volume: of a sparse volume an OME-Zarr needs only the
-/// stored blocks, whereas all other formats hold every voxel. `volume`: its file, which the output may not replace, or
-/// empty.
+/// Also checks whether the output can be written for such a volume: for a sparse volume, an OME-Zarr needs only the
+/// stored blocks, whereas all other formats contain every voxel. `volume`: the volume's file, which the output may not
+/// replace; may be empty.
 void check(const LabelTask& task, const VolumeSource& source, const std::filesystem::path& volume);
-/// `source`: includes density offsets, if any. `name`: the volume's, for the progress line.
+/// `source`: includes density offsets, if any. `name`: the volume's name, for the progress line.
 LabelResult run(const LabelTask& task, const VolumeSource& source, const std::string& name, ProgressReporter& reporter);
 
 }  // namespace shvr

@@ -1,6 +1,6 @@
 #pragma once
-// The options of tasks as JSON, for scripts and logs: {"mask": "out.tif", "space": "volume"}. Options that are missing
-// keep their defaults; unknown ones are refused by name. Any thread.
+// The options of tasks as JSON, for scripts and logs: {"mask": "out.tif", "space": "volume"}. Missing options keep
+// their defaults; unknown options are refused by name. Any thread.
 
 #include "engine/jobs/progress_reporter.h"
 #include "engine/projects/import_volume.h"
@@ -9,7 +9,7 @@
 
 namespace shvr {
 
-/// How messages refer to an option: by its key, or as on the command line: "break_loops" or "--break-loops".
+/// How messages refer to an option: by its key ("break_loops"), or as on the command line ("--break-loops").
 enum class OptionNames { keys, command_line };
 std::string option_name(OptionNames names, std::string_view key);
 
@@ -23,7 +23,7 @@ Task from_json(std::string_view text, const std::filesystem::path& folder, const
     return task;
 }
 
-/// Writes every option that has a value, on one line. Paths inside `folder` are relative to it.
+/// Writes all options that have a value, on one line. Paths inside `folder` are written relative to it.
 template <class Task>
 std::string to_json(Task task, const std::filesystem::path& folder)
 {
@@ -38,18 +38,18 @@ std::vector<SessionKey> options_of()
     return keys_of([&](Fields& f) { fields(f, task); });
 }
 
-/// "ome_zarr", a version of OME-Zarr or "automatic".
+/// The option "ome_zarr", a version of OME-Zarr or "automatic".
 void version_field(Fields& f, std::optional<OmeZarrVersion>& version, const char* automatic);
 
-/// "allow_incomplete": unreadable data is left out, counted and reported, instead of ending the task.
+/// The option "allow_incomplete": leaves out, counts and reports unreadable data, instead of ending the task.
 void incomplete_field(Fields& f, bool& allows_incomplete, const char* counts_as);
-/// The handling of unreadable data: refused, unless allowed.
+/// Returns the handling of unreadable data: refused, unless `allows_incomplete`.
 Gaps gaps_of(bool allows_incomplete, OptionNames names);
 
-/// "threads": worker threads, 0 ... 1024; 0: one per core.
+/// The option "threads": number of worker threads, 0 ... 1024; 0: one per core.
 void threads_field(Fields& f, int& threads);
 void check_threads(int threads, OptionNames names);
-/// An array of non-empty texts; not written if it is empty.
+/// An array of non-empty texts; an empty array is not written.
 void texts_field(Fields& f, std::string_view name, std::vector<std::string>& texts, const About& about);
 
 }  // namespace shvr

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The extension of a file that may be a slice, in one spelling; empty for others.
+/// Returns the extension of a file that may be a slice, in one spelling per format; empty for other files.
 std::string slice_extension(const fs::path& path)
 {
     const std::string extension = lower_case(path.extension().string());
@@ -25,8 +25,8 @@ std::string slice_extension(const fs::path& path)
     return std::ranges::find(SLICES, extension) != std::end(SLICES) ? extension : std::string();
 }
 
-/// Whether `output` lies, or would lie, directly in a folder of slices with its extension. A Zarr image may contain
-/// other images; in other folders each file is a slice.
+/// Whether `output` lies, or would lie, directly in a folder of slices and has their extension. A Zarr image may
+/// contain other images; in any other folder, each file with that extension is a slice.
 bool is_among_slices(const fs::path& folder, const fs::path& output)
 {
     std::error_code ignored;

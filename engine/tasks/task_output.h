@@ -7,19 +7,19 @@
 
 namespace shvr {
 
-/// Throws UsageError, calling the option `option`, if the name has none of `extensions`, and fails if its folder is
-/// missing or not writable. An empty `path` means that nothing is to be written and passes.
+/// Throws UsageError, which names the option as `option`, if the name has none of `extensions`. Fails if the folder is
+/// missing or not writable. Accepts an empty `path`, which means that nothing is to be written.
 void check_output(const std::string& option, const std::filesystem::path& path,
                   const std::vector<std::string>& extensions);
-/// Likewise for a file with any extension.
+/// Checks the folder like check_output, for a file with any extension.
 void check_output_place(const std::filesystem::path& path);
-/// The file to be written for an output that a user names: a symbolic link stays, and its target is written. Removes
-/// temporary files that killed programs have left next to it.
+/// Returns the path to write for an output that a user names: for a symbolic link its target, so that the link stays.
+/// Removes temporary files that killed programs have left next to it.
 std::filesystem::path written_path(const std::filesystem::path& path);
-/// Fails if writing `output` would replace `input`, which is read, or add to it: a file, or one in a folder of slices,
-/// in which a new picture would be read as a slice.
+/// Fails if writing `output` would replace or extend `input`, which the task reads: a file, or a folder of slices, in
+/// which a new picture would be read as a slice.
 void check_output_is_not(const std::filesystem::path& input, const std::filesystem::path& output);
-/// Checks a folder to write files into, or an image that is a folder; it and its parents need not exist yet.
+/// Checks a folder for output files, or an image that is a folder. The folder and its parents need not exist yet.
 void check_output_folder(const std::filesystem::path& path);
 
 }  // namespace shvr

@@ -1,6 +1,6 @@
 #pragma once
-// Where the relevance around a moving probe should be known. The window's mirror and simulations (haptics/replay) ask
-// by the same rule, and neither room includes the other.
+// The region around a moving probe in which relevance should be known. The window's mirror and simulations
+// (haptics/replay) request regions by the same rule, and neither folder includes the other.
 
 #include <algorithm>
 #include <cmath>
@@ -9,18 +9,18 @@
 
 namespace shvr {
 
-/// The probe's ball, and how long an answer takes. Physical units and seconds.
+/// The probe's ball, and the time that an answer takes. Physical units and seconds.
 struct RegionWish {
     glm::dvec3 point{0.0};     ///< the ball's centre
-    double radius = 1.0;       ///< the ball's
-    glm::dvec3 velocity{0.0};  ///< the point's
+    double radius = 1.0;       ///< radius of the ball
+    glm::dvec3 velocity{0.0};  ///< velocity of `point`
     double latency_s = 0.0;    ///< time from requesting a region until it is felt
 
-    /// How far the ball moves until the answer arrives.
+    /// Distance and direction in which the ball moves until the answer arrives.
     glm::dvec3 travel() const { return latency_s * velocity; }
-    /// The middle of the best region whose half sides are `half`: half-way between the ball when the answer to this
-    /// question arrives and when the answer to the next one does, but never so far ahead that the present ball is
-    /// outside.
+    /// Returns the middle of the best region with half sides `half`: half-way between the ball's position when this
+    /// answer arrives and its position when the next answer arrives, but never so far ahead that the present ball would
+    /// lie outside.
     glm::dvec3 region_middle(const glm::dvec3& half) const
     {
         const glm::dvec3 most = glm::max(half - radius, glm::dvec3(0.0));
@@ -28,12 +28,12 @@ struct RegionWish {
     }
 };
 
-/// From asking until the servo feels the answer, in the window at 60 pictures a second: up to 8 ms for the mirror's
-/// turn, then one picture for the pass. Simulations use it.
+/// Time from a request until the servo feels the answer, in the window at 60 pictures a second: up to 8 ms until the
+/// mirror runs, then one picture for the pass. Simulations use this time.
 inline constexpr double WINDOW_LATENCY_S = 0.024;
 
-/// Whether another region is due, where `held` is a place with `covers(centre, radius)` and `margin` is half its side
-/// minus the radius: at rest once half of the margin is used up, in motion before the answer would be late.
+/// Whether another region is due. `held`: current region, with `covers(centre, radius)`. `margin`: half its side minus
+/// the radius. At rest, a region is due once half of the margin is used up; in motion, before the answer would be late.
 template <class Place>
 bool is_region_due(const Place& held, const RegionWish& wish, double margin)
 {

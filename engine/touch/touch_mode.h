@@ -1,6 +1,6 @@
 #pragma once
-// How touch pulls the probe. The session stores these choices and haptics carries them out; neither room includes the
-// other, so that the enumerations lie below both.
+// How touch pulls the probe. The session stores these choices and haptics implements them; neither folder includes the
+// other, so both include this file.
 
 #include <cstdint>
 
@@ -11,8 +11,8 @@ namespace shvr {
 /// Selects what pulls the probe (haptics/modes.h).
 enum class TouchMode : uint8_t {
     proximity,  ///< the mean of all relevant voxels in the ball
-    surface,    ///< holds where enough of the ball is relevant, until the probe moves towards the camera
-    object,     ///< like proximity, restricted to the object touched first
+    surface,    ///< holds the probe where enough of the ball is relevant, until the probe moves towards the camera
+    object,     ///< like proximity, restricted to the object that was touched first
 };
 inline constexpr Spelling<TouchMode> TOUCH_MODES[] = {
     {TouchMode::proximity, "proximity"}, {TouchMode::surface, "surface"}, {TouchMode::object, "object"}};
@@ -21,7 +21,7 @@ constexpr std::span<const Spelling<TouchMode>> spellings_of(TouchMode)
     return TOUCH_MODES;
 }
 
-/// Selects how the proxy follows from the relevant voxels in the ball (haptics/proxy.h).
+/// Selects how the proxy is computed from the relevant voxels in the ball (haptics/proxy.h).
 enum class ProxyLaw : uint8_t { potential, mean, thesis };
 inline constexpr Spelling<ProxyLaw> PROXY_LAWS[] = {
     {ProxyLaw::potential, "potential"}, {ProxyLaw::mean, "mean"}, {ProxyLaw::thesis, "thesis"}};

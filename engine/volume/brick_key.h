@@ -11,7 +11,7 @@ namespace shvr {
 
 struct BrickKey {
     int level = 0;
-    glm::ivec3 brick{0};  ///< bricks of gpu::BRICK_SIZE voxels a side; at most 2^15 along an axis
+    glm::ivec3 brick{0};  ///< position in bricks of gpu::BRICK_SIZE voxels a side; at most 2^15 along an axis
     bool operator==(const BrickKey&) const = default;
 };
 
@@ -23,20 +23,20 @@ struct BrickKeyHash {
     }
 };
 
-/// The brick of the next coarser level that contains it.
+/// Returns the brick of the next coarser level that contains this brick.
 inline BrickKey parent_of(const BrickKey& key)
 {
     return {key.level + 1, key.brick / 2};
 }
 
-/// The voxels of level 0 that it covers, clipped to the volume.
+/// Returns the voxels of level 0 that the brick covers, clipped to the volume.
 inline VoxelBox voxels_of(const BrickKey& key, const Size3& size)
 {
     const int64_t side = int64_t{gpu::BRICK_SIZE} << key.level;
     return {side * Size3(key.brick), glm::min(side * (Size3(key.brick) + int64_t{1}), size)};
 }
 
-/// Calls visit(key) for a brick and the 26 around it, some of which may be outside the volume.
+/// Calls visit(key) for a brick and its 26 neighbours, some of which may lie outside the volume.
 template <class Visit>
 void for_each_around(const BrickKey& key, const Visit& visit)
 {

@@ -14,9 +14,9 @@ namespace shvr {
 namespace {
 
 constexpr int64_t PIECE_BYTES = int64_t{16} << 20;
-/// More blocks are read rather than listed.
+/// If a volume has more blocks, they are not listed; all slices are read.
 constexpr int64_t MAX_BLOCKS_LISTED = int64_t{1} << 20;
-/// Minutes of hashing; more would seem to hang.
+/// Limits hashing to minutes; longer hashing would seem to hang.
 constexpr double MAX_BYTES_HASHED = 274877906944.0;
 constexpr double CHUNK_VOXELS = double(STORED_CHUNK * STORED_CHUNK * STORED_CHUNK);
 constexpr const char* SLICES = "xxh3-128:";
@@ -96,7 +96,7 @@ HashKind kind_for(const VolumeInfo& info, int64_t varied_chunks)
 
 namespace {
 
-/// Pieces of rows of one or more slices, so that a piece is small however long the rows are.
+/// Hashes slices in pieces of rows of one or more slices, so that a piece is small however long the rows are.
 void hash_slab(const VolumeSource& source, int64_t lower, int64_t upper, std::vector<SliceHash>& hashes)
 {
     const Size3 size = source.info().size;
@@ -118,7 +118,7 @@ void hash_slab(const VolumeSource& source, int64_t lower, int64_t upper, std::ve
     for (SliceHasher& hasher : hashers) hashes.push_back(hasher.finish());
 }
 
-/// Whether something may be stored in a slice.
+/// Returns for each slice whether something may be stored in it.
 std::vector<bool> stored_slices(const VolumeSource& source)
 {
     const Size3 size = source.info().size;
@@ -135,7 +135,7 @@ std::vector<bool> stored_slices(const VolumeSource& source)
 std::string hash_in_slices(const VolumeSource& source, const std::vector<bool>& is_stored)
 {
     const Size3 size = source.info().size;
-    const int64_t step = std::min(size.z, source.block().z);  // whole blocks, so that nothing is decoded twice
+    const int64_t step = std::min(size.z, source.block().z);  // whole blocks, so that no block is decoded twice
     std::vector<SliceHash> hashes;
     std::vector<SliceHash> empty;
     for (int64_t z = 0; z < size.z; z += step) {
@@ -153,7 +153,7 @@ std::string hash_in_slices(const VolumeSource& source, const std::vector<bool>& 
 
 // ---- In chunks ------------------------------------------------------------------------------------------------------
 
-/// Null if the voxels that must be read exceed MAX_BYTES_HASHED.
+/// Returns null if the voxels that must be read exceed MAX_BYTES_HASHED.
 std::optional<std::string> hash_in_chunks(const VolumeSource& source)
 {
     const VolumeInfo& info = source.info();
@@ -192,7 +192,7 @@ void ChunkHasher::add(const Size3& chunk, const std::byte* voxels, size_t row_by
         for (int64_t y = 0; y < extent.y; ++y) {
             const std::byte* const row = voxels + size_t(z) * slice_bytes + size_t(y) * row_bytes;
             hasher.add({row, length});
-            // A row that repeats its first voxel, which is the chunk's, equals itself shifted by one voxel.
+            // If all voxels of a row equal the chunk's first voxel, the row equals itself shifted by one voxel.
             const bool is_uniform = std::memcmp(row, voxels, voxel_bytes) == 0 &&
                                     std::memcmp(row, row + voxel_bytes, length - voxel_bytes) == 0;
             if (!is_uniform) digest.is_varied = 1;
@@ -218,7 +218,7 @@ std::string ChunkHasher::hash(std::span<const std::byte> rest) const
     const auto put = [&](const auto& value) { hasher.add(std::as_bytes(std::span(&value, 1))); };
     put(size_);
     put(uint64_t(type_));
-    Digest run{.chunk = 0, .is_varied = 0, .bytes = {}};  // its member `chunk` is the number of chunks
+    Digest run{.chunk = 0, .is_varied = 0, .bytes = {}};  // here, `chunk` is the number of chunks
     const auto add = [&](const Digest& digest, uint64_t count) {
         if (digest.is_varied != run.is_varied || digest.bytes != run.bytes) {
             if (run.chunk > 0) put(run);

@@ -1,12 +1,12 @@
 #pragma once
 // Identifies the voxels of a volume independently of its file. Detects changes and mistakes, not forgery. There are two
-// kinds of hashes, and which one a volume has depends on its voxels alone (kind_for):
+// kinds of hashes; the voxels alone determine the kind that a volume has (kind_for):
 //
 // - "xxh3-128:" and 32 hexadecimal digits: XXH3-128 of every slice along z (voxels x fastest, then y, little-endian),
 //   then XXH3-128 of those hashes in order, each in its canonical form.
-// - "xxh3-128-chunks:" and 32 hexadecimal digits, which costs what is not uniform: XXH3-128 of the size (x, y, z as
-//   int64), the number of the type and runs of equal chunks of 64^3 voxels, x fastest: their number, whether their
-//   voxels differ (both uint64), and 16 bytes: the one voxel, and zeros; or XXH3-128 of those inside the volume.
+// - "xxh3-128-chunks:" and 32 hexadecimal digits, cheap where chunks are uniform: XXH3-128 of the size (x, y, z as
+//   int64), the number of the type, and runs of equal chunks of 64^3 voxels, x fastest. A run: its length, whether its
+//   voxels differ (both uint64), and 16 bytes: the one voxel and zeros, or XXH3-128 of the voxels inside the volume.
 
 #include <array>
 #include <memory>
@@ -22,7 +22,7 @@ namespace shvr {
 
 using SliceHash = std::array<std::byte, 16>;
 
-/// The hash of one slice whose rows arrive in order, in pieces. One thread at a time.
+/// Computes the hash of one slice, whose rows arrive in order, in pieces. One thread at a time.
 class SliceHasher {
 public:
     SliceHasher();
@@ -30,7 +30,7 @@ public:
     SliceHasher(SliceHasher&&) noexcept;
 
     void add(std::span<const std::byte> voxels);
-    /// The hash of the rows added so far; the next slice can then begin.
+    /// Returns the hash of the rows added so far, and starts the next slice.
     SliceHash finish();
 
 private:
@@ -41,23 +41,23 @@ private:
 std::string content_hash(std::span<const SliceHash> slices);
 
 enum class HashKind { slices, chunks };
-/// By its prefix; null if it is no such hash.
+/// Returns the kind, from the hash's prefix; null if the text is no such hash.
 std::optional<HashKind> kind_of(std::string_view hash);
-/// Volumes of up to this many voxels are hashed in slices, as they are when they are measured.
+/// Volumes of up to this many voxels are hashed in slices, which happens while they are measured.
 inline constexpr int64_t MAX_VOXELS_IN_SLICES = MAX_VOXELS_EXACT;
-/// The kind of a volume: chunks, if it is larger than that, and the voxels of at most an eighth of its chunks differ.
+/// The kind of a volume: chunks if it exceeds that limit and at most an eighth of its chunks has differing voxels.
 HashKind kind_for(const VolumeInfo& info, int64_t varied_chunks);
 
-/// Collects what chunks contribute to a hash in chunks, in any order. Any thread may add.
+/// Collects the contributions of chunks to a hash in chunks, in any order. Any thread may add.
 class ChunkHasher {
 public:
     explicit ChunkHasher(const VolumeInfo& info);
 
-    /// `voxels`: the first of the chunk; rows and slices lie `row_bytes` and `slice_bytes` apart.
+    /// `voxels`: first voxel of the chunk; its rows and slices lie `row_bytes` and `slice_bytes` apart.
     void add(const Size3& chunk, const std::byte* voxels, size_t row_bytes, size_t slice_bytes);
-    /// The number of chunks whose voxels differ.
+    /// Returns the number of chunks whose voxels are not all equal.
     int64_t varied() const;
-    /// `rest`: the voxel of which all chunks that were not added consist.
+    /// `rest`: the value of all voxels in all chunks that were not added.
     std::string hash(std::span<const std::byte> rest) const;
 
     struct Digest {
@@ -74,17 +74,17 @@ private:
     std::vector<Digest> digests_;
 };
 
-/// Hashes level 0 in slices. Where nothing is stored along whole slices, they cost one hash. Any thread may call it.
+/// Hashes level 0 in slices. Slices in which nothing is stored are equal, and hashed only once. Any thread may call it.
 std::string content_hash(const VolumeSource& source);
-/// The same in a given kind. Null if that would go through more than 2^38 bytes.
+/// Computes the hash of the given kind. Null if that would read more than 2^38 bytes.
 std::optional<std::string> content_hash(const VolumeSource& source, HashKind kind);
-/// Whether two hashes name the same voxels; `known` is that of `source`. One of another kind is compared with the
-/// source's in that kind, which reads it; null: no source, so that they count as different.
+/// Whether two hashes name the same voxels; `known` is the hash of `source`. If `stated` is of another kind, reads the
+/// source to compute that kind. If `source` is null, hashes of different kinds count as different.
 bool is_same_content(const std::string& stated, const std::string& known, const VolumeSource* source);
 
-/// Forwards to another source, which must outlive it, and hashes the voxels that `read` returns of level 0. Callers
-/// must read whole rows, each once and in order, one or more slices a call. `content_hash` does so, and so does
-/// `measure` when it reads the whole volume. One thread at a time.
+/// Forwards to another source, which must outlive this object, and hashes the voxels of level 0 that `read` returns.
+/// Callers must read whole rows, each once and in order, one or more slices per call. `content_hash` does so, and so
+/// does `measure` when it reads the whole volume. One thread at a time.
 class HashedSource final : public VolumeSource {
 public:
     explicit HashedSource(const VolumeSource& source);
@@ -100,7 +100,7 @@ public:
         return source_.stored_blocks(level, most);
     }
     std::optional<VolumeStatistics> statistics() const override { return source_.statistics(); }
-    /// Empty unless all slices have been read. Later reads are not hashed.
+    /// Returns the hash; empty unless all slices have been read. Later reads are not hashed.
     std::string hash() const;
 
 private:
@@ -108,7 +108,7 @@ private:
     mutable std::vector<SliceHasher> hashers_;  ///< one per slice being read
     mutable std::vector<SliceHash> slices_;     ///< hashes of the completed slices
     mutable int64_t rows_ = 0;                  ///< rows read of the current slices
-    mutable bool is_out_of_order_ = false;      ///< the reads are not hashed any further
+    mutable bool is_out_of_order_ = false;      ///< if true, further reads are not hashed
 };
 
 }  // namespace shvr

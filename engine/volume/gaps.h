@@ -1,6 +1,6 @@
 #pragma once
-// Handles volumes with unreadable parts, such as a truncated chunk: the work either ends with a message, or continues
-// without that part, counts it, and reports it.
+// Handles volumes with unreadable parts, such as a truncated chunk. The work either ends with a message, or continues
+// without the unreadable part, counts it, and reports it.
 
 #include <atomic>
 #include <functional>
@@ -12,7 +12,7 @@
 
 namespace shvr {
 
-/// The unreadable parts of one volume. Each block counts once, however often it is tried. Any thread.
+/// The unreadable parts of one volume. Each block counts once, however often reading it is tried. Any thread.
 class Gaps {
 public:
     /// `refused_with`: advice for the user, added to the error with which a gap ends the work; empty: work continues.
@@ -26,7 +26,7 @@ public:
     /// Returns whether `expect_none` has thrown an error with the reason and the advice.
     bool has_refused() const { return has_refused_; }
     int64_t voxels() const;
-    /// A message stating how much is missing, and the first reason; empty if nothing is.
+    /// Returns a message with the number of missing voxels and the first reason; empty if none is missing.
     std::string in_words() const;
 
 private:
@@ -38,15 +38,15 @@ private:
     std::string first_reason_;
 };
 
-/// Reads a box of level 0 into `voxels`, and passes on every readable part: all of it, or else blocks of the file, or
-/// slices if it has none. The rest is added to `gaps`; without these the first failure is thrown. `Stopped` is always
-/// thrown.
+/// Reads a box of level 0 into `voxels`, and passes on every readable part: the whole box, or else blocks of the file,
+/// or slices if it has no blocks. Adds unreadable parts to `gaps`; without `gaps`, throws the first failure. Always
+/// throws `Stopped`.
 using TakePart = std::function<void(const VoxelBox& part, std::span<const std::byte> voxels)>;
 void read_parts(const VolumeSource& source, const VoxelBox& box, std::span<std::byte> voxels, Gaps* gaps,
                 const TakePart& take);
 
 /// A volume in which unreadable voxels have the lowest value of their type, or NaN. Both arguments must outlive it. If
-/// there are several levels, reads of single bricks fail instead, because such callers know better what to show in
+/// there are several levels, reads of single bricks fail instead, because their callers know better what to show in
 /// place of a missing brick.
 class GapSource final : public VolumeSource {
 public:

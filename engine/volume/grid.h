@@ -1,5 +1,5 @@
 #pragma once
-// Arithmetic on grids of voxels, bricks and chunks, x fastest, and on boxes of voxels. Pure; any thread.
+// Arithmetic on grids of voxels, bricks and chunks, x fastest, and on boxes of voxels. Pure functions; any thread.
 
 #include "engine/volume/volume.h"
 #include "shaders/bricks.h"
@@ -27,13 +27,13 @@ inline Size3 position_of(int64_t index, const Size3& counts)
     return {index % counts.x, index / counts.x % counts.y, index / (counts.x * counts.y)};
 }
 
-/// The smallest box that contains both.
+/// Returns the smallest box that contains both boxes.
 inline VoxelBox united(const VoxelBox& a, const VoxelBox& b)
 {
     return {glm::min(a.lower, b.lower), glm::max(a.upper, b.upper)};
 }
 
-/// Whether they share a voxel.
+/// Whether the boxes share a voxel.
 inline bool meet(const VoxelBox& a, const VoxelBox& b)
 {
     return glm::all(glm::lessThan(a.lower, b.upper)) && glm::all(glm::lessThan(b.lower, a.upper));

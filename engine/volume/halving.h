@@ -1,8 +1,8 @@
 #pragma once
 // How a coarser level is computed from a finer one, both in projects and in memory.
 //
-// A voxel is the mean of the up to 2^3 voxels below it: only those inside the volume count, and only finite ones; NaN
-// if none is left. Sums are exact for integers and computed in double for floats, along y and z before x. Integers are
+// A voxel is the mean of the up to 2^3 voxels below it. Only finite voxels inside the volume count; if there are none,
+// the mean is NaN. Sums are exact for integers and computed in double for floats, along y and z before x. Integers are
 // rounded to nearest, ties to even; floats are rounded once, to their type. Any thread may call these.
 
 #include <algorithm>
@@ -33,7 +33,7 @@ struct HalvingRows {
 
 namespace halving {
 
-/// The mean of COUNT (1, 2, 4 or 8) voxels.
+/// Returns the mean of COUNT (1, 2, 4 or 8) voxels from their sum.
 template <int COUNT, class T>
 T mean_of(HalvingSum<T> sum)
 {
@@ -49,7 +49,7 @@ T mean_of(HalvingSum<T> sum)
     }
 }
 
-/// Voxels `begin` to `end` of every row, leaving out non-finite ones.
+/// Returns the mean of voxels `begin` to `end` of every row, leaving out non-finite voxels.
 template <class T>
 T mean_of_finite(const HalvingRows<T>& rows, int64_t begin, int64_t end)
 {
@@ -66,7 +66,7 @@ T mean_of_finite(const HalvingRows<T>& rows, int64_t begin, int64_t end)
     return count > 0 ? static_cast<T>((sum[0] + sum[1]) / count) : std::numeric_limits<T>::quiet_NaN();
 }
 
-/// Nearly all time is spent in loops of this length, which is known at compile time.
+/// Length of the loops in which nearly all time is spent, known at compile time.
 inline constexpr int64_t BLOCK = 64;
 
 template <int ROWS, class T, class Length>
@@ -86,7 +86,7 @@ void halve_block(const HalvingRows<T>& rows, int64_t at, Length length, T* halve
         halved[length / 2] = mean_of<ROWS, T>(alone);
     }
     if constexpr (std::is_floating_point_v<T>) {
-        // A non-finite value makes the mean non-finite.
+        // A non-finite voxel makes the mean non-finite; such means are computed again from finite voxels.
         for (int64_t x = 0; x < length; x += 2) {
             if (std::isfinite(halved[x / 2])) continue;
             halved[x / 2] = mean_of_finite(rows, at + x, at + std::min<int64_t>(x + 2, length));
@@ -106,7 +106,7 @@ void halve(const HalvingRows<T>& rows, int64_t length, T* halved)
 
 }  // namespace halving
 
-/// The most frequent label. Ties: labels other than 0 (background) win, then the smallest label.
+/// Returns the most frequent label. Ties go to labels other than 0 (background), then to the smallest label.
 template <class T>
 void halve_labels(const HalvingRows<T>& rows, int64_t length, T* halved)
 {
@@ -129,7 +129,7 @@ void halve_labels(const HalvingRows<T>& rows, int64_t length, T* halved)
     }
 }
 
-/// Makes (length + 1) / 2 voxels from rows of `length` voxels.
+/// Makes (length + 1) / 2 voxels of the coarser level from rows of `length` voxels.
 template <class T>
 void halve_rows(const HalvingRows<T>& rows, int64_t length, T* halved, Halving how = Halving::mean)
 {

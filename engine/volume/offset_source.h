@@ -2,11 +2,11 @@
 // A volume with density offsets: another source's values plus an offset per voxel, clamped to the range of the type.
 // Voxels without an offset are returned bit for bit.
 //
-// Coarser levels: the base source's value plus the offsets, which are halved like levels (halving.h). This equals the
-// mean of the sums except for one rounding and for clamped voxels.
+// Voxels of coarser levels: the base source's value plus the halved offsets (halving.h). The result equals the mean of
+// the offset voxels below, except for one rounding and for clamped voxels.
 //
 // Threads: one thread sets offsets while any thread reads. Bricks of offsets are immutable: a reader fetches the bricks
-// it needs under a lock and adds them without it, so each read sees a consistent snapshot of the offsets.
+// it needs under a lock and adds them without the lock, so each read sees a consistent snapshot of the offsets.
 
 #include <atomic>
 #include <shared_mutex>
@@ -22,12 +22,12 @@ class OffsetSource final : public VolumeSource {
 public:
     explicit OffsetSource(std::shared_ptr<const VolumeSource> base);
 
-    /// Replaces the offsets of a brick of level 0; null: none. Offsets outside the volume must be 0.
+    /// Replaces the offsets of a brick of level 0; null removes them. Offsets outside the volume must be 0.
     struct Brick {
         glm::ivec3 brick{0};
         std::shared_ptr<const OffsetBrick> offsets;
     };
-    /// Replaces the offsets of these bricks and updates coarser levels, each at an eighth of the cost of the finer.
+    /// Replaces the offsets of these bricks and updates coarser levels; each costs an eighth of the next finer level.
     void set(std::span<const Brick> bricks);
     /// Whether no voxel has an offset.
     bool empty() const { return !any_.load(std::memory_order_acquire); }
@@ -36,9 +36,9 @@ public:
     Size3 block() const override { return base_->block(); }
     int levels() const override { return base_->levels(); }
     void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const override;
-    /// The range of the base source, widened by the offsets there and in neighbouring bricks.
+    /// Returns the range of the base source, widened by the offsets of this brick and of neighbouring bricks.
     std::optional<ValueRange> brick_range(int level, const Size3& brick) const override;
-    /// The blocks of the base source, and all that hold an offset.
+    /// Returns the blocks of the base source and all blocks that hold an offset.
     std::optional<StoredBlocks> stored_blocks(int level, int64_t most) const override;
     /// Unknown for volumes with offsets.
     std::optional<VolumeStatistics> statistics() const override;
@@ -46,7 +46,7 @@ public:
 private:
     struct Entry {
         std::shared_ptr<const OffsetBrick> offsets;  ///< null: all offsets of this level are 0
-        ValueRange range;                            ///< range of 0 and of all level 0 offsets below this brick
+        ValueRange range;                            ///< range of 0 and all level 0 offsets below this brick
     };
     using Entries = std::unordered_map<BrickKey, Entry, BrickKeyHash>;
     const Entry* find(const Entries& changed, const BrickKey& key) const;

@@ -9,12 +9,12 @@
 namespace shvr {
 namespace {
 
-/// With fewer voxels than that (a cube of three), no values are usual enough to call others outliers.
+/// With fewer voxels than this (a cube of three), no value is common enough to call the others outliers.
 constexpr int64_t MIN_VOXELS = 27;
 
 /// Outliers at one end are at most a fraction of all voxels, or at most `few`, and lie beyond a gap of `gap` times the
-/// range of all others. Rare bright structures in a scan, such as metal or one vessel, have more voxels than that, or
-/// blend into the rest through partial-volume voxels, so they leave no gap.
+/// range of the other values. Rare bright structures in a scan, such as metal or one vessel, have more voxels than
+/// this, or blend into the rest through partial-volume voxels, so they leave no gap.
 struct Rule {
     double share;
     int64_t few;
@@ -27,40 +27,40 @@ struct Rule {
         return std::clamp(int64_t(share * double(voxels)), some, MAX_OUTLIERS);
     }
 };
-/// Rule for fill values and broken voxels: with them, all others would share fewer than 66 of the 65536 codes.
+/// Rule for fill values and broken voxels: with them, the other values would share fewer than 66 of the 65536 codes.
 constexpr Rule FAR{1e-4, 8, 1000.0};
 /// Hot pixels.
 constexpr Rule NEAR{1e-5, 1, 4.0};
 
-/// Hot and dead pixels at any distance are as few, but told by the spacing of the values next to them. In the tail of a
-/// distribution the gap between the k-th and the next value is about unit / k; one of ten units at the first is chance
-/// in one of 20,000 scans. The gap must also exceed what separates the outermost values, or labels, from each other,
-/// and be large enough to matter.
+/// Hot and dead pixels at any distance are equally few, but are recognised by the spacing of the values next to them.
+/// In the tail of a distribution the gap between the k-th and the next value is about unit / k; a first gap of ten
+/// units occurs by chance in one of 20,000 scans. The gap must also exceed the distances between the outermost values,
+/// or labels, and be large enough to matter.
 constexpr int64_t TAIL = 32;  ///< values that tell the unit
 constexpr int64_t MIN_VOXELS_OF_TAIL = 4 * TAIL;
 constexpr double MIN_UNITS = 10.0, MIN_STEPS = 2.0, MIN_SHARE = 0.01;
 constexpr int STEPS = 8;
 
-/// Fewer distinct values are labels or a few materials, none of which is an outlier.
+/// With fewer distinct values than this, the values are labels or a few materials, and none of them is an outlier.
 constexpr size_t MIN_VALUES_AT_END = 12;
 
-/// Fill values lie behind a gap of that many times the range of all others; smallest and largest values of a type,
-/// which are unlikely to be measured, behind a smaller one. 0 is air or background, not a fill value: scans are
-/// masked by it, and a synthetic one has objects of nearly one intensity in it. Where every value has its own code,
-/// only negative values and those of the type's ends qualify, because positive ones may be labels, and nothing but the
-/// automatic settings gain. Saturated voxels blend into the rest through partial volumes.
+/// Fill values lie behind a gap of this many times the range of all other values. For the smallest and largest values
+/// of a type, which are unlikely to be measured, a smaller gap suffices. 0 is air or background, not a fill value:
+/// scans are masked with 0, and a synthetic scan has objects of nearly one intensity in it. Where every value has its
+/// own code, only negative values and the type's extremes qualify: positive values may be labels, and excluding them
+/// would improve only the automatic settings. Saturated voxels blend into the rest through partial volumes.
 constexpr double MIN_GAP_OF_FILL = 10.0, MIN_GAP_OF_EXTREME = 2.0;
 constexpr size_t MAX_FILL_VALUES = 3;  ///< at one end
 constexpr int64_t MIN_VOXELS_OF_FILL = 2;
 constexpr double FLOAT_EXTREME = 1e30;  ///< floats this large are markers
 
-/// Half of a - b, which is finite for all finite a and b.
+/// Returns half of a - b, which is finite for all finite a and b.
 double half_distance(double a, double b)
 {
     return 0.5 * a - 0.5 * b;
 }
 
-/// Ends of the type, for types so wide that no scanner reaches them by chance.
+/// Returns whether the value is the smallest or largest of a type so wide that no scanner reaches it by chance.
 bool is_extreme(VoxelType type, double value)
 {
     switch (type) {
@@ -78,12 +78,12 @@ bool is_extreme(VoxelType type, double value)
 
 }  // namespace
 
-/// One end of the values; those of the lower end are negative, so that it descends, too.
+/// One end of the values. Values of the lower end are negated, so that both ends descend.
 class OutlierFinder::End {
 public:
     explicit End(const Largest& values) : values_(values.sorted()) {}
 
-    /// The value of the voxel at that place, counted from the outermost that is not excluded.
+    /// Returns the value of the voxel at that index, counted from the outermost voxel that is not excluded.
     double at(int64_t place) const
     {
         size_t i = first_;
@@ -102,7 +102,7 @@ public:
     }
     const std::vector<ValueCount>& fill() const { return fill_; }
 
-    /// The k-th different value; minus infinity if there are fewer.
+    /// Returns the k-th distinct value; minus infinity if there are fewer.
     double different(size_t k) const
     {
         return first_ + k < values_.size() ? values_[first_ + k].value : -std::numeric_limits<double>::infinity();
@@ -117,7 +117,7 @@ public:
         });
     }
 
-    /// Excludes values that are far from the others, compared with the spacing of those.
+    /// Excludes values whose distance from the others is large compared with the spacing of the others.
     void exclude_isolated(int64_t limit, double range)
     {
         exclude_beyond(limit, [&](size_t last, int64_t voxels) {
@@ -129,7 +129,7 @@ public:
         });
     }
 
-    /// Excludes the outermost values, up to MAX_FILL_VALUES, if all `are_fill` (value, gap in units of the range).
+    /// Excludes the outermost values (at most MAX_FILL_VALUES) if `are_fill`(value, gap in units of the range) for all.
     template <class AreFill>
     bool exclude_fill(double other_end, const AreFill& are_fill)
     {
@@ -151,7 +151,7 @@ public:
     }
 
 private:
-    /// Excludes everything up to the innermost value that `is_last(index, voxels up to it)`, at most `limit` voxels.
+    /// Excludes values up to the innermost one with `is_last(index, voxels up to it)`, at most `limit` voxels.
     template <class IsLast>
     void exclude_beyond(int64_t limit, const IsLast& is_last)
     {
@@ -166,7 +166,7 @@ private:
         }
     }
 
-    /// The largest distance between neighbours of the next different values.
+    /// Returns the largest distance between neighbours among the next distinct values.
     double largest_step(size_t from) const
     {
         double largest = 0.0;
@@ -252,7 +252,7 @@ void OutlierFinder::exclude_strays(End& upper, End& lower, bool has_exact_codes)
         if (!is_continuous && (has_exact_codes || rule.gap == NEAR.gap)) continue;
         const int64_t limit = rule.limit(count_);
         const double upper_end = upper.at(limit), lower_end = -lower.at(limit);
-        // If nearly all voxels are equal, the few others are the interesting ones.
+        // If nearly all voxels have the same value, the few other voxels are the interesting ones.
         if (!(lower_end < upper_end)) continue;
         upper.exclude(rule, limit, lower_end);
         lower.exclude(rule, limit, -upper_end);
@@ -267,7 +267,7 @@ bool OutlierFinder::exclude_fill(End& upper, End& lower, bool has_exact_codes) c
                 return is_fill_like(sign * value, has_exact_codes, gap);
             }))
             return false;
-        // Everything else must be more than a few labels.
+        // The remaining values must be more than a few labels.
         if (!(without.different(MIN_VALUES_AT_END - 1) > -other.different(MIN_VALUES_AT_END - 1))) return false;
         if (count_ - without.fill_voxels() - other.fill_voxels() < MIN_VOXELS) return false;
         end = std::move(without);

@@ -1,5 +1,5 @@
 #pragma once
-// Finds the few values of a volume that are so far from all others that a range including them would show nothing else.
+// Finds the few values of a volume so far from all others that a range that includes them would show nothing else.
 
 #include <cstdint>
 #include <limits>
@@ -11,14 +11,14 @@
 namespace shvr {
 
 /// Collects the largest and the smallest values, and finds among them
-/// - fill values: single values of any share at an end of the range, behind a gap that is wide for all others;
+/// - fill values: single values, however frequent, at an end of the range, behind a gap that is wide for all others;
 /// - outliers: few values beyond a gap that is wide compared with the range of all others, or with the spacing of the
-///   values next to it.
+///   values next to the gap.
 /// outliers.cpp has the limits. One thread.
 class OutlierFinder {
 public:
-    /// `voxels`: upper bound of the number of values that will be added. `type`: few different integers may be labels.
-    /// `nodata`: the only fill value, if it is known (VolumeInfo::nodata).
+    /// `voxels`: upper bound of the number of values that will be added. `type`: integers with few distinct values may
+    /// be labels. `nodata`: the only fill value, if it is known (VolumeInfo::nodata).
     explicit OutlierFinder(int64_t voxels, VoxelType type = VoxelType::float64, std::optional<double> nodata = {});
 
     /// Adds a finite value that occurs `times` times.
@@ -34,14 +34,14 @@ public:
     }
 
     struct Bulk {
-        ValueRange range;      ///< the exact range of all values except fill values and outliers
+        ValueRange range;      ///< exact range of all values except fill values and outliers
         int64_t outliers = 0;  ///< those that are no fill values
         std::vector<ValueCount> fill{};
     };
     /// Null if there are neither outliers nor fill values.
     std::optional<Bulk> bulk();
 
-    /// The largest values, each once, with its count.
+    /// Keeps the largest values, each once, with its count.
     class Largest {
     public:
         explicit Largest(size_t kept) : kept_(kept) {}
@@ -65,7 +65,7 @@ public:
         size_t kept_;
         double least_ = -std::numeric_limits<double>::infinity();  ///< smaller ones are dropped
         ValueCount most_{-std::numeric_limits<double>::infinity(), 0};
-        std::vector<ValueCount> others_;  ///< candidates: at most twice as many as are kept, in any order
+        std::vector<ValueCount> others_;  ///< candidates: up to twice the number that is kept, in any order
     };
 
 private:

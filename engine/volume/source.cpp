@@ -18,7 +18,7 @@ namespace {
 
 constexpr size_t BINS = 256;
 
-/// What is measured, and the receivers of progress and gaps. Several passes may go over the same walk.
+/// The volume to measure, and the receivers of progress and gaps. Several passes may repeat one walk.
 struct Measured {
     const VolumeSource& source;
     const VoxelWalk& walk;
@@ -26,8 +26,8 @@ struct Measured {
     Gaps* gaps;
 };
 
-/// Calls `take(span<const T>, times)` for every box of the walk, or its readable parts: each voxel of the span occurs
-/// `times` times.
+/// Calls `take(span<const T>, times)` for every box of the walk, or for its readable parts: each voxel of the span
+/// occurs `times` times in the volume.
 template <class T, class Take>
 void for_each_slab(const Measured& measured, double lower, double upper, const Take& take)
 {
@@ -50,14 +50,14 @@ void for_each_slab(const Measured& measured, double lower, double upper, const T
 
 size_t bin_of(const ValueRange& range, double value)
 {
-    // Halved, because doubles may lie so far apart that their difference is infinite.
+    // Both terms are halved, because doubles may lie so far apart that their difference is infinite.
     const double extent = 0.5 * range.upper - 0.5 * range.lower;
     if (!(extent > 0.0)) return 0;
     const double place = (0.5 * std::clamp(value, range.lower, range.upper) - 0.5 * range.lower) / extent;
     return std::min(BINS - 1, size_t(place * double{BINS}));
 }
 
-/// Integers of 8 and 16 bits have few enough values to count each; everything else follows from the counts.
+/// Integers of 8 and 16 bits have few enough values to count each value; the statistics follow from the counts.
 template <class T>
 VolumeStatistics measure_integers(const Measured& measured)
 {
@@ -86,7 +86,7 @@ VolumeStatistics measure_integers(const Measured& measured)
 
 // ---- Types with too many values to count each -----------------------------------------------------------------------
 
-/// Calls `take(double, times)` for every finite voxel; returns the number of other voxels.
+/// Calls `take(double, times)` for every finite voxel; returns the number of voxels that are not finite.
 template <class T, class Take>
 int64_t for_each_finite(const Measured& measured, double lower, double upper, const Take& take)
 {
@@ -230,7 +230,7 @@ double voxels_of_level(const VolumeSource& source, int level)
     return double(size.x) * double(size.y) * double(size.z);
 }
 
-/// The stored blocks of a level of a large volume; null if all of it is read anyway, or if they exceed `most_voxels`.
+/// Returns the stored blocks of a level of a large volume; null if over `most_voxels`, or if all of it is read anyway.
 std::optional<StoredBlocks> stored_in(const VolumeSource& source, int level, int64_t most_voxels)
 {
     if (voxels_of_level(source, level) <= double(MAX_VOXELS_MEASURED)) return std::nullopt;
@@ -239,7 +239,7 @@ std::optional<StoredBlocks> stored_in(const VolumeSource& source, int level, int
     return source.stored_blocks(level, int64_t(std::clamp(most, 64.0, double(MAX_STORED_BLOCKS))));
 }
 
-/// Measures one level, all of it or its stored blocks.
+/// Measures one level: all of it, or only its stored blocks.
 VolumeStatistics measure_exactly(const VolumeSource& source, std::optional<StoredBlocks> stored,
                                  const MeasureOptions& options)
 {
@@ -323,7 +323,7 @@ VolumeStatistics measure(const VolumeSource& source, const MeasureOptions& optio
 
 namespace {
 
-/// Returns whether outliers have the codes of the nearer end (window_for). Whole extremes are taken for integers.
+/// Returns whether outliers are clamped to the nearer end's code (window_for). Whole extremes imply integers.
 bool are_clamped(const VolumeStatistics& statistics)
 {
     const auto [lower, upper] = statistics.range();

@@ -1,11 +1,11 @@
 #pragma once
 // Sources of voxels. A source has one volume and returns boxes of it in the file's own type; it knows nothing of
 // windows or devices. Readers are functions: a null source means "not my format", an `Error` means "mine, but broken".
-// `open_volume` (open_volume.h) tries them in a fixed order.
+// `open_volume` (open_volume.h) tries the readers in a fixed order.
 //
 // Levels. Level 0 is the volume. A voxel of level l covers 2^l voxels of level 0 along each axis, exactly aligned:
 // voxel i covers [2^l i, 2^l (i + 1)), so position p of level 0 is position p / 2^l of level l. A level has ceil(size /
-// 2^l) voxels along each axis; the last ones may cover fewer. Most files have only level 0.
+// 2^l) voxels along each axis; its last voxels may cover fewer. Most files have only level 0.
 
 #include <filesystem>
 #include <functional>
@@ -18,24 +18,24 @@
 
 namespace shvr {
 
-/// The stored blocks of a level that may be mostly absent, as in a sparse file, so that work on it costs no more than
-/// these.
+/// The stored blocks of a level that may be mostly absent, as in a sparse file. Work on such a level then costs no more
+/// than work on its stored blocks.
 struct StoredBlocks {
     Size3 block{1};                    ///< voxels of a block; block i covers [i * block, (i + 1) * block)
     double fill = 0.0;                 ///< value of every voxel outside all blocks; may be infinite or NaN
-    std::vector<glm::ivec3> blocks{};  ///< each once, sorted by z, then y, then x
+    std::vector<glm::ivec3> blocks{};  ///< listed once each, sorted by z, then y, then x
 };
 
 /// The user's choice for files that hold several volumes. Without a choice, a reader refuses such a file with a message
-/// that lists the choices; readers of formats with one volume ignore this.
+/// that lists the choices; readers of formats with one volume ignore the choice.
 struct OpenOptions {
     std::string channel{};  ///< "red", "green", "blue", "alpha", a channel's name in the file, or its number from 1
-    std::string frame{};    ///< a number from 1, if there are several time points
-    int level = 0;          ///< level of a file with several, 0 the finest; the opened volume starts there (coarser.h)
-    /// Replaces the spacing that the file states, or lacks (engine/formats/restated.h).
+    std::string frame{};    ///< number of the time point, from 1, if there are several
+    int level = 0;          ///< level to open from a file with several, 0 the finest; it becomes level 0 (coarser.h)
+    /// Replaces the spacing that the file states, or provides a missing one (engine/formats/restated.h).
     std::optional<glm::dvec3> spacing{};
     std::string unit{};  ///< empty: the file's
-    /// The value of voxels without data; infinite: no value; null: found by its gap (outliers.h).
+    /// Value of voxels without data; infinite: no value; null: found by its gap (outliers.h).
     std::optional<double> nodata{};
     bool operator==(const OpenOptions&) const = default;
 };
@@ -52,22 +52,22 @@ public:
     /// `info().type`; `voxels` holds exactly the box. Any thread may call it; throws `Error` on read errors.
     virtual void read(const VoxelBox& box, std::span<std::byte> voxels) const = 0;
 
-    /// The block size of level 0 in the file: reading boxes of whole blocks, counted from voxel 0, decodes nothing
-    /// twice. 1, 1, 1: any box is fine.
+    /// The block size of level 0 in the file. Reading boxes of whole blocks, counted from voxel 0, decodes every block
+    /// only once. 1, 1, 1: any box is equally efficient.
     virtual Size3 block() const { return Size3(1); }
 
     /// The number of levels, at least 1.
     virtual int levels() const { return 1; }
     /// Like `read`, for any level.
     virtual void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const;
-    /// The range, known without reading voxels, of the values of level 0 and of all levels up to `level` within brick
-    /// `brick` of that level (gpu::BRICK_SIZE voxels a side, from voxel 0 on) and one voxel of `level` around it. Null
-    /// if the source does not know.
+    /// Returns the range of the values of level 0 and of all levels up to `level`, without reading voxels, within brick
+    /// `brick` of `level` (gpu::BRICK_SIZE voxels a side, counted from voxel 0) and one voxel of `level` around it.
+    /// Null if the source does not know it.
     virtual std::optional<ValueRange> brick_range(int level, const Size3& brick) const;
-    /// The stored blocks of the level, without reading voxels. Null if the source does not know, or if more than `most`
-    /// blocks are stored.
+    /// Returns the stored blocks of the level, without reading voxels. Null if the source does not know them, or if
+    /// more than `most` blocks are stored.
     virtual std::optional<StoredBlocks> stored_blocks(int level, int64_t most) const;
-    /// The statistics of level 0 if the source knows them; `measure` computes them.
+    /// Returns the statistics of level 0 if the source knows them; otherwise `measure` computes them.
     virtual std::optional<VolumeStatistics> statistics() const { return std::nullopt; }
 
 protected:
@@ -80,30 +80,30 @@ private:
 struct MeasureOptions {
     bool exact = false;  ///< measures all voxels of level 0, whatever the cost
     Progress progress{};
-    Gaps* gaps = nullptr;  ///< receives unreadable parts, which are left out (gaps.h); null: failures are thrown
+    Gaps* gaps = nullptr;  ///< receives unreadable parts, which are not measured (gaps.h); null: failures are thrown
 };
-/// Passes over the volume in slabs of bounded size: at most 32 MiB, at least one row. Types of 32 and 64 bits need a
-/// second pass for the histogram, whose range the first one finds, without outliers (outliers.h). A volume without a
-/// finite voxel has minimum = maximum = mean = 0. Statistics that the source knows are not measured.
+/// Measures the volume in slabs of bounded size: at most 32 MiB, at least one row. Types of 32 and 64 bits need a
+/// second pass for the histogram; its range, without outliers (outliers.h), comes from the first pass. A volume without
+/// a finite voxel has minimum = maximum = mean = 0. Statistics that the source knows are not measured.
 ///
-/// Large volumes: if a source knows what it stores, only that is read, and the rest counts as fill values. The level
-/// that is measured (VolumeStatistics::measured_level) is the finest one that has, or stores, at most
+/// Large volumes: if a source knows its stored blocks, only those are read, and all other voxels count as fill values.
+/// The measured level (VolumeStatistics::measured_level) is the finest level that has, or stores, at most
 /// MAX_VOXELS_MEASURED voxels. Without such a level it is the coarsest, or the stored part of level 0, up to
 /// MAX_VOXELS_EXACT; beyond that, everything is estimated from a sample (VolumeStatistics::sampled_voxels): 256 pieces
-/// of about 2^18 voxels, or as much of the stored blocks, spread evenly and always the same.
+/// of about 2^18 voxels, or as many voxels of the stored blocks, evenly spread and always at the same places.
 VolumeStatistics measure(const VolumeSource& source, const MeasureOptions& options = {});
 inline constexpr int64_t MAX_VOXELS_MEASURED = int64_t{1} << 27;
 inline constexpr int64_t MAX_VOXELS_EXACT = int64_t{1} << 30;
-/// Maximum number of stored blocks in practice: 2^42 voxels in blocks of 64^3, listed in 192 MiB.
+/// Maximum number of stored blocks in practice: 2^42 voxels in blocks of 64^3; the list takes 192 MiB.
 inline constexpr int64_t MAX_STORED_BLOCKS = int64_t{1} << 24;
 
-/// Like an exact `measure`, for one level, always by reading its voxels.
+/// Measures one level like an exact `measure`, always by reading the level's voxels.
 VolumeStatistics measure_level(const VolumeSource& source, int level, const MeasureOptions& options = {});
-/// The statistics of integers of 8 or 16 bits; `lowest` + i occurs `counts[i]` times. `nodata`: see VolumeInfo.
+/// Returns the statistics of 8- or 16-bit integers; `lowest` + i occurs `counts[i]` times. `nodata`: see VolumeInfo.
 VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest, std::optional<double> nodata = {});
 
-/// Warnings for the user about the voxels, one sentence each: NaN, infinities, fill values, outliers; whether only a
-/// coarser level or a sample was measured.
+/// Returns warnings about the voxels for the user, one sentence each: about NaN, infinities, fill values and outliers,
+/// and if only a coarser level or a sample was measured.
 std::vector<std::string> warnings_of(const VolumeStatistics& statistics);
 
 /// ceil(size / 2^level).

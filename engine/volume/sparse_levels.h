@@ -1,6 +1,6 @@
 #pragma once
-// Coarser levels of a sparse volume, in memory: only where something is stored below, so that they take a seventh of
-// that. For pyramid_source.cpp.
+// Coarser levels of a sparse volume, in memory. Voxels exist only where something is stored below, so that the levels
+// take a seventh of the bytes of the stored part. For pyramid_source.cpp.
 
 #include <limits>
 #include <unordered_map>
@@ -12,7 +12,7 @@
 
 namespace shvr {
 
-/// Leaves the source's own levels unchanged; coarser ones are computed from its coarsest.
+/// Leaves the source's own levels unchanged, and computes coarser levels from the source's coarsest.
 class SparseLevels {
 public:
     /// Plans up to `levels` levels, including the source's own; reads nothing. Null if the source cannot list its
@@ -20,14 +20,14 @@ public:
     static std::optional<SparseLevels> plan(const VolumeSource& source, int levels);
 
     uint64_t bytes() const;
-    /// Reads the stored part of the source's coarsest level; the source must be that of `plan`.
+    /// Reads the stored part of the source's coarsest level; pass the source that was passed to `plan`.
     void build(const VolumeSource& source, const Progress& progress);
 
-    /// Reads from a level that is not the source's own.
+    /// Reads from a computed level, which is not one of the source's own.
     void read(int level, const VoxelBox& box, std::span<std::byte> voxels) const;
-    /// Whether nothing is stored in a brick and one voxel around it, nor in any finer level below.
+    /// Returns whether nothing is stored in a brick and one voxel around it, or below it in any finer level.
     bool is_gap(int level, const Size3& brick) const;
-    /// The range of voxels in a gap and of those below it; lower > upper if none is finite.
+    /// Returns the range of voxels in a gap and of the voxels below them; lower > upper if none is finite.
     ValueRange fills() const { return fills_; }
 
 private:
@@ -39,7 +39,7 @@ private:
         std::vector<std::byte> voxels{};
 
         void add(const Size3& tile);
-        /// Adds all tiles that meet a box of voxels.
+        /// Adds all tiles that intersect a box of voxels.
         void add_all_in(const VoxelBox& box);
     };
     const Level& at(int level) const { return levels_[size_t(level - first_)]; }

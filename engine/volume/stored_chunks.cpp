@@ -9,10 +9,10 @@
 namespace shvr {
 namespace {
 
-/// Chunks of MAX_SIDE voxels have 14 bits a side.
+/// Bits per axis of a key. Positions of chunks need 14: a side has at most MAX_SIDE voxels.
 constexpr int KEY_BITS = 20;
 
-/// Small blocks touch the same chunk again and again.
+/// Removes duplicates, since several small blocks intersect the same chunk.
 void make_unique(std::vector<uint64_t>& keys)
 {
     std::ranges::sort(keys);
@@ -20,7 +20,7 @@ void make_unique(std::vector<uint64_t>& keys)
     keys.erase(repeated.begin(), repeated.end());
 }
 
-/// The first chunk, x fastest, that is not listed.
+/// Returns the first chunk that is not listed, in x-fastest order.
 std::optional<Size3> first_absent(const StoredChunks& chunks)
 {
     for (size_t i = 0; i <= chunks.keys.size() && double(i) < chunks.all(); ++i) {

@@ -1,6 +1,6 @@
 #pragma once
-// The cubes of 64^3 voxels, aligned with a box of a volume, in which something is stored, whatever blocks the file has.
-// Any thread may call these.
+// The cubes of 64^3 voxels, aligned with a box of a volume, in which something is stored. They do not depend on the
+// size of the file's blocks. Any thread may call these functions.
 
 #include <array>
 #include <optional>
@@ -10,28 +10,28 @@
 
 namespace shvr {
 
-/// Voxels along each axis of a cube: that of the chunks of projects.
+/// Voxels along each axis of a cube: the size of the chunks of projects.
 inline constexpr int64_t STORED_CHUNK = 64;
 
-/// The bits of x, y and z interleaved (Morton 1966): chunks below one of a coarser level are adjacent.
+/// Returns the bits of x, y and z interleaved (Morton 1966): keys of the chunks below one coarser chunk are adjacent.
 uint64_t interleaved(const Size3& chunk);
 Size3 uninterleaved(uint64_t key);
 
 struct StoredChunks {
     Size3 counts{0};                  ///< chunks along each axis of the box
     std::vector<uint64_t> keys{};     ///< ascending, by `interleaved`
-    std::array<std::byte, 8> fill{};  ///< the voxel of which all other chunks consist
-    int64_t blocks = 0;               ///< blocks of the file, from which they were found
+    std::array<std::byte, 8> fill{};  ///< the voxel that fills all other chunks
+    int64_t blocks = 0;               ///< number of the file's blocks from which the chunks were derived
 
     Size3 at(size_t index) const { return uninterleaved(keys[index]); }
     double all() const { return double(counts.x) * double(counts.y) * double(counts.z); }
 };
 
-/// The keys, ascending, of the chunks of a box of a volume of `size` in which there are stored blocks; null if there
-/// are more than `most`.
+/// Returns the keys, ascending, of the chunks that contain stored blocks, for a box of a volume of `size`; null if
+/// there are more than `most` chunks.
 std::optional<std::vector<uint64_t>> chunk_keys(const StoredBlocks& stored, const Size3& size, const VoxelBox& box,
                                                 int64_t most);
-/// Null if the source does not know what it stores, stores something in every chunk, or in more than `most`.
+/// Returns null if the source does not know its stored blocks, stores something in every chunk, or in more than `most`.
 std::optional<StoredChunks> chunks_in(const VolumeSource& source, const VoxelBox& box, int64_t most);
 
 }  // namespace shvr

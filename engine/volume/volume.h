@@ -2,8 +2,8 @@
 // A scalar volume: its size, voxel type, spacing and unit, and the intensity window that maps its voxels to the
 // R16_UNORM codes of the device.
 //
-// Spaces. voxel: index space of level 0, the centre of voxel i lies at i + 0.5. volume: physical, in the file's unit,
-// volume = voxel * spacing. Axis order is x, y, z with x fastest in memory. All counts are 64 bit.
+// Spaces. "voxel": index space of level 0; the centre of voxel i lies at i + 0.5. "volume": physical, in the file's
+// unit, volume = voxel * spacing. Axis order is x, y, z with x fastest in memory. All counts are 64 bit.
 
 #include <cstddef>
 #include <cstdint>
@@ -29,7 +29,7 @@ size_t bytes_of(VoxelType type);
 const char* name_of(VoxelType type);
 bool is_float(VoxelType type);
 /// Parses "uint8", "UCHAR", "unsigned short", "MET_SHORT", ... as spelled in header formats; null if unknown. Integers
-/// of 64 bits are unknown: intensities are computed in double, which cannot represent them.
+/// of 64 bits are unknown: intensities are computed in double, which cannot represent all of them.
 std::optional<VoxelType> voxel_type_of(const std::string& name);
 
 /// A half-open box of voxels, [lower, upper).
@@ -47,32 +47,32 @@ const char* name_of(Provenance provenance);
 
 struct VolumeInfo {
     std::string name;    ///< for display: the file's name
-    std::string format;  ///< the format's name in its reader: "raw", "nrrd", "tiff", ...
+    std::string format;  ///< the format's name, as the reader sets it: "raw", "nrrd", "tiff", ...
     Size3 size{0};       ///< voxels
     VoxelType type = VoxelType::uint8;
     glm::dvec3 spacing{1.0};     ///< unit per voxel, each > 0
     std::string unit = "voxel";  ///< "um", "mm", ... or "voxel" if the file states none
     Provenance spacing_from = Provenance::assumed;
     Provenance unit_from = Provenance::assumed;
-    /// The position that the file states: in frame `frame` ("RAS", "LPS", or "" if it states none), the centre of voxel
-    /// 0 is at `origin` and the voxel axes point along the columns of `directions` (unit vectors). It is kept and
-    /// exported, but not used for drawing: volume space is voxel * spacing. It is right-handed: a reader that finds
-    /// left-handed axes reverses the order of voxels along one of them, and records that here and in a warning.
+    /// The position that the file states in frame `frame` ("RAS", "LPS", or "" if it states none): the centre of voxel
+    /// 0 is at `origin`, and the voxel axes point along the columns of `directions` (unit vectors). Kept and exported,
+    /// but not used for drawing: volume space is voxel * spacing. Axes are right-handed: a reader that finds
+    /// left-handed axes reverses the order of voxels along one axis, and records this here and in a warning.
     glm::dmat3 directions{1.0};
     glm::dvec3 origin{0.0};
     std::string frame{};
-    /// The fill value that the user states; infinite: none; null: fill values are found by their gap (outliers.h).
+    /// The fill value that the user states; infinite: none; null: fill values are detected by their gap (outliers.h).
     std::optional<double> nodata{};
     /// The reader's assumptions and omissions, one sentence each ("no spacing stated; 1 voxel assumed").
     std::vector<std::string> warnings{};
 };
 
-/// Whether the file states where the volume lies. If not, `frame` is empty, and the other two have their defaults.
+/// Returns whether the file states a position. If not, `frame` is empty, `directions` and `origin` have their defaults.
 bool states_place(const VolumeInfo& info);
-/// Whether they are three right-handed unit vectors, not necessarily orthogonal, up to the rounding of 7-digit text.
+/// Returns whether these are three right-handed unit vectors (orthogonal or not), up to 7-digit text rounding.
 bool are_axes(const glm::dmat3& directions);
 
-/// size.x * size.y * size.z; fails if that exceeds 63 bits. Each side must be 1 ... 2^20.
+/// Returns size.x * size.y * size.z; fails if the product exceeds 63 bits. Each side must be 1 ... 2^20.
 int64_t voxel_count(const VolumeInfo& info);
 
 /// Smallest and largest finite value; `lower > upper` if there is none.
@@ -82,7 +82,7 @@ struct ValueRange {
     bool operator==(const ValueRange&) const = default;
 };
 
-/// A value, and how many voxels have it.
+/// A value and the number of voxels that have it.
 struct ValueCount {
     double value = 0.0;
     int64_t voxels = 0;
@@ -95,16 +95,16 @@ struct VolumeStatistics {
     double maximum = 0.0;
     double mean = 0.0;  ///< without fill values
     int64_t not_finite = 0;
-    /// 256 bins over range(); values outside it count in the first or last bin, fill values in none.
+    /// 256 bins over range(); values outside the range count in the first or last bin, fill values in none.
     std::vector<int64_t> histogram{};
-    /// The extremes without fill values and a few outliers: broken voxels, dead and hot ones (outliers.h). Null if
-    /// there are none.
+    /// The extremes without fill values and a few outliers: broken, dead and hot voxels (outliers.h). Null if there are
+    /// neither.
     std::optional<ValueRange> bulk{};
-    int64_t beyond_bulk = 0;         ///< number of outliers that are no fill values
-    std::vector<ValueCount> fill{};  ///< values that stand for "no data", whatever their share
+    int64_t beyond_bulk = 0;         ///< number of outliers that are not fill values
+    std::vector<ValueCount> fill{};  ///< values that stand for "no data", however frequent
     bool fill_is_given = false;      ///< by the user, not found
-    int measured_level = 0;          ///< the level that was measured; above 0, its voxels are means
-    int64_t sampled_voxels = 0;      ///< above 0: all members were estimated from this many voxels
+    int measured_level = 0;          ///< the level that was measured; if above 0, its voxels are means
+    int64_t sampled_voxels = 0;      ///< above 0: all members were estimated from a sample of this many voxels
 
     /// The range used for pictures, thresholds and the histogram.
     ValueRange range() const { return bulk.value_or(ValueRange{minimum, maximum}); }
@@ -125,12 +125,12 @@ struct IntensityWindow {
     bool operator==(const IntensityWindow&) const = default;
 };
 
-/// The window over all values; over range() if outliers left others less than a fifth of the codes, and not each
-/// integer has one. Over all of the type for 16-bit integers measured in part, since other voxels may exceed the range.
+/// Returns the window over all values; or over range(), if outliers left the others less than a fifth of the codes and
+/// not every integer has one. 16-bit integers measured in part: over the type, since other voxels may exceed the range.
 IntensityWindow window_for(VoxelType type, const VolumeStatistics& statistics);
 IntensityWindow window_for(VoxelType type, double minimum, double maximum);
-/// Whether every voxel of such a volume has a code of its own in its window, so that comparing codes gives the same
-/// results as comparing intensities.
+/// Returns whether every voxel value of such a volume has its own code in its window, so that comparing codes gives the
+/// same results as comparing intensities.
 bool has_exact_codes(VoxelType type, const VolumeStatistics& statistics);
 
 }  // namespace shvr

@@ -1,6 +1,6 @@
 #pragma once
-// How a volume is traversed: which voxels statistics are computed from (all, the stored ones of a sparse volume, or a
-// sample), and a source that reports a reader's progress.
+// The traversal of a volume: the voxels from which statistics are computed (all, the stored voxels of a sparse volume,
+// or a sample), and a source that reports a reader's progress.
 
 #include <algorithm>
 #include <optional>
@@ -13,35 +13,35 @@ namespace shvr {
 /// Boxes of level 0 of a source, in the order in which they are read.
 class VoxelWalk {
 public:
-    /// All voxels, in whole rows and in order, at most 32 MiB at a time but at least one row of blocks.
+    /// All voxels, in whole rows and in order. A box has at most 32 MiB, but at least one row of blocks.
     static VoxelWalk all(const VolumeSource& source);
-    /// The voxels of stored blocks; the others count as `rest`.
+    /// The voxels of stored blocks; the other voxels count as `rest`.
     static VoxelWalk stored(const VolumeSource& source, StoredBlocks blocks);
-    /// A sample: pieces spread evenly, or as many stored blocks, with their share of the rest.
+    /// A sample: evenly spread pieces, or as many voxels of stored blocks, with their share of the rest.
     static VoxelWalk sample(const VolumeSource& source);
 
     int64_t voxels() const { return voxels_; }  ///< total of all boxes
     int64_t boxes() const;
     VoxelBox box(int64_t index) const;
-    /// Number of further voxels that count and are in no box; all of them are `fill`.
+    /// Number of further voxels that count but lie in no box; each has the value `fill`.
     int64_t rest() const { return rest_; }
     double fill() const { return fill_; }
 
 private:
     Size3 size_{0};
-    Size3 step_{0};                                 ///< size of a box when all voxels are read; x is the whole row
+    Size3 step_{0};                                 ///< size of a box if all voxels are read; x is a whole row
     std::optional<std::vector<VoxelBox>> boxes_{};  ///< null if all voxels are read
     int64_t voxels_ = 0, rest_ = 0;
     double fill_ = 0.0;
 };
 
-/// The number of voxels that a stored block has inside a volume of `size`.
+/// Returns the number of voxels of the stored blocks inside a volume of `size`.
 int64_t voxels_stored(const StoredBlocks& stored, const Size3& size);
-/// A block clipped to a volume of `size`.
+/// Returns the box of a block, clipped to a volume of `size`.
 VoxelBox box_of_block(const StoredBlocks& stored, const glm::ivec3& block, const Size3& size);
 
 /// Wraps a source and reports how much of level 0 has been read, for work that reads every voxel once. `source` and
-/// `progress` must outlive it. One thread at a time.
+/// `progress` must outlive this object. One thread at a time.
 class ToldSource final : public VolumeSource {
 public:
     ToldSource(const VolumeSource& source, const Progress& progress)

@@ -14,7 +14,7 @@ Workbench::Workbench(Renderer& renderer, WorkbenchOptions options) : desk_(rende
     services_.keeper.load();
 }
 
-/// Finishes writing files, preferences among them.
+/// Finishes writing files, including the preferences.
 Workbench::~Workbench()
 {
     static_cast<void>(desk_.savers.wait());

@@ -5,8 +5,8 @@
 //
 //   actions -> perform -> the service that an action's row names -> advance: a step of each service
 //
-// One thread, the one that owns the renderer, besides the servo's (haptics/servo.h), those of jobs and savers, and one
-// that writes a screenshot.
+// Runs on one thread, which owns the renderer. Other threads: the servo's (haptics/servo.h), those of jobs and savers,
+// and one that writes a screenshot.
 // `advance` never waits for the device or a disk: jobs read and write files, and a volume that is opened
 // is loaded onto the device in slices of a few milliseconds. A step in which nothing happens costs microseconds
 // (ui/MEASURED.md).
@@ -32,35 +32,35 @@ public:
     void perform(const Action& action);
     /// Carries out an action; a failure other than DeviceLost becomes a message. Returns whether it succeeded.
     bool apply(const Action& action);
-    /// Opens in the background, with settings as --set takes them, like the action Open: the open document stays until
-    /// the next one is loaded, and is saved first. A failure becomes a message.
+    /// Opens a file in the background, as the action Open does, with settings as --set takes them. The open document is
+    /// saved first, and stays until the next one is loaded. A failure becomes a message.
     void begin_open(const std::filesystem::path& path, const std::vector<std::string>& settings)
     {
         services_.opener.begin_open(path, settings);
     }
-    /// Opens and waits until it is done; saves nothing before. Fails if it cannot be opened.
+    /// Opens a file and waits until it is open; does not save the open document first. Fails if it cannot be opened.
     void open(const std::filesystem::path& path, const std::vector<std::string>& settings, Work::Opening how = {})
     {
         services_.opener.open(path, settings, std::move(how));
     }
-    /// Takes a document that the caller has opened; the renderer's scene is of its volume.
+    /// Takes a document that the caller has opened; the renderer's scene shows the document's volume.
     void take(Document::Read read) { services_.opener.take(std::move(read)); }
     void say(std::string text, Weight weight = Weight::done) { desk_.say(std::move(text), weight); }
     /// Call after the graphics device was lost (DeviceLost, from any function here): drops the workbench's objects on
-    /// it, calls `make_anew`, and shows all again. Recorded work survives; the unpainted rest of a running stroke does
-    /// not.
+    /// that device, calls `make_anew`, and displays everything again. Recorded work survives; the part of a running
+    /// stroke that is not painted yet is lost.
     void restart_device(const std::function<void()>& make_anew) { services_.opener.restart_device(make_anew); }
     /// From now on this device moves the probe, whatever is plugged in, and its button paints.
     void use_device(std::shared_ptr<HapticDevice> device, const std::string& name)
     {
         services_.hand.use_device(std::move(device), name);
     }
-    /// Called with each action that was carried out, as a line that replays it (actions/action_rows.h).
+    /// Sets a function that gets each action carried out, as a line that replays the action (actions/action_rows.h).
     void log_to(std::function<void(const std::string& line)> log) { desk_.log = std::move(log); }
 
     // ---- Steps of the main loop
 
-    /// Sets the size of the picture; 0, 0: none is drawn.
+    /// Sets the size of the picture; 0, 0: no picture is drawn.
     void set_pixels(const glm::uvec2& pixels);
     /// Sets the position of the mouse, where values are read from then on; null: not over the picture.
     void set_pointer(const std::optional<Pointer>& pointer) { services_.viewer.set_pointer(pointer); }
@@ -70,12 +70,12 @@ public:
     void set_hand_down(bool is_down) { services_.settings.set_hand_down(is_down); }
     /// Sets the pixels per unit of the interface, for drawing over pictures.
     void set_units(double units) { services_.photographer.set_units(units); }
-    /// Sets whether the device is idle: then large screenshots may continue.
+    /// Sets whether the device is idle; large screenshots may continue while it is.
     void set_still(bool is_still) { services_.photographer.set_still(is_still); }
-    /// Runs one step of all background work. Failures become messages, and the failed part is retried a little later:
-    /// the rest continues and no work is lost. DeviceLost is thrown.
+    /// Runs one step of all background work. A failure becomes a message, and the failed part is retried a little
+    /// later; the other parts continue, and no work is lost. Throws DeviceLost.
     void advance();
-    /// Runs steps until the current stroke is painted. Returns why part of it was not; empty if all was.
+    /// Runs steps until the current stroke is painted. Returns why part of it was not painted; empty if all of it was.
     std::string finish_stroke() { return services_.painter.finish_stroke(); }
     /// Waits for the save under way. Returns the written parts; fails with the reason if one could not be written.
     Work::Saved finish_save() { return services_.saver.finish_save(); }
@@ -88,8 +88,8 @@ public:
     /// Returns whether a picture exists that does not yet show the last changes.
     bool is_stirring() const { return services_.viewer.is_stirring(); }
     /// Returns whether the open document may be closed: call it once a frame. Saves all work as Save does; if the user
-    /// only looked around, saves the view silently. Read-only work is not saved, as was reported; while the question
-    /// which files to believe is open, annotation stays as in the journal.
+    /// only looked around, saves the view silently. Does not save read-only work, as a message has said. While the user
+    /// has not yet decided which files to believe, annotation stays as in the journal.
     using Leave = ui::Leave;
     Leave leave(std::string& why) { return services_.saver.leave(why); }
     bool is_saving() const { return services_.saver.is_saving(); }

@@ -30,21 +30,21 @@ struct DeviceOptions {
     std::vector<HidProfile> profiles;
     bool allow_force = false;
     Inverse3Options inverse3;        ///< its `allow_force` is overridden by the one above
-    OpenHapticsOptions openhaptics;  ///< likewise
+    OpenHapticsOptions openhaptics;  ///< its `allow_force` is overridden, too
 };
 
-/// HID devices that match a profile, the Inverse3's service, OpenHaptics if it is installed, and the mouse, which is
-/// always present and last. Opens none of them; waits for the service for about 0.3 s at most.
+/// Lists HID devices that match a profile, the Inverse3's service, OpenHaptics if it is installed, and the mouse, which
+/// is always present and last. Opens none of them; waits for the Inverse3's service for about 0.3 s at most.
 std::vector<DeviceListing> list_devices(const DeviceOptions& options);
 
-/// The row of a HID device. `can_open`: whether the system lets this user read and write it.
+/// Returns the row of a HID device. `can_open`: whether the system lets this user read and write it.
 DeviceListing listing_of(const HidListing& device, const HidProfile& profile, bool can_open);
 
-/// Opens the device with the id of a listing; null for the mouse. Fails with a sentence if it is gone or unusable.
+/// Opens the device with a listing's id; returns null for the mouse. Fails with a sentence if it is gone or unusable.
 std::unique_ptr<HapticDevice> open_device(const DeviceOptions& options, const std::string& id);
 
-/// The first usable device of HID, Inverse3 and OpenHaptics; null if none is present. Fails with the first reason if
-/// some are present but none can be used.
+/// Opens the first usable device of HID, Inverse3 and OpenHaptics; returns null if none is present. Fails with the
+/// first reason if some are present but none can be used.
 std::unique_ptr<HapticDevice> open_first_device(const DeviceOptions& options);
 
 }  // namespace shvr

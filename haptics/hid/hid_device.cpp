@@ -25,7 +25,7 @@ std::mutex& hidapi_mutex()
     return mutex;
 }
 
-/// The name as printable ASCII; devices may report any characters.
+/// Returns the name as printable ASCII; devices may report any characters.
 std::string printable(const wchar_t* text)
 {
     std::string result;
@@ -90,7 +90,7 @@ std::string described(const HidListing& device)
 
 struct Opened {
     std::unique_ptr<HidPort> port;
-    std::string reason;  ///< without a port: hidapi's message
+    std::string reason;  ///< hidapi's message if there is no port
 };
 Opened open_port(const std::string& path)
 {
@@ -99,8 +99,8 @@ Opened open_port(const std::string& path)
     return {nullptr, printable(hid_error(nullptr))};
 }
 
-/// The device's report descriptor as exposed by the system;
-/// empty if it is not (hidapi 0.13 cannot query it).
+/// Returns the device's report descriptor as exposed by the system; empty if the system does not expose it (hidapi 0.13
+/// cannot query it).
 std::vector<uint8_t> descriptor_of(const std::string& path)
 {
     const std::filesystem::path file =
@@ -111,7 +111,7 @@ std::vector<uint8_t> descriptor_of(const std::string& path)
     return bytes;
 }
 
-/// The first plugged-in device that the profile matches.
+/// Returns the first plugged-in device that the profile matches.
 std::optional<HidListing> find_device(const HidProfile& profile)
 {
     for (HidListing& device : list_hid_devices({})) {

@@ -13,10 +13,10 @@
 
 namespace shvr {
 
-/// Null if no plugged-in device matches a profile. Fails if one is plugged in but cannot be opened (the udev rule is
-/// missing) or is only recognised (its profile has no input report). An unplugged device is found again when it
-/// returns. `path` is that of a listing; empty: the first device of the first profile that matches. Forces reach it
-/// only if its profile is verified and `allow_force` is set.
+/// Returns null if no plugged-in device matches a profile. Fails if one is plugged in but cannot be opened (the udev
+/// rule is missing) or is only recognised (its profile has no input report). An unplugged device is found again when it
+/// returns. `path`: a listing's path; empty: the first device of the first profile that matches. Forces reach the
+/// device only if its profile is verified and `allow_force` is set.
 std::unique_ptr<HapticDevice> open_hid_device(const std::vector<HidProfile>& profiles, bool allow_force,
                                               const std::string& path = {});
 
@@ -25,7 +25,7 @@ struct HidListing {
     std::string path, manufacturer, name, serial;
     std::string profile;  ///< name of the first matching profile; empty: none
 };
-/// Every HID interface plugged in, haptic or not.
+/// Returns every HID interface plugged in, haptic or not.
 std::vector<HidListing> list_hid_devices(std::span<const HidProfile> profiles);
 
 }  // namespace shvr

@@ -25,17 +25,17 @@ using std::chrono::milliseconds;
 
 constexpr int READ_TIMEOUT_MS = 10;  ///< short, so that shutdown never has to interrupt a read
 constexpr milliseconds REOPEN_EVERY{15};
-constexpr milliseconds LOOK_EVERY{5};         ///< checks whether the link is to end
+constexpr milliseconds LOOK_EVERY{5};         ///< interval of checks whether the link should end
 constexpr int MAX_REPORTS_A_DRAIN = 256;      ///< a device that floods us must not delay the newest report
 constexpr uint64_t MAX_STEP_NS = 20'000'000;  ///< longest step of rate control, so that it does not leap after a pause
-// A hand without motors yields to a force like the mouse's: 75 N/m, settled within some 10 ms.
+// A device that reports speeds yields to a force as the mouse does: 75 N/m, settled within some 10 ms.
 constexpr double GIVE_WAY = 75.0;
 constexpr double SETTLE_S = 0.01;
 constexpr int LINK_PRIORITY = 81;  ///< higher than the servo's, since both threads run briefly and then wait
 
 /// Passed from the reader to the servo.
 struct Reading {
-    uint64_t connection = 0;  ///< connection it was read on, counted from 1
+    uint64_t connection = 0;  ///< number of the connection it was read on, counted from 1
     DeviceState state;
 };
 
@@ -66,7 +66,7 @@ public:
           force_sequence_(bits_of(profile, HidQuantity::force_sequence)),
           time_(bits_of(profile, HidQuantity::time))
     {}
-    /// Null if the report is malformed, or the device's position is still unknown: `is_malformed()` distinguishes them.
+    /// Returns null if the report is malformed (`is_malformed()`), or if the device's position is still unknown.
     std::optional<DeviceState> next(std::span<const uint8_t> report)
     {
         is_malformed_ = false;
@@ -209,7 +209,7 @@ private:
         wake_.notify_one();
     }
 
-    /// Reads the limits of the device on that port: it may differ from the previous one.
+    /// Reads the limits of the device on that port, which may be another device than before.
     DeviceCaps ask_limits(HidPort& port) const
     {
         DeviceCaps caps = profile_.limits;

@@ -4,12 +4,12 @@
 //
 //   port -> reader thread --Latest--> read()      write() --Latest--> writer thread -> port
 //
-// For a device that reports speeds, the link integrates the position: read() advances it, at every call, while the
-// device is present; a force moves the integrated position as it moves that of a mouse. Silence means rest.
+// For a device that reports speeds, the link integrates the position: each call of read() advances it while the device
+// is present, and a force moves it as it moves a mouse's position. Silence means rest.
 //
 // The reader drains the queue (kernels keep the OLDEST reports after a stall) and keeps the newest report. When the
-// port is gone, read() returns `lost` and the reader tries to reopen it every 15 ms, and then reads its limits again.
-// The writer's last report switches the force off.
+// port is gone, read() returns `lost`; the reader tries to reopen the port every 15 ms, and once it is open reads the
+// device's limits again. The writer's last report switches the force off.
 
 #include <cstdint>
 #include <functional>
@@ -28,14 +28,14 @@ public:
     virtual ~HidPort() = default;
     /// Reads one report and returns its length in bytes: 0 if none arrived in time, -1 if the device is gone.
     virtual int read(std::span<uint8_t> report, int timeout_ms) = 0;
-    /// False if the device is gone.
+    /// Returns false if the device is gone.
     virtual bool write(std::span<const uint8_t> report) = 0;
-    /// Reads the feature report with that id, which is its first byte, and returns its length in bytes; 0 if there is
-    /// none.
+    /// Reads the feature report with the id `id`, whose first byte is the id, and returns the report's length in bytes;
+    /// 0 if there is none.
     virtual int read_feature(uint8_t id, std::span<uint8_t> report) = 0;
 };
 
-/// Null if the device is not there (yet).
+/// Returns null if the device is not there (yet).
 using HidOpener = std::function<std::unique_ptr<HidPort>()>;
 
 struct HidLinkOptions {
@@ -44,8 +44,8 @@ struct HidLinkOptions {
     uint64_t (*now_ns)() = nullptr;  ///< drives rate control; null: the steady clock
 };
 
-/// `port` is open and its profile has an input report. `reopen` is called on the reader's thread. Force reports have
-/// the enable flag off unless force is allowed; a device with an unverified layout gets no output reports.
+/// `port` is open, and `profile` has an input report. `reopen` is called on the reader's thread. Force reports have the
+/// enable flag off unless force is allowed; a device with an unverified layout gets no output reports.
 std::unique_ptr<HapticDevice> make_hid_link(const HidProfile& profile, std::unique_ptr<HidPort> port, HidOpener reopen,
                                             const HidLinkOptions& options);
 

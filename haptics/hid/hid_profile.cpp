@@ -68,7 +68,7 @@ std::string_view name_of(HidQuantity quantity)
     return "?";
 }
 
-/// "0x1209": the usual notation of USB ids.
+/// Reads an id such as "0x1209", the usual notation of USB ids.
 uint16_t read_hexadecimal(const JsonNode& node)
 {
     const auto parse = [](const std::string& text) -> std::optional<uint16_t> {
@@ -140,7 +140,7 @@ void need_all_or_none(const JsonNode& node, const HidReport& report, std::initia
         need(node, report, quantities);
 }
 
-/// Several input reports: no two are alike, and related fields are in the same report.
+/// Reads several input reports. No two may be alike, and related fields must be in the same report.
 std::vector<HidReport> read_inputs(const JsonNode& node)
 {
     std::vector<HidReport> reports;
@@ -186,7 +186,7 @@ std::vector<HidMatch> read_matches(const JsonNode& node)
     return matches;
 }
 
-/// Rows of a signed permutation: anything else could change lengths, and forces would no longer oppose motion.
+/// Reads a signed permutation by rows: others could change lengths, and forces would no longer oppose motion.
 glm::dmat3 read_axes(const JsonNode& node)
 {
     const std::vector<JsonNode> rows = node.elements(3, 3);
@@ -221,7 +221,7 @@ DeviceCaps read_limits(const JsonNode& node)
     return limits;
 }
 
-/// What schema 2 adds: reports to ignore, and rate control in place of positions.
+/// Reads the additions of schema 2: reports to ignore, and rate control in place of positions.
 void read_second(const JsonNode& node, HidProfile& profile)
 {
     using enum HidQuantity;

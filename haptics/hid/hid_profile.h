@@ -20,8 +20,8 @@
 
 namespace shvr {
 
-/// All quantities that a field can represent. Values are raw * scale + offset: metres, seconds, newtons; rotations are
-/// a quaternion; rates are fractions of full deflection, -1 ... 1.
+/// All quantities that a field can represent. A field's value is raw * scale + offset, in metres, seconds or newtons;
+/// rotations are quaternions, and rates are fractions of full deflection, -1 ... 1.
 enum class HidQuantity : uint8_t {
     // input
     buttons,
@@ -63,7 +63,7 @@ enum class HidQuantity : uint8_t {
 
 struct HidField {
     HidQuantity quantity = HidQuantity::buttons;
-    uint32_t bit = 0;   ///< position of its lowest bit, from the first byte after the id; little endian
+    uint32_t bit = 0;   ///< position of the field's lowest bit, from the first byte after the id; little endian
     uint32_t bits = 8;  ///< 1 ... 32
     bool is_signed = false;
     double scale = 1.0, offset = 0.0;
@@ -96,8 +96,8 @@ struct HidProfile {
     std::vector<HidReport> inputs;     ///< none: the device is only recognised
     std::vector<uint8_t> ignored_ids;  ///< reports without relevant data
     std::optional<HidReport> output, feature;
-    std::optional<HidRate> rate;  ///< set: it reports speeds, not positions
-    /// The field in any input report; null if none has it.
+    std::optional<HidRate> rate;  ///< set: the device reports speeds, not positions
+    /// Returns the field in any input report; null if no report has it.
     const HidField* find_input(HidQuantity quantity) const;
     glm::dmat3 axes{1.0};  ///< maps the device's axes to +x right, +y up, +z towards the user; a signed permutation
     DeviceCaps limits;

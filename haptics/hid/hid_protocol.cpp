@@ -39,7 +39,7 @@ void put_value(const HidField& field, double value, std::span<uint8_t> payload)
     put_raw(field, uint32_t(int64_t(raw)), payload);
 }
 
-/// The bytes after the id; empty if it is a different report.
+/// Returns the bytes after the id; empty if `report` is another report than expected.
 std::span<const uint8_t> payload_of(const HidReport& expected, std::span<const uint8_t> report)
 {
     const size_t id_bytes = expected.id == 0 ? 0 : 1;
@@ -156,7 +156,7 @@ DeviceCaps decode_feature(const HidProfile& profile, std::span<const uint8_t> re
     caps.peak_force_n = std::clamp(reader.value(peak_force, caps.peak_force_n), 0.0, caps.peak_force_n);
     caps.continuous_force_n = std::min(caps.continuous_force_n, caps.peak_force_n);
     caps.latency_s = std::max(caps.latency_s, reader.value(latency, caps.latency_s));
-    // Full side lengths along the device's axes, centred; 0 means not stated.
+    // The report states full side lengths along the device's axes, centred; 0 means not stated.
     const glm::dvec3 side = glm::abs(profile.axes * glm::dvec3(reader.value(usable_x, 0.0), reader.value(usable_y, 0.0),
                                                                reader.value(usable_z, 0.0)));
     for (int i = 0; i < 3; ++i) {

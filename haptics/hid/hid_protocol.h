@@ -24,9 +24,9 @@ struct HidInput {
     std::optional<bool> calibrated;
     std::optional<uint32_t> sequence, force_sequence, time;
 };
-/// Null if the report is not one of the profile's input reports: its id or length differs.
+/// Returns null if the report is not one of the profile's input reports: its id or length differs.
 std::optional<HidInput> decode(const HidProfile& profile, std::span<const uint8_t> report);
-/// Whether the profile says to ignore such a report.
+/// Returns whether the profile says to ignore such a report.
 bool is_ignored(const HidProfile& profile, std::span<const uint8_t> report);
 /// Converts a deflection to a fraction of full speed; finite, length at most 1.
 glm::dvec3 shaped(const HidRate& rate, const glm::dvec3& deflection);
@@ -36,12 +36,12 @@ struct HidBytes {
     size_t size = 0;
     std::span<const uint8_t> span() const { return {bytes.data(), size}; }
 };
-/// The output report for a force in our axes, clamped to the profile's peak. If not enabled or not finite: zero force
-/// with the enable flag off. Empty if the profile has no output report.
+/// Returns the output report for a force in our axes, clamped to the profile's peak. If not enabled or not finite, the
+/// report has zero force and the enable flag off. Empty if the profile has no output report.
 HidBytes encode(const HidProfile& profile, const glm::dvec3& force_n, uint32_t sequence, bool enabled);
 
-/// The profile's limits, replaced by those of the device's feature report if it states a weaker force, a smaller
-/// workspace or a longer latency. The profile's own if `report` is not its feature report.
+/// Returns the profile's limits; where the device's feature report states a weaker force, a smaller workspace or a
+/// longer latency, that value replaces the profile's. Returns the profile's own if `report` is not its feature report.
 DeviceCaps decode_feature(const HidProfile& profile, std::span<const uint8_t> report);
 
 /// Extends a counter of 1 to 32 bits past its overflows. A step of more than half its range counts as a step backwards,

@@ -1,7 +1,7 @@
 #pragma once
-// Raw reports with their arrival times, so that the owner of a device whose
-// layout is not public can contribute one. Nothing is written to the device.
-// The file is lines of JSON, first about the device, then one for each report:
+// Raw reports with their arrival times, so that the owner of a device whose layout is not public can contribute a
+// recording. Nothing is written to the device. The file is lines of JSON, the first about the device, then one for each
+// report:
 //
 //     {"format":"shvr_hid_reports","version":1,"vendor":"0x2988","product":"0x0304","name":"Touch","descriptor":"06"}
 //     {"t_us":1042,"bytes":"01a3ff"}
@@ -36,12 +36,12 @@ inline constexpr size_t MAX_RECORDED_REPORT_BYTES = 1024;
 inline constexpr size_t MAX_RECORDED_REPORTS = 1'000'000;  ///< maximum number of reports: a quarter of an hour at 1 kHz
 
 /// Adds reports to `recording` until `most_s` seconds have passed, the device is gone or `goes_on` returns false;
-/// `goes_on` is called every 20 ms, with the number of reports so far. False if the device was removed.
+/// `goes_on` is called every 20 ms, with the number of reports so far. Returns false if the device was removed.
 bool record_reports(HidPort& port, double most_s, const std::function<bool(size_t)>& goes_on, HidRecording& recording);
 
-/// Records the first device whose ids match ("2988:0304"), or whose path is `device` ("/dev/hidraw3"), into `file`,
-/// which must not exist. Returns the number of reports. Fails with a sentence if there is no such device, it cannot be
-/// opened, or it sent nothing.
+/// Records a device into `file`, which must not exist: the first one with the ids `device` ("2988:0304"), or the one at
+/// the path `device` ("/dev/hidraw3"). Returns the number of reports. Fails with a sentence if there is no such device,
+/// it cannot be opened, or it sent nothing.
 size_t record_hid_device(const std::string& device, const std::filesystem::path& file, double most_s,
                          const std::function<bool(size_t)>& goes_on);
 

@@ -49,7 +49,7 @@ struct Channels {
     std::string trouble;  ///< why `states` is null
 };
 
-/// The first message of the service, which lists its devices.
+/// Reads the first message of the service, which lists its devices.
 bool read_inventory(Channels& channels, const Inverse3Options& options)
 {
     const SteadyClock::time_point until = SteadyClock::now() + options.connect_timeout;
@@ -88,7 +88,7 @@ Channels connect(const Inverse3Options& options)
     return channels;
 }
 
-/// Returns the text as a sentence that is never freed; there is one for each kind of failure.
+/// Returns a copy of the text that is never freed; there is one for each kind of failure.
 const char* kept(const std::string& text)
 {
     static std::mutex mutex;
@@ -126,7 +126,7 @@ public:
 
     DeviceCaps caps() const noexcept override
     {
-        // About the centre of the workspace with the service's default mount; forces are limited by us.
+        // The box surrounds the workspace's centre with the service's default mount; this program limits the forces.
         const glm::dvec3 middle = from_inverse3({0.0, -0.12, 0.15});
         return {.usable_lower_m = middle - 0.08,
                 .usable_upper_m = middle + 0.08,
@@ -184,7 +184,7 @@ private:
                 const SteadyClock::time_point begun = SteadyClock::now();
                 channels_ = connect(options_);
                 if (!channels_.states)
-                    next_try_ = SteadyClock::now() + (SteadyClock::now() - begun);  // half a core at most
+                    next_try_ = SteadyClock::now() + (SteadyClock::now() - begun);  // retries use half a core at most
                 if (channels_.states)
                     begin();
                 else
@@ -208,7 +208,7 @@ private:
     {
         in_flight_ = 0;
         is_first_ = true;
-        is_braked_ = is_unplugged_ = is_telling_ = false;  // a braking device locks itself
+        is_braked_ = is_unplugged_ = is_telling_ = false;  // a device that brakes locks itself
         ++interruptions_;                                  // forces of the previous connection are not sent on this one
         last_sent_force_ = glm::dvec3(0.0);
         sent_at_ = write_at_ = SteadyClock::now();
@@ -216,7 +216,7 @@ private:
         trouble_ = channels_.events ? "" : NO_EVENTS;
         connection_ = ++connections_;
     }
-    /// States wait meanwhile, since no force has a deadline now.
+    /// Connects to the event channel. States may wait meanwhile, since no force has a deadline now.
     void find_events()
     {
         std::string ignored;
@@ -286,7 +286,7 @@ private:
         readings_.publish();
     }
 
-    /// False if the channel has ended.
+    /// Returns false if the channel has ended.
     bool take_events()
     {
         const bool is_open = channels_.events->receive();
@@ -382,7 +382,7 @@ private:
     void lose()
     {
         connection_ = 0;
-        send({}, commands_.value().sequence);  // in case it still receives
+        send({}, commands_.value().sequence);  // in case the service still receives
         channels_.states->close();
         channels_ = {};
     }
@@ -405,7 +405,7 @@ private:
     // Used by the link's thread only.
     int in_flight_ = 0;
     bool is_first_ = true, has_command_ = false, is_braked_ = false, is_unplugged_ = false;
-    bool is_telling_ = false;  ///< `trouble_` describes an event and is cleared when its hold ends
+    bool is_telling_ = false;  ///< `trouble_` describes an event; it is cleared when the event's hold ends
     glm::dvec3 last_sent_force_{0.0};
     uint32_t last_sent_sequence_ = 0;
     SteadyClock::time_point sent_at_, write_at_, held_until_, next_try_, events_tried_;

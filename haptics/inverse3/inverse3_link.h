@@ -7,7 +7,7 @@
 // The service answers each message with one state: the link sends when the servo has written, and at most one message
 // is in flight. The servo never waits: its side exchanges latest values and wakes the link.
 //
-// No force is sent unless all of this holds: it is allowed; the event channel is connected; the servo wrote within
+// No force is sent unless all of these hold: force is allowed; the event channel is connected; the servo wrote within
 // `write_timeout`; the last message was answered within `answer_timeout`; no e-brake, stall or ceiling event was
 // received within `hold`. Otherwise a zero force is sent at once. A message that violates the documentation ends the
 // connection; `trouble()` says why. A lost connection is retried every 20 ms.
@@ -28,7 +28,7 @@ struct Inverse3Options {
     bool allow_force = false;
     bool realtime = true;                            ///< SCHED_FIFO for the link's thread, if the system allows it
     std::chrono::milliseconds connect_timeout{300};  ///< for each connection and the first inventory
-    std::chrono::milliseconds write_timeout{12};     ///< together with the remaining delays, zero force within 20 ms
+    std::chrono::milliseconds write_timeout{12};     ///< short enough for zero force within 20 ms in all
     std::chrono::milliseconds answer_timeout{12};
     std::chrono::milliseconds keep_alive{10};  ///< interval of messages while the servo does not write
     std::chrono::milliseconds hold{1000};      ///< duration of zero force after a stall or a refused message
@@ -46,15 +46,15 @@ public:
     virtual Inverse3Counts counts() const noexcept = 0;
 };
 
-/// Null if nothing listens on the port. Fails if the listener is not this service or has no such device. Waits for
-/// `connect_timeout` at most three times.
+/// Returns null if nothing listens on the port. Fails if the listener is not this service or has no such device. Waits
+/// for at most three times `connect_timeout`.
 std::unique_ptr<Inverse3> open_inverse3(const Inverse3Options& options);
 
 struct Inverse3Found {
     bool is_service = false;  ///< something listens on the port
     std::string device_id, trouble;
 };
-/// The device that would be opened, or why there is none. Sends nothing to it.
+/// Returns the device that would be opened, or why there is none. Sends nothing to the device.
 Inverse3Found find_inverse3(const Inverse3Options& options);
 
 }  // namespace shvr

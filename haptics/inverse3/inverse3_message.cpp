@@ -41,7 +41,7 @@ public:
     {
         return nested('[', ']', element);
     }
-    /// The raw string: escapes are not decoded.
+    /// Reads the raw string: escapes are not decoded.
     bool string(std::string_view& text)
     {
         if (!sign('"')) return false;
@@ -149,7 +149,7 @@ bool is_id(std::string_view text)
     });
 }
 
-/// One key per component; all must be present.
+/// Reads one key per component; all must be present.
 template <size_t SIZE>
 bool read_components(Scanner& scanner, std::string_view keys, std::array<double, SIZE>& values)
 {

@@ -1,7 +1,7 @@
 #pragma once
 // Messages to and from the Inverse service, as JSON texts (Inverse SDK 3.5, according to its public documentation). A
-// thousand messages a second are parsed without building a tree: a strict scan that keeps the few numbers needed. Pure;
-// any thread.
+// thousand messages a second are parsed without building a tree, by a strict scan that keeps only the few numbers
+// needed. Pure; any thread.
 //
 // Positions, velocities and forces are in the service's frame (+x right, +y forward, +z up), metres and newtons;
 // `from_inverse3` and `to_inverse3` convert them.
@@ -32,8 +32,8 @@ struct Inverse3State {
     glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
     uint32_t buttons = 0;  ///< buttons of the grip: bit 0 is a, bit 1 is b
 };
-/// Reads an inventory or a state into `state`: the device of that id, or the first one if `device_id` is empty. Returns
-/// null, or the message's defect; `state` is then unspecified.
+/// Reads an inventory or a state into `state`: the device with the id `device_id`, or the first one if that is empty.
+/// Returns null, or the message's defect; `state` is then unspecified.
 const char* read_inverse3_state(std::string_view text, std::string_view device_id, Inverse3State& state);
 
 enum class Inverse3Event : uint8_t {
@@ -52,7 +52,7 @@ struct Inverse3Notice {
 /// Reads a message of the event channel; returns null, or the message's defect.
 const char* read_inverse3_notice(std::string_view text, Inverse3Notice& notice);
 
-/// Appends the message that sets a force, in digits that parse back bit for bit. The first one of a connection also
+/// Appends the message that sets a force, in digits that parse back bit for bit. The first message of a connection also
 /// names the program. `force_n` must be finite.
 void append_inverse3_command(std::string& text, std::string_view device_id, const glm::dvec3& force_n, bool is_first);
 

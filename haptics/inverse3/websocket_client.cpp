@@ -21,7 +21,7 @@ using std::chrono::milliseconds;
 
 constexpr int MAX_RECEIVES = 4;  ///< receives of 16 KiB in a row: a flood of messages must not prevent sending
 
-/// False once the time is up, even if there is something: bytes that keep coming must not extend a deadline.
+/// Returns false once the time is up, even if data are ready: bytes that keep coming must not extend a deadline.
 bool wait_for(int descriptor, short what, SteadyClock::time_point until)
 {
     for (;;) {
@@ -34,7 +34,7 @@ bool wait_for(int descriptor, short what, SteadyClock::time_point until)
     }
 }
 
-/// A socket that is connected, or -1.
+/// Returns a connected socket, or -1.
 int connect_socket(uint16_t port, SteadyClock::time_point until)
 {
     const int descriptor = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
@@ -138,7 +138,7 @@ bool WebSocketClient::receive()
 
 WebSocketReader::Event WebSocketClient::next()
 {
-    // One pong for many pings, the last one's, as RFC 6455 (5.5.3) allows: a flood of pings costs no flood of answers.
+    // Only the last of many pings gets a pong, as RFC 6455 (5.5.3) allows: a flood of pings causes no flood of answers.
     std::optional<std::string> ping;
     WebSocketReader::Event event = reader_.next();
     for (; event == WebSocketReader::Event::ping; event = reader_.next()) ping = reader_.payload();

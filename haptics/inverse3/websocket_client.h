@@ -1,6 +1,6 @@
 #pragma once
-// A WebSocket to a port of the local machine. Connecting waits, at most as long as specified; afterwards nothing waits:
-// a poll on `descriptor()` shows when there is something to receive. One thread at a time.
+// A WebSocket to a port of the local machine. Connecting waits, at most as long as specified; afterwards only `wait`
+// does: a poll on `descriptor()` shows when there is something to receive. One thread at a time.
 
 #include <chrono>
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace shvr {
 
 class WebSocketClient {
 public:
-    /// Null if nothing listens there, or if the listener is unusable; `trouble` then says why.
+    /// Returns null if nothing listens there, or if the listener is unusable, in which case `trouble` says why.
     static std::unique_ptr<WebSocketClient> connect(uint16_t port, std::chrono::milliseconds most,
                                                     std::string& trouble);
     ~WebSocketClient();
@@ -22,16 +22,16 @@ public:
     WebSocketClient& operator=(const WebSocketClient&) = delete;
 
     int descriptor() const { return descriptor_; }
-    /// False if the other side is gone or does not read.
+    /// Returns false if the other side is gone or does not read.
     bool send_text(std::string_view text);
-    /// Receives pending data; false if the connection has ended. Complete messages are still available through
+    /// Receives pending data; returns false if the connection has ended. Complete messages are still available through
     /// `next()`.
     bool receive();
-    /// The next message; pings are answered here, several with one answer. `close` if they cannot be.
+    /// Returns the next message. Answers pings, several with one pong; returns `close` if a pong cannot be sent.
     WebSocketReader::Event next();
     std::string_view payload() const { return reader_.payload(); }
     const char* trouble() const { return reader_.trouble(); }
-    /// Waits until there is something to receive; false once the time is up, even if there is something.
+    /// Waits until there is something to receive; returns false once the time is up, even if there is something.
     bool wait(std::chrono::steady_clock::time_point until) const;
     /// Announces that no more will be sent.
     void close();
@@ -43,7 +43,7 @@ private:
     bool send_frame(WebSocketOpcode opcode, std::string_view payload);
 
     int descriptor_;
-    uint32_t mask_ = 0x9e3779b9;  ///< changes with each frame; masks protect proxies, of which there are none here
+    uint32_t mask_ = 0x9e3779b9;  ///< changes with each frame; masks protect proxies, and there are none here
     std::string frame_;
     WebSocketReader reader_;
 };

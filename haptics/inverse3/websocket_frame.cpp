@@ -70,7 +70,7 @@ bool is_same_word(std::string_view a, std::string_view b)
         a, b, {}, [](char c) { return std::tolower(uint8_t(c)); }, [](char c) { return std::tolower(uint8_t(c)); });
 }
 
-/// The value of a header line; empty if there is none.
+/// Returns the value of a header line; empty if there is none.
 std::string_view header_value(std::string_view header, std::string_view name)
 {
     while (!header.empty()) {
@@ -87,7 +87,7 @@ std::string_view header_value(std::string_view header, std::string_view name)
     return {};
 }
 
-/// The bytes before a payload: opcode, and length in the shortest of its three forms.
+/// Appends the bytes before a payload: the opcode, and the length in the shortest of its three forms.
 void append_frame_head(std::string& bytes, WebSocketOpcode opcode, size_t size, uint8_t mask_bit)
 {
     bytes += char(FINAL | uint8_t(opcode));

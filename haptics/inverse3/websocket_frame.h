@@ -15,9 +15,9 @@ enum class WebSocketOpcode : uint8_t { continuation = 0, text = 1, binary = 2, c
 
 // ---- Handshake ----
 
-/// The key of a handshake: 16 random bytes in base64.
+/// Returns the key of a handshake: 16 random bytes in base64.
 std::string websocket_key(const std::array<uint8_t, 16>& random);
-/// The answer that a server must give to that key.
+/// Returns the answer that a server must give to `key`.
 std::string websocket_accept(std::string_view key);
 std::string websocket_request(uint16_t port, std::string_view key);
 

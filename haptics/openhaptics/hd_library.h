@@ -21,14 +21,14 @@ inline constexpr HdHandle INVALID_HANDLE = 0xffffffff;
 
 inline constexpr uint32_t CURRENT_BUTTONS = 0x2000;
 inline constexpr uint32_t CURRENT_POSITION = 0x2050;   ///< mm
-inline constexpr uint32_t CURRENT_TRANSFORM = 0x2052;  ///< 4 x 4, by columns
+inline constexpr uint32_t CURRENT_TRANSFORM = 0x2052;  ///< 4 x 4 matrix, stored by columns
 inline constexpr uint32_t DEVICE_MODEL_TYPE = 0x2501;
 inline constexpr uint32_t DEVICE_SERIAL_NUMBER = 0x2504;
-inline constexpr uint32_t USABLE_WORKSPACE = 0x2551;       ///< mm: x y z from, x y z to
+inline constexpr uint32_t USABLE_WORKSPACE = 0x2551;       ///< mm: lower x, y, z, then upper x, y, z
 inline constexpr uint32_t NOMINAL_MAX_STIFFNESS = 0x2602;  ///< 0 ... 1
 inline constexpr uint32_t NOMINAL_MAX_FORCE = 0x2603;      ///< N
 inline constexpr uint32_t NOMINAL_MAX_CONTINUOUS_FORCE = 0x2604;
-inline constexpr uint32_t MOTOR_TEMPERATURE = 0x2605;  ///< a fraction per motor, 1 is too hot
+inline constexpr uint32_t MOTOR_TEMPERATURE = 0x2605;  ///< a fraction per motor; 1 is too hot
 inline constexpr uint32_t CURRENT_FORCE = 0x2700;      ///< N
 inline constexpr uint32_t FORCE_OUTPUT = 0x4000;
 
@@ -72,8 +72,8 @@ struct HdLibrary {
     void (*update_calibration)(uint32_t style) = nullptr;
 };
 
-/// Null if there is no such library. Fails if it lacks a function. A loaded library stays loaded until the program
-/// ends: the driver does not survive being loaded twice.
+/// Returns null if there is no such library. Fails if the library lacks a function. A loaded library stays loaded until
+/// the program ends: the driver does not survive being loaded twice.
 const HdLibrary* load_hd_library(const std::string& name);
 
 }  // namespace shvr

@@ -27,12 +27,12 @@ class OpenHaptics : public HapticDevice {
 public:
     virtual std::string model() const = 0;
     virtual std::string serial() const = 0;
-    /// The warmest motor's temperature as a fraction of the one at which it must rest; any thread.
+    /// Returns the warmest motor's temperature as a fraction of the temperature at which it must rest; any thread.
     virtual double motor_temperature() const noexcept = 0;
 };
 
-/// Null if the library is not installed. Fails with a sentence if there is no device, or if it needs calibration by
-/// hand. At most one at a time.
+/// Returns null if the library is not installed. Fails with a sentence if there is no device, or if the device needs
+/// calibration by hand. At most one device can be open at a time.
 std::unique_ptr<OpenHaptics> open_openhaptics(const OpenHapticsOptions& options);
 
 }  // namespace shvr

@@ -1,6 +1,6 @@
 #pragma once
-// Relevance computed without a window, as late as in one: asked for by the mirror's rule (engine/touch/region_wish.h)
-// and felt once the answer would have arrived. For replays and tests. One thread.
+// Relevance computed without a window, with the delay that it would have in a window: it is requested by the mirror's
+// rule (engine/touch/region_wish.h) and felt once the answer would have arrived. For replays and tests. One thread.
 
 #include <functional>
 #include <memory>
@@ -10,19 +10,19 @@
 
 namespace shvr {
 
-/// Fills `patch` with the relevant voxels around a probe, at or above `threshold`. It may choose the patch's position
-/// and level freely; sequence, time and settings are set afterwards.
+/// Fills `patch` with the relevant voxels around a probe, at or above `threshold`. The function may choose the patch's
+/// position and level freely; sequence, time and settings are set afterwards.
 using MakeRelevance = std::function<void(const RegionWish& wish, double threshold, RelevancePatch& patch)>;
 
 class LateRelevance {
 public:
-    /// `every`: number of calls between updates, which are then felt at once; 0: when due.
+    /// `every`: number of calls between updates, which are then felt at once; 0: updates follow the mirror's rule.
     LateRelevance(MakeRelevance make, double latency_s, uint32_t every = 0);
-    /// The relevance felt now. Call once per tick. `velocity`: of the probe, physical units per second.
+    /// Returns the relevance felt now. Call once per tick. `velocity`: the probe's, physical units per second.
     const RelevancePatch& around(const glm::dvec3& velocity, const glm::dvec3& point, const ForceSettings& settings,
                                  double threshold, uint64_t now_ns);
     uint64_t made() const { return made_; }
-    /// Another servo knows nothing yet.
+    /// Call when another servo takes over: that servo knows nothing yet.
     void swap() { patch_->sequence = next_->sequence = 0; }
 
 private:
@@ -31,8 +31,8 @@ private:
     MakeRelevance make_;
     double latency_s_ = 0.0;
     uint32_t every_ = 0, ticks_ = 0;
-    std::unique_ptr<RelevancePatch> patch_, next_;  ///< felt; on its way, with sequence 0 where none is
-    uint64_t felt_ns_ = 0;                          ///< when `next_` is
+    std::unique_ptr<RelevancePatch> patch_, next_;  ///< the patch felt; the patch on its way (sequence 0: none)
+    uint64_t felt_ns_ = 0;                          ///< time when `next_` is felt
     uint64_t made_ = 0;
     double threshold_ = 0.0;
 };

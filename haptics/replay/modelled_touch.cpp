@@ -20,7 +20,7 @@ ModelledTouch::ModelledTouch(const TouchModel& model) : model_(model), random_(m
 
 DeviceCaps ModelledTouch::caps() const noexcept
 {
-    return {.usable_lower_m = glm::dvec3(-MAX_REACH_M),  // its wishes are where the trace's are
+    return {.usable_lower_m = glm::dvec3(-MAX_REACH_M),  // wishes lie where the trace's positions lie
             .usable_upper_m = glm::dvec3(MAX_REACH_M),
             .peak_force_n = model_.peak_n,
             .latency_s = model_.delay_ticks * model_.tick_s,

@@ -9,10 +9,10 @@
 //            maker's data sheet of the Touch, not measured by us. 0.05 N s/m viscous is a guess that changes little.
 //   delay    2 ticks: a report in and a report out over USB, each up to 1 ms; jitter 0.5 ms either way
 //   hand     100 g, 150 N/m, 3 N s/m: a hand that holds a pen loosely
-// Between two reads it moves in steps of 0.05 ms; friction blocks motion up to its limit. The same seed and writes give
-// the same positions, bit for bit.
+// Between two reads the arm moves in steps of 0.05 ms; friction blocks motion up to its limit. The same seed and writes
+// give the same positions, bit for bit.
 //
-// read() and write(): one thread. Another one may write `wish()`. Never allocates.
+// read() and write(): one thread. Another thread may write `wish()`. Never allocates.
 
 #include <array>
 #include <cstdint>
@@ -43,14 +43,14 @@ class ModelledTouch : public HapticDevice {
 public:
     explicit ModelledTouch(const TouchModel& model = {});
     Latest<HandWish>& wish() { return wish_; }
-    /// Gives it a velocity, to throw it at objects.
+    /// Gives the arm a velocity, to throw it at objects.
     void set_velocity(const glm::dvec3& velocity) { velocity_ = velocity; }
     const glm::dvec3& true_position_m() const { return position_m_; }
     /// Work done by the device's force on hand and arm, in J: the energy they gained from it.
     double work_j() const { return work_j_; }
 
     DeviceCaps caps() const noexcept override;
-    /// Advances by one tick. Always fresh.
+    /// Advances by one tick. The result is always fresh.
     ReadResult read(DeviceState& state) noexcept override;
     bool write(const glm::dvec3& force_n, uint32_t sequence) noexcept override;
 

@@ -38,7 +38,7 @@ ForceSettings chosen(const TraceSettings& settings, const ReplayOptions& options
     return force;
 }
 
-/// The device of a replay: the trace's answers, or a modelled one drawn along the trace's positions.
+/// The device of a replay: either the trace's answers, or a modelled device drawn along the trace's positions.
 class Player {
 public:
     Player(const Trace& trace, const ReplayOptions& options) : trace_(trace)
@@ -68,7 +68,7 @@ public:
             return tick.read;
         }
         if (is_finite(tick.state.position_m)) wish_m_ = tick.state.position_m;
-        // It starts where the trace starts.
+        // The modelled device starts where the trace starts.
         touch_->wish().publish({.position_m = wish_m_, .buttons = tick.state.buttons, .jump = tick.state.jump + 1});
         return touch_->read(state);
     }
@@ -120,7 +120,7 @@ class Tally {
 public:
     explicit Tally(ReplayResult& result) : result_(result) { result_.hash = FNV_BASIS; }
 
-    /// Another device: its first force follows none.
+    /// Begins another device: its first force does not follow an earlier one.
     void swap()
     {
         ++result_.swaps;

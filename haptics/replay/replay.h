@@ -17,7 +17,7 @@ struct ReplayOptions {
     /// A modelled hand moves this device along the trace; without it, the device's answers are those of the trace.
     std::optional<TouchModel> touch;
     bool relevance_anew = false;  ///< recomputes relevance even if the trace contains it
-    /// Computed relevance is asked for as in the window (engine/touch/region_wish.h) and felt that much later.
+    /// Computed relevance is requested as in the window (engine/touch/region_wish.h) and felt after this delay.
     double relevance_latency_s = WINDOW_LATENCY_S;
     uint32_t relevance_every = 0;  ///< ticks between updates of relevance, each felt at once; 0: as in the window
 };
@@ -33,14 +33,14 @@ struct ReplayResult {
     uint32_t objects = 0, swaps = 0;    ///< number of objects touched on the last device; number of device changes
     bool is_recorded = false;           ///< the relevance was read from the trace; false: it was computed
     uint64_t hash = 0;                  ///< FNV-1a of all forces' bits
-    uint64_t told = 0, told_equal = 0;  ///< ticks whose force the trace contains, and those with the same bits
+    uint64_t told = 0, told_equal = 0;  ///< ticks whose force the trace contains; number of these with equal bits
     std::vector<uint64_t> tick_ns;      ///< time that each step() took on the real clock
     std::vector<ForceStep> steps;       ///< if requested
 };
-/// Whether the trace's relevance is used. Not with a modelled hand: its path differs, and no relevance is known there.
+/// Whether the trace's relevance is used: not with a modelled hand, whose path differs and has no known relevance.
 bool replays_relevance(const Trace& trace, const ReplayOptions& options);
-/// Calls `make_relevance` if the trace's relevance is not used, also when the threshold changes; if it is empty, that
-/// fails.
+/// If the trace's relevance is not used, calls `make_relevance` instead, also when the threshold changes; fails if
+/// `make_relevance` is empty.
 ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, const MakeRelevance& make_relevance,
                           bool keep_steps = false);
 

@@ -56,8 +56,8 @@ void read_caps(const JsonNode& node, DeviceCaps& caps)
     caps.tells_force_sequence = node["tells_force_sequence"].flag(caps.tells_force_sequence);
 }
 
-/// Whether the columns have one length and are at right angles, as far as rounding tells: only then is the inverse the
-/// transpose divided by the scale squared, which the force uses.
+/// Returns whether the columns have one length and are at right angles, within rounding. Only then is the inverse,
+/// which the force uses, the transpose divided by the scale squared.
 bool is_rotation_and_scale(const glm::dmat3& matrix)
 {
     constexpr double ROUNDING = 1e-6;
@@ -163,7 +163,7 @@ TraceTick read_tick(const JsonNode& node, const TraceTick* before, uint64_t peri
     return tick;
 }
 
-/// Whether the file must have an end line.
+/// Reads the first line. Returns whether the file must have an end line.
 bool read_head(const JsonNode& node, Trace& trace)
 {
     node.allow({"shvr_stylus_trace", "holds_relevance", "feels_seen", "unit", "rate_hz", "caps"});
@@ -221,7 +221,7 @@ private:
         const bool is_other = !trace_.swaps.empty() && trace_.swaps.back() == trace_.ticks.size();
         trace_.ticks.push_back(
             read_tick(node, trace_.ticks.empty() ? nullptr : &trace_.ticks.back(), 1'000'000'000 / trace_.rate_hz));
-        // If the relevance of another device is not stated, it has none.
+        // The first tick of another device has no relevance unless it states some.
         if (is_other && !node["relevance_time"].exists()) trace_.ticks.back().relevance_time_ns = 0;
     }
     void swap_device()
@@ -278,7 +278,7 @@ Trace parse_trace(const std::string& whole, const std::string& origin)
             continue;
         }
         reader.read_first(document.root());
-        // Checked first, before a damaged line is reported as a mistake in it.
+        // Checked before the lines, so that a damaged file is not reported as a mistake in one of its lines.
         if (reader.has_end()) text = without_trace_end(text, origin);
     }
     if (!has_head) fail(origin, " is empty; expected a line {\"shvr_stylus_trace\":1}");

@@ -1,7 +1,7 @@
 #pragma once
 // A stylus trace: the device's answers and the user's settings, tick by tick, as a file (README.md has the format).
-// Reading returns exactly the written values, bit for bit. Version 3, which ends with a hash of itself; versions 1 and
-// 2, which do not, are read as well. Any thread.
+// Reading returns exactly the written values, bit for bit. Writes version 3, which ends with a hash of the text; also
+// reads versions 1 and 2, which have no hash. Any thread.
 
 #include <filesystem>
 #include <iosfwd>
@@ -43,16 +43,16 @@ struct Trace {
     uint32_t rate_hz = 1000;
     DeviceCaps caps;
     std::vector<TraceCaps> later_caps;  ///< sorted by tick
-    /// Ticks from which another device, or the same one after being reopened, answers a restarted servo, which has no
-    /// force and no object, and feels nothing before the next relevance.
+    /// Ticks from which another device, or the same one reopened, answers a restarted servo. That servo has no force
+    /// and no object, and feels nothing before the next relevance.
     std::vector<size_t> swaps;
     std::vector<TraceSettings> settings;  ///< sorted by tick; the first one applies from the start
-    /// Whether the trace contains the relevance that the servo used: `relevance`, by tick, and none before the first
-    /// entry. Otherwise the replaying code computes it.
+    /// Whether the trace contains the relevance that the servo used: `relevance`, sorted by tick; before its first
+    /// entry, there was none. If false, the replaying code computes relevance.
     bool holds_relevance = false;
     std::vector<TraceRelevance> relevance;
-    /// Whether relevance that is computed is limited to what the session shows, as its settings say; in traces of older
-    /// programs, which felt everything, it is not.
+    /// Whether computed relevance is limited to the voxels that the session shows, as its settings say. False in traces
+    /// of older programs, which felt everything.
     bool feels_seen = false;
     std::vector<TraceTick> ticks;
 };

@@ -7,9 +7,9 @@
 
 namespace shvr {
 
-/// `text`: all preceding lines, each with its line break.
+/// Returns the last line. `text`: all preceding lines, each with its line break.
 std::string trace_end(std::string_view text);
-/// The lines before the end line. Fails if there is none, or it does not match them.
+/// Returns the lines before the end line. Fails if there is no end line, or if it does not match them.
 std::string_view without_trace_end(std::string_view text, const std::string& origin);
 
 }  // namespace shvr

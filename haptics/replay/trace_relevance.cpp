@@ -10,7 +10,7 @@ namespace {
 constexpr std::string_view DIGITS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
 constexpr uint32_t MORE = 32;
 
-/// The bits of `before` at the voxels of a word that starts at `first_voxel`.
+/// Returns the bits of `before` at the voxels of a word that starts at `first_voxel`.
 uint32_t word_before(const RelevancePatch& before, int32_t level, const glm::ivec3& first_voxel)
 {
     if (before.sequence == 0 || before.level != level) return 0;
@@ -40,7 +40,7 @@ void put_length(uint32_t length, std::string& runs)
     runs += DIGITS[length];
 }
 
-/// Parses the next length; false at the end, on other characters, and if it is too long.
+/// Parses the next length. Returns false at the end, on other characters, and if the length has too many digits.
 bool take_length(std::string_view& runs, uint32_t& length)
 {
     length = 0;

@@ -1,11 +1,11 @@
 #pragma once
-// The relevance that a servo had, as stored in a trace: its place, and its bits as runs of differences from the
-// previous one, with which a moving hand shares most bits. Decoding restores all words, bit for bit.
+// The relevance that a servo had, as stored in a trace: its position, and its bits as runs of differences from the
+// previous relevance, which shares most bits as a hand moves. Decoding restores all words, bit for bit.
 //
-// Runs are alternating lengths of equal and different bits, beginning with equal ones, along all words of a patch. They
-// are relative to the bits of the same voxels in the previous patch, or 0 outside it and after a change of level. A
+// Runs are alternating lengths of equal and different bits, beginning with equal ones, along all words of a patch. Bits
+// are compared with those of the same voxels in the previous patch, or with 0 outside it and after a change of level. A
 // length is written five bits at a time, lowest first, each as a character of A-Z, a-z, 0-9, '-' and '_'; 32 is added
-// to all but the last.
+// to all characters but the last.
 //
 // Any thread.
 
@@ -30,7 +30,7 @@ struct TraceRelevance {
 
 /// `before`: the patch encoded last; its sequence is 0 if there is none.
 TraceRelevance note_relevance(const RelevancePatch& patch, const RelevancePatch& before);
-/// Decodes all of `patch` except its time. False if place or runs are inconsistent; `patch` is then unusable.
+/// Decodes all of `patch` except its time. Returns false if place or runs are inconsistent; `patch` is then unusable.
 bool read_relevance(const TraceRelevance& noted, const RelevancePatch& before, RelevancePatch& patch);
 
 }  // namespace shvr

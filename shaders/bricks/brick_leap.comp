@@ -1,5 +1,5 @@
-// One brick per workgroup: finds which of its cells may be visible, how far the nearest of those is, and which are
-// painted (pages.h).
+// One workgroup per brick: finds which of the brick's cells may be visible, how far away the nearest visible cell is,
+// and which cells are painted (pages.h).
 // MASKED: a cell is also occupied if one of its voxels is in a visible group.
 // variants: MASKED
 #version 460

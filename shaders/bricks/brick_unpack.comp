@@ -1,5 +1,5 @@
-// Copies bricks into their slots: one group per slice of a brick's codes; the first ones also copy the cells. Copy
-// commands would do the same, but some devices run a dispatch for each slice of each.
+// Copies bricks into their slots: one group per slice of a brick's codes; the first groups also copy the cells. Copy
+// commands would do the same, but some devices run a dispatch for each slice of each copy.
 // FILTERED: the atlas is the one for the device's filter. Otherwise staged codes have the layout of the atlas.
 // variants: FILTERED
 #version 460

@@ -21,7 +21,7 @@ void main()
     const uint entry = imageLoad(source, cell).x;
     uint best = entry >> LEAP_DISTANCE_SHIFT;
     for (uint k = 1u; k < best; ++k) {
-        // Nothing is visible outside the volume, so the nearest cell inside can be used there: it is closer.
+        // Nothing outside the volume is visible, so the nearest cell inside can be used instead: it is closer.
         const int below = max(-int(k), -position), above = min(int(k), count - 1 - position);
         const uint nearest = min(imageLoad(source, cell + below * along).x, imageLoad(source, cell + above * along).x);
         best = min(best, max(k, nearest >> LEAP_DISTANCE_SHIFT));

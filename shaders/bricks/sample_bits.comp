@@ -1,6 +1,6 @@
 // Finds where samples of the exact density may show something (leap.h, sample bits): one cell per thread. The bit of a
 // sample between eight voxel centres is set if at least one code there is not below the visible range, and at least one
-// is not above it; so are all bits of a cell next to paint.
+// is not above it. In a cell next to paint, all bits are set.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -16,8 +16,8 @@ layout(binding = 2, r32ui) uniform writeonly uimage3D sample_bits;
 #include "../library/atlas.glsl"
 
 const uint ALL = 0xffffffffu;
-// For the codes of four voxels from `x` on, where a word begins, and of the one before: bits for not below the visible
-// range, and for not above it. Bits 0 to 4 and 8 to 12. The volume's first voxel repeats.
+// Returns bits for five codes: of the voxel before `x`, and of the four from `x` on, where a word begins. Bits 0 to 4:
+// not below the visible range; bits 8 to 12: not above it. The volume's first voxel repeats before itself.
 uint sides_of_row(int x, int y, int z)
 {
     const int before = max(x - 1, 0), first_word = x >> WORD_SHIFT;

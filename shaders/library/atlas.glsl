@@ -1,12 +1,12 @@
 // Reads texels of the density atlas. Needs bricks.h and `atlas`: r32ui, or FILTERED, a sampler3D of R16_UNORM codes.
-// Codes have 16 bits, and two along x are in a texel of r32ui, the first one in its low half. In volumes of bytes codes
-// are multiples of 257 and four are in a texel, as CODE_BYTES says.
+// Codes have 16 bits. A texel of r32ui contains two codes along x, the first one in its low half. In volumes of bytes
+// (CODE_BYTES is 1), codes are multiples of 257 and a texel contains four.
 //
-// Paged bricks lie in slots, those of a resident volume side by side (bricks.h).
+// Paged bricks lie in slots; bricks of a resident volume lie side by side (bricks.h).
 //
-// STACKED: if one image of the device cannot hold enough paged bricks there are several of the same size, stacked along
-// z: ATLASES of them. Bindings of missing ones get the first, and are never read. A brick lies in one image, with all
-// texels that its samples read.
+// STACKED: if one image of the device cannot hold enough paged bricks, there are several (ATLASES) of the same size,
+// stacked along z. Bindings of missing images get the first image, and are never read. A brick lies in one image,
+// together with all texels that its samples read.
 #ifndef SHVR_ATLAS_GLSL
 #define SHVR_ATLAS_GLSL
 
@@ -38,7 +38,7 @@ layout(binding = STACKED + 1, r32ui) uniform readonly uimage3D atlas_2;
 layout(binding = STACKED + 2, r32ui) uniform readonly uimage3D atlas_3;
 #endif
 
-// The index of the image that holds z, for images of that height.
+// The index of the image that contains z, if each image has the height `height`.
 int atlas_of(int z, int height)
 {
     return int(z >= height) + int(z >= 2 * height) + int(z >= 3 * height);

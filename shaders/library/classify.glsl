@@ -77,7 +77,7 @@ vec4 classify_change(const RaycastParams params, float front, float back, float 
     return vec4(sum.rgb / max(sum.a, 1e-30), opacity);
 }
 
-// An interval of densities, from one end to the other, at which rays end.
+// An interval of opaque densities, at which rays end, with its lower and upper ends.
 struct Opaque {
     vec4 lower, upper;   // colour, density
 };
@@ -88,7 +88,7 @@ Opaque opaque_interval(const RaycastParams params, uint number)
     return Opaque(imageLoad(table, table_texel(at)), imageLoad(table, table_texel(at + 1u)));
 }
 
-// The interval that a density meets first on its way from `front` to `back`, or an unreachable one.
+// The interval that a density meets first on its way from `front` to `back`; an unreachable one if it meets none.
 Opaque opaque_ahead(const RaycastParams params, float front, float back)
 {
     const float at = clamp((front - params.table_lower) * params.opaque_scale, 0.0, float(OPAQUE_ENTRIES - 1u));
@@ -105,7 +105,7 @@ Opaque opaque_ahead(const RaycastParams params, float front, float back)
 vec4 classify_step(const RaycastParams params, float front, float back, float part)
 {
     if (PREINTEGRATED < 2u) return classify_change(params, front, back, part);
-    // The back of a step and the front of the next one are the same point; rounding may leave such a gap between them.
+    // The back of a step and the front of the next one are the same point; rounding may leave a gap of this size.
     const float gap = 0.004;   // codes
     const Opaque ahead = opaque_ahead(params, front, back);
     const float lower = min(front, back) - gap, upper = max(front, back) + gap;

@@ -1,10 +1,10 @@
 // Exact sampling of the density: trilinear values, and central differences of +-0.5 voxel, by arithmetic on 16-bit
-// codes. Needs `atlas`, r32ui, with two or four neighbouring codes along x in a texel (atlas.glsl); and
-// `density_reads`, which counts. Several codes in one load make this the fastest way on devices whose images are
-// ordinary memory (engine/bricks/README.md).
+// codes. Needs `atlas`, r32ui, with two or four neighbouring codes along x in a texel (atlas.glsl); and the counter
+// `density_reads`. Several codes in one load make this the fastest way on devices whose images are ordinary memory
+// (engine/bricks/README.md).
 //
 // A sample touches the eight codes around it and, for the gradient, one more row on the nearer side of each axis. All
-// lie side by side, or within the brick's apron, so no second lookup is ever needed.
+// these codes lie side by side, or within the brick's apron, so no second lookup is ever needed.
 #include "atlas.glsl"
 
 // Three neighbouring codes along x: the words that hold the first and the last of them, and the shifts that extract
@@ -89,8 +89,8 @@ float value_of(const Density d)
     return low + (high - low) * d.fraction.z;
 }
 
-// The derivative from three consecutive values, `f` between the first two: f(p + 0.5) - f(p - 0.5) of their
-// interpolant.
+// The derivative at the fraction `f` between `low` and `high`: f(p + 0.5) - f(p - 0.5) of the interpolant of three
+// consecutive values, where `beyond` is the next value on the nearer side.
 float central(float low, float high, float beyond, float f)
 {
     const float inner = high - low;

@@ -1,9 +1,9 @@
 // The positions of samples along a ray. Needs sample.glsl.
 
-// Step numbers leave room for a leap.
+// Maximum step number; it leaves room to add a leap.
 const float MAX_STEPS = 2147483648.0;
 
-// A ray's steps: whole ones of equal length, and the rest, a shorter and therefore more transparent one.
+// A ray's steps: whole steps of equal length, then the rest, a shorter and therefore more transparent step.
 struct Lattice {
     float begin, end;    // lengths along the ray
     uint whole;          // number of whole steps, and index of the rest
@@ -15,7 +15,7 @@ Lattice lattice_of(const RaycastParams params, float begin, float end)
 {
     const float extent = end > begin ? end - begin : 0.0;   // 0 also for NaN
     const float steps = extent / params.step;
-    const uint whole = steps > 0.0 ? uint(min(steps, MAX_STEPS)) : 0u;   // likewise
+    const uint whole = steps > 0.0 ? uint(min(steps, MAX_STEPS)) : 0u;   // also 0 for NaN
     const float whole_end = begin + float(whole) * params.step;
     const float rest = extent - float(whole) * params.step;
     return Lattice(begin, end, whole, max(rest / params.step, 0.0), whole_end + 0.5 * rest);

@@ -12,11 +12,11 @@ struct Place {
     uint slot;
     uint level;
     uint entry;
-    bool is_painted;  // perhaps
-    bool is_missing;  // a ray waits here
+    bool is_painted;  // true: it may be painted
+    bool is_missing;  // a ray that arrives here waits
 };
 
-// The brick, without the cells in it: any of its samples may be visible, and painted.
+// Finds the brick at a position, but not the cell in it: any sample of the brick may be visible, and painted.
 Place brick_at(const RaycastParams params, vec3 position)
 {
     const uvec3 voxel = uvec3(position);

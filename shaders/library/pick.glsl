@@ -4,10 +4,10 @@
 struct Rises {
     float most, most_at;               // the best run so far; members ending in `_at` are lengths along the ray
     float run, steepest, steepest_at;  // of the present run
-    float peak, trough;                // largest opacity of a sample of this run, and smallest since then
+    float peak, trough;                // largest opacity of a sample of this run, and the smallest one after it
 };
 
-// A run ends when the opacity of samples has fallen well below its peak and rises again, which is another structure.
+// A run ends when the opacity of samples has fallen well below its peak and rises again: another structure begins.
 // Slight noise does not end a run.
 void note_rise(inout Rises rises, float added, float opacity, float at)
 {

@@ -20,8 +20,8 @@ vec2 ball_range(const vec3 center, const vec3 direction, float radius)
     return half_chord_squared < 0.0 ? NOTHING : vec2(middle - half_chord, middle + half_chord);
 }
 
-// A rod along the unit vector `axis`. Radii of its tangent cone are (radius_from - x * sine) / cosine at x along it,
-// between the circles where it touches the balls.
+// A rod along the unit vector `axis`. At x along the axis, its tangent cone has the radius (radius_from - x * sine) /
+// cosine, between the circles where the cone touches the balls.
 struct Rod {
     vec3 axis;
     float sine;
@@ -68,8 +68,8 @@ vec2 cone_range(const Rod rod, float radius, const vec3 offset, const vec3 direc
                 max(first ? roots.x : NOTHING.y, second ? roots.y : NOTHING.y));
 }
 
-// Lengths along the line where it enters and leaves a surface. `from` relative to the line's origin. The hull is
-// convex, so every point where the line meets a ball or the cone lies between the two.
+// Lengths along the line where it enters and leaves a surface. `from` is relative to the line's origin. The hull is
+// convex, so every point where the line meets a ball or the cone lies between these two lengths.
 vec2 surface_range(const Surface surface, const vec3 from, const vec3 direction)
 {
     const float shift = dot(from + 0.5 * surface.along, direction);

@@ -1,5 +1,5 @@
 // Computes what a ray sees in one step: density, transfer function, paint, light. Needs raycast.comp's Ray and Place,
-// density_*.glsl, shade.glsl, if MASKED mask.glsl and `groups`, if OCCLUDED occlusion.glsl.
+// density_*.glsl and shade.glsl; if MASKED, mask.glsl and `groups`; if OCCLUDED, occlusion.glsl.
 #include "classify.glsl"
 #include "texels.glsl"
 #ifdef MASKED
@@ -20,7 +20,7 @@ vec4 painted(uint group, vec4 look)
 }
 #endif
 
-// The density at a point in the brick whose first voxel is at `first`, or at most half a voxel outside of it.
+// The density at a point in the brick whose first voxel is at `first`, or at most half a voxel outside the brick.
 float value_near(vec3 in_brick, ivec3 first)
 {
     const vec3 held = clamp(in_brick, -1.0, float(BRICK_SIZE));   // including its aprons
@@ -28,9 +28,9 @@ float value_near(vec3 in_brick, ivec3 first)
     return value_of(density_at(ivec3(corner) + first, held - corner));
 }
 
-// The density at an end of a step, at length `s` along the ray. `texels` are the texels of the step's middle; the apron
-// of that brick reaches to both ends. One step's end is the next one's beginning, with the same bits if both are in
-// bricks of one level, because only whole numbers are subtracted from a position.
+// The density at an end of a step, at length `s` along the ray. `texels` are those of the step's middle; the apron of
+// their brick reaches to both ends. The end of a step has the same bits as the beginning of the next step if both are
+// in bricks of one level, because only whole numbers are subtracted from a position.
 float value_at_end(const RaycastParams params, const Ray ray, float s, const Texels texels, const Place place)
 {
     vec3 lattice = position_at(params, ray, s);
@@ -47,9 +47,9 @@ struct Sample {
     uint group;      // 0: none
 };
 
-// A step with its middle at `position`, in the brick at `place`. PREINTEGRATED: `ends` are the densities at its
-// beginning and end, and its opacity is that of the fraction `part` of a step; otherwise that of a whole one
-// (opacity_of_rest).
+// Samples a step with its middle at `position`, in the brick at `place`. PREINTEGRATED: `ends` are the densities at the
+// step's beginning and end, and the opacity is that of the fraction `part` of a step. Otherwise, the opacity is that of
+// a whole step (opacity_of_rest).
 Sample sample_at(const RaycastParams params, const Ray ray, vec3 position, float part, const Place place, vec2 ends)
 {
     const Texels texels = texels_at(position, place);

@@ -8,8 +8,8 @@
 
 // Maximum iterations; lanes that have found nothing by then take a sample like the others.
 const uint MAX_SEARCH_TURNS = 20u;
-// Whether the sample at `position` may show anything. Painted samples may, whatever their density; and a step
-// classified by its ends is not judged by its middle.
+// Whether the sample at `position` may show anything. A painted sample may, whatever its density. So may any step that
+// is classified by the densities at its ends, since its middle tells nothing about it.
 bool may_be_seen(const RaycastParams params, vec3 position, const Place place)
 {
     if (PREINTEGRATED != 0u) return true;
@@ -28,8 +28,8 @@ const uint NEAR = 1u;
 const uint ASKED_IN_TURN = 2u;
 
 // Which of the samples from step `i` on have their bits set; the lowest bit is that of step `i`. Positions are in fixed
-// point (leap.h), which costs a fraction of the work: coordinates are packed so that, from the voxels' first bits on,
-// they are adjacent, as in a bit's index.
+// point (leap.h), which costs a fraction of the work: coordinates are scaled so that the lowest bits of their voxels
+// lie next to each other, as in a bit's index.
 uint bits_ahead(const RaycastParams params, const Ray ray, float begin, uint i)
 {
     const vec3 parts = vec3(SAMPLE_BIT_PARTS, SAMPLE_BIT_PARTS << 2, SAMPLE_BIT_PARTS << 4);
@@ -93,7 +93,7 @@ void search_bits(const RaycastParams params, const Ray ray, float begin, uint en
 }
 #endif
 
-// Advances to a step whose sample may be visible, to the first step that may not be searched further, or to `end_step`.
+// Advances to a step whose sample may be visible, to the first step at which the search stops, or to `end_step`.
 // `unseen` counts samples that showed nothing.
 void search_sample(const RaycastParams params, const Ray ray, float begin, uint end_step, inout uint i,
                    inout uint unseen, inout Work work)

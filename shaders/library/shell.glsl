@@ -1,16 +1,16 @@
-// Thin-shell iso-surface in the region around the probe: where the trilinear field crosses a threshold, solved per cell
-// and not at samples, so that nothing thinner than a step is missed. Along a ray the field in a cell is a cubic; it is
-// split where its derivative is 0, and each piece holds at most one crossing (Marmitt and others 2004, "Fast and
-// accurate ray-voxel intersection techniques for iso-surface ray tracing"). Cells of 4^3 voxels whose range shows that
-// the field stays on the ray's side of the threshold are skipped at once.
+// Thin-shell iso-surface in the region around the probe, where the trilinear field crosses a threshold. Crossings are
+// solved per cell, not at samples, so that nothing thinner than a step is missed. Along a ray the field in a cell is a
+// cubic; it is split where its derivative is 0, and each piece has at most one crossing (Marmitt and others 2004, "Fast
+// and accurate ray-voxel intersection techniques for iso-surface ray tracing"). Cells of 4^3 voxels whose range shows
+// that the field stays on the ray's side of the threshold are skipped at once.
 //
 // Whether the ray is inside is carried from cell to cell. If rounding loses a crossing at a border, the next cell finds
 // it at its start, so there are neither holes nor duplicates. Variables needed after the loop are carried through it,
-// since lanes that leave early lose all others.
+// since lanes that leave the loop early lose all other variables.
 #include "voxel_code.glsl"
 
-// In reference lengths. A piece of the ray shorter than this counts as part of the neighbouring cell; a shell thinner
-// than this is ignored. Far along a ray it is at least two ulps, so that every search advances.
+// A length in reference lengths. A piece of the ray shorter than this counts as part of the neighbouring cell; a shell
+// thinner than this is ignored. Far along a ray it is at least two ulps, so that every search advances.
 float hair_at(float s)
 {
     const float HAIR = 1e-3, TWO_ULPS = 2.384185791015625e-7;
@@ -30,7 +30,7 @@ struct Shell {
     uint turns;       // iterations of both loops; MAX_TURNS are more than any ray with finite coordinates needs
 };
 
-// The cell of the lattice around a position, in the brick that holds it.
+// The lattice cell around a position, in the brick that contains the position.
 struct Cell {
     bool is_there;
     bool is_missing;  // the ray waits
@@ -113,7 +113,7 @@ float cubic(vec4 c, float u)
     return c.x + u * (c.y + u * (c.z + u * c.w));
 }
 
-// The zeros of the cubic's derivative between 0 and 1, ascending; otherwise 0 or 1.
+// The zeros of the cubic's derivative, ascending; those outside 0 ... 1, or missing, become 0 or 1.
 vec2 turning_points(vec4 c)
 {
     const float discriminant = c.z * c.z - 3.0 * c.y * c.w;
@@ -235,7 +235,7 @@ vec2 shell_range(const RaycastParams params, const Ray ray)
     return middle + vec2(-half_chord, half_chord);
 }
 
-// `limit`: end of the part of the ray that is followed now. `kept`, `is_inside`: state left by an earlier part
+// `limit`: end of the part of the ray that this dispatch follows. `kept`, `is_inside`: state left by an earlier part
 // (raycast.h).
 Shell begin_shell(const RaycastParams params, const Ray ray, const Lattice lattice, float limit, vec2 kept,
                   bool is_inside)
@@ -260,7 +260,7 @@ Shell begin_shell(const RaycastParams params, const Ray ray, const Lattice latti
     return shell;
 }
 
-// The length along the ray up to which there is no crossing.
+// The length along the ray up to which there is known to be no crossing.
 float known_until(const Shell shell)
 {
     return shell.next == NO_SHELL && shell.waits ? shell.known : shell.next;
@@ -285,7 +285,7 @@ vec4 shell_look(const RaycastParams params, const Ray ray, const Cell cell, vec3
     return vec4(color, params.shell_opacity);
 }
 
-// Whether there is a crossing before `s` to add, or the next one must be searched.
+// Whether there is a crossing before `s` to add, or the next crossing must be searched for.
 bool has_more_shells(const RaycastParams params, const Shell shell, float s, vec4 sum)
 {
     const bool is_unknown = shell.next == NO_SHELL && shell.from >= 0.0 && shell.from < shell.limit;

@@ -7,35 +7,35 @@
 //
 //   surface   strength = g^2 / (g^2 + fade^2) for a gradient of g per voxel
 //   edge      the voxel is moved in that direction to where the medium ends: by the integral over 0 < s < 1.5 of the
-//             running minimum of e(s), minus that over -1.5 < s < 0 of 1 - the running maximum, where
-//             e = 1 - (1 - min(o / o', 1))^2. Rays begin 0.07 voxels in front of that; all this times the strength.
+//             running minimum of e(s), minus the integral over -1.5 < s < 0 of 1 - the running maximum, where
+//             e = 1 - (1 - min(o / o', 1))^2. Rays begin 0.07 voxels in front. Strength scales all of this.
 //   side      directions whose cosine with the normal is below strength - 1 are replaced by their mirror image in
 //             front of the surface, unless the full sphere is requested.
-//   itself    within its own voxel a ray meets no more than half a unit after leaving it.
+//   itself    within its own voxel, a ray meets no more opacity than half a unit after leaving it.
 //
 // So a ray begins at the visible edge, however deep in the edge its voxel lies. The edge is sought in voxels, since
 // samples mix voxels that far apart; rays and the normal are in physical space. In double: tests/reference/occlusion.h.
 //
 // A "ramp" encodes in 32 bits how opaque a cube is from place to place: the plane fitted to its densities, mapped
 // through the transfer function to an opacity that rises linearly from 0 to a maximum (top). Position and width of the
-// rise follow from the function's mean and mean square over the densities of the cube, which are sums over its table.
+// rise follow from the function's mean and mean square over the densities of the cube, found by sums over the table.
 // Ramps resolve a surface inside a cube, so they need no correction for the half-space behind it.
 //
-// "Cells" hold the opacity of the medium, in two coarse copies of every brick. Those of 2^3 voxels are ramps. Those of
-// 4^3 have three codes, the opacities of paths through it along x, y and z, each the mean over its columns: a wall
-// blocks rays that cross it, however thin, but not rays parallel to it. Opacity = (code / 255)^2; the square root puts
-// more codes where opacities are small. A ray takes their mean, weighted with the squares of its direction. Both apply
-// to the stretch of a ray that a cell represents, which grows with the radius.
+// "Cells" hold the opacity of the medium, in two coarse copies of every brick. Cells of 2^3 voxels are ramps. Cells of
+// 4^3 have three codes, the opacities of paths through the cell along x, y and z, each the mean over its columns: a
+// wall blocks rays that cross it, however thin, but not rays parallel to it. Opacity = (code / 255)^2; the square root
+// puts more codes where opacities are small. A ray takes the mean of the three, weighted with the squares of its
+// direction. Both kinds apply to the stretch of a ray that a cell represents, which grows with the radius.
 //
 // "Near" values are ramps of voxels. They are computed from densities and gradients for each brick in turn, with the
-// surroundings of the brick, and then discarded; so are copies of the cells around a paged brick, which let rays read
-// from one piece of memory. Cells of a resident volume are side by side as in the volume, so nothing is copied. A voxel
+// surroundings of the brick, and then discarded, like the copies of cells around a paged brick, which let rays read
+// from one piece of memory. Cells of a resident volume are side by side as in the volume, so none are copied. A voxel
 // whose opacity is fixed by paint or a cut has that opacity throughout.
 //
 // "Values" are the result, 255 where all light arrives, in slots like those of the density atlas, aprons included. In a
 // resident volume a brick's values are also written to the aprons of its neighbours. A paged brick's aprons are
 // computed with it, from the same numbers and to the same bits, so that its values depend only on the bricks around it,
-// and not on whether and when those had theirs.
+// and not on whether and when values of those bricks were computed.
 #ifndef SHVR_OCCLUSION_H
 #define SHVR_OCCLUSION_H
 #include "../bricks.h"
@@ -45,12 +45,12 @@ SHARED_BEGIN
 SHARED_CONST uint OCCLUSION_SIZES = 2u;  // cell sizes: 2 << size voxels a side
 /// Number of bricks whose values can be computed at once: enough to keep a GPU busy.
 SHARED_CONST uint OCCLUSION_SLICE = 256u;
-/// The scratch images hold them in columns along z, which are in rows along x.
+/// The scratch images hold these bricks in columns along z; the columns are in rows along x.
 SHARED_CONST uint OCCLUSION_COLUMN = 16u;
 SHARED_CONST uint OCCLUSION_COLUMNS_A_ROW = 4u;
 SHARED_CONST uint OCCLUSION_NEAR_APRON = 4u;  // voxels
 SHARED_CONST uint OCCLUSION_NEAR_SIDE = 40u;  // BRICK_SIZE + 2 OCCLUSION_NEAR_APRON
-/// The same margin for paged bricks, whose rays also begin in their aprons.
+/// The same margin for paged bricks, whose rays also begin in the bricks' aprons.
 SHARED_CONST uint OCCLUSION_NEAR_APRON_PAGED = 8u;
 SHARED_CONST uint OCCLUSION_NEAR_SIDE_PAGED = 48u;
 /// Maximum number of bricks away, on each side of a brick, from which light arrives; sets the largest radius.
@@ -58,8 +58,8 @@ SHARED_CONST uint OCCLUSION_REACH = 2u;
 SHARED_CONST uint OCCLUSION_AROUND = 125u;  // (2 OCCLUSION_REACH + 1)^3
 /// Workgroups per brick: several keep a GPU busy even with few bricks.
 SHARED_CONST uint OCCLUSION_SPLIT = 8u;
-/// An entry of `around` is a packed slot and, from this bit on, by how many levels its brick is coarser than the job's;
-/// 0: none.
+/// An entry of `around` is a packed slot and, from this bit on, the number of levels by which its brick is coarser than
+/// the job's; an entry of 0: no brick.
 SHARED_CONST uint OCCLUSION_LEVEL_SHIFT = 24u;
 
 /// Maximum number of levels of a volume.
@@ -96,7 +96,7 @@ struct OcclusionCellsParams {
 struct OcclusionJob {
     uvec3 brick;
     uint slot;
-    uint around;  ///< index of the first of the bricks around it in their list, x fastest
+    uint around;  ///< index of the first brick around it in the list of these bricks, x fastest
 };
 
 /// Parameters for gathering the surroundings of bricks of one level.
@@ -109,9 +109,9 @@ struct OcclusionGatherParams {
     float exponents[OCCLUSION_SIZES * OCCLUSION_LEVELS];
 };
 
-/// The bits of a ramp: 8 for the top, coded as in cells; 6 for the height at the centre, above half of the top, and 6
-/// for the slope across the cube along each axis, in these fractions of the top. RAMP_HELD: the opacity is fixed by
-/// paint or a cut.
+/// The bits of a ramp: 8 for the top, coded as in cells; 6 for the height at the centre above half of the top, in units
+/// of top / RAMP_HEIGHTS; and 6 per axis for the slope across the cube, in units of top / RAMP_SLOPES. A height of
+/// RAMP_HELD: the opacity is fixed by paint or a cut.
 SHARED_CONST float RAMP_HEIGHTS = 20.0f, RAMP_SLOPES = 10.0f;
 SHARED_CONST int RAMP_HELD = 31;
 

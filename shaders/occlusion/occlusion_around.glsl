@@ -1,5 +1,5 @@
-// The bricks around one whose values are computed, and which of its cells may be visible. Needs `bricks_around`, and
-// `leap`, or if PAGED `cell_leap`.
+// Looks up the bricks around a brick whose values are computed, and which of its cells may be visible. Needs
+// `bricks_around` and, if PAGED, `cell_leap`, otherwise `leap`.
 
 #ifdef PAGED
 const uint NEAR_APRON = OCCLUSION_NEAR_APRON_PAGED, NEAR_SIDE = OCCLUSION_NEAR_SIDE_PAGED;

@@ -1,7 +1,7 @@
 // Computes how much light reaches every potentially visible voxel of a brick, by the definition in occlusion.h. A ray
 // takes three samples in ramps of voxels, three in ramps of cells of two voxels and two in cells of four. PAGED: cells
-// are those of paged bricks. STRETCHED: voxels are no cubes; 2: all samples in cells use cells of two voxels, since
-// cells of four are longer than the distances to resolve.
+// are those of paged bricks. STRETCHED: 0: voxels are cubes; 1, 2: they are not; 2: all samples in cells use cells of
+// two voxels, since cells of four are longer than the distances to resolve.
 // variants: PAGED FILTERED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -23,7 +23,7 @@ layout(binding = 4, r32ui) uniform readonly uimage3D near;
 layout(binding = 5, r32ui) uniform readonly uimage3D around_2;
 layout(binding = 6, r32ui) uniform readonly uimage3D around_4;
 #else
-// Outside the volume reads are 0 (robustImageAccess): empty.
+// Outside the volume, reads return 0 (robustImageAccess), which means empty.
 layout(binding = 5, r32ui) uniform readonly uimage3D cells_2;
 layout(binding = 6, r32ui) uniform readonly uimage3D cells_4;
 #define around_2 cells_2
@@ -64,8 +64,8 @@ const float STEEPEST_OF_VOXELS = 3.3, STEEPEST_OF_CELLS = 2.6;   // occlusion_ra
 
 #include "occlusion_listed.glsl"
 
-// Positions are relative to the block of 4^3 voxels that contains the voxel, plus these numbers of voxels, so that they
-// are positive when truncated: the arithmetic is the same wherever a brick, or its apron, begins.
+// Positions are relative to the block of 4^3 voxels that contains the voxel. These numbers of voxels are added, so that
+// they are positive when truncated: the arithmetic is the same wherever a brick, or its apron, begins.
 const int NEAR_AHEAD = 4, CELLS_AHEAD = 64;
 
 // Converts positions in that block to texels of the scratch images, which hold jobs stacked along z, and to the cells
@@ -127,7 +127,7 @@ float opacity_along(const Course course, float along)
     return opacity_of(params.voxels, clamp(code, course.least, course.most));
 }
 
-// The fixed opacity of that voxel, whatever its density; below 0: none.
+// The fixed opacity of the voxel at `place`, whatever its density; below 0: none.
 float held_at(const Block block, vec3 place)
 {
     const ivec3 voxel = ivec3(place + float(NEAR_AHEAD));
@@ -139,8 +139,8 @@ float held_at(const Block block, vec3 place)
     return is_inside ? held : 0.0;
 }
 
-// The surface at a voxel, and the contribution to cells of 4 from the half-space behind it, which blocks no ray that
-// leaves the surface.
+// The surface at a voxel, and the contribution to cells of 4 from the half-space behind the surface; that half-space
+// blocks no ray that leaves the surface.
 struct Surface {
     vec3 normal;
     float strength;
@@ -204,7 +204,7 @@ Surface surface_at(const Block block, ivec3 texel, vec3 centre, vec3 slope)
     return s;
 }
 
-// An opacity without the contribution of the half-space behind the surface.
+// Removes the contribution of the half-space behind the surface from an opacity.
 float beyond_surface(float opacity, float of_surface)
 {
     const float own = min(of_surface, 0.95);
@@ -242,8 +242,8 @@ float sharpened_for(vec3 slope, float softened, float steepest)
     return softened * mix(1.0, sqrt(square / max(dot(physical, physical), 1e-6)), is_steepest);
 }
 
-// Light left of a ray over the stretch of a ramp, at an offset from the centre of the cube, whose side is 1. A ramp is
-// `softened` about the middle of its rise.
+// The share of a ray's light left after the stretch of a ramp, at an offset from the centre of the cube, whose side is
+// 1. A ramp is `softened` about the middle of its rise.
 float ramp_left(uint packed, vec3 from_middle, float softened, float steepest)
 {
     const vec3 slope = vec3(ramp_slope(packed));
@@ -273,7 +273,7 @@ vec3 weights_of(vec3 direction, vec3 step)
     return STRETCHED != 0u ? step * step / dot(step, step) : direction * direction;
 }
 
-// Light that arrives along a ray, in units. No buffer is read and nothing is a loop, which SIMD devices would run lane
+// Light that arrives along a ray, in units. Reads no buffers and has no loops, since SIMD devices would run either lane
 // by lane.
 float along(const Surface s, const Block block, vec3 direction, float leaves, ivec3 in_block)
 {
@@ -316,7 +316,7 @@ float along(const Surface s, const Block block, vec3 direction, float leaves, iv
     return after_cell(light, params.taps_4[1].stretch, cell_tap(s, cell_1, packed_1, weights, leaves)).y;
 }
 
-// Stores the value at the voxel and at its copies in other bricks; those of paged bricks compute their own. Aprons
+// Stores the value at the voxel and at its copies in other bricks; paged bricks compute their own copies. Aprons
 // without a brick of this level repeat their edge voxels.
 void store(const OcclusionJob job, ivec3 voxel, bool is_apron, uint value)
 {
@@ -367,14 +367,14 @@ void main()
         const vec3 n = surface.normal;
         const float up = n.z < 0.0 ? -1.0 : 1.0, a = -1.0 / (up + n.z), b = n.x * n.y * a;
         const vec3 one = vec3(1.0 + up * n.x * n.x * a, up * b, -up * n.x), other = vec3(b, up + n.y * n.y * a, -n.y);
-        // The part of the sphere behind the surface whose rays come from the front instead.
+        // Rays go behind the surface down to the height -open; those of lower heights come from the front instead.
         const float open = params.full_sphere != 0u ? 1.0 : 1.0 - surface.strength;
 
         float sum = 0.0;
         vec2 turned = vec2(1.0, 0.0);
         const float share = 1.0 / float(params.rays);
         for (uint k = 0u; k < rays; ++k) {
-            // Spherical Fibonacci points (Gonzalez 2010) about the normal, twice as dense where rays of both sides go.
+            // Spherical Fibonacci points (Gonzalez 2010) about the normal, twice as dense where mirrored rays join.
             const float height_share = 1.0 - share * (float(k) + 0.5);
             const float height = height_share < open ? 2.0 * height_share - open : height_share;
             const vec2 beside = sqrt(max(1.0 - height * height, 0.0)) * turned;

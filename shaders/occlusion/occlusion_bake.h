@@ -30,11 +30,11 @@ struct OcclusionBakeParams {
     float gradient_fade;  ///< codes per voxel
     uint full_sphere;
     uint rays;
-    float turn_cos;  ///< angle between successive rays, about the normal
+    float turn_cos;  ///< cosine of the angle between successive rays, about the normal
     float turn_sin;
     uint reach;
-    /// 1: all voxels of occupied cells and those next to them (painted ones and ends of steps may be visible outside
-    /// the cells' ranges); 0: only those next to which the transfer function shows something.
+    /// 1: computes all voxels of occupied cells and of those next to them (painted voxels and ends of steps may be
+    /// visible outside the cells' ranges); 0: only voxels next to which the transfer function shows something.
     uint grow;
     float table_lower;  ///< for `visible_intervals`, as in RaycastParams
     float table_upper;
@@ -43,7 +43,7 @@ struct OcclusionBakeParams {
     float guard;  ///< leap.h
     uint aprons[OCCLUSION_SIZES];
     uvec3 cell_counts;  ///< size of the leap grid
-    /// From near to far; unused ones have a stretch of 0.
+    /// Samples from near to far; unused ones have a stretch of 0.
     OcclusionTap near_taps[OCCLUSION_NEAR_TAPS];
     OcclusionTap taps_2[OCCLUSION_TAPS_2];
     OcclusionTap taps_4[OCCLUSION_TAPS_4];

@@ -1,5 +1,5 @@
 // Gathers the data that a brick's rays sample around it (occlusion.h): ramps of voxels, computed from densities and
-// gradients, and copies of the cells of paged bricks: those of a resident volume are already side by side.
+// gradients, and copies of the cells of paged bricks. Cells of a resident volume are already side by side.
 // variants: PAGED FILTERED MASKED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -73,12 +73,12 @@ uint near_of(const OcclusionGatherParams params, const OcclusionJob job, ivec3 v
     const vec3 behind = vec3(code_at(texel + ivec3(1, 0, 0)), code_at(texel + ivec3(0, 1, 0)),
                              code_at(texel + ivec3(0, 0, 1)));
     const vec3 slope = (behind - before) / (2.0 * side);
-    // A voxel of a coarse brick covers several of this level: the offset of this one from its centre.
+    // A voxel of a coarse brick covers several of this level; this is the offset of the present one from its centre.
     const vec3 beside = vec3(voxel & int((1u << above) - 1u)) + 0.5 - 0.5 * side;
-    // Densities curve within a voxel, so that their mean in it differs by this much.
+    // Densities curve within a voxel, so their mean in it differs from the density at its centre by this much.
     const float bend = dot(before + behind - 2.0 * middle, vec3(0.125 / side));
     const float code = middle + dot(slope, beside) + bend;
-    // Ignores extremes beyond the neighbours: where these show nothing, cells are not occupied and never read.
+    // Ignores extremes beyond the neighbours: where the neighbours show nothing, cells are not occupied and never read.
     const vec3 least = min(before, behind), most = max(before, behind);
     const float lower = min(middle, min(least.x, min(least.y, least.z)));
     const float upper = max(middle, max(most.x, max(most.y, most.z)));
@@ -103,7 +103,7 @@ uint part_of_ramp(uint packed, ivec3 cell, int above, float exponent)
     return code == 0u ? 0u : bits;
 }
 
-// Codes of a cell of a coarser level, for the stretch of a tap of this one.
+// Converts the codes of a coarser level's cell to the stretch of a tap of this level.
 uint stretched(uint packed, float exponent)
 {
     const uvec3 code = uvec3(packed, packed >> 8u, packed >> 16u) & 255u;
@@ -112,8 +112,8 @@ uint stretched(uint packed, float exponent)
     return packed == 0u ? 0u : of_tap.x | of_tap.y << 8u | of_tap.z << 16u;
 }
 
-// Copies the cells of one size around the brick. `are_coarser`: copies cells for which bricks of coarser levels stand
-// in, otherwise all others.
+// Copies the cells of one size around the brick. `are_coarser`: copies only cells for which bricks of coarser levels
+// stand in; otherwise copies only the others.
 void copy_cells(const OcclusionGatherParams params, const OcclusionJob job, uint size, bool are_coarser, uint end)
 {
     const int shift = int(size) + 1, apron = int(params.aprons[size]);
@@ -170,7 +170,7 @@ void main()
     bool is_any_coarser = false;
     for (uint i = 0u; i < OCCLUSION_AROUND; ++i)
         is_any_coarser = is_any_coarser || (i < around_count(params.reach) && around[i] >> OCCLUSION_LEVEL_SHIFT > 0u);
-    // Rare work is skipped by the loops' ends.
+    // Loops that end at once skip rare work.
     const uint end_of_coarser = is_any_coarser ? ~0u : 0u;
     copy_cells(params, job, 0u, false, ~0u);
     copy_cells(params, job, 1u, false, ~0u);

@@ -1,5 +1,5 @@
-// Lists the voxels of a brick that are computed, for occlusion_bake.comp: those next to which something is visible.
-// Needs its `params`, and the codes of voxels.
+// Lists the voxels of a brick for which occlusion_bake.comp computes values: those next to which something is visible.
+// Needs that kernel's `params`, and the codes of voxels.
 
 const uint CELLS_OF_ONE = BRICK_CELLS * BRICK_CELLS * BRICK_CELLS / OCCLUSION_SPLIT;
 const uint VOXELS_OF_CELL = CELL_SIZE * CELL_SIZE * CELL_SIZE;
@@ -35,7 +35,7 @@ ivec3 voxel_of(uint cell, uint lane)
 }
 
 #ifdef PAGED
-// The voxels directly around the brick: two whole layers, and rings between them.
+// Enumerates the voxels directly around the brick: two whole layers, and rings between them.
 ivec3 apron_voxel(uint number)
 {
     const uint side = BRICK_TEXELS, layer = side * side, ring = 4u * (side - 1u), inner = side - 2u;
@@ -49,7 +49,7 @@ ivec3 apron_voxel(uint number)
 }
 #endif
 
-// The position of a voxel's code, in the brick that it belongs to, which is present and of this level.
+// The position of a voxel's code, in the brick that contains it, which is present and of this level.
 ivec3 texel_of(const OcclusionJob job, ivec3 voxel)
 {
 #ifdef PAGED
@@ -60,7 +60,7 @@ ivec3 texel_of(const OcclusionJob job, ivec3 voxel)
 }
 
 // Whether visible samples may read the values of four voxels in a row, as bits. They may if the transfer function shows
-// something between a voxel's density and those around it. Not valid if a voxel may be visible for another reason.
+// something between a voxel's density and those around it. Ignores other reasons for which a voxel may be visible.
 uint shows_nearby(ivec3 texel)
 {
     vec4 lower = vec4(65535.0), upper = vec4(0.0);
@@ -101,7 +101,7 @@ void list_voxels(const OcclusionJob job)
         if (any_cell_is_occupied(job, first, first + 3)) cells[atomicAdd(cell_count, 1u)] = cell;
     }
     barrier();
-    // Loop counts are the same for all lanes; the one that does not apply is 0.
+    // Loop counts are the same for all lanes; the loop that does not apply has a count of 0.
     const uint found = cell_count, by_voxel = params.grow != 0u ? found : 0u;
     for (uint i = 0u; i < by_voxel; ++i) {
         const ivec3 voxel = voxel_of(cells[i], lane);
@@ -116,7 +116,7 @@ void list_voxels(const OcclusionJob job)
             if (index < found && (bits >> k & 1u) != 0u) add_voxel(cell << 6u | 4u * row + k);
     }
 #ifdef PAGED
-    // Excludes those that the neighbours list as their own.
+    // Excludes apron voxels that the neighbours list as their own.
     for (uint i = OCCLUSION_SPLIT * lane + gl_WorkGroupID.z; i < APRON_VOXELS; i += 64u * OCCLUSION_SPLIT) {
         const ivec3 voxel = apron_voxel(i);
         const uint entry = entry_at(params.reach, voxel >> 5);

@@ -1,5 +1,5 @@
-// The opacity of a voxel to light (occlusion.h). Needs `opacities`, of OcclusionEntry; if MASKED, `mask` from binding 6
-// on.
+// The opacity of a voxel to light (occlusion.h). Needs `opacities`, a buffer of OcclusionEntry; if MASKED, `mask` and
+// its tables are bound from binding 6 on.
 #ifdef MASKED
 layout(binding = 6, r8ui) uniform readonly uimage3D mask;
 #define MASK_TABLE_BINDING 7
@@ -11,7 +11,7 @@ layout(binding = 8, scalar) readonly buffer GroupOpacities { float values[]; } g
 #include "../library/mask.glsl"
 #endif
 
-// Values at a code: its opacity, and sums of opacities and of their squares over the table's entries up to there, in
+// Values at a code: its opacity, and sums of opacities and of their squares over the table's entries up to the code, in
 // two parts.
 struct Sums {
     float opacity;

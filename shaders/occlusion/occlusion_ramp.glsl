@@ -6,9 +6,9 @@ const float RAMP_UNEVEN = 230.0;
 // Maximum steepness of a ramp across the cube.
 const float STEEPEST_OF_VOXELS = 3.3, STEEPEST_OF_CELLS = 2.6;
 
-// `level`, `squares`: the means of the opacity in the cube and of its square, for a `top` of 1. `direction`: in which
-// it rises. If the ramp ends inside the cube, its width follows from the two; if the opacity hardly varies, there is no
-// ramp inside.
+// `level`, `squares`: the means of the opacity in the cube and of its square, for a `top` of 1. `direction`: the
+// direction in which the opacity rises. If the ramp ends inside the cube, its width follows from the two means; if the
+// opacity hardly varies, there is no ramp inside.
 uint packed_ramp(float top, float level, float squares, vec3 direction, float steepest)
 {
     const float steepness = 1.0 / max(6.0 * (level - squares), 1.0 / steepest);
@@ -22,7 +22,7 @@ uint packed_ramp(float top, float level, float squares, vec3 direction, float st
 // The ramp of a cube with a density at its centre, a slope across it, and densities between `least` and `most`.
 uint ramp_of(const OcclusionCellsParams params, float middle, vec3 slope, float least, float most, float steepest)
 {
-    // Densities are assumed to be uniformly distributed along the slope, within those in the cube: exact along an axis.
+    // Densities are assumed uniform along the slope, within the cube's range of densities: exact along an axis.
     const float steep = length(slope), half_width = max(0.5 * steep, 0.5 / params.table_scale);
     const float lower = middle - half_width, upper = middle + half_width;
     const float from = clamp(lower, least, most), to = clamp(upper, least, most);

@@ -1,6 +1,6 @@
-// As raycast.comp, without steps whose length decides on errors: light is integrated, to rounding, between borders of
-// half voxels, points of the transfer function, and turns of the density (integral.glsl). For reference pictures.
-// Macros: there; FILTERED is left out, since a filter's rounding exceeds the errors that remain.
+// Like raycast.comp, but without steps whose length determines errors: integrates light, to rounding, between borders
+// of half voxels, points of the transfer function, and turns of the density (integral.glsl). For reference pictures.
+// Macros: see raycast.comp; FILTERED is left out, since a filter's rounding exceeds the errors that remain.
 // variants: PAGED MASKED OCCLUDED SURFACED SHELLED
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,11 +1,11 @@
 // The integral of light along a ray, to rounding. A ray is cut where its integrand is not smooth: at every half voxel,
-// where cells, voxels and the cells of central differences end; where the density turns, and where it passes a point of
-// the transfer function. Between two borders of half voxels, a stretch, trilinear density is a cubic along the ray, so
-// both are found exactly. Pieces in between are integrated by Gauss's formula of order 6; they are at most an optical
-// depth long, and are halved where the normal turns. Texels are read once for each stretch.
+// where cells, voxels and the cells of central differences end; where the density turns; and where it passes a point of
+// the transfer function. Between two half-voxel borders (a stretch), trilinear density is a cubic along the ray, so
+// turns and passed points are found exactly. Pieces in between are integrated by Gauss's formula of order 6; they are
+// at most an optical depth long, and are halved where the normal turns. Texels are read once for each stretch.
 //
-// Steps (march.glsl) only limit the length of pieces, and are where dispatches and rays in wait divide the ray: a step
-// that reaches a brick in wait is taken again. With SMOOTH_BORDERS labels are constant along a stretch.
+// Steps (march.glsl) only limit the length of pieces, and are where dispatches and waiting rays divide the ray: a step
+// that reaches a missing brick is taken again. With SMOOTH_BORDERS labels are constant along a stretch.
 //
 // Needs what march.glsl needs, and a table with points (raycast.h). Defines take_samples().
 
@@ -15,11 +15,11 @@ struct Stretch {
     Density density;       // of its middle
     Beyond there;
     vec3 lattice;          // position in the lattice of voxel centres, minus the corner, at the beginning
-    vec3 along;            // the same at the end, minus this
+    vec3 along;            // the same at the end, minus `lattice`
     vec4 cubic;            // density at x = 0 ... 1: coefficients of 1, x, x^2, x^3
     uint group;
 #ifdef OCCLUDED
-    vec3 corner;           // in that lattice
+    vec3 corner;           // in the lattice of voxel centres
     ivec3 to_values;
     vec3 last;
 #endif
@@ -52,7 +52,7 @@ float cubic_at(vec4 cubic, float x)
     return cubic.x + x * (cubic.y + x * (cubic.z + x * cubic.w));
 }
 
-// Where the cubic turns between 0 and 1, in order; 1 stands for nowhere.
+// Where the cubic turns between 0 and 1, in order; 1 stands for no turn.
 vec2 turns_of(vec4 cubic)
 {
     const float a = 3.0 * cubic.w, b = 2.0 * cubic.z, c = cubic.y;
@@ -65,8 +65,8 @@ vec2 turns_of(vec4 cubic)
     return vec2(min(held.x, held.y), max(held.x, held.y));
 }
 
-// Where a cubic that rises or falls from `from` to `to` has a value between those there: Newton's method, held between
-// bounds.
+// Where a cubic that rises or falls from `from` to `to` has a value between its values there. Uses Newton's method,
+// kept between bounds.
 float crossing_of(vec4 cubic, float value, float from, float to, bool rises)
 {
     float low = from, high = to;
@@ -92,7 +92,7 @@ float point_density(const RaycastParams params, int point)
     return imageLoad(table, table_texel(params.points + params.point_count + uint(point))).x;
 }
 
-// A line of the function: from a point to the next one. -1 and the last point: outside.
+// A line of the function: from a point to the next one. If `first` is -1 or the last point, it is outside.
 struct Line {
     int first;
     float lower, upper;   // densities
@@ -100,7 +100,7 @@ struct Line {
     bool is_inside;
 };
 
-// The line that a density is on, or, at a point, the one ahead: above it if the density rises.
+// The line that a density is on or, at a point, the line ahead: the one above the point if the density rises.
 Line line_at(const RaycastParams params, float density, bool rises, bool is_constant)
 {
     const int last = max(int(params.point_count) - 1, 0);
@@ -159,7 +159,7 @@ vec3 shaded_at(const RaycastParams params, const Ray ray, const Stretch stretch,
     return color;
 }
 
-// Light of the piece from x to x + width, on one line, or in a group with `line` from look to look.
+// Light of the piece from x to x + width, on one line; in a group, both ends of `line` have the group's look.
 vec4 light_of(const RaycastParams params, const Ray ray, const Stretch stretch, const Line line, float x, float width,
               float group_depth)
 {
@@ -185,7 +185,7 @@ void end_at(const RaycastParams params, const Ray ray, const Stretch stretch, fl
     march.sum.a = 1.0;
 }
 
-// The next border of half a voxel along the ray. Rounding may put one that was reached ahead of, or behind, `s`.
+// The next border of half a voxel along the ray. Rounding may put a border just reached ahead of, or behind, `s`.
 float next_border(const Ray ray, float s)
 {
     const vec3 at = 2.0 * (ray.origin + s * ray.direction);
@@ -291,7 +291,7 @@ void add_stretch(const RaycastParams params, const Ray ray, const Stretch stretc
             work.shaded += is_seen && SHADED != 0u ? 2u : 0u;
         }
         if (!is_opaque && is_whole && crosses) {
-            // Of several points at one density, the last holds.
+            // Of several points at one density, the last one applies.
             const Line met = line_at(params, ahead, true, false);
             if (met.first >= 0 && met.from.a >= 1.0) end_at(params, ray, stretch, next, met.from.rgb, march);
         }
@@ -302,13 +302,13 @@ void add_stretch(const RaycastParams params, const Ray ray, const Stretch stretc
     } while (goes_on);
 }
 
-// The number of whole steps from the beginning of one, at `position`, that lie in the empty cube around its cell.
+// The number of whole steps, from the step that begins at `position`, that lie in the empty cube around its cell.
 uint whole_steps_inside(const RaycastParams params, const Ray ray, vec3 position, const Place place)
 {
     return place.distance > 0u ? steps_to_leave(params, ray, position, place) - 1u : 0u;
 }
 
-// Adds the light of steps from `march.i` on, up to `until`, a length along the ray, or to `end_step`.
+// Adds the light of steps from `march.i` on, up to the length `until` along the ray or to the step `end_step`.
 void take_samples(const RaycastParams params, const Ray ray, const Lattice lattice, uint end_step, float until,
                   inout March march, inout Work work)
 {

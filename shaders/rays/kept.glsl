@@ -7,13 +7,13 @@ layout(binding = 13, rgba32f) uniform image2D rays;   // KEPT_NOTHING: one texel
 struct Kept {
     vec4 sum;         // KEPT_ALL: what the ray has gathered
     vec2 shell;       // position of the next iso-surface, and where the search continues
-    uint step;        // KEPT_ALL: the step that is next
-    bool is_inside;   // KEPT_ALL: the iso-surface
+    uint step;        // KEPT_ALL: index of the next step
+    bool is_inside;   // KEPT_ALL: whether the ray is inside the iso-surface
     bool is_done;     // KEPT_ALL
 };
 
 #ifdef KEEPS
-// The second half of a ray's state lies below the first.
+// The texel of the second half of a ray's state: as far below the first half as the part of the picture is high.
 ivec2 second_half(const RaycastParams params, uvec2 in_part)
 {
     return ivec2(in_part.x, in_part.y + (params.pixel_end.y - params.pixel_begin.y));

@@ -1,12 +1,12 @@
 // Marching along a ray: samples lie in the middle of steps of equal length, on a lattice that starts where the ray
 // enters the drawn box; the last, shorter step has its own sample. Leaps go from lattice point to lattice point, so
 // pictures with and without skipping have the same bits. The number of steps is not limited: a long ray is drawn in
-// blocks of steps, one dispatch each, because some devices end a thread's loops after 65535 turns, without a word.
+// blocks of steps, one dispatch each, because some devices silently end a thread's loops after 65535 iterations.
 //
-// COMPENSATED: rounding errors of sums do not add up, as they would over many short steps.
+// COMPENSATED: sums are compensated, since rounding errors would otherwise add up over many short steps.
 //
 // Needs volume.glsl, ray.glsl, the constants SHADED, COUNT_WORK, FEEDBACK, PREINTEGRATED, SMOOTH_BORDERS and
-// DISTANCE_BLEND, where SHADED may be 1 library/shade.glsl. PICKS: how the opacity rises is noted on the way.
+// DISTANCE_BLEND, and library/shade.glsl if SHADED may be 1. PICKS: notes how the opacity rises along the ray.
 #ifdef PICKS
 #include "../library/pick.glsl"
 #endif
@@ -21,14 +21,14 @@ const uint COMPENSATED = 1u;
 #else
 layout(constant_id = 17) const uint COMPENSATED = 0u;
 #endif
-// linear RGB (PREINTEGRATED: times opacity), opacity of a full step; then optical depths (raycast.h)
+// Linear RGB (PREINTEGRATED: times opacity) and opacity of a full step; then optical depths (raycast.h).
 layout(binding = 3, rgba32f) uniform readonly image2D table;
 
-// Maximum number of steps of a leap: from the last step (library/lattice.glsl) it still ends at a number of 32 bits.
+// Maximum number of steps of a leap: even from the last step (library/lattice.glsl) it ends at a 32-bit index.
 const float MAX_LEAP = 2147483648.0;
 const float NO_SHELL = 1e30;   // a length along a ray
-// Number of consecutive samples that showed nothing after which a lane searches for the next visible one: small if the
-// previous search was long, large if nearly every sample is visible, since all lanes wait while one searches.
+// Number of consecutive invisible samples after which a lane searches for the next visible one: LITTLE_PATIENCE if the
+// previous search was long, MUCH_PATIENCE if nearly every sample is visible, since all lanes wait while one searches.
 const uint AWAY_FROM_SEEN = 64u;
 const uint SAMPLES_OF_LEAP = 8u;   // counted as unseen
 const uint LITTLE_PATIENCE = 2u;
@@ -48,8 +48,8 @@ Work no_work()
 #include "../library/sample.glsl"
 #include "../library/lattice.glsl"
 
-// Counts a sample if it is taken. The slot is carried, not set in a branch: SwiftShader loses values that a lane sets
-// in a branch of a loop that it leaves before other lanes.
+// Counts a sample if it is taken. The slot is carried, not set in a branch: if a lane leaves a loop before the others,
+// SwiftShader loses the values that this lane has set in a branch of the loop.
 void note_sample(bool is_taken, const Place place, inout Work work)
 {
     work.samples += uint(is_taken);
@@ -57,14 +57,14 @@ void note_sample(bool is_taken, const Place place, inout Work work)
     work.last_slot = is_taken ? place.slot : work.last_slot;
 }
 
-// Counts a sample, which is also shaded if any is.
+// Counts a sample that is taken, and also counts it as shaded if SHADED is set.
 void note_taken(const Place place, inout Work work)
 {
     note_sample(true, place, work);
     work.shaded += uint(SHADED != 0u);
 }
 
-// The number of whole steps from `position` that stay inside the empty cube around its cell.
+// Returns the number of whole steps from `position` that stay inside the empty cube around the position's cell.
 uint steps_to_leave(const RaycastParams params, const Ray ray, vec3 position, const Place place)
 {
     const float reach = float(place.distance);
@@ -102,7 +102,7 @@ void accumulate(inout vec4 sum, vec4 look)
     sum.a += weight;
 }
 
-// The same with compensated sums (Kahan 1965): `above` is how much the sum is above its exact value.
+// Like accumulate(), with compensated sums (Kahan 1965): `above` is the excess of the sum over its exact value.
 void accumulate_compensated(inout vec4 sum, inout vec4 above, vec4 look)
 {
     const float weight = ((1.0 - sum.a) + above.a) * look.a;
@@ -128,10 +128,10 @@ struct March {
     uint unseen;   // consecutive samples that showed nothing
     bool waits;    // for a brick
     bool has_rest;
-    Sample rest;   // the sample found there, not added yet
+    Sample rest;   // the sample of the ray's rest, not added yet
 };
 
-// Begins at a step, with the sum of earlier dispatches.
+// Starts a march at `step`, with the sum that earlier dispatches have gathered.
 March march_from(uint step, vec4 sum)
 {
     March march;
@@ -169,8 +169,8 @@ float value_at_begin(const RaycastParams params, const Ray ray, const Lattice la
     return value_at_end(params, ray, step_begin(params, lattice.begin, step), texels_at(position, place), place);
 }
 
-// Takes the sample of step `march.i`, whose middle is at `position`. `front` is the density at its beginning, and
-// becomes that at its end.
+// Takes the sample of step `march.i`, whose middle is at `position`. `front`: on entry, the density at the beginning of
+// the step; on return, the density at its end.
 void take_sample(const RaycastParams params, const Ray ray, const Lattice lattice, vec3 position, const Place place,
                  inout float front, inout March march, inout Work work)
 {
@@ -192,16 +192,16 @@ void take_sample(const RaycastParams params, const Ray ray, const Lattice lattic
     ++march.i;
 }
 
-// Adds samples from step `march.i` on, up to `until`, a length along the ray, or to `end_step`; the rest of the ray
-// after its whole steps counts as a step, and is found here and added by the caller: its opacity takes loads that no
-// whole step needs.
+// Adds samples from step `march.i` on, up to the length `until` along the ray, or up to `end_step`. The rest of the ray
+// after its whole steps counts as a step: its sample is found here but added by the caller (add_rest), because its
+// opacity takes loads that no whole step needs.
 //
 // SIMD devices run both sides of a branch for all their lanes, so the cheap part, the search for a visible sample, and
 // the costly part are separate loops, in which lanes stay together as long as it pays.
 void take_samples(const RaycastParams params, const Ray ray, const Lattice lattice, uint end_step, float until,
                   inout March march, inout Work work)
 {
-    const uint first = march.i;   // always taken, whatever rounding makes of `until`
+    const uint first = march.i;   // this step is always taken, whatever rounding makes of `until`
     bool is_behind = false;
     bool searches_on = march.i < end_step && march.sum.a < params.opacity_limit && !march.waits;
     if (searches_on) do {
@@ -212,7 +212,7 @@ void take_samples(const RaycastParams params, const Ray ray, const Lattice latti
         if (march.i > step_before) march.rises.trough = 0.0;
 #endif
         march.unseen = 0u;
-        // A step's density at its beginning is that at the end of the previous one, if that is in a brick of its level.
+        // A step begins with the density at the previous step's end, if that end is in a brick of the same level.
         const uint run = march.i;
         float front = PREINTEGRATED != 0u ? value_at_begin(params, ray, lattice, run) : 0.0;
         uint level = 0u;
@@ -238,7 +238,7 @@ void take_samples(const RaycastParams params, const Ray ray, const Lattice latti
             goes_on = goes_on && !march.waits && march.i < end_step && march.unseen < patience &&
                       march.sum.a < params.opacity_limit;
         } while (goes_on);
-        // If the loops, which may round differently, disagree about a border, neither advances: force a step.
+        // The two loops may round differently: if they disagree about a border, neither advances, so force a step.
         march.i += uint(march.i == step_before && !march.waits && !is_behind);
         if (COUNT_WORK != 0u) ++work.turns;
         searches_on = march.i < end_step && march.sum.a < params.opacity_limit && !march.waits && !is_behind;
@@ -247,7 +247,7 @@ void take_samples(const RaycastParams params, const Ray ray, const Lattice latti
 
 #endif
 
-// Adds the sample of the rest that take_samples() has found.
+// Adds the sample of the ray's rest, which take_samples() has found.
 void add_rest(const RaycastParams params, const Lattice lattice, inout March march)
 {
     if (march.has_rest) {
@@ -256,7 +256,7 @@ void add_rest(const RaycastParams params, const Lattice lattice, inout March mar
     }
 }
 
-// Range of the steps that a dispatch takes of a ray.
+// The range of a ray's steps that one dispatch takes.
 struct Block {
     uint first, end;
     bool is_last;
@@ -270,7 +270,7 @@ Block block_of(const RaycastParams params, const Lattice lattice)
     return block;
 }
 
-// Whether the device has aborted the loop, the only way to stop before its end; the last block may end before the ray.
+// Whether the device has cut the march short by aborting the loop. The last block may end before the ray does.
 bool is_cut_short(const RaycastParams params, const Lattice lattice, const Block block, const March march)
 {
     return march.i < (block.is_last ? step_count(lattice) : block.end) && march.sum.a < params.opacity_limit &&

@@ -1,6 +1,6 @@
-// Where a person points: stores the place along a pixel's ray where its opacity rises most (voxel space) and the ray's
-// opacity, or 0 where it rises too little to be seen. Rays are those of raycast.comp, without their colours; the target
-// has PICK_ROWS rows (raycast.h). Macros: volume.glsl.
+// Finds what a person points at: stores the place along a pixel's ray where the opacity rises most (voxel space) and
+// the ray's opacity, or 0 if the rise is too small to be seen. Rays are those of raycast.comp, without their colours.
+// The target has PICK_ROWS rows (raycast.h). Macros: see volume.glsl.
 // variants: PAGED FILTERED MASKED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -14,7 +14,7 @@ layout(constant_id = 2) const uint GROUP_WIDTH = 8u;
 layout(constant_id = 4) const uint HAS_SURFACES = 0u;      // rays end at opaque surfaces (surfaces.comp)
 layout(constant_id = 9) const uint PREINTEGRATED = 0u;     // as in raycast.comp
 layout(constant_id = 11) const uint SMOOTH_BORDERS = 0u;   // as in raycast.comp
-// Parts of the ray caster that picking does not need.
+// Switches off the parts of the ray caster that picking does not need.
 const uint SHADED = 0u, COUNT_WORK = 0u, FEEDBACK = 0u, KEPT = KEPT_NOTHING;
 
 layout(binding = 4, rgba32f) uniform image2D color;

@@ -1,6 +1,6 @@
-// Finds the first voxel on each pixel's ray that a brush would change, as a solid cube: its lit colour and the length
-// along the ray. The ray caster ends there if it lies in front of other surfaces (surfaces.comp); `seen` marks these
-// pixels. In slices it is the voxel half-way along the ray, with unlit colours. One thread per pixel.
+// Finds the first voxel on each pixel's ray that a brush would change, as a solid cube; stores its lit colour and the
+// length along the ray. The ray caster ends there if the voxel lies in front of other surfaces (surfaces.comp); `seen`
+// marks these pixels. In slices the voxel half-way along the ray is stored, unlit. One thread per pixel.
 //   SURFACED   there are other surfaces
 // variants: SURFACED
 //
@@ -56,8 +56,8 @@ struct Line {
     vec3 near, direction;
     vec3 safe;          // the direction, nowhere 0
     vec3 inverse;       // 1 / safe
-    float begin, end;   // lengths along the line of its part in the box
-    ivec3 face;         // axis of the face through which it enters; 0 if it begins in the box
+    float begin, end;   // lengths along the line: where it enters and leaves the box
+    ivec3 face;         // axis of the face through which the line enters; 0 if the line begins in the box
 };
 
 Line line_through(const PreviewParams preview, vec3 near, vec3 far, float length_to_far)
@@ -79,12 +79,12 @@ Line line_through(const PreviewParams preview, vec3 near, vec3 far, float length
 struct Hit {
     bool is_hit;
     ivec3 voxel;
-    ivec3 face;   // axis of the face through which the line enters the voxel, towards its end; 0: the line begins there
+    ivec3 face;   // signed axis along which the line enters the voxel; 0: the line begins in the voxel
     float at;     // length along the line
 };
 
-// The first set voxel. Every variable that outlives an iteration is carried through the loop: devices may run it until
-// the last lane is done.
+// Finds the first set voxel. Every variable that outlives an iteration is carried through the loop, because devices may
+// run the loop until the last lane is done.
 Hit first_hit(const PreviewParams preview, const Line line)
 {
     const ivec3 towards = ivec3(mix(vec3(-1.0), vec3(1.0), greaterThanEqual(line.safe, vec3(0.0))));

@@ -15,7 +15,7 @@ struct Span {
     float to_far;       // length of the ray up to the far plane
 };
 
-// `half_way` is 0: kernels that compute light set it.
+// Returns a pixel's ray. Its `half_way` is 0: kernels that compute light set it.
 Ray ray_of(const RaycastParams params, uvec2 pixel, out Span span)
 {
     const vec2 centre = vec2(pixel) + 0.5;
@@ -32,7 +32,7 @@ Ray ray_of(const RaycastParams params, uvec2 pixel, out Span span)
     ray.inverse = mix(1.0 / ray.direction, vec3(1e30), still);
     ray.ahead = vec3(greaterThanEqual(ray.direction, vec3(0.0)));
 
-    // Slab test; an axis along which the ray does not move is an inside test (0 / 0 does not matter there).
+    // Slab test. Along an axis that the ray does not move on, only its origin is tested (0 / 0 does not matter there).
     const vec3 a = (params.box_lower - near) / ray.direction;
     const vec3 b = (params.box_upper - near) / ray.direction;
     const vec3 entry = mix(min(a, b), vec3(0.0), still);
@@ -45,8 +45,8 @@ Ray ray_of(const RaycastParams params, uvec2 pixel, out Span span)
     return ray;
 }
 
-// Rounding may move a ray that runs along a face an ulp outside. Below 0 that still truncates to voxel 0; above, it is
-// clamped.
+// Rounding may put a ray that runs along a face one ulp outside the volume. A position below 0 still truncates to voxel
+// 0; one above the upper limit is clamped.
 vec3 position_at(const RaycastParams params, const Ray ray, float s)
 {
     return min(ray.origin + s * ray.direction, params.position_limit);

@@ -2,16 +2,16 @@
 //   PAGED FILTERED MASKED   volume.glsl
 //   OCCLUDED   ambient light is scaled by the share that reaches the sample (occlusion.h)
 //   SURFACED   rays end at opaque surfaces (surfaces.comp)
-//   SHELLED    an iso-surface in the region around the probe (shell.glsl), which drivers would compile before they
-//              drop it
+//   SHELLED    an iso-surface in the region around the probe (shell.glsl); a macro, not a constant, since drivers would
+//              compile its code before they drop it
 // variants: PAGED FILTERED MASKED OCCLUDED SURFACED SHELLED
 //
-// march.glsl says where samples are, and why a ray is drawn in blocks of steps, one dispatch each. Between blocks the
-// target holds the sums of its rays. A ray that stops short of its end nevertheless is counted.
+// march.glsl describes where samples are, and why a ray is drawn in blocks of steps, one dispatch each. Between blocks
+// the target holds the sums of its rays. A ray that nevertheless stops short of its end is counted.
 //
 // If a ray passes more bricks than fit on the device, it waits (KEPT_ALL): it stops before a brick that is not on the
-// device, marks it, and continues in a later dispatch. What it adds, and in which order, does not depend on where it
-// stops.
+// device, marks the brick, and continues in a later dispatch. The samples that a ray adds, and their order, do not
+// depend on where it stops.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

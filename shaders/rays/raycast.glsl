@@ -1,5 +1,5 @@
 // Draws pictures by rays: raycast.comp samples steps, and integral.comp, which defines INTEGRATED, integrates light
-// between borders. Macros: there. One pixel per thread.
+// between borders. These two files list the macros. One pixel per thread.
 #include "../raycast.h"
 #ifdef OCCLUDED
 #include "../occlusion/occlusion.h"
@@ -21,12 +21,12 @@ layout(constant_id = 6) const uint DISTANCE_BLEND = 0u;
 #ifdef INTEGRATED
 const uint PREINTEGRATED = 0u;
 #else
-// 1: classifies a step by the densities at both of its ends. 2: the same, and rays end at some densities.
+// 1: classifies a step by the densities at both of its ends. 2: likewise, and rays also end at some densities.
 layout(constant_id = 9) const uint PREINTEGRATED = 0u;
 #endif
 layout(constant_id = 10) const uint KEPT = KEPT_NOTHING;
-// Assigns a sample to the group with the largest weight among the eight voxels around it, instead of the nearest
-// voxel's.
+// Assigns a sample to the group with the largest weight among the eight voxels around it, instead of to the group of
+// the nearest voxel.
 layout(constant_id = 11) const uint SMOOTH_BORDERS = 0u;
 #ifdef SHELLED
 layout(constant_id = 8) const uint SHELL = SHELL_BALL;   // the region's shape
@@ -35,7 +35,7 @@ layout(binding = 19, r32ui) uniform readonly uimage3D cell_ranges;   // minimum 
 
 layout(binding = 4, rgba32f) uniform image2D color;
 #ifdef OCCLUDED
-// Light follows a curve of points instead of a power (occlusion.h).
+// Ambient light follows a curve of points instead of a power function (occlusion.h).
 layout(constant_id = 14) const uint OCCLUSION_MAPPED = 0u;
 layout(binding = 10, r8ui) uniform readonly uimage3D occlusion;
 layout(binding = 11, scalar) readonly buffer Look { OcclusionLook data; OcclusionSegment segments[]; } occlusion_look;
@@ -55,11 +55,11 @@ layout(binding = 12, rgba32f) uniform readonly image2D surfaces;   // linear RGB
 #endif
 #include "kept.glsl"
 
-// A target's alpha is never negative; between blocks its sign says whether the ray is inside the iso-surface. Smaller
-// values count as 0, whose sign devices may lose.
+// Alpha is never negative in a finished target; between blocks its sign tells whether the ray is inside the
+// iso-surface. Smaller magnitudes than this count as 0, whose sign devices may lose.
 const float MIN_ALPHA = 1e-30;
 
-// State of a ray, left by earlier dispatches.
+// Returns the state of a ray that earlier dispatches have left.
 Kept resume(const RaycastParams params, uvec2 in_part, ivec2 texel)
 {
     Kept kept = Kept(vec4(0.0), vec2(NO_SHELL, -1.0), 0u, false, false);
@@ -75,7 +75,7 @@ Kept resume(const RaycastParams params, uvec2 in_part, ivec2 texel)
     return kept;
 }
 
-// Range of the steps that a dispatch takes of a ray, which may have waited.
+// The range of steps that a dispatch takes of a ray. A ray that has waited continues at its own next step.
 Block block_of(const RaycastParams params, const Lattice lattice, const Kept kept)
 {
     if (KEPT != KEPT_ALL) return block_of(params, lattice);
@@ -93,7 +93,7 @@ float end_of_block(const RaycastParams params, const Lattice lattice, const Bloc
 }
 
 #ifdef SHELLED
-// Crossings are few, so they are drawn outside the loops that search and take samples.
+// Draws crossings of the iso-surface outside the loops that search and take samples, since crossings are few.
 void take_between_shells(const RaycastParams params, const Ray ray, const Lattice lattice, uint end_step,
                          inout Shell shell, inout March march, inout Work work)
 {

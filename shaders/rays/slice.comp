@@ -1,8 +1,8 @@
-// A slice through the volume: one sample half-way along each pixel's ray, in grey, whatever the transfer function
-// shows. Macros: volume.glsl.
+// A slice through the volume: one sample half-way along each pixel's ray, in grey, regardless of the transfer function.
+// Macros: see volume.glsl.
 // variants: PAGED FILTERED MASKED
 //
-// Where bricks are paged, a ray may wait for its brick (raycast.h, KEPT_ALL).
+// Where bricks are paged, a ray may wait for the brick of its sample (raycast.h, KEPT_ALL).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -44,7 +44,7 @@ vec4 painted(const RaycastParams params, uint group, vec4 look)
 }
 #endif
 
-// The sample is shown even where the transfer function hides it, but not outside the view.
+// Shows the sample even where the transfer function hides it. The caller leaves out samples outside the view.
 vec4 sliced(const RaycastParams params, vec3 position, out bool waits)
 {
     const Place place = brick_at(params, position);

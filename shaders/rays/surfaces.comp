@@ -3,15 +3,15 @@
 //   LISTED   there is a list of surfaces, in addition to the probe
 // variants: LISTED
 //
-// Rays of a tile that meets few surfaces test those that surface_tiles.comp has listed for it, others search the boxes:
-// the result is the same, since the nearest counts and not the order.
+// If a tile meets few surfaces, its rays test those that surface_tiles.comp has listed for it; other rays search the
+// boxes. The result is the same, since the nearest surface counts, whatever the order of the tests.
 //
 // Nodes are visited in blocks, one dispatch each, because some devices silently abort a thread's loops after 65535
 // iterations. Between blocks the target holds what a ray has met: its length, the surface's index in two parts, and
 // whether the ray begins inside. Listed surfaces are tested in the last block.
 //
-// Surfaces are solid: a ray that starts inside one (the near plane cuts it, or the eye is in it) hits it at its start,
-// facing the eye. The volume's cutting planes do not cut surfaces.
+// Surfaces are solid: if a ray starts inside one (the near plane cuts the surface, or the eye is in it), the ray hits
+// it at its start, facing the eye. The volume's cutting planes do not cut surfaces.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -51,8 +51,8 @@ vec4 packed_hit(const Hit hit)
     return vec4(hit.at, float(hit.index / INDEX_PART), float(hit.index % INDEX_PART), float(hit.is_inside));
 }
 
-// The surface whose range begins first wins; at equal lengths the lower number, so that the search order does not
-// matter.
+// The surface whose range begins first wins; at equal lengths, the surface with the lower number wins, so that the
+// search order does not matter.
 void consider(vec2 range, float begin, uint number, uint index, inout Hit hit)
 {
     const float at = max(range.x, begin);
@@ -65,7 +65,7 @@ void consider(vec2 range, float begin, uint number, uint index, inout Hit hit)
 }
 
 #ifdef LISTED
-// Two differences that must not be mixed: the first is exact for points near the origin, and the second is small.
+// Two differences that must not be mixed: that of the whole parts is exact near the origin, that of the rests is small.
 vec3 from_origin(const SurfaceParams scene, const Surface surface)
 {
     precise vec3 whole = surface.from - scene.origin;
@@ -81,8 +81,8 @@ void meet(const SurfaceParams scene, const Line line, float begin, uint index, i
     consider(surface_range(surface, from, line.direction), begin, surface.number, index, hit);
 }
 
-// Every variable that outlives an iteration is carried through the loop: on devices that run it until the last lane is
-// done, finished lanes keep only those.
+// Every variable that outlives an iteration is carried through the loop: on devices that run the loop until the last
+// lane is done, lanes that have finished keep only such variables.
 void search(const SurfaceParams scene, const Line line, float begin, uint first_node, inout Hit hit)
 {
     const vec3 safe = mix(line.direction, vec3(1e-20), lessThan(abs(line.direction), vec3(1e-20)));
@@ -110,9 +110,9 @@ uint listed_word(uvec2 tile, uint number)
     return imageLoad(surface_tiles, ivec2(surface_tile_texel(tile, 1u + number))).x;
 }
 
-// The next entry of a tile's list, from `next` on, that rays of the pixel's block may meet. A separate loop: SIMD
-// devices run a test in full, whether or not any ray needs it, but no iteration of a loop that all have left. Their
-// lanes are in one block (library/rays.glsl).
+// Returns the next entry of a tile's list, from `next` on, that rays of the pixel's block may meet. A separate loop:
+// SIMD devices run a test in full, even if no ray needs it, but skip the iterations of a loop that all lanes have left.
+// Lanes that run together belong to one block (library/rays.glsl).
 uint next_in_block(uvec2 tile, uint block, uint next, uint count)
 {
     while (next < count && (listed_word(tile, next) >> block & 1u) == 0u) ++next;

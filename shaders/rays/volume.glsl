@@ -1,5 +1,5 @@
 // The volume that rays pass: its bindings, and the brick and texel of a position. Needs KEPT and COUNT_WORK. Macros
-// decide on the bindings:
+// determine the bindings:
 //   FILTERED   the atlas is sampled by the device's filter instead of exact arithmetic
 //   MASKED     there is a segmentation mask; an unpainted volume binds and fetches none of it
 //   PAGED      paged bricks of several levels (pages.h), instead of a leap grid over resident bricks
@@ -17,12 +17,12 @@ layout(binding = 2) uniform sampler3D atlas;
 #else
 layout(binding = 2, r32ui) uniform readonly uimage3D atlas;
 #endif
-// Tables are images, not buffers: one load reads four components, and lavapipe would read a buffer one lane at a
-// time.
+// Tables are images, not buffers: one load reads four components of an image, whereas lavapipe would read a buffer one
+// lane at a time.
 #ifdef MASKED
 layout(binding = 5, r8ui) uniform readonly uimage3D mask;
 #define MASK_TABLE_BINDING 6
-// By number: linear RGB, opacity of a full step; in the second row, the optical depth of a full step.
+// Indexed by group: linear RGB and opacity of a full step; in the second row, the optical depth of a full step.
 layout(binding = 7, rgba32f) uniform readonly image2D groups;
 #ifdef PAGED
 #define MASK_TABLE_HASHED
@@ -43,7 +43,7 @@ uint density_reads = 0u;
 #ifdef PAGED
 #include "../library/pages.glsl"
 #else
-// The region that contains a position: one with nothing visible (distance > 0), or a brick.
+// The region that contains a position: an empty one, with nothing visible (distance > 0), or a brick.
 struct Place {
     uint distance;   // in cells
     uint slot;

@@ -1,5 +1,5 @@
-// One word per thread: which voxels of the region are at or above the threshold; every run starts as its own root.
-// FILTERED: the atlas is the one for the device's filter.
+// One word per thread: sets the bits of voxels at or above the threshold; every run starts as its own root.
+// FILTERED: reads the atlas made for the device's filter.
 // variants: FILTERED
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,4 +1,4 @@
-// One word per thread: connects its runs with touching runs in the words before it (3 of 6 or 13 of 26 neighbours).
+// One word per thread: connects the word's runs with touching runs in earlier words (3 of 6 or 13 of 26 neighbours).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

@@ -15,7 +15,7 @@ layout(binding = 3, scalar) buffer Marked { uint words[]; } marked;   // one bit
 #include "forest.glsl"
 #include "region.glsl"
 
-// A word of the seeds' row; bits beyond the row's end are not voxels.
+// Returns a word of the seeds' row; bits beyond the row's end are not voxels.
 uint seed_word(int word, int row)
 {
     if (word < 0 || word >= int(params.seed_words_per_row)) return 0u;

@@ -1,5 +1,5 @@
-// One word per thread: keeps the runs of the seed's component, those whose root is unmarked, or those whose root is
-// marked.
+// One word per thread: keeps one of three sets of runs: those of the seed's component, those with an unmarked root, or
+// those with a marked root.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

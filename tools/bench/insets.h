@@ -11,10 +11,10 @@ struct Window {
     bool operator==(const Window&) const = default;
 };
 
-/// The window, a quarter of the picture's sides, with the largest sum of squared errors; in case of a tie the first
-/// from the top.
+/// Returns the window with the largest sum of squared errors; its sides are a quarter of the picture's. In case of a
+/// tie, the first window from the top.
 Window worst_window(const ImageF& picture, const ImageF& truth);
-/// As displayed (8 bits), with each pixel enlarged to `times` x `times`.
+/// Returns the window's pixels as displayed (8 bits), each enlarged to `times` x `times`.
 Image8 enlarged(const ImageF& picture, const Window& window, int times);
 /// In linear light, within the window only.
 double rmse_in(const ImageF& picture, const ImageF& truth, const Window& window);
@@ -24,9 +24,9 @@ struct Insets {
     Window window;
     std::vector<std::pair<std::string, const ImageF*>> pictures;  ///< refer to the pictures that they were made from
 };
-/// The window where `interactive` has the largest errors.
+/// Returns a scene's insets, of the window where `interactive` has the largest errors.
 Insets insets_of(const Pictures& pictures);
-/// All of them as one picture: a row per scene, with a title above each inset.
+/// Returns the insets of all scenes as one picture: a row per scene, with a title above each inset.
 Image8 sheet_of(const Results& results, const std::vector<Pictures>& pictures);
 
 }  // namespace shvr::bench

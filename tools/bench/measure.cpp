@@ -45,7 +45,7 @@ std::filesystem::path kept_reference(const golden::Studio& studio, const Scene& 
     return options.kept / sentence("reference-", golden::hash_of(std::as_bytes(std::span(all))), ".light");
 }
 
-/// Stored as floats, after the picture's width and height; null if there is none of this size.
+/// Reads a kept picture: its width and height, then floats. Null if there is no picture of this size.
 std::optional<ImageF> read_kept(const std::filesystem::path& path, const glm::uvec2& size)
 {
     const size_t values = size_t(size.x) * size.y * 4;
@@ -99,7 +99,7 @@ struct Prepared {
     int redraws = 0;
 };
 
-/// Studios by the settings that decide how the device holds a volume; runs that agree in them share one.
+/// One studio for each combination of the settings that decide how the device holds a volume; runs share them.
 class Studios {
 public:
     Studios(const Scene& scene, const MeasureOptions& options) : scene_(scene), options_(options) {}
@@ -135,8 +135,8 @@ Picture draw(Prepared& prepared, bool counted)
     return prepared.studio->picture_of(prepared.session, prepared.studio->camera(), counted);
 }
 
-/// Milliseconds of a picture for which everything is prepared. If the previous run's settings made updates necessary
-/// (leap grid, sample bits, table), the time of the next picture.
+/// Returns the milliseconds of a picture that needs no preparation. If the change from the previous run's settings made
+/// updates necessary (leap grid, sample bits, table), times the next picture instead.
 double steady_ms(Prepared& prepared)
 {
     const Picture picture = draw(prepared, false);
@@ -243,8 +243,8 @@ void time_in_turns(std::vector<Timed>& timed, int rounds, const std::function<vo
     }
 }
 
-/// The 95 % interval of medians of times drawn from these with replacement, equally many (a bootstrap); deterministic.
-/// `sorted` holds at least one.
+/// Returns the 95 % interval of the median by a deterministic bootstrap: draws equally many times from `sorted` with
+/// replacement, again and again, and takes their medians. `sorted` holds at least one.
 std::pair<double, double> interval_of_median(const std::vector<double>& sorted)
 {
     constexpr size_t DRAWS = 1000;

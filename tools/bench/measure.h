@@ -23,8 +23,8 @@ struct MeasureOptions {
     std::function<void(const std::string& what, double share)> tell = {};  ///< may throw, which ends the work
 };
 
-/// A scene with pictures to look at: the reference's, those of the qualities, and another program's at the step of
-/// `interactive`.
+/// A scene with pictures to look at: the reference's, those of the qualities, and another program's, drawn with the
+/// step of `interactive`.
 struct Pictures {
     ImageF reference;
     std::vector<std::pair<std::string, ImageF>> of_qualities, of_peers = {};
@@ -35,11 +35,11 @@ struct MeasuredScene {
 };
 
 MeasuredScene measure_scene(const Scene& scene, const MeasureOptions& options);
-/// Describes the machine and program that measure, when SHVR draws on `device`.
+/// Describes the machine and program that measure when SHVR draws on `device`.
 Results who_measures(const std::string& device);
 
 Error error_of(const ImageF& picture, const ImageF& reference);
-/// Bilinear between pixel centres, with the border repeated.
+/// Resizes bilinearly between pixel centres, with the border repeated.
 ImageF resized(const ImageF& image, int width, int height);
 /// Needs at least one value; the 95th percentile is one of the values.
 Time time_of(std::vector<double> milliseconds);

@@ -176,7 +176,7 @@ report::Plot plot_of(const SceneResult& scene, Metric metric)
 
 report::Plot plot_of_qualities(const Results& results)
 {
-    // Plotted by samples read, which are the same on every machine: so the plot can be committed and compared.
+    // The x axis is samples read, which are the same on every machine: so the plot can be committed and compared.
     report::Plot plot{.title = "draft, interactive, good, reference: from left to right",
                       .x_label = "texels read for a picture",
                       .y_label = "RMSE in linear light",

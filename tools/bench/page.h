@@ -10,11 +10,11 @@ namespace shvr::bench {
 enum class Metric { rmse, flip };
 /// A scene's runs: milliseconds to the right, error upwards, one series per family, with the qualities labelled.
 report::Plot plot_of(const SceneResult& scene, Metric metric);
-/// The qualities of all scenes by the samples they read: one series per scene.
+/// Plots the qualities of all scenes over the number of samples that they read: one series per scene.
 report::Plot plot_of_qualities(const Results& results);
 std::string page_of(const Results& results, const std::vector<Pictures>& pictures, const std::vector<Sweep>& sweeps);
-/// bench.json, bench.csv, front.csv, equal_error.csv, equal_time.csv, equal_peer.csv, pareto*.svg and .png, insets.png,
-/// sweep-*.csv and .svg, report.html. Returns their paths.
+/// Writes bench.json, bench.csv, front.csv, equal_error.csv, equal_time.csv, equal_peer.csv, pareto*.svg and .png,
+/// insets.png, sweep-*.csv and .svg, report.html. Returns their paths.
 std::vector<std::string> write_files(const Results& results, const std::vector<Pictures>& pictures,
                                      const std::vector<Sweep>& sweeps, const std::filesystem::path& output);
 std::string text_of(const Comparison& comparison);

@@ -209,7 +209,7 @@ std::string Peer::next_line()
         if (end != std::string::npos) {
             const std::string line = received_.substr(0, end);
             received_.erase(0, end + 1);
-            // Ignores other lines printed in between, as by xvfb-run.
+            // Ignores other lines that are printed in between, by xvfb-run for example.
             if (line.starts_with("{")) return line;
             continue;
         }
@@ -233,7 +233,7 @@ double Peer::ask(const PeerRun& run, const std::filesystem::path& output)
     for (size_t sent = 0; sent < line.size();) {
         const ssize_t count = ::send(socket_, line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
         if (count < 0 && errno == EINTR) continue;
-        if (count <= 0) break;  // it terminated, which reading the answer reports
+        if (count <= 0) break;  // the peer has terminated: reading its answer reports this
         sent += size_t(count);
     }
     return Json::parse(next_line()).at("ms").get<double>();

@@ -37,7 +37,7 @@ std::optional<std::string> why_not_by_peer(const Session& session, const VolumeS
 
 class Peer {
 public:
-    /// Starts the peer on a scene. Fails with a sentence if it does not start, or terminates.
+    /// Starts the peer on a scene. Fails with a sentence if the peer does not start, or if it terminates.
     Peer(const PeerOptions& options, const Session& session, const VolumeSource& source, const Camera& camera);
     ~Peer();
     Peer(const Peer&) = delete;

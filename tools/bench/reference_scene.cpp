@@ -13,12 +13,12 @@ namespace shvr::bench {
 namespace {
 
 constexpr double MAX_CODE = 65535.0;
-// Number of directions for the definition of ambient occlusion, which with these is far closer to its limit than
-// pictures are (tests/gpu/occlusion/occlusion_test.cpp).
+// Number of directions of the reference's ambient occlusion: enough to be far closer to the exact value than pictures
+// are (tests/gpu/occlusion/occlusion_test.cpp).
 constexpr uint32_t OCCLUSION_DIRECTIONS = 128;
 constexpr int OCCLUSION_STEPS = 32;
 
-/// The codes that the device holds, from 0 to 1.
+/// Returns the codes that the device holds, scaled to the range from 0 to 1.
 std::vector<double> densities(const VolumeSource& source, const IntensityWindow& window)
 {
     const VolumeInfo& info = source.info();
@@ -46,7 +46,7 @@ std::vector<uint8_t> labels_of(const Mask& mask, const Size3& size)
     return labels;
 }
 
-/// Lights move with the camera; 0, 0, 0 is over the viewer's shoulder.
+/// Returns the direction to a light. Lights move with the camera; 0, 0, 0 means over the viewer's shoulder.
 glm::dvec3 to_light(const glm::dvec3& stated, const Camera& camera)
 {
     const glm::dvec3 along = stated == glm::dvec3(0.0) ? glm::dvec3(0.3, 0.5, 1.0) : stated;
@@ -145,7 +145,7 @@ void refuse_what_is_unknown(const Session& session, const VolumeInfo& info)
              ", which the reference renderer keeps in 8 bytes each");
 }
 
-/// The first intersection of the ray with a ball, in units of its direction; null if there is none, or only behind
+/// Returns where a ray first meets a ball, in units of the ray's direction; null if it meets none, or only before
 /// t_min.
 std::optional<double> first_hit(const Ball& ball, const reference::Ray& ray, const glm::dvec3& spacing)
 {

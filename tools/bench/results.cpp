@@ -22,7 +22,7 @@ constexpr int64_t MAX_BENCH_BYTES = int64_t{64} << 20;
 constexpr int SCHEMA = 1;
 constexpr double ERROR_MARGIN = 1.01;
 constexpr double MIN_ERROR = 1e-7;  // of a float
-/// Files of older versions lack the error of alpha. NaN differs from nothing.
+/// The error of alpha in files of older versions, which lack it: a comparison with NaN finds no difference.
 constexpr double NOT_MEASURED = std::numeric_limits<double>::quiet_NaN();
 
 Json json_of(const Measured& run)
@@ -97,7 +97,7 @@ std::optional<double> noise_of(const Time& time, size_t rounds)
     return report::noise_of(time.min_ms, time.p95_ms, rounds);
 }
 
-/// `time` scaled to a machine on which the yardstick takes 1 / machine of its time.
+/// Returns `time` divided by `machine`, the ratio of the yardstick's times: as if measured on the other machine.
 Time scaled(const Time& time, double machine)
 {
     return {time.min_ms / machine, time.median_ms / machine, time.p95_ms / machine, time.low_ms / machine,
@@ -143,7 +143,7 @@ void compare_runs(const SceneResult& of_a, const Measured& a, const SceneResult&
     for (const auto& [name, value] : b.work) {
         const auto before = std::ranges::find(a.work, name, &std::pair<std::string, uint64_t>::first);
         if (before == a.work.end() || !looked.at_work) continue;
-        // Skipped bricks and rays that end early are work saved, so more of them is better.
+        // Skipped bricks and rays that end early save work, so a larger count of them is better.
         const bool saves = name == "bricks_skipped" || name == "rays_terminated_early" || name == "leaps";
         add(name, double(before->second), double(value), !saves && value > before->second);
     }

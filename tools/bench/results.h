@@ -13,14 +13,14 @@
 
 namespace shvr::bench {
 
-/// Error of a picture against the reference: in linear light, over red, green and blue of all pixels; PSNR, SSIM and
-/// FLIP in 8 bits, as displayed (engine/base/image_metrics.h).
+/// Error of a picture against the reference. RMSE and maximum: in linear light, over red, green and blue of all pixels.
+/// PSNR, SSIM and FLIP: in 8 bits, as displayed (engine/base/image_metrics.h).
 struct Error {
     double rmse = 0.0, max_abs = 0.0;
-    double alpha_rmse = 0.0, alpha_max_abs = 0.0;  ///< the same of alpha; NaN where not measured
+    double alpha_rmse = 0.0, alpha_max_abs = 0.0;  ///< the same errors for alpha; NaN if not measured
     std::optional<double> psnr_db;                 ///< null if the 8-bit colours are equal
     double ssim = 1.0, flip_mean = 0.0, flip_p99 = 0.0;
-    double fraction_over_1 = 0.0, fraction_over_4 = 0.0;  ///< fraction of the pixels that are off by more levels of 255
+    double fraction_over_1 = 0.0, fraction_over_4 = 0.0;  ///< fraction of pixels off by more than 1, or 4, of 255
 };
 
 /// Milliseconds from submission to completion.
@@ -56,7 +56,7 @@ struct Results {
     std::string device, driver, processor;
     std::string instructions;  ///< instruction sets of the processor that change rounding
     std::string version;       ///< version of SHVR
-    std::string commit;        ///< commit of the program's source tree; empty if it is not in one
+    std::string commit;        ///< commit of the program's source tree; empty if it has none
     /// Environment variables that drivers and SHVR read: names that begin with LP_, GALLIVM_, MESA_, VK_, SHVR_ and the
     /// like.
     std::vector<std::pair<std::string, std::string>> environment = {};
@@ -68,8 +68,8 @@ struct Results {
     std::vector<std::string> left_out = {};  ///< sentences: scenes whose data is missing
 };
 
-/// A sentence if the machine was so busy that medians of few rounds reflect its other load: its yardstick's 95th
-/// percentile is over one and a half times its minimum.
+/// Returns a sentence if the machine was so busy that medians of few rounds reflect its other load, that is, if the
+/// yardstick's 95th percentile is over one and a half times its minimum.
 std::optional<std::string> why_times_tell_little(const SceneResult& scene);
 
 /// Sets `on_front` of each run.
@@ -80,30 +80,30 @@ nlohmann::ordered_json json_of(const Results& results);
 Results read_results(const std::filesystem::path& file);
 /// One line per run.
 std::string csv_of(const Results& results);
-/// The values that are the same in every run on one machine: the error and the work of each of SHVR's runs.
+/// Lists the values that are the same in every run on one machine: the error and the work of each of SHVR's runs.
 std::string front_csv(const Results& results);
-/// The fastest run of each scene and family whose RMSE is at most this.
+/// For each scene, family and limit of the RMSE: the fastest run whose RMSE is at most the limit.
 std::string equal_error_csv(const Results& results);
 /// For each scene, family and preset of quality: the run with the least error that is no slower than the preset.
 std::string equal_time_csv(const Results& results);
 
-/// Another program's run, and SHVR's runs with an error that is no larger: its fastest run, and the one with the same
+/// Another program's run, and two of SHVR's runs: the fastest one whose error is no larger, and the one with the same
 /// step.
 struct AtPeersError {
     std::string scene;
     const Measured* peer = nullptr;
-    const Measured* fastest = nullptr;    ///< null: no run of SHVR is as accurate
-    const Measured* same_step = nullptr;  ///< whatever its error; null: not measured
+    const Measured* fastest = nullptr;    ///< null: no run of SHVR is as accurate as the peer's
+    const Measured* same_step = nullptr;  ///< run with the peer's step, whatever its error; null: not measured
 };
 /// The results point into `results`.
 std::vector<AtPeersError> at_peers_errors(const Results& results);
-/// Its rows, with SHVR's time relative to the other's.
+/// The rows of at_peers_errors, with SHVR's time relative to the other program's.
 std::string equal_peer_csv(const Results& results);
 
-/// A value that is worse in `b` than in `a`: an error by more than 1 % (a picture's error is the same in every run on
-/// one machine), a counter at all (if driver and instructions agree: otherwise a ray may end a sample later), a median
-/// by more than the noise of both (tools/report/noise.h), after both were scaled by their yardsticks: a busier machine
-/// does not mean a slower program.
+/// A difference between `a` and `b`: of an error, by more than 1 % (a picture's error is the same in every run on one
+/// machine); of a counter, by any amount (if driver and instructions agree: otherwise a ray may end a sample later); of
+/// a median, by more than the noise of both (tools/report/noise.h), after both were scaled by their yardsticks: a
+/// busier machine does not mean a slower program.
 struct Change {
     std::string scene, run, what;  ///< "rmse", "samples", "median_ms"
     double a = 0.0, b = 0.0, noise = 0.0;
@@ -112,7 +112,7 @@ struct Change {
 };
 struct Comparison {
     std::vector<Change> changes;      ///< all differences; regressions first
-    std::vector<std::string> beside;  ///< sentences about runs that only one of them has, and times that mean nothing
+    std::vector<std::string> beside;  ///< sentences: runs that only one file has, times that mean nothing
 };
 /// Fails if the two have no run in common. `with_times`: also compares times.
 Comparison compare(const Results& a, const Results& b, bool with_times);

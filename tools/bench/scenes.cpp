@@ -23,7 +23,7 @@ constexpr const char* FAMILIES[] = {"quality", "step",      "pre-integrated", "o
                                     "coarse",  "skipping",  "occlusion rays", "budget",        "detail",   "mixed",
                                     "VTK",     "VTK OpenGL"};
 constexpr int64_t MAX_SESSION_BYTES = 1 << 20;
-/// Shading without highlights that does not fade where there is no surface: other programs define it in the same way.
+/// Shading without highlights, and without fading where there is no surface, as other programs define it.
 Json matt()
 {
     return {{"light", {{"specular", 0}, {"gradient_fade", 0}}}};
@@ -85,8 +85,8 @@ std::string scene_names(const std::vector<Scene>& own)
     return names.substr(0, names.size() - 2);
 }
 
-/// The example as tools/fetch_example left it, without later painting; "-matt": without highlights and fading. Fails if
-/// it is missing.
+/// Returns the example as tools/fetch_example left it, without later painting. `is_matt`: also without highlights and
+/// fading. Fails if the example is missing.
 Scene example_scene(const Example& example, bool is_matt, const SceneChoice& choice)
 {
     const std::filesystem::path folder = choice.examples / example.name / "shvr";
@@ -286,7 +286,7 @@ std::vector<Run> runs_of(const Scene& scene, bool quick)
 
 std::vector<Run> mixed_runs(int count)
 {
-    // A Latin hypercube: for each knob every one of `count` equal parts of its range is used once.
+    // A Latin hypercube: divides each knob's range into `count` equal parts, and uses each part once.
     std::mt19937 random(1);
     const auto places = [&] {
         std::vector<int> order(size_t(std::max(count, 0)));

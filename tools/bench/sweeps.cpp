@@ -93,7 +93,7 @@ double median_seconds(const std::function<void()>& call)
     return seconds[TIMES / 2];
 }
 
-/// Along one axis after the other, in double; borders are repeated.
+/// Blurs along one axis after the other, in double; values at borders are repeated.
 std::vector<double> blurred(std::vector<double> values, int64_t side, double sigma)
 {
     const auto reach = int64_t(std::ceil(REFERENCE_REACH * sigma));

@@ -12,7 +12,7 @@ namespace {
 constexpr int NUMBERS = 1 << 15;  // size of the data, 128 KiB: in the nearest caches, like most data that kernels read
 constexpr int ROUNDS_OF_WORK = 150;
 
-/// Multiplies and adds like a kernel, on numbers that stay between 0 and 1.
+/// Multiplies and adds as a kernel does, on numbers that stay between 0 and 1.
 float worked(int seed)
 {
     std::vector<float> numbers(NUMBERS);

@@ -125,7 +125,7 @@ void add_input_options(CLI::App& command, Common& common)
                                                digits_of(spacing.z), "]"));
         },
         [&common](const std::string& unit) { common.settings.push_back("volume.unit=" + Json(unit).dump()); });
-    // Bare voxels state no unit; in a session theirs is "voxel" by default.
+    // Bare voxels state no unit; in a session their unit is "voxel" by default.
     command.parse_complete_callback([&common] {
         const auto is_given = [&](std::string_view key) {
             return std::ranges::any_of(common.settings,

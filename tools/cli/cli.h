@@ -1,6 +1,6 @@
 #pragma once
 // Shared by the sub-commands of `shvr`: common options, opening a session with its renderer, and printing results. Each
-// command is one file with one function that adds it to the program; main.cpp lists them.
+// command is one file with one function that adds the command to the program; main.cpp lists these functions.
 
 #include <functional>
 #include <memory>
@@ -37,7 +37,7 @@ struct Common {
 
 /// --set, --raw, --spacing, --unit
 void add_input_options(CLI::App& command, Common& common);
-/// Only --spacing, --unit, for commands that read volumes without a session. Impossible values are refused.
+/// Adds only --spacing and --unit, for commands that read volumes without a session. Impossible values are refused.
 void add_spacing_options(CLI::App& command, const std::function<void(const glm::dvec3&)>& take_spacing,
                          const std::function<void(const std::string&)>& take_unit);
 /// The input options, and --device, --budget-device, --budget-host, --threads.
@@ -65,7 +65,7 @@ void warn(const std::vector<std::string>& warnings, const Common& common);
 void warn(const std::vector<Notice>& notices, const Common& common);
 /// Printed even with --quiet.
 void warn_of_losses(const std::vector<std::string>& losses);
-/// Warns if another process is writing the journal: records that it has not written yet are not visible.
+/// Warns if another process is writing the journal: records not yet written by that process are not visible.
 void warn_of_holder(const std::filesystem::path& journal, const Common& common);
 /// Prints one object on standard output.
 void print(const Json& result);
@@ -97,7 +97,7 @@ struct Opened {
 using CheckSession = std::function<void(const Session& session, const VolumeInfo& volume)>;
 Opened open(const std::string& path, const Common& common, LongWork& work, Work::Opening opening = {.only_look = true},
             const CheckSession& check = {});
-/// Fails if there is no camera of that name; a journal may hold further ones. Empty: the session's own.
+/// Fails if there is no camera of that name; a journal may hold further cameras. Empty: the session's own camera.
 void check_camera(const std::string& name, const Session& session, const VolumeInfo& volume);
 /// Warns about parts that could not be read since the last call: bricks are read while pictures are drawn.
 void warn_of_gaps(Opened& opened, const std::string& path, const Common& common);
@@ -109,7 +109,7 @@ Json bricks_of(const Renderer& renderer);
 /// Work counters by name, summed over the passes.
 Json counters_of(const std::vector<gpu::PassReport>& passes);
 
-/// With SHVR_VALIDATION=1 the Khronos validation layer is on: fails if it reported anything, quoting its first message.
+/// If the Khronos validation layer is on (SHVR_VALIDATION=1) and has reported anything, fails with its first message.
 void check_validation(Opened& opened);
 
 void add_info(CLI::App& program);

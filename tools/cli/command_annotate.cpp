@@ -21,7 +21,7 @@ struct AnnotateCommandOptions {
     bool verbose = false;
 };
 
-/// A script drives the workbench, like the window.
+/// Drives the workbench by a script, as the window drives it by input.
 class Replay {
 public:
     Replay(ui::Workbench& workbench, const AnnotateCommandOptions& given) : bench(workbench), options(given) {}
@@ -43,7 +43,7 @@ private:
     const Annotator& annotator() const { return bench.document().annotator; }
     const TraceGraph& trace() const { return annotator().document().trace; }
 
-    /// Returns the result of `act`; errors from it name the line.
+    /// Returns the result of `act`; an error thrown by it names the line.
     template <class Act>
     auto in_words(const Act& act) const
     {
@@ -247,8 +247,8 @@ void run_annotate(const AnnotateCommandOptions& options)
                {"journal_bytes", annotator.work().journal().bytes}});
 }
 
-/// Performs an action and everything that it starts, which a script waits for. Conditions that the window would merely
-/// report are failures here.
+/// Performs an action and waits until everything that the action starts is done. Conditions that the window would
+/// merely report are failures here.
 void perform_to_end(ui::Workbench& bench, const ui::Action& action)
 {
     const uint64_t told_before = bench.messages().count();
@@ -284,7 +284,7 @@ void run_actions(const AnnotateCommandOptions& options)
             options.project, ": cannot be annotated: ", bench.document().why_only_looks(),
             bench.document().outside.empty() ? "; expected it to be closed there first" : "; --outside writes there"));
     static_cast<void>(work.begin("replaying " + name));
-    bench.set_hand_down(true);  // the log states where a step of settings ends
+    bench.set_hand_down(true);  // no step of settings ends by itself: the log states where
     size_t done = 0;
     for (const auto& [number, action] : actions) {
         work.show(double(done++) / double(actions.size()), {}, -1.0);

@@ -63,7 +63,7 @@ std::filesystem::path in_tree(const std::filesystem::path& path)
     return std::filesystem::exists(found, unknown) ? found : std::filesystem::path();
 }
 
-/// The present commit of that tree. The program was built from it unless something was changed since.
+/// The present commit of the tree in which the program was built. The program was built from it unless files changed.
 std::string commit_of_tree()
 {
     const std::filesystem::path folder = in_tree(".git");

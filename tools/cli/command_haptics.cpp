@@ -40,13 +40,13 @@ std::vector<std::string> choices()
     return names;
 }
 
-/// Returns which voxels are felt, by the session's settings; a trace of an older program felt what was hidden, too.
+/// Returns which voxels are felt, by the session's settings; traces of older programs felt hidden voxels, too.
 FeltLimits limits_of(const ReplayCommandOptions& options, const Trace& trace, const UnmeasuredSession& opened,
                      LongWork& work)
 {
     const FeelSettings& touch = opened.session.probe.touch;
     if (!trace.feels_seen || touch.feels_hidden) return limits_of_groups(touch.groups);
-    // What intensities look like may depend on all of them.
+    // How intensities look may depend on the values of all voxels, so the volume is measured here.
     OpenedSession measured = open_session(options.volume, options.common.settings,
                                           {.measure = {.progress = work.begin("measuring " + options.volume)}});
     const VolumeInfo& info = measured.source->info();
@@ -56,7 +56,7 @@ FeltLimits limits_of(const ReplayCommandOptions& options, const Trace& trace, co
                            window_for(info.type, measured.statistics));
 }
 
-/// Returns the offsets and, if that decides what is felt, the paint.
+/// Returns the density offsets and, if paint decides which voxels are felt, the paint.
 Document felt_document(const ReplayCommandOptions& options, const UnmeasuredSession& opened, const VolumeInfo& info,
                        const FeltLimits& limits)
 {
@@ -73,8 +73,8 @@ Document felt_document(const ReplayCommandOptions& options, const UnmeasuredSess
     return work.document();
 }
 
-/// A large ball is felt on coarser levels, at some size or speed. Makes them if the trace has such a ball and the file
-/// has none.
+/// Makes coarser levels if the trace needs them and the file has none: at some size or speed, a large ball is felt on
+/// coarser levels.
 std::shared_ptr<const VolumeSource> with_levels_for(const Trace& trace, std::shared_ptr<const VolumeSource> source,
                                                     LongWork& work)
 {
@@ -87,7 +87,7 @@ std::shared_ptr<const VolumeSource> with_levels_for(const Trace& trace, std::sha
     return needs_levels ? with_levels(std::move(source), HOST_BYTES, work.begin("making coarser levels")) : source;
 }
 
-/// Relevance of the volume, as the window mirrors it. A trace that names no unit gets the volume's.
+/// Returns a function that computes relevance as the window mirrors it. A trace without a unit gets the volume's.
 MakeRelevance relevance_of(const ReplayCommandOptions& options, Trace& trace, LongWork& work)
 {
     const UnmeasuredSession opened = open_unmeasured_session(options.volume, options.common.settings);

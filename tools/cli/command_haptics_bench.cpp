@@ -22,7 +22,7 @@ struct BenchCommandOptions {
 };
 
 constexpr double SPACING_UM = 10.0;
-constexpr int32_t SIDE = 256;  ///< size of the scene in voxels: a winding tube, another next to it, 1 % noise
+constexpr int32_t SIDE = 256;  ///< size of the scene in voxels: a winding tube, a second tube next to it, 1 % noise
 
 /// A deterministic hash.
 uint32_t scattered(uint32_t x)
@@ -69,7 +69,7 @@ void cut(const std::vector<uint8_t>& scene, const glm::dvec3& point, int32_t sid
             }
 }
 
-/// A hand follows the tube at 20 mm/s and strays from it like a human hand. A voxel is 0.25 mm in the hand.
+/// Makes a trace of a hand that follows the tube at 20 mm/s and strays like a human hand. A voxel is 0.25 mm for it.
 Trace make_trace(double radius_voxels, TouchMode mode, size_t ticks)
 {
     Trace trace;

@@ -21,7 +21,7 @@ struct ImportCommandOptions {
 
 // ---- Numbers of options ---------------------------------------------------------------------------------------------
 
-/// "1,2,3"; null if one of them is not a number.
+/// Parses "1,2,3"; null if one of the parts is not a number.
 template <class Value>
 std::vector<Value> numbers_of(const std::string& text)
 {
@@ -78,7 +78,7 @@ void run_import(const ImportCommandOptions& options)
 {
     ImportTask task = options.task;
     task.volume = options.volume;
-    // A link to the project stays; its target is made.
+    // If the project is given as a symbolic link, the link stays, and the project is made at its target.
     std::error_code ignored;
     const bool is_link = std::filesystem::is_symlink(options.project, ignored);
     task.project = is_link ? link_target(options.project) : std::filesystem::path(options.project);

@@ -27,7 +27,7 @@ struct PhantomCommandOptions {
     std::string type = "uint8";
     std::string hand = "right";
     PhantomSpec spec;
-    std::vector<const CLI::Option*> of_capitulum, of_flaws;  ///< that other kinds have no use for
+    std::vector<const CLI::Option*> of_capitulum, of_flaws;  ///< options that kinds without these parts refuse
 };
 
 /// "64" or "64x32x16"
@@ -111,7 +111,7 @@ std::string write_volume(const std::filesystem::path& folder, const std::string&
     return header.string();
 }
 
-/// Refuses options without effect: a phantom that is not as asked for would look like one that is.
+/// Refuses options without effect: otherwise a phantom that lacks a requested property would go unnoticed.
 void check_use(const PhantomCommandOptions& options)
 {
     const std::string& kind = options.spec.kind;

@@ -35,7 +35,7 @@ Json detail_of(const Renderer& renderer, const RenderSettings& render)
             {"step_voxels", std::ldexp(render.step_voxels, level)}};
 }
 
-/// Draws all parts. Fails, and leaves the old file as it was, if the picture lacks something or is stopped.
+/// Draws all parts. If the picture lacks something, or work is stopped, fails and leaves the old file as it was.
 Picture draw(PictureFile& file, const Opened& opened, const RenderCommandOptions& options, LongWork& work)
 {
     try {

@@ -48,7 +48,7 @@ void make_scene(double radius, RelevancePatch& patch)
             }
 }
 
-/// The mean of the relevant part of the ball, relative to its centre: 36 lines through each voxel, with exact ends.
+/// Returns the mean of the relevant part of the ball, relative to its centre: 36 lines per voxel row, with exact ends.
 glm::dvec3 slow_mean(const RelevancePatch& patch, const glm::dvec3& centre, double radius)
 {
     constexpr int LINES = 6;
@@ -139,7 +139,7 @@ std::vector<Row> sweep(LongWork& work)
     return rows;
 }
 
-/// Time to the right, error upwards, both by decades; one mark per row, one colour per method, one size per radius.
+/// Plots time to the right, error upwards, on logarithmic axes; a mark per row, a colour per method, a size per radius.
 std::string plot_of(const std::vector<Row>& rows)
 {
     constexpr double WIDTH = 640.0, HEIGHT = 440.0, LEFT = 70.0, BOTTOM = 60.0, TOP = 20.0, RIGHT = 150.0;

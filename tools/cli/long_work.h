@@ -1,6 +1,6 @@
 #pragma once
-// Shared by commands with long work: it shows progress
-// (engine/base/progress.h), and Ctrl-C ends it with a sentence.
+// Shared by commands with long work: they show progress (engine/base/progress.h), and Ctrl-C ends them with a
+// sentence.
 
 #include <atomic>
 #include <cstdint>
@@ -12,9 +12,9 @@
 namespace shvr::cli {
 
 /// One at a time, on the thread that runs the command. During its lifetime, the first Ctrl-C (SIGINT) or SIGTERM asks
-/// the command to stop (stop.h), which then ends as after an error: files are complete or absent. A second one ends the
-/// program at once. Work longer than a second shows a line on standard error, unless `quiet`; so does work that never
-/// reports progress.
+/// the command to stop (stop.h); the command then ends as after an error: files are complete or absent. A second signal
+/// ends the program at once. Unless `quiet`, a line on standard error shows work that takes longer than a second,
+/// including work that never reports progress.
 class LongWork final : public ProgressReporter {
 public:
     explicit LongWork(bool quiet);
@@ -32,7 +32,7 @@ private:
     StopRequest stop_;
 };
 
-/// What was begun last, in words: "loading scan.nrrd"; empty: nothing.
+/// Returns the work that was begun last, in words: "loading scan.nrrd"; empty: none was begun.
 std::string last_begun();
 /// The largest amount of memory that this process has held.
 int64_t peak_mebibytes();

@@ -105,8 +105,8 @@ int report(const char* message, Exit status)
     return status;
 }
 
-/// Large blocks go back to the system when they are freed. By default glibc raises the size from which it maps blocks
-/// up to 32 MiB, and lists that grow (the surfaces of a trace) leave holes that nothing fits: 115 MB at 40,000 nodes.
+/// Makes freed large blocks go back to the system. By default glibc raises its threshold for mapping blocks up to 32
+/// MiB, and growing lists (the surfaces of a trace) leave holes that fit nothing: 115 MB at 40,000 nodes.
 void keep_heap_compact()
 {
     static_cast<void>(::mallopt(M_MMAP_THRESHOLD, 1 << 20));

@@ -16,7 +16,7 @@ std::atomic<bool> command_listens = false, is_requested = false;
 std::atomic<int> first_signal = 0;
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
-/// A reader that has left (SIGPIPE) wants no further result, and standard error may be the same pipe.
+/// After SIGPIPE the reader of the output wants no further result, and standard error may be the same pipe.
 constexpr int HANDLED[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 
 /// Calls only async-signal-safe functions.
@@ -31,7 +31,7 @@ extern "C" void stop(int signal_number)
                              : signal_number == SIGHUP  ? "shvr: stopped by SIGHUP; no file is left half written\n"
                                                         : "";
     static_cast<void>(::write(STDERR_FILENO, text, std::strlen(text)) > 0);
-    // Ends by the signal, so that the parent process sees it and a shell's loop ends, too.
+    // Ends the process by the signal itself, so that the parent process sees it and a shell's loop ends, too.
     std::signal(signal_number, SIG_DFL);
     ::raise(signal_number);
 }

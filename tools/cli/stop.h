@@ -1,7 +1,7 @@
 #pragma once
-// Ctrl-C, SIGTERM and SIGHUP (a terminal that was closed) end every command with a sentence, SIGPIPE (the reader of the
-// output has left) at once and silently, and no file is left half written. During long work (long_work.h) a command
-// ends at its next step, with exit status 1; otherwise at once and by the signal, which loses nothing, since files
+// Ctrl-C, SIGTERM and SIGHUP (a terminal was closed) end every command with a sentence. SIGPIPE (the reader of the
+// output has left) ends it at once and silently. No file is left half written. During long work (long_work.h) a command
+// ends at its next step, with exit status 1; otherwise it ends at once, by the signal. Nothing is lost, since files
 // appear completely or not at all.
 
 #include <atomic>
@@ -15,7 +15,7 @@ void open_standard_streams();
 /// Installs the signal handlers that end the program with a sentence. Call it before any command runs.
 void end_in_words();
 
-/// During its lifetime the command is asked to end instead, once; a second Ctrl-C ends the program at once.
+/// During its lifetime, the first signal only asks the command to end; a second Ctrl-C ends the program at once.
 class StopRequest {
 public:
     StopRequest();

@@ -53,7 +53,7 @@ bool is_up_to_date(const Golden& golden, const Drawn& drawn)
         why_other_work(golden, drawn))
         return false;
     const Json side_car = parsed_side_car(golden);
-    const size_t counters = drawn.work_is_exact ? drawn.work.size() : 0;  // a new one is not recorded yet
+    const size_t counters = drawn.work_is_exact ? drawn.work.size() : 0;  // a new counter is not in the side-car yet
     return (side_car.contains("work") ? side_car["work"].size() : 0) == counters &&
            side_car.value("class", "") == spelled(golden.strictness);
 }
@@ -111,7 +111,7 @@ std::vector<std::pair<std::string, uint64_t>> work_of(std::span<const gpu::PassR
 std::vector<std::pair<std::string, uint64_t>> counters_of(const Picture& picture)
 {
     std::vector<std::pair<std::string, uint64_t>> counters = work_of(picture.passes);
-    uint64_t dispatches = 0;  // number as declared, since a busy machine splits long passes into more
+    uint64_t dispatches = 0;  // dispatches as declared: a busy machine splits long passes into more
     for (const gpu::PassReport& pass : picture.passes) dispatches += pass.tiles;
     counters.emplace_back("passes", picture.passes.size());
     counters.emplace_back("dispatches", dispatches);

@@ -26,7 +26,7 @@ std::vector<std::pair<std::string, uint64_t>> counters_of(const Picture& picture
 /// The result of drawing.
 struct Drawn {
     Image8 image;
-    ImageF light;  ///< the same, before rounding to 8 bits
+    ImageF light;  ///< the same picture, before rounding to 8 bits
     Maker maker;
     std::vector<std::pair<std::string, uint64_t>> work;  ///< exact counters by name, summed over passes
     bool work_is_exact = true;                           ///< false: bricks are paged, and counters depend on the disk
@@ -34,11 +34,11 @@ struct Drawn {
 /// The first picture of a studio, whose passes include preparation.
 Drawn drawn_by(Studio& studio);
 
-/// Why picture and side-car do not match, or one is missing; null if all is well.
+/// Returns why picture and side-car do not match, or which of them is missing; null if all is well.
 std::optional<std::string> why_not_blessed(const Golden& golden);
-/// The counters that the side-car lacks, or that differ from its own, in a sentence; null if there are none: also if
-/// bricks are paged, and for counters that differ because another driver or processor instruction set drew it (rays may
-/// end a sample later).
+/// Returns a sentence with the counters that the side-car lacks or records with another value; null if there are none.
+/// Also null if bricks are paged. Counters that differ because another driver or processor instruction set drew the
+/// picture do not count (rays may end a sample later).
 std::optional<std::string> why_other_work(const Golden& golden, const Drawn& drawn);
 
 struct Blessed {
@@ -47,7 +47,7 @@ struct Blessed {
 };
 /// Draws and writes both files, unless picture, counters and class are
 /// unchanged; a picture that passes is kept, and only the side-car is renewed.
-/// Fails on any device but lavapipe, and if the environment's CI is set.
+/// Fails on any device but lavapipe, and if the environment variable CI is set.
 Blessed bless(const Golden& golden, const std::string& reason, const StudioOptions& options);
 
 /// The command that accepts this golden.

@@ -1,6 +1,6 @@
 #pragma once
-// Measures how much a driver's freedom changes each golden: the same pictures on the same device with other vector
-// widths, thread counts, instruction sets and poisoned memory. A class is right if it allows twice the spread.
+// Measures how much a driver's freedom changes each golden: draws the same pictures on the same device with other
+// vector widths, thread counts, instruction sets and poisoned memory. A class is right if it allows twice the spread.
 
 #include <functional>
 #include <map>
@@ -11,17 +11,17 @@
 
 namespace shvr::golden {
 
-/// A way to run lavapipe; the first variant changes nothing.
+/// A configuration in which lavapipe is run; the first variant changes nothing.
 struct Variant {
     std::string name;
     std::vector<std::pair<std::string, std::string>> environment;
 };
 const std::vector<Variant>& variants();
 
-/// Draws the goldens into `output`, also in linear light, in a process with that environment. Throws if it cannot.
+/// Draws the goldens into `output`, also in linear light, in a process with the variant's environment; or throws.
 using DrawAll = std::function<void(const Variant& variant, const std::filesystem::path& output)>;
 
-/// The difference of a picture from the first variant's.
+/// The difference between a variant's picture and the first variant's.
 struct Moved {
     PixelDifference pixels;  ///< in 8 bits, of 255
     double light = 0.0;      ///< maximum in linear light: shows that a variant does change the arithmetic
@@ -32,7 +32,7 @@ struct Spread {
     std::optional<Maker> maker;  ///< the machine that drew the first variant
     std::map<std::string, Moved> by_variant;
     Moved most;                   ///< maximum of each metric
-    bool holds = false;           ///< the class allows twice as much
+    bool holds = false;           ///< the class allows twice these differences
     bool could_be_exact = false;  ///< no variant changes an 8-bit picture
 };
 /// Pictures are left in `output`/VARIANT.

@@ -34,7 +34,7 @@ int apart(const Image8& a, const Image8& b, size_t pixel)
     return most;
 }
 
-/// `actual` with the EDGE_FRACTION of pixels that differ most replaced by those of `expected`.
+/// Returns `actual`, with the EDGE_FRACTION of its pixels that differ most replaced by those of `expected`.
 Image8 without_edges(Image8 actual, const Image8& expected)
 {
     std::vector<std::pair<int, size_t>> differing;

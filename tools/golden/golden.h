@@ -32,7 +32,7 @@ struct Golden {
     std::string name;
     std::filesystem::path folder;
     std::string why;       ///< what the picture guards
-    std::string loosened;  ///< reason why it is no stricter; empty unless `strictness` is edge
+    std::string loosened;  ///< reason for this strictness; empty unless it is edge
     Strictness strictness = Strictness::tight;
     std::filesystem::path session_path;  ///< path of a session, project or volume file; empty: `session_text`
     std::string session_text;            ///< JSON; relative paths are relative to `folder`
@@ -54,7 +54,7 @@ std::vector<Golden> goldens_in(const std::filesystem::path& folder, const std::s
 /// Shell patterns: '*', '?', '[ab]'.
 bool matches(const std::string& name, const std::string& pattern);
 
-/// Why `actual` does not match `expected`: every limit that is exceeded, with the value found; null if it passes.
+/// Returns why `actual` does not match `expected`: each limit exceeded, with the value found; null if it matches.
 std::optional<std::string> why_different(const Image8& actual, const Image8& expected, Strictness strictness);
 
 /// FNV-1a, 64 bits, of a picture's file, as 16 digits. Protects against mistakes, not against malice.

@@ -11,7 +11,7 @@ namespace shvr::golden {
 /// Reads three channels; alpha is 1. Fails if the file is not such a picture.
 ImageF read_light(const std::filesystem::path& path);
 
-/// The largest difference in any channel of two pictures of one size.
+/// Returns the largest difference in any channel between two pictures of the same size.
 double largest_difference(const ImageF& a, const ImageF& b);
 
 }  // namespace shvr::golden

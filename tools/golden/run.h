@@ -12,10 +12,10 @@ namespace shvr::golden {
 
 enum class Status {
     passed,
-    failed,      ///< another picture or other work counters
+    failed,      ///< the picture or the work counters differ
     missing,     ///< never blessed, or picture and side-car do not match
     broken,      ///< could not be drawn
-    informative  ///< another picture, but the device is not lavapipe: its rounding may differ
+    informative  ///< the picture differs, but the device is not lavapipe: its rounding may differ
 };
 inline constexpr Spelling<Status> STATUSES[] = {{Status::passed, "passed"},
                                                 {Status::failed, "failed"},
@@ -53,8 +53,8 @@ struct Result {
 /// Draws a golden and judges it; never throws for defects of the golden.
 Result run(const Golden& golden, const StudioOptions& options);
 
-/// Runs all of them. Before the first is drawn, the report says that the run did not end, so that a crash is visible.
-/// `output` is created. `tell` is called before each. `keeps_light`: also writes NAME.actual.pfm, the picture in 32-bit
+/// Runs all goldens. Until the run ends, the report states that it did not end, so that a crash is visible. `output` is
+/// created. `tell` is called before each golden. `keeps_light`: also writes NAME.actual.pfm, the picture in 32-bit
 /// floats.
 struct Outcome {
     std::vector<Result> results;

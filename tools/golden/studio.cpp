@@ -8,10 +8,10 @@ namespace shvr::golden {
 
 namespace {
 
-/// Whether `set_environment` has chosen the device, and not the user.
+/// Whether `set_environment`, not the user, has chosen the device.
 bool is_default_device = false;
 
-/// Where the user has named no device, the message states why one is needed.
+/// If the user has named no device, the error message states why lavapipe is needed.
 Renderer make_renderer(const StudioOptions& options)
 {
     try {

@@ -15,8 +15,8 @@ namespace shvr::golden {
 /// Part of the name of Mesa's lavapipe device.
 inline constexpr std::string_view LAVAPIPE = "llvmpipe";
 
-/// Sets the environment for all goldens drawn later in this process: exact sampling in lavapipe (its fast 8-bit path is
-/// off by 1.6 levels) and its device, unless the environment or `device` states another.
+/// Sets the environment for all goldens drawn later in this process. Lavapipe samples exactly (its fast 8-bit path is
+/// off by 1.6 levels), and it is the device, unless the environment or `device` states another.
 void set_environment(const std::string& device = "");
 
 struct StudioOptions {
@@ -46,7 +46,7 @@ public:
     Picture picture_of(const Session& session, const Camera& camera, bool counted);
     /// What is painted.
     const Document& document() const { return annotator_->document(); }
-    /// Messages since the last call; with `validation` any message is a failure.
+    /// Returns the messages since the last call; with `validation`, any message is a failure.
     std::vector<std::string> take_validation_messages() { return renderer_.device().take_validation_messages(); }
 
 private:

@@ -17,8 +17,8 @@ std::string escaped(std::string_view text);
 std::string base64(std::span<const std::byte> bytes);
 /// A picture as the value of `src`.
 std::string source_of(const Image8& image);
-/// A whole page: head with `title`, the style common to all pages, light or dark like the reader's system, and `style`
-/// after it, then `body`, which is markup. Colours are variables: --ink, --faint, --line, --field, --good, --bad.
+/// Returns a whole page: a head with `title`, the style of all pages (light or dark, like the reader's system) and
+/// `style`; then `body`, which is markup. Colours are variables: --ink, --faint, --line, --field, --good, --bad.
 std::string page(std::string_view title, std::string_view style, std::string_view body);
 /// Creates the folder and missing parents. Fails with a sentence.
 void make_folder(const std::filesystem::path& path);

@@ -9,12 +9,12 @@ namespace shvr::report {
 /// The minimum number of times from which noise can be estimated.
 constexpr size_t MIN_TIMES = 3;
 
-/// The noise of the median of `count` times: half the distance from their minimum to their 95th percentile, and more if
-/// they are few, since few values spread less than many. Null if there are too few.
+/// Returns the noise of the median of `count` times: half the distance from their minimum to their 95th percentile,
+/// enlarged if there are few times, since few values spread less than many. Null if there are too few.
 std::optional<double> noise_of(double minimum, double p95, size_t count);
 
-/// The root of the sum of both squares. In about one of a thousand pairs of equal work with ordinary noise, the medians
-/// differ by more.
+/// Returns the root of the sum of both squares. In about one of a thousand pairs of equal work with ordinary noise, the
+/// medians differ by more.
 std::optional<double> noise_of_both(const std::optional<double>& a, const std::optional<double>& b);
 
 }  // namespace shvr::report

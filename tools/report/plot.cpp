@@ -162,8 +162,8 @@ private:
     std::vector<uint8_t> pixels_;
 };
 
-/// A logarithmic axis from one tick to another. Both lie slightly inside, so that no mark lies on the frame. Ticks are
-/// powers of 10, and below two decades also 2 and 5 times these.
+/// A logarithmic axis from one tick to another. Both ticks lie slightly inside the frame, so that no mark lies on the
+/// frame. Ticks are powers of 10, and below two decades also 2 and 5 times these.
 struct Axis {
     double lower = 0.0, upper = 1.0;  ///< exponents of 10
     double begin = 0.0, end = 1.0;    ///< pixels
@@ -174,7 +174,7 @@ struct Axis {
     }
 };
 
-/// The next smaller number of the form 1, 2 or 5 times a power of 10, by at least a thousandth.
+/// Returns the largest number of the form 1, 2 or 5 times a power of 10 that is smaller by at least a thousandth.
 double tick_at_most(double value)
 {
     const double power = std::pow(10.0, std::floor(std::log10(value * 0.999)));

@@ -107,7 +107,7 @@ bool FileList::is_shown(const Entry& entry) const
     if (!shows_hidden_ && entry.name.starts_with('.')) return false;
     if (entry.is_folder || shows_all_files_) return true;
     const std::string name = lower_case(entry.name);
-    // Companion files of a mask are taken with it; DICOM files often have no suffix.
+    // The .mask.json of a mask is taken along with the mask, so it has no row; DICOM files often have no suffix.
     return is_volume_name(entry.name) || (name.ends_with(".json") && !name.ends_with(".mask.json")) ||
            fs::path(entry.name).extension().empty();
 }

@@ -19,7 +19,7 @@ class FileList {
 public:
     using Entry = FolderEntry;
 
-    /// Starts to list that folder, and waits for it for an unnoticeable time (AT_ONCE). See `failure`.
+    /// Starts to list that folder, and waits for the list for an unnoticeable time (AT_ONCE). See `failure`.
     void enter(const std::filesystem::path& folder, size_t at_once = FolderReader::READ_AT_ONCE);
     /// Takes entries read since the last call. Returns whether more will follow.
     bool read_on();
@@ -27,10 +27,10 @@ public:
     /// Returns whether a request is unanswered.
     bool is_waiting() const { return is_reading_ || unanswered_ > 0; }
     const std::filesystem::path& folder() const { return folder_; }
-    /// Returns why the folder, or the rest of it, cannot be listed, in a sentence; empty: it can.
+    /// Returns why the folder, or the rest of it, cannot be listed, in a sentence; empty if it can be.
     const std::string& failure() const { return failure_; }
 
-    /// Selects the names that are rows. `all_files`: not only files that SHVR opens, by their names.
+    /// Selects which names become rows. `all_files`: also files whose names do not look like files that SHVR opens.
     void show(bool all_files, bool hidden);
     /// Number of rows: folders first, then files; "slice2" before "slice10".
     size_t size() const { return rows_.size(); }
@@ -59,7 +59,7 @@ private:
     std::unordered_map<std::string, FileDetails> details_;
 };
 
-/// Compares names with their numbers as numbers; case decides last.
+/// Compares names, with digits in them compared as numbers; upper and lower case decide last.
 bool is_naturally_before(std::string_view a, std::string_view b);
 std::string size_text(int64_t bytes);  ///< "1.4 GB": 1000 bytes are 1 kB
 
@@ -87,7 +87,7 @@ Verdict verdict_on(const std::filesystem::path& path, Wanted wanted, bool enters
 
 /// Returns the names of the formats that a chosen file may have, "TIFF, NRRD and DICOM" with the conjunction "and".
 std::string names_of_formats(std::string_view conjunction);
-/// Returns whether it leads into a zipped volume, as scan.ozx/0 does.
+/// Returns whether the path leads into a zipped volume, as scan.ozx/0 does.
 bool is_within_archive(const std::filesystem::path& path);
 
 struct Place {

@@ -156,7 +156,7 @@ void FolderReader::wait(std::chrono::milliseconds patience)
     shared_->changed.wait_for(lock, patience, [&] { return !shared_->news.is_reading; });
 }
 
-/// Runs on the thread: lists names, with answers in between, then answers until the reader is abandoned.
+/// Runs on the reader's thread: lists names, answering requests in between; then answers until it is abandoned.
 void FolderReader::read(Shared& shared, size_t at_once)
 {
     std::error_code error, ignored;

@@ -27,7 +27,7 @@ struct FileDetails {
     std::optional<int64_t> bytes;  ///< size of a file
     std::string changed;           ///< local time of the last change, "2026-11-22 17:49"; empty if unknown
 };
-/// Determines the kind by name, for a folder by a few names in it. Asks the file system.
+/// Determines the kind by the name; for a folder, by a few names of its content. Asks the file system.
 FileDetails details_of(const std::filesystem::path& path);
 
 struct FolderEntry {
@@ -47,7 +47,7 @@ public:
     struct News {
         std::vector<FolderEntry> entries;
         std::vector<std::pair<std::string, FileDetails>> details;
-        std::string failure;  ///< why the folder, or the rest of it, cannot be listed, in a sentence; empty: it can
+        std::string failure;  ///< why the folder, or the rest of it, cannot be listed, in a sentence; or empty
         bool is_reading = true;
     };
     /// Returns results since the last call.

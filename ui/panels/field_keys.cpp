@@ -17,7 +17,7 @@ int awaited_in_frame = -1;          ///< last frame in which a field awaited the
 void FieldKeys::before_field(bool are_asked_for)
 {
     const int frame = ImGui::GetFrameCount();
-    if (std::exchange(last_frame_, frame) + 1 < frame) {  // the field was gone meanwhile, and its whole state with it
+    if (std::exchange(last_frame_, frame) + 1 < frame) {  // the field was gone meanwhile, and its state was lost
         awaited_since_ = -1;
         early_.clear();
     }

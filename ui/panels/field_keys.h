@@ -1,7 +1,7 @@
 #pragma once
-// Tracks the owner of the keyboard. Dear ImGui (1.86) gives it to a field some frames after the request, and reports a
-// frame late that a field has it or has released it. During a heavy picture a frame takes long enough to type in: text
-// typed meanwhile would be lost, or act as shortcuts. Main thread.
+// Tracks the owner of the keyboard. Dear ImGui (1.86) gives the keyboard to a field some frames after the request, and
+// reports a frame late that a field has got it or released it. During a heavy picture a frame takes long enough to type
+// in: text typed meanwhile would be lost, or act as shortcuts. Main thread.
 
 #include <vector>
 

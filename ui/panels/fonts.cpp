@@ -13,7 +13,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// The first of these that exists is the panels' font; otherwise Dear ImGui's own is.
+/// The panels' font is the first of these files that exists; if none exists, Dear ImGui's own font.
 constexpr const char* FONTS[] = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",    // Debian, Ubuntu
                                  "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",  // Fedora
                                  "/usr/share/fonts/TTF/DejaVuSans.ttf",                // Arch
@@ -53,7 +53,7 @@ bool add_font(ImFontAtlas& atlas, const char* path, float pixels, bool is_merged
     if (!std::filesystem::is_regular_file(path, error)) return false;
     ImFontConfig config;
     config.MergeMode = is_merged;
-    if (is_merged || purpose == For::picture) config.OversampleH = 1;  // a pixel of the atlas is one of the picture
+    if (is_merged || purpose == For::picture) config.OversampleH = 1;  // an atlas pixel is a picture pixel
     return atlas.AddFontFromFileTTF(path, pixels, &config, glyph_ranges.data()) != nullptr;
 }
 
@@ -72,7 +72,7 @@ void fill(ImFontAtlas& atlas, double pixels, For purpose)
         for (const char* path : FALLBACKS) add_font(atlas, path, size, true, purpose);
 }
 
-/// The next character of UTF-8, and its number of bytes; an invalid byte counts as one character.
+/// Returns the next character of UTF-8 text and its length in bytes; an invalid byte counts as one character.
 std::pair<ImWchar, size_t> next_character(std::string_view text)
 {
     const auto byte = [&](size_t i) { return i < text.size() ? uint32_t(uint8_t(text[i])) : 0u; };

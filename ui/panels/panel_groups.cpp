@@ -191,7 +191,7 @@ void count_cell(int64_t count)
     hint("Voxels of this group.");
 }
 
-/// Radius of nodes or internodes of a group, in voxels; applied when the mouse is released: one step of the history.
+/// Draws the radius of a group's nodes or internodes, in voxels. A release of the mouse makes one step of the history.
 void size_cell(const char* id, uint8_t group, size_t count, double radius_units, RadiusOp::Of of, const Model& model,
                Actions& actions)
 {

@@ -76,7 +76,7 @@ std::string all_keys_of(const Shortcut& shortcut, const Keymap& keymap)
     return text;
 }
 
-/// Draws a button with the shortcut's keys; once clicked, it waits for the next key.
+/// Draws a button with the keys of a shortcut; after a click, the button waits for the next key.
 void keys_of(const Shortcut& shortcut, const Model& model, Actions& actions)
 {
     const bool waits = model.awaits_key == shortcut.id;

@@ -27,7 +27,7 @@ namespace {
 
 constexpr const char* AXES[] = {"x", "y", "z"};
 
-/// Disabled while the action is unavailable; a tooltip states the reason.
+/// Draws an item that is disabled while its action is unavailable; a tooltip then states the reason.
 bool reasoned_item(const char* name, const std::string& why)
 {
     const bool is_chosen = ImGui::MenuItem(name, nullptr, false, why.empty());
@@ -41,7 +41,7 @@ void action_item(const char* name, const Action& action, const Model& model, Act
     if (reasoned_item(name, why_not(model, action))) actions.push_back(action);
 }
 
-/// Keys that act while held are buttons here, since a menu item would close the menu at every step.
+/// Draws keys that act while held as buttons, since a menu item would close the menu at every step.
 void held_items(const char* group, const Model& model, Actions& actions)
 {
     if (!begin_menu(group, model.is_open)) return;

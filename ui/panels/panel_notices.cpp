@@ -38,7 +38,7 @@ float recovered_banner(const Model& model, const glm::vec2& begin, float width, 
     return height;
 }
 
-/// Placed in the upper left corner of the graphics window, as wide as it needs to be. Returns its height.
+/// Draws the banner in the upper left corner of the graphics window, as wide as needed. Returns its height.
 float read_only_banner(const Model& model, const glm::vec2& begin, float width, Actions& actions)
 {
     ImGui::SetNextWindowPos({begin.x, begin.y});
@@ -84,7 +84,7 @@ void question_of_belief(const Model& model, Actions& actions)
     ImGui::EndPopup();
 }
 
-/// Asks for the use of a file that has the size of the open scan.
+/// Asks how a file of the open scan's size is to be used: as the mask, as density offsets, or as another scan.
 void question_of_use(const Model& model, Actions& actions)
 {
     if (!model.unclear_file) return;

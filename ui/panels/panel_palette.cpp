@@ -1,4 +1,4 @@
-// A box to type in, which finds actions and settings: by name, as an action's text, or as a setting.
+// A box in which the user types to find actions and settings: by name, by an action's text, or by a setting's.
 
 #include <algorithm>
 #include <string>
@@ -21,9 +21,9 @@ constexpr int MAX_PALETTE_LINES = 16;
 struct Palette {
     std::string text;
     int chosen = 0;
-    int shown_frame = -1;      ///< the last frame it was drawn in
+    int shown_frame = -1;      ///< the last frame in which the box was drawn
     bool takes_keys = true;    ///< the next frame gives the box the keyboard
-    bool ends_at_end = false;  ///< and puts the cursor behind the text
+    bool ends_at_end = false;  ///< the next frame also puts the cursor behind the text
 };
 Palette palette;
 

@@ -39,7 +39,7 @@ void theme_row(const Preferences& preferences, Actions& actions)
     ImGui::NewLine();
 }
 
-/// Applied when the mouse is released, since it moves the widget that the mouse holds.
+/// Draws a number. A change is applied when the mouse is released, since it moves the widget that the mouse holds.
 void number_row(const char* label, const char* key, double now, double least, double most, const char* format,
                 const char* text, Actions& actions)
 {
@@ -77,7 +77,7 @@ void keys_row(const Model& model, Actions& actions)
     if (ImGui::Button("Change single keys...")) actions.push_back(ShowHelp{true});
 }
 
-/// Draws a limit, or as much as fits, which is the default.
+/// Draws the row of a memory limit. By default there is no fixed limit: as much is used as fits.
 void budget_row(const char* label, const char* key, const std::optional<double>& mebibytes, uint64_t present_bytes,
                 const char* meaning, Actions& actions)
 {

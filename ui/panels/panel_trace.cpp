@@ -47,7 +47,7 @@ void group_of_selected(const Model& model, uint8_t group)
     ImGui::Text("%d, %s", int(group), look.name.c_str());
 }
 
-/// Applied when the field loses focus or the mouse is released: one step of the history each.
+/// Draws the radius. A change is applied when the field loses focus or the mouse is released: one step of the history.
 void radius(const Model& model, double radius_units, Actions& actions)
 {
     static double edited = 0.0;

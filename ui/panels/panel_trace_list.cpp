@@ -110,7 +110,7 @@ void node_row(const NodeRow& row, const Model& model, Actions& actions)
     ImGui::PopID();
 }
 
-/// A click on a heading sorts by it; another click reverses the order.
+/// Sorts by the heading that was clicked; another click on it reverses the order.
 void take_order()
 {
     ImGuiTableSortSpecs* const specs = ImGui::TableGetSortSpecs();

@@ -25,7 +25,7 @@ constexpr bool has_body(const PanelRow& row)
 static_assert(std::ranges::all_of(PANELS, has_body), "panels.h lacks the function of a panel");
 static_assert(std::size(PANEL_BODIES) == std::size(PANELS), "panel_rows.h lacks the row of a panel");
 
-constexpr float SPLITTER = 6.0f / 14.0f;  ///< its width, in font sizes
+constexpr float SPLITTER = 6.0f / 14.0f;  ///< width of the splitter, in font sizes
 
 void draw_body(const PanelRow& row, const Model& model, Actions& actions)
 {
@@ -117,8 +117,8 @@ void side_panel(const ImVec2& at, const ImVec2& size, const Model& model, Action
     ImGui::PopStyleVar(2);
 }
 
-/// Draws the edge between picture and panels: a drag resizes them, a double click restores their usual width. Returns
-/// the width while it is dragged.
+/// Draws the edge between picture and panels. A drag resizes the panels, a double click restores their usual width.
+/// Returns the width during a drag.
 std::optional<double> splitter(const ImVec2& at, float height, float window_width, Actions& actions)
 {
     static std::optional<double> dragged;  // in font sizes

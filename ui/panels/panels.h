@@ -19,7 +19,7 @@ struct Layout {
 /// Name of the window of the panels at the side, for code that gives it the keyboard.
 inline constexpr const char* SIDE_PANEL = "Side panel";
 
-/// Returns whether a window of the interface was at that position in the last frame; units of the interface.
+/// Returns whether a window of the interface was at that position in the last frame, in units of the interface.
 bool covers(const glm::dvec2& at);
 
 /// Draws menu bar, tool bar, panels, status bar and the windows that are shown; adds to `actions`. Returns the area
@@ -60,7 +60,7 @@ inline constexpr PanelBody PANEL_BODIES[] = {
     {"history", history_panel},
 };
 
-/// Drawn within the touch panel: the connected devices, and the state of the one in use.
+/// Drawn within the touch panel: the connected devices, and the state of the device in use.
 void device_section(const Model& model, Actions& actions);
 /// Draws device time per pass of a picture, in a window of its own.
 void passes_window(const Model& model, Actions& actions);
@@ -78,7 +78,7 @@ void help_window(const Model& model, Actions& actions);
 void palette_window(const Model& model, Actions& actions);
 void messages_window(const Model& model, Actions& actions);
 void menu_bar(const Model& model, Actions& actions);
-/// Draws the menu item of a shortcut. If it is unavailable now, it is grey and says why.
+/// Draws the menu item of a shortcut. While the action is unavailable, the item is grey and states the reason.
 void shortcut_item(const char* id, const Model& model, Actions& actions, bool is_checked = false);
 /// Draws items of the menu View: kept views, the pivot of turning, drawings over pictures.
 void kept_views_menu(const Model& model, Actions& actions);
@@ -87,8 +87,8 @@ void sight_items(const Model& model, Actions& actions);
 void new_nodes(const Model& model, Actions& actions);
 /// Shows the file chooser while the model requests it.
 void open_dialog(const Model& model, Actions& actions);
-/// Returns whether keys go to a file chooser; and whether one, or a dialog of a task, needs another frame, since it
-/// waits for the disk.
+/// Return whether keys go to a file chooser, and whether a file chooser or a dialog of a task needs another frame,
+/// since it waits for the disk.
 bool choosers_have_keys();
 bool choosers_are_busy();
 /// Shows the dialog for saving under another name, from the next frame on.
@@ -98,7 +98,7 @@ void ask_what_to_take(const Model& model);
 void name_and_take_dialogs(const Model& model, Actions& actions);
 /// Draws items of the menu File for exporting, importing, labelling and comparing; and their dialogs.
 void task_menu(const Model& model);
-/// Returns whether one of these dialogs, as last drawn, waits for the disk.
+/// Returns whether a dialog of a task, as last drawn, waits for the disk.
 bool task_dialog_waits();
 /// Shows the dialog that makes a project of that volume, from the next frame on.
 void ask_to_import(const std::filesystem::path& volume);

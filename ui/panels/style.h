@@ -27,7 +27,7 @@ void set_style(const Appearance& appearance);
 /// Fills the font atlas (fonts.cpp).
 void load_fonts(double pixels);
 
-/// Renders letters of those fonts for picture files (figure.h), with a height in pixels.
+/// Renders texts in the interface's fonts for picture files (figure.h), with a height in pixels.
 std::vector<TextImage> draw_texts(std::span<const std::string> texts, double pixels);
 
 /// Requests the characters of user text: names, paths, messages. They are in the fonts from the next frame on, if this

@@ -22,7 +22,7 @@ namespace {
 constexpr float NAMED_FROM = 74.0f;   ///< minimum width, in font sizes, at which tools have their names next to them
 constexpr float GROUP_WIDTH = 13.0f;  ///< width of the active group's name, in font sizes
 
-/// Draws lines into a square with sides of one unit at `corner`.
+/// Draws in a square at `corner`, in units of the square's side.
 struct Pen {
     ImDrawList& list;
     ImVec2 corner;
@@ -202,7 +202,7 @@ void active_group(const Model& model, Actions& actions)
     step_button("+", "new_group", model, actions);
 }
 
-/// Shows the functions of the mouse buttons, as far as there is room; all of them in a tooltip.
+/// Shows the functions of the mouse buttons, as far as there is room; a tooltip shows all of them.
 void mouse_words(const Model& model)
 {
     const bool is_over_pane = model.pointer && model.pointer->pane < model.panes.size();

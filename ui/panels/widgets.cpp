@@ -47,7 +47,7 @@ bool slider(const char* label, double& value, double lower, double upper, const 
 
 namespace {
 
-/// Gives a slider that the mouse holds its own mouse position, which moves slowly with Shift.
+/// While the mouse holds a slider, replaces the mouse position by one that moves slowly with Shift.
 class HeldSlider {
 public:
     explicit HeldSlider(ImGuiID slider) : slider_(slider)
@@ -77,7 +77,7 @@ private:
 
 }  // namespace
 
-/// The number is drawn on the frame's own colour over the handle, which shows above and below it.
+/// Draws the number over the handle, on the frame's own colour; the handle remains visible above and below it.
 bool slider_scalar(const char* id, ImGuiDataType type, void* value, const void* lower, const void* upper,
                    const char* format, ImGuiSliderFlags flags)
 {
@@ -108,7 +108,7 @@ bool slider_scalar(const char* id, ImGuiDataType type, void* value, const void* 
     return is_changed;
 }
 
-/// Compensates for Dear ImGui, which moves ten times as far with Shift.
+/// Compensates for Dear ImGui, which with Shift changes a value ten times as fast.
 bool drag_number(const char* id, double& value, double speed, double lower, double upper, const char* format,
                  ImGuiSliderFlags flags)
 {
@@ -121,7 +121,7 @@ bool is_double_clicked()
 {
     const bool is_hovered = ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenBlockedByPopup);
     if (!is_hovered || !ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) return false;
-    ImGui::ClearActiveID();  // releases the mouse: the widget would follow it, or take typed digits
+    ImGui::ClearActiveID();  // otherwise the widget would follow the mouse, or take typed digits
     return true;
 }
 
@@ -137,7 +137,7 @@ bool begin_menu(const char* label, bool is_enabled)
     const float height = ImGui::GetMainViewport()->WorkSize.y - 2.0f * ImGui::GetStyle().DisplaySafeAreaPadding.y;
     ImGui::SetNextWindowSizeConstraints({0.0f, 0.0f}, {FLT_MAX, std::max(height, ImGui::GetFontSize())});
     const bool is_open = ImGui::BeginMenu(label, is_enabled);
-    if (!is_open) ImGui::GetCurrentContext()->NextWindowData.ClearFlags();  // they would be the next window's
+    if (!is_open) ImGui::GetCurrentContext()->NextWindowData.ClearFlags();  // otherwise the next window would use them
     return is_open;
 }
 
@@ -191,7 +191,7 @@ void tooltip(const char* text)
 
 void hint(const char* text)
 {
-    if (!ImGui::IsItemHovered() || ImGui::IsItemActive()) return;  // it would cover what is being dragged
+    if (!ImGui::IsItemHovered() || ImGui::IsItemActive()) return;  // a tooltip would cover the item being dragged
     tooltip(text);
 }
 

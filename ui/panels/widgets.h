@@ -19,7 +19,7 @@ inline constexpr ThemeColor WARNING{ColorRole::warning}, ERROR_TEXT{ColorRole::e
 
 /// Adds a tooltip to the widget drawn last, wrapped to a readable width.
 void hint(const char* text);
-/// Likewise, next to a widget that must stay visible: at the left or the right, where there is more room.
+/// Likewise, but next to a widget that must stay visible: at its left or right, whichever side has more room.
 void hint_beside(const char* text);
 
 /// Draws a label in the left column, for a text (text_label) or a framed widget (label) next to it.
@@ -37,11 +37,11 @@ bool slider(const char* label, double& value, double lower, double upper, const 
 bool slider_scalar(const char* id, ImGuiDataType type, void* value, const void* lower, const void* upper,
                    const char* format, ImGuiSliderFlags flags = 0);
 
-/// ImGui::DragScalar of a number; with Shift it moves a tenth as far.
+/// ImGui::DragScalar of a number; with Shift the value changes a tenth as fast.
 bool drag_number(const char* id, double& value, double speed, double lower, double upper, const char* format,
                  ImGuiSliderFlags flags = 0);
 
-/// Returns whether the widget drawn last was double-clicked; it then releases the mouse, which it would follow.
+/// Returns whether the widget drawn last was double-clicked, and if so makes it release the mouse.
 bool is_double_clicked();
 
 /// Restores a setting's default, or the value chosen for the volume, on a double click on the widget drawn last.
@@ -57,7 +57,7 @@ bool begin_menu(const char* label, bool is_enabled = true);
 /// under the pointer.
 void close_menus_by_escape();
 
-/// Returns the text, or as much of its beginning as fits that width, with three dots.
+/// Returns the text, or as much of its beginning as fits that width, followed by three dots.
 std::string shortened(const std::string& text, float width);
 
 /// Returns a unit in its usual notation.

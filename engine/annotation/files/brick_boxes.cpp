@@ -10,11 +10,11 @@ namespace shvr {
 
 namespace {
 
-/// Boxes of several bricks have at most that many bytes.
+/// Size limit of a box that contains more than one brick.
 constexpr int64_t BOX_BYTES = int64_t{64} << 20;
 
-/// A block of the file if bricks fill it exactly, so that nothing is decoded twice; else a layer of bricks, or one
-/// brick.
+/// Size of a box: a stored block of the file if it is small enough and whole bricks fill it exactly, so that nothing is
+/// decoded twice; else a layer of bricks if that is small enough, else one brick.
 Size3 box_size(const VolumeSource& source)
 {
     const auto voxel_bytes = int64_t(bytes_of(source.info().type));
@@ -27,7 +27,7 @@ Size3 box_size(const VolumeSource& source)
     return is_small(layer) ? layer : Size3(BRICK_SIDE);
 }
 
-/// The numbers of the boxes that stored blocks touch, ascending; null if the source does not know them.
+/// The numbers of the boxes that stored blocks touch, ascending; null if the source does not know its stored blocks.
 std::optional<std::vector<int64_t>> touched_boxes(const VolumeSource& source, const Size3& box, const Size3& counts)
 {
     constexpr size_t MAX_REPEATED = size_t{1} << 22;

@@ -1,6 +1,6 @@
 #pragma once
-// The boxes in which volumes of annotation are read from other files: whole bricks, each voxel once, and only what the
-// file stores.
+// The boxes in which volumes of annotation are read from other files. Boxes consist of whole bricks and do not overlap,
+// and boxes in which the file stores nothing are skipped.
 
 #include <cstdint>
 #include <functional>
@@ -10,9 +10,9 @@
 
 namespace shvr {
 
-/// Calls `visit` for boxes that consist of whole bricks (clipped to the volume) and have at most 64 MiB, or one brick.
-/// Boxes that touch no stored block are left out, if the source knows what it stores and the rest is 0; then
-/// the cost does not depend on the volume's size. Fails as `stored_blocks` does.
+/// Calls `visit` for boxes that consist of whole bricks (clipped to the volume) and have at most 64 MiB, or are one
+/// brick. If the source knows which blocks it stores, and all other voxels are 0, boxes that touch no stored block are
+/// left out; then the cost does not depend on the volume's size. Fails as `stored_blocks` does.
 void for_each_brick_box(const VolumeSource& source, const std::function<void(const VoxelBox& box)>& visit);
 
 struct BrickOfBox {
@@ -21,11 +21,11 @@ struct BrickOfBox {
     Size3 extent;   ///< its voxels in the volume
     int64_t voxel;  ///< index of its first voxel in the box
     Size3 box;      ///< voxels of the box
-    /// Index in the box of the first voxel of a row of the brick.
+    /// Index, within the box, of the first voxel of a row of the brick.
     int64_t row(int64_t y, int64_t z) const { return voxel + box.x * (y + box.y * z); }
 };
 
-/// The bricks of such a box of a volume of `size` voxels.
+/// Calls `visit` for each brick of such a box, in a volume of `size` voxels.
 template <class Visit>
 void for_each_brick(const VoxelBox& box, const Size3& size, const Visit& visit)
 {

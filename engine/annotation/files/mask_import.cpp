@@ -15,7 +15,7 @@ namespace shvr {
 
 namespace {
 
-/// The layers of a segmentation; 0 for any other file, and for a segmentation of one layer.
+/// The number of layers of a segmentation; 0 for any other file, and for a segmentation of one layer.
 int64_t layers_of(const std::filesystem::path& path, const std::vector<NrrdSegment>& segments)
 {
     if (segments.empty()) return 0;

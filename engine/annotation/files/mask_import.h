@@ -1,6 +1,6 @@
 #pragma once
-// Masks in any supported format. Formats that state their size must match the volume; for raw bytes only their number
-// is checked. Any thread may call these.
+// Masks in any supported format. Formats that state their size must match the volume; for raw bytes only the number of
+// bytes is checked. Any thread may call these.
 //
 //   a folder                       an OME-Zarr label image, or another OME-Zarr image of uint8
 //   .ozx .zip, and paths inside    the same, in an archive
@@ -15,21 +15,21 @@ namespace shvr {
 
 struct ImportedMask {
     std::vector<MaskBrickChange> changes{};  ///< turn an unpainted mask into this one
-    std::vector<std::string> losses{};       ///< what the file holds and a mask cannot, one sentence each
-    std::vector<std::string> remarks{};      ///< how it was placed, and which groups its segments became
+    std::vector<std::string> losses{};       ///< content of the file that a mask cannot hold, one sentence each
+    std::vector<std::string> remarks{};      ///< how the mask was placed, and which groups its segments became
 };
 /// A mask of another size or place is placed on the volume's grid (mask_place.h), and the layers of a segmentation are
-/// merged (mask_segments.h). Fails if its stated spacing or place does not fit (naming both), or if a voxel is not a
-/// whole number from 0 to 255, of any type.
+/// merged (mask_segments.h). Fails if the mask's stated spacing or place does not fit the volume's (naming both), or if
+/// a voxel (of any type) is not a whole number from 0 to 255.
 ImportedMask import_mask(const std::filesystem::path& path, const TraceSpace& space);
 
-/// Whether `save_mask_as` can write to the path; if not, its format is only read.
+/// Whether `save_mask_as` can write to the path; if not, its format is read-only.
 bool is_mask_writable(const std::filesystem::path& path);
-/// Where a mask that was read from this path is saved: itself, or NAME.labels.zarr next to it if its format is only
-/// read. Masks in archives have no such place.
+/// The path for saving a mask that was read from `mask`: the same path, or NAME.labels.zarr next to it if its format is
+/// read-only. A path in an archive is returned unchanged, though masks cannot be saved there.
 std::filesystem::path saved_mask_path(const std::filesystem::path& mask);
-/// Saves in the format that the path names, or as raw bytes if `export_mask` does not support it. Fails for formats
-/// that can only be read. `image`, `foreign` and the result: as for `export_mask`.
+/// Saves in the format that the path names, or as raw bytes if `export_mask` does not support that format. Fails for
+/// formats that can only be read. `image`, `foreign` and the result: as for `export_mask`.
 std::string save_mask_as(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
                          const LabelImage& image = {}, Foreign foreign = Foreign::refused);
 

@@ -19,7 +19,7 @@ namespace shvr {
 
 namespace {
 
-/// For numbers that other programs store as 32-bit floats; in voxels.
+/// Tolerances in voxels, for numbers that other programs store as 32-bit floats.
 constexpr double MAX_DRIFT = 0.05, ROUNDING = 1e-6;
 
 bool states_position(const TraceSpace& space)
@@ -27,13 +27,13 @@ bool states_position(const TraceSpace& space)
     return !space.frame.empty() || space.origin != glm::dvec3(0.0) || space.directions != glm::dmat3(1.0);
 }
 
-/// The place, or why there is none.
+/// The place of a mask or, if it has none on the grid, the reason.
 struct Trial {
     std::optional<GridPlace> place{};
     std::string reason{};
 };
 
-/// Columns: the steps from voxel to voxel.
+/// A matrix of three columns: the steps from voxel to voxel along the axes.
 glm::dmat3 steps_of(const TraceSpace& space, double factor)
 {
     glm::dmat3 steps;
@@ -41,7 +41,7 @@ glm::dmat3 steps_of(const TraceSpace& space, double factor)
     return steps;
 }
 
-/// `turn`: 1, 1, 1, or -1, -1, 1 from RAS to LPS and vice versa.
+/// `turn`: factors of the axes, (1, 1, 1), or (-1, -1, 1) to convert RAS to LPS or vice versa.
 Trial try_place(const TraceSpace& mask, const TraceSpace& volume, const glm::dvec3& turn)
 {
     const std::optional<double> from = micrometres_in(mask.unit), to = micrometres_in(volume.unit);
@@ -121,7 +121,7 @@ std::optional<GridPlace> place_of_mask(const std::filesystem::path& path, const 
     };
     if (!states_position(found))
         refuse("it states no position; expected the size of this volume, or an origin from which it is placed");
-    // A frame without a name is compatible with either.
+    // A frame without a name is compatible with any frame.
     const bool may_be_same = found.frame == volume.frame || found.frame.empty() || volume.frame.empty();
     Trial trial;
     if (may_be_same) trial = try_place(found, volume, glm::dvec3(1.0));

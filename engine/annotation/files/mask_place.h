@@ -1,6 +1,6 @@
 #pragma once
-// Masks that other programs cut or turned: places their voxels on the grid of the annotated volume by their own
-// origin, directions and spacing. Any thread may call these.
+// Masks that other programs cropped or reoriented: uses the origin, directions and spacing of the mask to place its
+// voxels on the grid of the annotated volume. Any thread may call these.
 
 #include <array>
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 namespace shvr {
 
-/// Voxel v of a mask is voxel `first` + the sum over its axes a of sign[a] * v[a] along axis[a] of the volume.
+/// Voxel v of a mask lies at voxel `first` + the sum of sign[a] * v[a] along axis[a] of the volume, over its axes a.
 struct GridPlace {
     std::array<int, 3> axis{0, 1, 2};
     std::array<int, 3> sign{1, 1, 1};
@@ -19,15 +19,15 @@ struct GridPlace {
     bool operator==(const GridPlace&) const = default;
 };
 
-/// Null if the mask covers the volume voxel by voxel: equal sizes, and equal places where both state one. Otherwise
-/// the place that the mask states. Fails, with the reason, if that is not on the volume's grid: another spacing or
+/// Null if the mask covers the volume voxel by voxel: equal sizes, and equal places where both state one. Otherwise the
+/// place that the mask states. Fails, with the reason, if this place is not on the volume's grid: another spacing or
 /// direction, a shift by parts of a voxel, no position stated, or no voxel in common.
 std::optional<GridPlace> place_of_mask(const std::filesystem::path& path, const VolumeInfo& mask,
                                        const TraceSpace& volume);
-/// "its 13, 13, 13 voxels are placed at 2, 2, 2 of this volume, with x in reverse order"
+/// Returns a phrase: "its 13, 13, 13 voxels are placed at 2, 2, 2 of this volume, with x in reverse order".
 std::string in_words(const GridPlace& place, const Size3& mask, const TraceSpace& volume);
 
-/// The mask on the volume's grid, 0 around it. It costs what the mask has, not what the volume has.
+/// The mask on the volume's grid, surrounded by 0. The cost depends on the mask alone, not on the volume's size.
 class PlacedSource final : public VolumeSource {
 public:
     /// `mask` must outlive this object.
@@ -45,7 +45,7 @@ private:
 
     const VolumeSource& mask_;
     GridPlace place_;
-    VoxelBox covered_;  ///< in voxels of the volume, perhaps beyond it
+    VoxelBox covered_;  ///< box of the mask in voxels of the volume; may extend beyond the volume
 };
 
 }  // namespace shvr

@@ -38,7 +38,7 @@ std::array<VoxelBox, 256> boxes_of(const Mask& mask)
     return boxes;
 }
 
-/// "5 9 5 9 5 9", both ends included; an empty segment is "0 -1 0 -1 0 -1".
+/// The extent of a box as text: "5 9 5 9 5 9", both ends included; for an empty segment "0 -1 0 -1 0 -1".
 std::string extent_of(const VoxelBox& box)
 {
     if (box.lower.x >= box.upper.x) return "0 -1 0 -1 0 -1";
@@ -48,7 +48,7 @@ std::string extent_of(const VoxelBox& box)
     return text;
 }
 
-/// Whether the text states this colour, to the 8 bits of a channel.
+/// Whether the text states this colour (three fractions), up to the rounding to 8 bits per channel.
 bool states_color(const std::string& text, const std::array<uint8_t, 4>& rgba)
 {
     const std::vector<std::string_view> words = words_of(text);

@@ -15,14 +15,14 @@
 
 namespace shvr {
 
-/// The key/value pairs to set in the NRRD file at `path`, which is or will be a segmentation, when this mask replaces
-/// its voxels: segments keep their numbers and all other keys; groups without a segment get one. Empty if neither the
-/// name ends in .seg.nrrd nor the present file has segments. `looks`: names and colours of groups.
+/// The key/value pairs to set in the NRRD file at `path` (a segmentation, or a file that will be one) when this mask
+/// replaces its voxels. Segments keep their numbers and all other keys; groups without a segment get one. Empty if
+/// neither the name ends in .seg.nrrd nor the present file has segments. `looks`: names and colours of groups.
 std::vector<NrrdPair> segment_pairs(const std::filesystem::path& path, const Mask& mask,
                                     const std::vector<LabelImage::Color>& looks);
 
-/// The segments of a segmentation that overlap, and so lie in several layers of a file, as one volume of groups. A
-/// voxel belongs to the group of its segment (NrrdSegment::group); of several, to that of the last layer.
+/// Merges the layers of a segmentation, whose segments may overlap, into one volume of groups. A voxel belongs to the
+/// group of its segment (NrrdSegment::group); if several segments contain it, to that of the segment in the last layer.
 class LayeredMask final : public VolumeSource {
 public:
     /// Opens each layer of the file, at least one.
@@ -30,7 +30,7 @@ public:
 
     void read(const VoxelBox& box, std::span<std::byte> voxels) const override;
 
-    /// Voxels that were read so far and belong to more than one segment.
+    /// Number of voxels, among those read so far, that belong to more than one segment.
     int64_t overlaps() const { return overlaps_; }
 
 private:

@@ -4,8 +4,8 @@
 //   .offset      the thesis's raw numbers (offset_file.h)
 //   .nrrd .tif   engine/formats/export/volume_export.h: 32-bit floats, which hold every offset of 8-bit, 16-bit and
 //                float volumes exactly; 32-bit integers for volumes of 32-bit integers
-//   .zarr        an OME-Zarr image that holds what was painted alone, of level 0: 32-bit integers for integer volumes,
-//                32-bit floats for float volumes
+//   .zarr        an OME-Zarr image of level 0 that holds only the painted offsets: 32-bit integers for
+//                integer volumes, 32-bit floats for float volumes
 
 #include <filesystem>
 
@@ -17,9 +17,9 @@ namespace shvr {
 
 bool is_offset_export(const std::filesystem::path& path);
 
-/// Replaces an old file atomically. `volume`, of the field's size, gives the voxels' positions. `foreign` and the
-/// result: as
-/// for `export_mask`.
+/// Replaces an old file atomically. `volume`, which has the field's size, gives the
+/// voxels' positions. `foreign` and the result have the same meaning as for
+/// `export_mask`.
 std::string export_offsets(const std::filesystem::path& path, const DensityField& field, const VolumeInfo& volume,
                            const Progress& progress = {}, Foreign foreign = Foreign::refused);
 

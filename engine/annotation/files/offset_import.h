@@ -15,8 +15,8 @@ namespace shvr {
 /// volume is not a whole number.
 DensityField import_offsets(const std::filesystem::path& path, const TraceSpace& space, VoxelType type);
 
-/// Saves in the format that the path names, or as raw numbers if `export_offsets` does not support it. Fails for
-/// formats that can only be read. `foreign` and the result: as for `export_mask`.
+/// Saves in the format that the path names, or as raw numbers if `export_offsets` does not support that format. Fails
+/// for formats that can only be read. `foreign` and the result: as for `export_mask`.
 std::string save_offsets_as(const std::filesystem::path& path, const DensityField& field, const VolumeInfo& volume,
                             Foreign foreign = Foreign::refused);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Sparse bricks as a volume, which knows where something is stored. Any thread may read it.
+// Presents sparse bricks as a volume that knows its stored blocks. Any thread may read it.
 
 #include <algorithm>
 #include <cstring>
@@ -14,7 +14,7 @@ namespace shvr {
 template <class Value>
 class SparseSource : public VolumeSource {
 public:
-    /// `info`: of the bricks' size, its type has the bytes of a value. The bricks must outlive this object, unchanged.
+    /// `info` has the bricks' size and a type as wide as a value. The bricks must outlive this object, unchanged.
     SparseSource(const SparseBricks<Value>& bricks, VolumeInfo info) : VolumeSource(std::move(info)), bricks_(bricks)
     {
         SHVR_CHECK(bricks.size() == this->info().size && bytes_of(this->info().type) == sizeof(Value));
@@ -42,7 +42,7 @@ public:
     }
 
 protected:
-    /// A value as the volume holds it; 0 stays 0.
+    /// Converts a value of a brick to a value of the volume; 0 stays 0.
     virtual Value shown(Value value) const { return value; }
 
 private:

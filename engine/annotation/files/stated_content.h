@@ -9,7 +9,7 @@ namespace shvr {
 enum class StatedContent { mask, offsets };
 
 /// Mask: an OME-Zarr label image, a segmentation of 3D Slicer, or a mask that was exported as NRRD; offsets: exported
-/// as NRRD. Null: it states nothing, like every TIFF, or cannot be read.
+/// as NRRD. Null if the file states nothing (as every TIFF) or cannot be read.
 std::optional<StatedContent> stated_content(const std::filesystem::path& path);
 
 }  // namespace shvr

@@ -15,9 +15,9 @@
 
 namespace shvr {
 
-/// How to go on where a file of all voxels does not fit on its disk (expect_space).
+/// Advice for a file of all voxels that does not fit on its disk (expect_space).
 inline constexpr const char* MORE_SPACE = "free some of it, or choose .zarr, which holds what is painted alone";
-/// Bytes of a file of all voxels; null: more than 2^63 - 1.
+/// Size in bytes of a file that holds all voxels; null: more than 2^63 - 1.
 std::optional<int64_t> bytes_of_voxels(const Size3& size, int64_t bytes_per_voxel);
 
 struct VoxelStrip {
@@ -42,7 +42,7 @@ void for_each_strip(const Size3& size, const Visit& visit)
         for (int64_t brick_y = 0; brick_y * gpu::BRICK_SIZE < size.y; ++brick_y) visit(VoxelStrip{size, z, brick_y});
 }
 
-/// The part of the strip within one brick, row by row: first voxel in the strip, first voxel in the brick, length.
+/// Calls `visit(first voxel in the strip, first voxel in the brick, length)` for each row of the strip in a brick.
 template <class Visit>
 void for_each_row(const VoxelStrip& strip, int64_t brick_x, const Visit& visit)
 {
@@ -52,7 +52,7 @@ void for_each_row(const VoxelStrip& strip, int64_t brick_x, const Visit& visit)
               size_t(BRICK_SIDE * (y + BRICK_SIDE * (strip.z % BRICK_SIDE))), size_t(width));
 }
 
-/// Opens a file that must hold exactly that many bytes per voxel. `kind`: the expected suffix, for messages.
+/// Opens a file that must hold exactly `bytes_per_voxel` for each voxel. `kind`: the expected suffix, for messages.
 FileDescriptor open_voxels(const std::filesystem::path& path, const Size3& size, int64_t bytes_per_voxel,
                            const char* kind);
 /// Fills `bytes`, starting where the last read ended.

@@ -21,7 +21,7 @@ struct SegmentMeasures {
     uint32_t from = 0, to = 0;
     size_t internodes = 0;
     double length = 0.0;
-    double chord = 0.0;                ///< distance of its two ends; 0 for a loop
+    double chord = 0.0;                ///< distance between the two ends; 0 for a loop
     std::optional<double> tortuosity;  ///< length / chord, 1 if straight; null if the chord is 0
     double radius_mean = 0.0;          ///< averaged along its length
     double radius_least = 0.0, radius_most = 0.0;
@@ -54,14 +54,14 @@ TraceMeasures measure(const TraceGraph& trace);
 /// b0 = number of connected parts, b1 = internodes - nodes + b0.
 Topology topology_of(const TraceGraph& trace);
 
-/// The topology of all painted voxels, or of one group's: painted voxels are connected over faces, edges and corners
-/// (26), unpainted ones over faces (6); voxels outside the volume are unpainted. b1 follows from the Euler
+/// The topology of all painted voxels, or of the voxels of one group. Painted voxels are connected over faces, edges
+/// and corners (26), unpainted ones over faces (6); voxels outside the volume are unpainted. b1 follows from the Euler
 /// characteristic of the union of the voxels as closed cubes, vertices - edges + faces - cubes = b0 - b1 + b2 (Kong and
 /// Rosenfeld 1989). Takes time and memory proportional to the painted bricks.
 Topology topology_of(const Mask& mask, std::optional<uint8_t> group = {});
 
 inline constexpr int ALL_GROUPS = -1;
-/// The topology of all painted voxels (ALL_GROUPS), and of each group that has any: each group's bricks are read once.
+/// The topology of all painted voxels (ALL_GROUPS), and of each group with voxels: each group's bricks are read once.
 std::map<int, Topology> topology_by_group(const Mask& mask, const Progress& progress = {});
 
 /// A table, one measure per row: item, number, group, measure, value, unit (RFC 4180).

@@ -2,10 +2,10 @@
 // one unpainted set around them, so that the cost depends on the painted part alone. Union-find joins runs (Rosenfeld
 // and Pfaltz 1966; Wu, Otoo and Suzuki 2009 for the arrays).
 //
-// The Euler characteristic needs the number of runs alone. A union of n voxels of a row in r runs has n + r planes
-// across x. With R a row, P and Q its union with the previous row along y or z, and A the union of all four, the cells
-// between the row and the previous ones are |A| + r(A) vertices, |A| + |P| + r(P) + |Q| + r(Q) edges, |R| + r(R) + |P|
-// + |Q| faces and |R| cubes; what is left is r(R) - r(P) - r(Q) + r(A).
+// The Euler characteristic needs the number of runs alone: n voxels of a row in r runs have n + r planes across x. Let
+// R be a row, P and Q its unions with the previous row along y and along z, and A the union of all four rows. Then the
+// cells between the row and the previous ones are |A| + r(A) vertices, |A| + |P| + r(P) + |Q| + r(Q) edges, |R| + r(R)
+// + |P| + |Q| faces and |R| cubes; their alternating sum is r(R) - r(P) - r(Q) + r(A).
 
 #include <algorithm>
 #include <array>
@@ -54,7 +54,7 @@ private:
     int64_t count_ = 0;
 };
 
-/// Painted voxels `first` to `last` of a row, their set, and the set of the unpainted voxels before them.
+/// A run of painted voxels of a row, from `first` to `last`; its set, and that of the unpainted voxels before it.
 struct Run {
     int64_t first = 0, last = 0;
     uint32_t set = 0, gap = 0;
@@ -63,7 +63,7 @@ using Runs = std::vector<Run>;
 
 struct Row {
     Runs painted;
-    Runs with_previous;  ///< united with the same row of the slice before
+    Runs with_previous;  ///< the row's runs, united with those of the same row of the previous slice
 };
 
 /// Whether the first run ends before the second begins, with a voxel between them.
@@ -99,7 +99,7 @@ int64_t runs_in_union(const Runs& a, const Runs& b)
     return count;
 }
 
-/// Joins painted runs of two neighbouring rows that touch, over edges and corners, too.
+/// Joins painted runs of two neighbouring rows if they touch, also over edges and corners.
 void join_painted(const Runs& a, const Runs& b, Sets& parts)
 {
     for (size_t i = 0, j = 0; i < a.size() && j < b.size();) {
@@ -108,10 +108,10 @@ void join_painted(const Runs& a, const Runs& b, Sets& parts)
     }
 }
 
-constexpr uint32_t OUTSIDE = 0;  ///< the set of gaps that reaches to infinity
+constexpr uint32_t OUTSIDE = 0;  ///< the set of the gaps that reach to infinity
 
-/// Joins unpainted runs of two neighbouring rows that touch over faces. A row of n painted runs has n + 1 gaps, of
-/// which the first and the last have no end.
+/// Joins unpainted runs of two neighbouring rows that touch over faces. A row of n painted runs has n + 1 gaps; the
+/// first begins, and the last ends, at infinity.
 void join_gaps(const Runs& a, const Runs& b, Sets& gaps)
 {
     constexpr int64_t FAR = std::numeric_limits<int64_t>::max();
@@ -130,7 +130,7 @@ public:
     explicit Chosen(std::optional<uint8_t> group)
         : group_(group), pattern_(group ? *group * uint64_t{0x0101010101010101} : 0)
     {}
-    /// Appends the runs of a brick's row, whose first voxel is at `x`.
+    /// Appends the runs of a row of a brick; `x` is the position of the row's first voxel.
     void append(const uint8_t* voxels, int64_t x, Runs& runs) const
     {
         for (int64_t at = 0; at < BRICK_SIDE; at += WORD) {
@@ -162,14 +162,14 @@ private:
     uint64_t pattern_;
 };
 
-/// Bricks with the same y and z, ascending along x; none in the rows after painted ones, where cells end, too.
+/// Bricks with the same y and z, ascending along x; none in a row that only follows a painted one: cells end there.
 struct BrickRow {
     int64_t y = 0;
     std::vector<std::pair<int64_t, const MaskBrick*>> bricks;  ///< x of the first voxel
     std::array<Row, BRICK_SIDE> rows, previous;                ///< rows of this slice and of the previous one
 };
-/// Rows of bricks with the same z, ascending along y: painted ones, and those that follow a painted one along y, z or
-/// both.
+/// Rows of bricks with the same z, ascending along y: rows with painted bricks, and rows that follow a painted row
+/// along y, z or both.
 using Layer = std::vector<BrickRow>;
 
 class Counter {
@@ -232,7 +232,7 @@ private:
         }
     }
 
-    /// Reads the voxels of row `y` of a slice, each run as a set of its own, and each gap between two runs.
+    /// Reads row `y` of a slice; makes a set of each run of voxels, and of each gap between two runs.
     void read(BrickRow& bricks, int64_t y, int64_t slice)
     {
         Runs& runs = bricks.rows[size_t(y)].painted;

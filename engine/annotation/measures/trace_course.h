@@ -1,7 +1,7 @@
 #pragma once
-// Locates positions along a trace: its segments are cut into short pieces, which an index searches. Exact: a k-d tree
-// of the pieces' midpoints gives candidates within half of the longest piece's length, and distances are to the pieces.
-// Any thread may query.
+// Locates positions along a trace: its segments are cut into short pieces, which an index searches. The results are
+// exact: a k-d tree of the pieces' midpoints gives candidates within half of the longest piece's length, and distances
+// are measured to the pieces themselves. Any thread may query.
 
 #include <optional>
 #include <vector>
@@ -32,8 +32,8 @@ public:
         double distance;
         double along;  ///< distance from the start of the segment
     };
-    /// The segments within `slack` of touching a ball (or touching it up to rounding errors), each at its nearest
-    /// position; ascending.
+    /// The segments that touch a ball, up to rounding errors, or miss it by at most `slack`; each at its nearest
+    /// position, in ascending order.
     std::vector<Near> near(const TraceSample& sample, double slack) const;
     struct Nearest {
         size_t piece;  ///< a straight part of a segment

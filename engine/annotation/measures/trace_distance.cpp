@@ -21,8 +21,8 @@ struct Part {
     End a, b;
 };
 
-/// An upper bound of the distance of any position of the part from the truth. The distance to one piece of the truth is
-/// convex along a line, so it is greatest at an end; and moving by d changes a distance by at most d.
+/// An upper bound of the distance between any position of a part and the truth. The distance to one piece of the truth
+/// is convex along a line, so it is greatest at an end; and moving by d changes a distance by at most d.
 double upper_bound(const Part& part, const TraceCourse& truth)
 {
     const double at_a = part.a.nearest.distance, at_b = part.b.nearest.distance;
@@ -71,7 +71,7 @@ std::optional<TraceDistance> distance_from(const TraceGraph& trace, const TraceC
 {
     if (truth.segments().empty()) return std::nullopt;
     // Gauss and Legendre's two points in each part: exact for polynomials up to the third degree, and the squared
-    // distance to a line is of the second.
+    // distance to a line is a polynomial of the second degree.
     constexpr int PARTS = 8;
     constexpr double AWAY = 0.5 * std::numbers::inv_sqrt3;
     double sum = 0.0, length_sum = 0.0;

@@ -9,7 +9,7 @@ namespace shvr {
 
 /// Statistics of the distance from the trace's positions to the nearest position of the truth.
 struct TraceDistance {
-    /// From 16 samples per internode; exact if the nearest internode of the truth does not change between them.
+    /// Computed from 16 samples per internode; exact if the nearest internode of the truth does not change in between.
     double root_mean_square = 0.0;
     double greatest = 0.0;  ///< greatest distance; at most one part in 10^9 too small, apart from rounding
 };

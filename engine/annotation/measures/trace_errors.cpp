@@ -44,7 +44,7 @@ void TraceErrors::leave_out(size_t segment)
     for (const uint32_t node : {one.nodes.front(), one.nodes.back()}) ends_[node].erase(segment);
 }
 
-/// Begins with the shortest, so that of two that replace each other the longer one is kept.
+/// Begins with the shortest segments: of two segments that can replace each other, the longer one is kept.
 void TraceErrors::leave_out_superfluous()
 {
     std::vector<std::pair<double, size_t>> candidates;
@@ -62,7 +62,7 @@ void TraceErrors::leave_out_superfluous()
         if (!is_needed(segment) && note_superfluous(segment)) leave_out(segment);
 }
 
-/// Counts a segment that is not needed; false if it is no error.
+/// Counts a segment that is not needed; returns false if the segment is not an error.
 bool TraceErrors::note_superfluous(size_t segment)
 {
     const TraceSegment& one = with_.match.segments()[segment];

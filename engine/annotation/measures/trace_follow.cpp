@@ -127,8 +127,8 @@ bool TraceFollow::add_follower(size_t index)
     return true;
 }
 
-/// Marks segments of the trace that follow a part which an earlier segment follows, too. The segment matched to the one
-/// of the truth comes first and is never marked.
+/// Marks segments of the trace that follow a part of the truth that an earlier one of `followers` also follows. The
+/// segment that is matched to this segment of the truth comes first and is never marked.
 void TraceFollow::note_doubled(std::vector<Follower>& followers)
 {
     std::ranges::sort(followers, [](const Follower& a, const Follower& b) {

@@ -33,11 +33,11 @@ public:
     const std::map<size_t, std::vector<Follower>>& followers() const { return followers_; }
     /// The segments of the truth that a segment of the trace follows, each once.
     const std::vector<size_t>& followed_by(size_t segment) const { return followed_by_[segment]; }
-    /// The length that a segment of the trace follows in all.
+    /// The total length along the truth that a segment of the trace follows.
     double length_followed(size_t segment) const { return lengths_[segment]; }
-    /// Segments of the trace that leave the truth, or switch to a segment that does not begin there.
+    /// Segments of the trace that leave the truth, or switch to a segment of the truth that does not begin there.
     const std::set<size_t>& wrong() const { return wrong_; }
-    /// Segments of the trace that follow a part of the truth that another one follows, too.
+    /// Segments of the trace that follow a part of the truth that another segment of the trace follows, too.
     const std::set<size_t>& doubled() const { return doubled_; }
 
 private:

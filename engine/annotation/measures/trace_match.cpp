@@ -132,7 +132,7 @@ std::vector<TraceSample> TraceMatch::samples_along(const TraceSegment& segment) 
     return samples;
 }
 
-/// Sum of the mean squared distances in both directions; null if either segment leaves the other.
+/// Sum of the mean squared distances in both directions; null if either segment goes too far from the other.
 std::optional<double> TraceMatch::distance_between(const TraceSegment& segment, size_t truth_segment) const
 {
     std::optional<double> distance = covers(truth_segment, segment.internodes);
@@ -162,7 +162,7 @@ bool TraceMatch::is_found(size_t truth_segment) const
     return covers(truth_segment, ways_between(near, from->second, to->second)).has_value();
 }
 
-/// The internodes that stay near a segment of the truth and stand for no other one; ascending.
+/// The internodes that stay near a segment of the truth and stand for no other segment; ascending.
 std::vector<uint32_t> TraceMatch::free_near(size_t truth_segment) const
 {
     std::vector<uint32_t> internodes;
@@ -194,7 +194,7 @@ std::vector<uint32_t> TraceMatch::ways_between(const std::vector<uint32_t>& inte
     return core_of({passed.begin(), passed.end()}, {from, to});
 }
 
-/// The internodes left after removing loose ends, except `kept` ones, repeatedly.
+/// The internodes left after loose ends, except those at `kept` nodes, have been removed repeatedly.
 std::vector<uint32_t> TraceMatch::core_of(const std::vector<uint32_t>& internodes, const std::set<uint32_t>& kept) const
 {
     std::map<uint32_t, std::set<uint32_t>> ends;
@@ -219,7 +219,7 @@ std::vector<uint32_t> TraceMatch::core_of(const std::vector<uint32_t>& internode
     return {core.begin(), core.end()};
 }
 
-/// The mean squared distance of these internodes from a segment, if they come near every point of it.
+/// The mean squared distance of the internodes from a segment of the truth; null if they miss a part of it.
 std::optional<double> TraceMatch::covers(size_t truth_segment, const std::vector<uint32_t>& internodes) const
 {
     if (internodes.empty()) return std::nullopt;

@@ -1,7 +1,7 @@
 #pragma once
-// Scores how well an annotation agrees with the truth. Masks: Dice (1945). Traces: the share of each node's ball that
-// lies in the true mask, for internodes a ball at the middle (after Acciai et al. 2016); and a comparison of graphs.
-// Any thread may call these.
+// Scores how well an annotation agrees with the truth. Masks are scored by Dice (1945). Traces are scored by the share
+// of balls that lies in the true mask, one ball for each node and one at the middle of each internode (after Acciai et
+// al. 2016), and by a comparison of graphs. Any thread may call these.
 
 #include <array>
 #include <cstdint>
@@ -38,38 +38,38 @@ struct BallScores {
     int64_t total = 0;
 };
 /// The share of a ball's voxels that are painted. As for a brush, a voxel belongs to the ball if its centre is at most
-/// the radius away; a ball too small to contain any centre has the voxel it lies in. Voxels outside the volume count as
+/// the radius away; a ball that contains no centre has the voxel it lies in. Voxels outside the volume count as
 /// unpainted. Fails for balls whose box has more than 2^31 voxels. `radius` and `position` in the volume's unit.
 double share_in_mask(const Mask& mask, const glm::dvec3& spacing, const glm::dvec3& position, double radius);
 BallScores score_nodes(const TraceGraph& trace, const Mask& truth, const glm::dvec3& spacing);
 /// Scores a ball at the middle of each internode, with its radius there.
 BallScores score_internodes(const TraceGraph& trace, const Mask& truth, const glm::dvec3& spacing);
 
-/// A position of a trace is *near* one of the truth if their balls are within `slack` of touching. Branches and ends of
-/// the truth are paired one to one with nodes of the trace near them (branches with branches first, nearest first), and
-/// the trace is cut there into segments. Both are multigraphs: a segment of the trace *stands for* one of the truth if
-/// their ends are paired and each of them is near the other for all of its length; each stands for at most one, and if
-/// several join the same two nodes, those with the smallest mean squared distance come first.
+/// A position of a trace is *near* a position of the truth if their balls are within `slack` of touching. Branches and
+/// ends of the truth are paired one to one with nodes of the trace near them (branches with branches first, nearest
+/// first), and the trace is cut at these nodes into segments. Both are multigraphs: a segment of the trace *stands for*
+/// a segment of the truth if their ends are paired and each is near the other for all of its length. Each stands for at
+/// most one; if several join the same two nodes, those with the smallest mean squared distance come first.
 struct TraceComparison {
-    /// Counts of the truth's segments. Found: one segment stands for it; or both ends are paired, and those paths
-    /// between the two nodes that stay near the segment, pass no other such node and stand for nothing else together
-    /// cover all of it. A segment that is traced in part is not found.
+    /// Counts segments of the truth. One is found if a segment of the trace stands for it; or if both its ends are
+    /// paired, and all of it is covered by paths between the two nodes that stay near it, pass no other paired node and
+    /// stand for nothing else. A segment that is traced in part is not found.
     int64_t segments_found = 0, segments_total = 0;
-    /// Segments of the trace that leave the truth, or switch to a segment that does not begin there.
+    /// Segments of the trace that leave the truth, or switch to a segment of the truth that does not begin there.
     int64_t wrong = 0;
-    /// Segments that stand for none of the truth and follow a part of it that another one follows, too: for longer than
-    /// the surroundings of their ends or, if both join the same two nodes, for half of the stretch that one of them
-    /// follows.
+    /// Segments of the trace that stand for none of the truth, but follow a part of it that another segment also
+    /// follows. The shared part is longer than the surroundings of their ends or, if both join the same two nodes, at
+    /// least half of the stretch that the shorter one follows.
     int64_t doubled = 0;
-    /// Ends of the trace that lie near a traced branch of the truth, on the way to one with nothing traced in between,
-    /// or at one that another segment passes, and are not joined there.
+    /// Ends of the trace that are not joined at a traced branch of the truth: ends near the branch, on the way to it
+    /// with nothing traced in between, or paired with it where another segment passes.
     int64_t gaps = 0;
     /// Places along a segment of the truth between two parts that are traced and not joined to each other. A ring that
-    /// is traced in part has one more.
+    /// is traced in part has one more such place.
     int64_t breaks = 0;
-    /// Side branches with a loose end that are none of the above, and alone follow less than half of their length.
+    /// Other side branches with a loose end: less than half of their length follows the truth where nothing else does.
     int64_t spurs = 0;
-    /// Such segments without a loose end, or with two: small loops, rungs, pieces that are joined to nothing.
+    /// Segments like `spurs`, with no loose end or with two: small loops, rungs, pieces that are joined to nothing.
     int64_t superfluous = 0;
     int64_t topological_errors() const { return wrong + doubled + gaps + breaks + spurs + superfluous; }
     /// Distance from positions along the trace to the nearest position of the truth; null if either has no internodes.

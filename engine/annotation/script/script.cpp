@@ -18,7 +18,7 @@ namespace {
 
 constexpr int64_t MAX_SCRIPT_BYTES = int64_t{256} << 20;
 constexpr int64_t MAX_COUNT = int64_t{1} << 62;
-/// Far beyond any volume, and far below where squares overflow.
+/// Limits far beyond any volume, and far below numbers whose squares overflow.
 const NumberRange COORDINATE{-1e12, 1e12};
 const NumberRange LENGTH{5e-324, 1e12, "a number above 0, up to 1e12"};
 
@@ -246,7 +246,7 @@ GroupOp read_group_op(const JsonNode& line)
     return {read_group(line["group"])};
 }
 
-/// An operation and its reader. The more common ones come first in messages.
+/// An operation and its reader. Messages list the more common operations first.
 struct OpReader {
     std::string_view name;
     ScriptOp (*read)(const JsonNode& line);

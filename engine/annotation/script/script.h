@@ -34,7 +34,7 @@ struct ExpectOp {
 using ScriptOp = std::variant<PaintOp, NodeOp, SelectOp, SelectSegmentOp, DeselectOp, LinkOp, MoveOp, DeleteOp, GroupOp,
                               RadiusOp, UndoOp, RedoOp, SaveOp, RevertOp, ExpectOp>;
 
-/// Whether it changes the work, or its files.
+/// Whether the operation changes the work, or its files.
 bool changes_work(const ScriptOp& op);
 
 struct ScriptLine {
@@ -52,7 +52,7 @@ ScriptOp read_script_op(const JsonNode& line);
 std::string line_of(const ScriptOp& op);
 
 /// Calls `take` with each non-empty line, whatever its operation, and its number from 1; both are valid during the
-/// call. "-" is standard input; that and pipes are read to their end. Fails if a line is not a JSON object.
+/// call. "-" is standard input; standard input and pipes are read to their end. Fails if a line is not a JSON object.
 void for_each_line(const std::filesystem::path& path,
                    const std::function<void(const JsonNode& line, int number)>& take);
 

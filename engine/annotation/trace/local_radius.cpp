@@ -10,7 +10,7 @@ namespace shvr {
 namespace {
 
 constexpr size_t DIRECTIONS = 200;  ///< about 9 degrees apart
-/// A smaller increase, below a thousandth, is noise of the finite set of directions, not a larger ball.
+/// Smallest factor that counts as a larger ball. Less than a thousandth more is noise of the finite set of directions.
 constexpr double NOTICEABLE = 1.001;
 
 /// Evenly spread over the sphere: a Fibonacci lattice.
@@ -134,8 +134,8 @@ std::optional<LocalBall> ball_behind(const DensityAt& density_at, double thresho
     const auto is_near_sight = [&](const glm::dvec3& point) {
         return glm::length(point - from - glm::dot(point - from, direction) * direction) <= aside;
     };
-    // The point seen is the steepest one on a wall, whose middle may be one voxel nearer to the eye. Entered grains of
-    // noise thinner than a voxel are ignored.
+    // The visible point is where a wall is steepest; the middle of the wall may be one voxel nearer to the eye. Grains
+    // that the line enters but that are thinner than a voxel are noise and are ignored.
     double begin = -2.0 * structure.finest();
     while (begin <= most) {
         while (begin <= most && !structure.contains(from + begin * direction)) begin += structure.step();

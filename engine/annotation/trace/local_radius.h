@@ -36,7 +36,7 @@ std::optional<LocalBall> ball_behind(const DensityAt& density_at, double thresho
                                      const glm::dvec3& way, const glm::dvec3& spacing, double most,
                                      double aside = std::numeric_limits<double>::infinity());
 
-/// Voxels in a box, for DensityAt: positions outside it take the nearest voxel.
+/// Voxels in a box, as a DensityAt: a position outside the box takes the value of the nearest voxel.
 struct DensityBox {
     glm::ivec3 lower{0}, size{1};  ///< voxels
     std::vector<double> values{};  ///< x fastest

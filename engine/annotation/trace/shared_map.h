@@ -1,6 +1,6 @@
 #pragma once
-// An ordered map of numbers with copy-on-write pages of 256 consecutive numbers: copying costs only the table of pages,
-// and changing a page that another copy may see duplicates it first.
+// An ordered map whose keys are numbers, with copy-on-write pages of 256 consecutive numbers. Copying costs only the
+// table of pages; changing a page that another copy may see duplicates the page first.
 //
 // Whether a page may be changed in place is decided by a mark, not by a reference count: copying gives both sides a new
 // mark, so that a page that was ever shared stays as it is. One thread changes a map; copies may be read, copied and

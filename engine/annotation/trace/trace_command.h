@@ -16,7 +16,7 @@ struct TraceDefaults {
     glm::dvec3 spacing{1.0};     ///< the volume's
     double radius_voxels = 6.0;  ///< the probe's
     uint8_t group = 1;           ///< the group that the probe paints
-    Size3 size{0};               ///< the volume's, in voxels; 0: unknown, and nodes may lie anywhere
+    Size3 size{0};               ///< the volume's size in voxels; 0: unknown, so nodes may lie anywhere
 };
 
 struct TraceEffect {

@@ -15,19 +15,19 @@ namespace shvr {
 
 /// Joins the new node to the selected one, if any, by an internode of the new node's group.
 std::vector<TraceChange> add_node(const TraceGraph& trace, const TraceNode& node);
-/// Splits an internode of one group into two that meet in the new node. Also joins the new node to the selected one, if
-/// any and if it is not an end of the internode, by an internode of the selected node's group.
+/// Splits an internode of one group into two that meet in the new node. If another node is selected that is not an end
+/// of the internode, also joins it to the new node by an internode of the selected node's group.
 std::vector<TraceChange> divide_internode(const TraceGraph& trace, uint32_t internode, const TraceNode& node);
-/// Joins the selected node to another by an internode of the selected node's group. The node stays selected.
+/// Joins the selected node to another node by an internode of the selected node's group, and keeps the selection.
 std::vector<TraceChange> link_selected(const TraceGraph& trace, uint32_t to);
 std::vector<TraceChange> move_selected(const TraceGraph& trace, const glm::dvec3& position);
-/// The selected nodes or, if there are none, the ends of the selected internodes. Branches at the ends of a selected
-/// segment are not among them: they belong to other segments, too, and stay where they are.
+/// The selected nodes or, if there are none, the ends of the selected internodes. If a segment is selected, branches at
+/// its ends are left out: they belong to other segments, too, and stay where they are.
 std::set<uint32_t> nodes_of_selection(const TraceGraph& trace);
-/// Moves them by the same distance.
+/// Moves the nodes of `nodes_of_selection` by the same vector.
 std::vector<TraceChange> shift_selected(const TraceGraph& trace, const glm::dvec3& by);
-/// Deletes the selected node with its internodes, the selected internode, or the segment: its internodes, and its nodes
-/// that are not branches.
+/// Deletes the selection: a node with its internodes, an internode, or a segment (its internodes, and those of its
+/// nodes that are not branches).
 std::vector<TraceChange> delete_selected(const TraceGraph& trace);
 std::vector<TraceChange> set_group_of_selected(const TraceGraph& trace, uint8_t group);
 /// Sets the radius of the selected node, or of the nodes of the segment. A single internode has no radius of its own.
@@ -40,7 +40,7 @@ std::vector<TraceChange> set_internode_radius(const TraceGraph& trace, uint8_t g
 
 /// The argument of `TraceGraph::select`.
 TraceSelection nearest_node_selection(const TraceGraph& trace, const glm::dvec3& position);
-/// Selects the nearest of the selected node's internodes, since among many close ones the user means one of this node.
+/// Selects the nearest of the selected node's internodes; other nodes' internodes may be nearer, but are not meant.
 TraceSelection nearest_internode_selection(const TraceGraph& trace, const glm::dvec3& position);
 /// The segment of the selected internode, or of the selected node if it lies on only one.
 TraceSelection segment_selection(const TraceGraph& trace);

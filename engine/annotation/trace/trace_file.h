@@ -1,17 +1,17 @@
 #pragma once
 // Traces in files. The extension determines the format:
 //
-//   .graphml  everything, numbers included, with the volume's size, spacing and unit; networkx, igraph and yEd read it
+//   .graphml  everything, including numbers, and the volume's size, spacing and unit; networkx, igraph and yEd read it
 //   .txt      the thesis's lines "-v x, y, z, group, radius" and "-l node, node, group"; nodes count from 0
 //   .swc      trees (Cannon et al. 1998; one sample a node, its type is the group); size, spacing and unit as comments
 //   .rsml     trees (Lobet et al. 2015): plants, roots, polylines, diameters, unit and resolution
 //
-// Each file states the space of its positions (trace_space.h): volume space, in which traces are saved, and which
-// preserves them to the last bit; or physical space, for other programs, where only GraphML preserves the last bits,
-// since it holds both. A file without that statement is in volume space. In the thesis's text, as in SWC, the statement
-// is in lines that begin with "#". Everything is in the volume's unit, except in RSML, which counts in pixels: written
-// as voxels along x. Other units of length are converted on reading. A round trip of RSML costs the last bit or two. An
-// internode has no group of its own in SWC and RSML, and only GraphML preserves numbers and the radii of groups.
+// Each file states the space of its positions (trace_space.h). Traces are saved in volume space, which preserves
+// positions to the last bit. Physical space is for other programs; there only GraphML preserves the last bits, since it
+// holds both spaces. A file that states no space is in volume space. In the thesis's text, as in SWC, lines that begin
+// with "#" state it. Everything is in the volume's unit, except in RSML, which counts in pixels: written as voxels
+// along x. Other units of length are converted on reading. A round trip of RSML costs the last bit or two. In SWC and
+// RSML an internode has no group of its own, and only GraphML preserves numbers and the radii of groups.
 //
 // Files are untrusted: every refusal is one sentence with file, line or element, value and what was expected. Any
 // thread may call these.
@@ -26,26 +26,26 @@
 
 namespace shvr {
 
-/// How to handle loops in a format that holds trees. Broken: the internode with the largest number, the last one drawn,
-/// is left out of each loop; those left out are listed in a comment of the file and returned.
+/// How to handle loops in a format that holds trees. `break_open` leaves out the internode with the largest number, the
+/// last one drawn, of each loop; the omitted internodes are listed in a comment of the file and returned.
 enum class Loops { refuse, break_open };
 
-/// Writes as `write_file_atomically` does. Returns a sentence for each thing left out.
+/// Writes as `write_file_atomically` does. Returns a sentence for each omission.
 std::vector<std::string> save_trace(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space,
                                     Loops loops = Loops::refuse, Positions positions = Positions::volume);
 
-/// The text that `save_trace` would write; fails if it would.
+/// The text that `save_trace` would write; fails if `save_trace` would fail.
 std::string trace_text(const std::filesystem::path& path, const TraceGraph& trace, const TraceSpace& space);
 
 struct TraceFile {
     TraceGraph trace;
-    std::optional<TraceSpace> space;  ///< if the file states all of it
+    std::optional<TraceSpace> space;  ///< the file's space, if it states all parts of it
     /// Oddities that were skipped in SWC, GraphML and RSML files of other programs, one sentence per kind, and
     /// assumptions that were made. Such a file may hold more than the trace: keep it before saving over it.
     std::vector<std::string> warnings{};
 };
 /// Returns the trace in volume space. At most 256 MiB and 4 million nodes. Lengths are converted to the unit of
-/// `expected`. Fails if a stated size, spacing, unit (that is no length) or place differs from `expected`.
+/// `expected`. Fails if a stated size, spacing, place or unit (other than of length) differs from `expected`.
 TraceFile load_trace(const std::filesystem::path& path, const std::optional<TraceSpace>& expected);
 
 /// Whether `load_trace` supports the extension.

@@ -223,8 +223,8 @@ void TraceReader::to_volume_space(const std::optional<TraceSpace>& expected)
     TraceSpace space{.spacing = stated.spacing ? *stated.spacing : expected->spacing,
                      .directions = *stated.directions,
                      .origin = *stated.origin};
-    // The difference between a position and the one written for it: the rounding of numbers of this size, amplified by
-    // nearly coplanar axes.
+    // Tolerance between a position computed from the physical one and the exact one in the file: the rounding of
+    // numbers of this size, amplified by nearly coplanar axes.
     const double rounding = 1e-14 / glm::determinant(space.directions);
     std::vector<TraceNodeChange> changes;
     for (const auto& [number, node] : trace.nodes()) {

@@ -40,8 +40,8 @@ class TraceReader;
 /// Lines that begin with "#": the space of the positions, in words and for `read_space_comment`, then unit, spacing and
 /// size.
 std::string comments_of(const TraceWriting& writing);
-/// `comment` begins with "#". Files of other programs have comments of their own: a space counts only if it is one of
-/// the two, and a place only after it.
+/// `comment` begins with "#". Since files of other programs have comments of their own, "space" counts only if it is
+/// followed by "physical" or "volume", and a place counts only after "space physical".
 void read_space_comment(TraceReader& reader, const std::string& where, std::string_view comment);
 
 /// Collects nodes and internodes from a file, refuses malformed traces, and skips oddities. `where` begins every
@@ -51,7 +51,7 @@ public:
     explicit TraceReader(std::string file) : file_(std::move(file)) {}
 
     const std::string& file() const { return file_; }
-    /// Numbered in order of appearance, unless `number` is given.
+    /// Adds a node. Nodes are numbered in order of appearance, unless `number` is given.
     uint32_t add_node(const std::string& where, const TraceNode& node, std::optional<uint32_t> number = {});
     void add_internode(const std::string& where, const TraceInternode& internode, std::optional<uint32_t> number = {});
 
@@ -61,14 +61,14 @@ public:
     Size3 size(const std::string& where, std::string_view text) const;
     glm::dvec3 spacing(const std::string& where, std::string_view text) const;
 
-    /// Handles a statement of `statements_of`; ignores other names. "space" must be one of the two.
+    /// Handles a statement of `statements_of`; ignores other names. "space" must be "physical" or "volume".
     void state(const std::string& where, std::string_view name, std::string_view value);
-    /// Converts physical positions, of a file that states them, to volume space. `expected` supplies the spacing if the
-    /// file does not state it.
+    /// Converts positions to volume space if the file states that they are physical. `expected` supplies the spacing if
+    /// the file does not state it.
     void to_volume_space(const std::optional<TraceSpace>& expected);
 
     /// Records an oddity that was skipped, and how it was handled ("left out"). Oddities are of one kind if their
-    /// messages state the same expectation; the first of a kind is kept, with the number of all.
+    /// messages state the same expectation; only the first of each kind is kept, with the number of its kind.
     void read_past(const Error& odd, const std::string& done);
     /// Runs `read`; leaves out an element that it refuses.
     template <class Read>
@@ -86,7 +86,7 @@ public:
     std::vector<std::string> warnings() const;
     void warn(const std::string& warning) { warnings_.push_back({warning, {}, 1}); }
 
-    /// Converts lengths to the unit of `expected`, if the file states another and both are lengths.
+    /// Converts lengths to the unit of `expected`, if the file states another unit and both are units of length.
     void to_unit_of(const std::optional<TraceSpace>& expected);
 
     StatedSpace stated{};

@@ -205,7 +205,7 @@ private:
     std::map<std::string, uint32_t> numbers_;  ///< id of a node -> its number
 };
 
-/// Declares the attributes that the elements below have.
+/// Declares the attributes of the elements that follow.
 void add_keys(pugi::xml_node& root)
 {
     constexpr const char* KEYS[][3] = {{"x", "node", "double"},
@@ -252,7 +252,7 @@ void add_statements(pugi::xml_node& graph, const TraceWriting& writing)
     add_data(graph, "next_internode", std::to_string(trace.next_internode()));
 }
 
-/// Writes elements of the graph one at a time: a whole document takes 1.6 KB a node.
+/// Writes elements of the graph one at a time, since a whole document in memory takes 1.6 KB per node.
 class ElementWriter {
 public:
     explicit ElementWriter(std::string& text) { writer_.text.swap(text); }

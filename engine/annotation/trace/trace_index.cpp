@@ -65,8 +65,8 @@ void TraceIndex::Tree::split(size_t begin, size_t end)
     split(middle + 1, end);
 }
 
-/// Visits every point that is at most `most_squared` away, and maybe others. `most_squared` may shrink during the
-/// search.
+/// Visits every point that is at most `most_squared` away, and possibly other points. `most_squared` may shrink during
+/// the search.
 template <class Visit>
 void TraceIndex::search(const glm::dvec3& position, const double& most_squared, const Visit& visit) const
 {

@@ -1,7 +1,7 @@
 #pragma once
 // Finds the nearest of many moving points, exactly: a balanced k-d tree (Bentley 1975) of the points at the time it was
-// built, and a list of those changed since, which is searched linearly and stays below a 32nd of the tree. So queries
-// between edits take microseconds, and rebuilding costs little per edit.
+// built, and a list of the points changed since, which is searched linearly and stays below a 32nd of the tree. So
+// queries between edits take microseconds, and rebuilding costs little per edit.
 //
 // One thread changes it; any number of threads may query while none changes it. Copies share the tree.
 
@@ -21,7 +21,7 @@ public:
     void set(uint32_t number, const glm::dvec3& position);
     void erase(uint32_t number);
 
-    /// The smallest number among the nearest. Coordinates must be finite.
+    /// The number of the nearest point; the smallest in case of a tie. Coordinates must be finite.
     std::optional<uint32_t> nearest(const glm::dvec3& position, std::optional<uint32_t> except = {}) const;
     /// The numbers of all points within `distance`, ascending.
     std::vector<uint32_t> within(const glm::dvec3& position, double distance) const;

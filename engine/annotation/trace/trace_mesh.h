@@ -6,8 +6,8 @@
 //   .obj   a group "group_N" for each colour group; text
 //   .ply   binary; coordinates of 64 bits, since volumes may lie far from 0; each face has the property `group`
 //
-// Positions are in physical space unless volume space is requested (trace_space.h); comments of the file state which,
-// with place and unit. "SPACE=LPS" is how 3D Slicer writes and reads the axes of a mesh. Any thread may call these.
+// Positions are in physical space unless volume space is requested (trace_space.h); comments of the file state the
+// space, place and unit. "SPACE=LPS" is how 3D Slicer writes and reads the axes of a mesh. Any thread may call these.
 
 #include <filesystem>
 #include <vector>

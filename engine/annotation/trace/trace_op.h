@@ -19,7 +19,7 @@ struct NodeOp {
     std::optional<uint32_t> divides{};
 };
 struct SelectOp {
-    std::optional<glm::dvec3> near;  ///< the nearest node, or internode of the selected node
+    std::optional<glm::dvec3> near;  ///< selects the nearest node, or internode of the selected node
     std::optional<uint32_t> number;  ///< used without `near`
     bool is_internode = false;
     std::optional<double> within_voxels;  ///< maximum distance of the nearest; default: any
@@ -33,8 +33,8 @@ struct LinkOp {
 };
 struct MoveOp {
     glm::dvec3 to{0.0};
-    /// With it, all selected nodes move by `to` - `from` or, where only internodes are selected, their ends. Without
-    /// it, the selected node moves to `to`.
+    /// If given, all selected nodes (or, if only internodes are selected, their ends) move by `to` - `from`. If null,
+    /// the selected node moves to `to`.
     std::optional<glm::dvec3> from{};
 };
 struct DeleteOp {};

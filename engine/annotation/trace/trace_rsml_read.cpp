@@ -1,7 +1,7 @@
 // Reads RSML (trace_rsml.cpp writes it): the metadata's unit and resolution, and for each root its polyline, its
-// functions "diameter" and "group" over the polyline, the length or uniform, and its child roots. Other elements and
-// attributes are ignored, since other programs write many. A nested root begins at the parent's node where its first
-// point lies; otherwise it is joined to the nearest node of the parent. All numbers are pixels
+// functions "diameter" and "group" (their domain is the polyline, the length or uniform), and its child roots. Other
+// elements and attributes are ignored, since other programs write many. A nested root begins at the parent's node where
+// its first point lies; otherwise it is joined to the nearest node of the parent. All numbers are pixels
 // (https://rootsystemml.github.io/format/metadata): `resolution` pixels make one `unit`. If the unit is "pixel", or
 // neither is stated, a pixel is a voxel along x. A missing unit is the volume's, and a missing resolution is 1. Lengths
 // are converted to the volume's unit. Without a diameter the radius is one pixel. Positions declared physical by the
@@ -74,7 +74,7 @@ private:
         read_space(metadata);
         if (text.empty()) return;
         const std::optional<double> resolution = number_of(text);
-        // Far beyond any scan, yet close enough to 1 that nothing overflows.
+        // Limits far beyond the resolution of any scan, yet close enough to 1 that nothing overflows.
         if (!resolution || !(*resolution >= 1e-12) || !(*resolution <= 1e12))
             fail(reader_.file(), ": metadata: resolution is ", in_quotes(text),
                  "; expected pixels to the unit, a number from 1e-12 to 1e12");
@@ -135,8 +135,8 @@ private:
             if (name_of(child) == "root") waiting.push_back({child, axis});
     }
 
-    /// The values of a function at the points of a polyline, `along` which they lie; empty if there is none. Functions
-    /// over the length, or with samples at equal distances, are linear between two samples; a group is the nearer's.
+    /// A function's values at the points of a polyline, at the distances `along` it; empty if there is none. Over the
+    /// length or at equal distances, values are interpolated linearly; a group is that of the nearer sample.
     std::vector<std::string> samples_of(const pugi::xml_node& root, const std::string& where, std::string_view name,
                                         const std::vector<double>& along)
     {
@@ -170,7 +170,7 @@ private:
         return {};
     }
 
-    /// Returns nothing if a sample or its position cannot be read as a number.
+    /// Returns an empty list if a sample or its position cannot be read as a number.
     static std::vector<std::string> values_along(const std::vector<pugi::xml_node>& samples, bool is_uniform,
                                                  bool is_linear, const std::vector<double>& along)
     {
@@ -200,7 +200,7 @@ private:
         return values;
     }
 
-    /// Returns how far along the polyline its points lie, in the file's numbers. Malformed points are refused later.
+    /// Returns the distance of each point along the polyline, in the file's unit. Malformed points are refused later.
     static std::vector<double> distances_along(const std::vector<pugi::xml_node>& points)
     {
         std::vector<double> along;

@@ -17,15 +17,15 @@ struct TraceSegment {
     bool is_loop() const { return nodes.front() == nodes.back(); }
 };
 
-/// The segment that an internode belongs to. It also ends at `stops`.
+/// The segment that an internode belongs to. The segment also ends at `stops`.
 TraceSegment segment_through(const TraceGraph& trace, uint32_t internode, const std::set<uint32_t>& stops = {});
-/// All segments, sorted by their smallest internode. Nodes without internodes belong to none.
+/// All segments, sorted by their smallest internode. Nodes without internodes belong to no segment.
 std::vector<TraceSegment> segments_of(const TraceGraph& trace, const std::set<uint32_t>& stops = {});
 
 /// The targets of edits of the segment: its internodes, and its nodes except branches, which other segments share.
 TraceSelection selection_of(const TraceGraph& trace, const TraceSegment& segment);
 
-/// The position on an internode nearest to a point: 0 at its first node, 1 at its second.
+/// The fraction along an internode of its position nearest to a point: 0 at its first node, 1 at its second.
 double share_along(const TraceGraph& trace, const TraceInternode& internode, const glm::dvec3& position);
 
 struct PlaceOnTrace {

@@ -24,7 +24,7 @@ TraceSpace turned_round(TraceSpace space)
     return space;
 }
 
-/// Tolerances for numbers that other programs store as 32-bit floats.
+/// Whether two spaces have the same place; tolerates the rounding of programs that store numbers as 32-bit floats.
 bool is_in_place(const TraceSpace& found, const TraceSpace& expected)
 {
     constexpr double MAX_TURN = 1e-3, MAX_VOXELS = 0.05, ROUNDING = 1e-6;
@@ -71,7 +71,7 @@ glm::dvec3 position_of(const TraceSpace& space, const glm::dvec3& physical)
 std::string why_elsewhere(const TraceSpace& found, const TraceSpace& expected)
 {
     if (!states_place(found) || !states_place(expected)) return {};
-    // A frame without a name is compatible with either.
+    // A frame without a name is compatible with any frame.
     const bool may_be_same = found.frame == expected.frame || found.frame.empty() || expected.frame.empty();
     const bool may_be_turned = found.frame != expected.frame;
     if ((may_be_same && is_in_place(found, expected)) || (may_be_turned && is_in_place(turned_round(found), expected)))

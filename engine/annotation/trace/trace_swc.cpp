@@ -33,7 +33,7 @@ void read_comment(TraceReader& reader, const std::string& where, std::string_vie
                 fail(where, ": SCALE is ", in_quotes(rest), "; expected 1 1 1: positions in the volume's unit");
 }
 
-/// Numbers of samples, as some programs write them: "1.0".
+/// Reads the number of a sample, which some programs write as "1.0".
 std::optional<int64_t> number_of_sample(TraceReader& reader, const std::string& where, const char* field,
                                         std::string_view word)
 {
@@ -46,7 +46,7 @@ std::optional<int64_t> number_of_sample(TraceReader& reader, const std::string& 
     return int64_t(*number);
 }
 
-/// A neurite's type may be any number; types that are no groups are dropped.
+/// Reads a sample's type as a group. A neurite's type may be any number; a type that is no group is dropped.
 uint8_t group_of(TraceReader& reader, const std::string& where, std::string_view word)
 {
     try {

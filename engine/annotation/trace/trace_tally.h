@@ -1,7 +1,7 @@
 #pragma once
 // Running totals of a trace, updated as it changes: lengths by group, and the number of segments. A change costs as
-// much as visiting the internodes of its nodes; a change that splits or joins segments, about as much as the shorter of
-// the two.
+// much as visiting the internodes of its nodes. A change that splits or joins segments costs about as much as visiting
+// the shorter of the two segments.
 //
 // Not thread safe: part of a TraceGraph.
 

@@ -1,8 +1,8 @@
 #pragma once
-// The trace: a graph of nodes along the centre lines of tubes and of internodes that join two of them. Loops are
+// The trace: a graph of nodes along the centre lines of tubes, and of internodes that each join two nodes. Loops are
 // allowed; a node joined to itself, or two nodes joined twice, are not. Positions and radii are in volume space
-// (physical, the volume's unit). Like the mask, the trace changes only through records of exact before and after
-// values. The selection is not annotation and needs no record, but commands may carry it.
+// (physical, the volume's unit). Like the mask, the trace changes only through records of exact values before and
+// after. The selection is not annotation and needs no record, but commands may carry it.
 //
 // Numbers of nodes and internodes are never reused, not even after an undo.
 //
@@ -56,7 +56,7 @@ struct TraceNodeChange {
     std::optional<TraceNode> before, after;
     bool operator==(const TraceNodeChange&) const = default;
 };
-/// Likewise for an internode; a record that only changes one keeps its two nodes.
+/// Adds, removes or changes an internode likewise. A record that only changes an internode keeps its two nodes.
 struct TraceInternodeChange {
     uint32_t internode = 0;
     std::optional<TraceInternode> before, after;
@@ -69,7 +69,7 @@ struct TraceSizeChange {
     bool operator==(const TraceSizeChange&) const = default;
 };
 /// Replaces the selection, whatever it is. A command that changes the selection begins with a record whose `after` is
-/// empty and ends with one whose `before` is, so that in both directions the selection never refers to missing objects.
+/// empty and ends with one whose `before` is empty, so that redo and undo never select missing objects.
 struct TraceSelectionChange {
     TraceSelection before, after;
     bool operator==(const TraceSelectionChange&) const = default;
@@ -90,10 +90,10 @@ public:
     /// The radius at the fraction `t` (0 ... 1) of the way from a to b.
     double radius_of(const TraceInternode& internode, double t) const;
 
-    /// The next numbers: larger than any ever applied.
+    /// The numbers of the next node and internode: larger than any number ever applied.
     uint64_t next_node() const { return next_node_; }
     uint64_t next_internode() const { return next_internode_; }
-    /// Never uses numbers below these, which a file states because deleted nodes used them.
+    /// Reserves all numbers below these. A file states them because deleted objects had such numbers.
     void reserve_numbers(uint64_t next_node, uint64_t next_internode);
 
     /// The node nearest to a position, the smallest number in case of a tie; null if there are no nodes.
@@ -104,7 +104,7 @@ public:
     /// An upper bound of internode lengths, at most twice the longest; 0 without internodes.
     double longest_at_most() const { return tally_.longest_at_most(); }
 
-    /// Numbers, lengths and segments; kept up to date, so it is cheap at any size.
+    /// Counts of nodes, internodes and segments, and lengths; kept up to date, so cheap at any size.
     TraceSummary summary() const { return tally_.summary_of(*this); }
 
     /// Changes with each record that is applied, also in copies; equal numbers mean equal traces.
@@ -114,9 +114,9 @@ public:
     /// The selected objects must exist (SHVR_CHECK).
     void select(TraceSelection selection);
 
-    /// Why a record cannot be applied: the trace must match its before values, a removed node must have no internodes,
-    /// an internode must join two existing nodes that are not joined yet, and selected objects must exist. Empty if it
-    /// fits.
+    /// Why a record cannot be applied; empty if it can. The trace must match the record's values before the change, a
+    /// removed node must have no internodes, an internode must join two existing nodes that are not joined yet, and
+    /// selected objects must exist.
     std::string why_it_does_not_fit(const TraceChange& change, Direction direction) const;
     /// Applies a record that fits (SHVR_CHECK). Deselects removed objects.
     void apply(const TraceChange& change, Direction direction);

@@ -50,8 +50,8 @@ void apply(Document& document, const Change& change, Direction direction)
 
 void apply_if_it_fits(Document& document, std::span<const Change> changes, Direction direction)
 {
-    // Records of these kinds state only the new value and are not compared with the old one, so they cannot be
-    // reversed.
+    // Records of the selection and of settings are applied without comparing the old value, so applying them backwards
+    // may not restore it: copies do.
     const TraceSelection selection = document.trace.selection();
     const Settings settings = document.settings;
     for (size_t i = 0; i < changes.size(); ++i) {

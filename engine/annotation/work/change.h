@@ -1,7 +1,7 @@
 #pragma once
-// Everything that is annotated, and the records through which it changes: exact states before and after, so that undo
-// is the same record backwards. A new kind of annotation is one more alternative of `Change`; the compiler then reports
-// every place that does not handle it yet.
+// Everything that is annotated, and the records through which it changes. Records hold exact states before and after,
+// so undo applies the same record backwards. A new kind of annotation is one more alternative of `Change`; the compiler
+// then reports every place that does not handle it yet.
 //
 // Not thread safe: the main thread owns a document.
 
@@ -50,17 +50,17 @@ struct Command {
     std::vector<Change> changes;
 };
 
-/// A record that does not fit is a bug of ours (SHVR_CHECK).
+/// Applies a change; one that does not fit is a bug of ours (SHVR_CHECK).
 void apply(Document& document, const Change& change, Direction direction);
-/// Applies all of them in order, or in reverse order backwards. For records from files: fails with the reason if one
-/// does not fit, and then the document is as it was.
+/// Applies all changes in order or, backwards, in reverse order. For records from files: if one does not fit, fails
+/// with the reason and leaves the document as it was.
 void apply_if_it_fits(Document& document, std::span<const Change> changes, Direction direction);
 /// Their approximate memory use.
 uint64_t memory_of(std::span<const Change> changes);
 
 /// The parts of a document that some changes affect.
 struct Touched {
-    int64_t voxels = 0;                  ///< number that change their group, plus number that change their offset
+    int64_t voxels = 0;                  ///< voxels that change their group, plus voxels that change their offset
     std::vector<int64_t> mask_bricks{};  ///< bricks with voxels that change their group
     std::vector<VoxelBox> raised{};      ///< boxes around voxels that change their offset
     bool trace = false;

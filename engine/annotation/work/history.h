@@ -23,15 +23,15 @@ public:
     /// Applies the command and records it; commands that were undone are dropped. Returns the command, valid until the
     /// history changes; null if it has no changes and is not recorded. `record`: its number in the journal.
     const Command* perform(Document& document, Command command, RecordNumber record = 0);
-    /// Applies `changes` and adds them to the last command, since which nothing may have been undone: a stroke
-    /// continues.
+    /// Applies `changes` and adds them to the last command: a stroke continues. Nothing may have been undone since that
+    /// command.
     void extend(Document& document, std::vector<Change> changes, RecordNumber record = 0);
-    /// Return the command undone or redone, or null if there is none. Fail, changing nothing, if it was dropped and
-    /// cannot be fetched or does not fit.
+    /// Return the command that was undone or redone; null if there is none. If the command was dropped and cannot be
+    /// fetched or does not fit, fail and change nothing.
     const Command* undo(Document& document);
     const Command* redo(Document& document);
 
-    /// Replay these four operations for a document in its final state, so that no changes are needed.
+    /// Replay perform(), extend(), undo() and redo() for a document in its final state, so that no changes are needed.
     void note(std::string label, RecordNumber record);
     void note_extension(RecordNumber record);
     void note_undo();
@@ -40,7 +40,7 @@ public:
     size_t undoable() const { return done_; }
     size_t redoable() const { return commands_.size() - done_; }
 
-    /// The label of a step, from 0, the oldest, to undoable() + redoable() - 1. Always in memory.
+    /// The label of a step; steps count from 0, the oldest, to undoable() + redoable() - 1. Always in memory.
     const std::string& label_of(size_t step) const { return commands_[step].command.label; }
     /// Passes the changes of a step to `visit`; fetches them if they were dropped, and fails if that is not possible.
     /// The span is valid during the call.
@@ -48,8 +48,8 @@ public:
 
     void fetch_from(Fetch fetch) { fetch_ = std::move(fetch); }
     uint64_t memory_bytes() const { return memory_; }
-    /// Drops changes of the oldest commands until at most `max_bytes` are left; only of commands whose records, up to
-    /// `durable`, the journal has on disk.
+    /// Drops changes of the oldest commands until at most `max_bytes` are left. Only drops commands whose records are
+    /// on disk: the journal's records up to `durable`.
     void shrink(uint64_t max_bytes, RecordNumber durable);
 
 private:
@@ -65,7 +65,7 @@ private:
 
     std::vector<Entry> commands_;
     size_t done_ = 0;     ///< commands_[0 .. done_) are in effect
-    size_t dropped_ = 0;  ///< commands before this one have been dropped, unless they were fetched again
+    size_t dropped_ = 0;  ///< commands_[0 .. dropped_) have been dropped, unless they were fetched again
     uint64_t memory_ = 0;
     Fetch fetch_;
 };

@@ -126,7 +126,7 @@ Journal::Journal(const fs::path& path, JournalScan before, std::shared_ptr<const
     records_ = std::move(before.records);
     last_ = records_.size();
     try {
-        // Only now: a process that claims the journal later finds this file, and leaves it to this process.
+        // Checked only now: a process that claims the journal later finds this file, and leaves it to this process.
         expect_hold(before);
         if (end_ == 0 || end_ < before.file_bytes || !before.head.empty()) begin(free_rest(path), before.head);
         if (!own.empty()) put_in_place(own, before);
@@ -152,7 +152,7 @@ void Journal::put_in_place(const fs::path& own, const JournalScan& before)
         switch (put_at_free(own, path_)) {
             case Renaming::done:
                 sync_folder(path_);
-                // As after opening: if another process has claimed the journal by now, it did not find this file.
+                // As after opening: a process that has claimed the journal by now did not find this file.
                 return expect_hold(before);
             case Renaming::name_taken: static_cast<void>(set_aside(path_)); break;
             case Renaming::gone: fail(own.string(), ": is missing; expected the journal that was just written there");
@@ -173,7 +173,7 @@ void Journal::remove_new() noexcept
         else
             static_cast<void>(put_at_free(*moved, path_));
     } catch (const Error&) {
-        // It stays, and is empty; another one, under its new name, is put back by its writer.
+        // The file stays, empty. If another process's file was moved, that process puts it back from its new name.
     }
 }
 
@@ -382,7 +382,7 @@ void Journal::write()
             }
         }
         if (!failure.empty()) {
-            // After half a record, readers would stop; unsynced data may be missing altogether.
+            // Truncates, since readers would stop at a partial record, and unsynced data may be missing altogether.
             static_cast<void>(::ftruncate(file_.number(), off_t(begin)) == 0);
             written = 0;
             written_bytes = 0;

@@ -31,8 +31,8 @@ class Journal {
 public:
     /// Continues after the valid prefix in `before`; data after it is kept as JOURNAL.rest1, .rest2 and so on, and a
     /// damaged head is repaired. Fails if the file cannot be created or written, with JournalTaken if another process
-    /// holds it. `hold`: null for a journal that no other process knows of. `own`: a name that only this process uses;
-    /// `before` is the file there, or none. It is put in the place of whatever is at `path`, which gets another name.
+    /// holds it. `hold`: null if no other process knows the journal. `own`: a name that only this process uses;
+    /// `before` is the file of that name, or none. That file replaces any at `path`, which gets another name.
     Journal(const std::filesystem::path& path, JournalScan before, std::shared_ptr<const Hold> hold = {},
             const std::filesystem::path& own = {});
     /// Tries to write the queue first.
@@ -45,18 +45,18 @@ public:
     RecordNumber last() const;
     /// Waits until everything appended is on disk; fails with the reason if that is not possible.
     void flush();
-    /// The number of the last record that is on disk, with all before it.
+    /// The number of the last record that is on disk, as are all records before it.
     RecordNumber durable() const;
-    /// Number and checksum of that record; 0, 0 for none.
+    /// Number and checksum of the last durable record; 0, 0 if there is none.
     std::pair<RecordNumber, uint64_t> last_durable() const;
     /// False if the file was removed or replaced since it was
     /// opened: data written to it will be lost.
     bool is_in_place() const;
     /// Whether another process claimed the journal (Hold::is_kept), as found after the last write.
     bool is_claimed() const { return is_claimed_; }
-    /// The file's present name, also if it was renamed in its folder; empty if it has none.
+    /// The file's present name, even if the file was renamed in its folder; empty if it has no name any more.
     std::filesystem::path present_name() const;
-    /// Writes everything that is on disk to another file, atomically.
+    /// Copies the part of the journal that is on disk to another file, atomically.
     void copy_to(const std::filesystem::path& path) const;
     /// Why writing fails at present; empty if it does not.
     std::string failure() const;
@@ -106,7 +106,7 @@ private:
     std::thread thread_;
 };
 
-/// Appends the first `end` bytes of a journal; `head`: as in JournalScan.
+/// Appends the first `end` bytes of a journal to `to`; `head`: as in JournalScan.
 void copy_bytes(const FileDescriptor& file, const std::filesystem::path& path, uint64_t end,
                 std::span<const std::byte> head, AtomicWriter& to);
 

@@ -88,7 +88,7 @@ bool has_plausible_sizes(const JournalRecord& record)
     return record.bytes <= MAX_RECORD_BYTES && (record.is_compressed || record.bytes == record.stored_bytes);
 }
 
-/// `label_bytes` and the record's fields, without label and checksum.
+/// The fields of a record, except label and checksum; also sets `label_bytes`.
 JournalRecord fields_of(const Header& header, uint64_t at, uint64_t& label_bytes)
 {
     label_bytes = get(&header[6], 2);
@@ -101,8 +101,8 @@ JournalRecord fields_of(const Header& header, uint64_t at, uint64_t& label_bytes
             .is_compressed = (get(&header[4], 2) & COMPRESSED) != 0};
 }
 
-/// False if it has no header yet: a power cut may leave a journal that has just begun with some or none of its bytes,
-/// and zeros for the rest. Fails if it is not a journal.
+/// False if the file has no header yet: after a power cut, a journal that has just begun may contain only some of the
+/// header's bytes, or none, and zeros for the rest. Fails if the file is not a journal.
 bool has_file_header(const FileDescriptor& file, const fs::path& path, const JournalScan& scan)
 {
     const uint64_t file_bytes = scan.file_bytes;

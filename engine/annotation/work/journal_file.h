@@ -5,9 +5,9 @@
 //
 // little-endian. Flag 1: the content is a zstd frame. The checksum is XXH3-64 of the whole record except itself, seeded
 // with the checksum of the previous record, so that records are valid in their order or not at all. Readers take the
-// longest valid prefix. Kinds from 128 on are additions that readers may skip; an unknown kind below that is from a
-// newer program, and refused. A record's number is its position in the file, from 1. The first bytes and the first
-// record stand twice (journal_head.h).
+// longest valid prefix. Kinds from 128 on are additions that readers may skip; an unknown kind below 128 is from a
+// newer program, and the journal is refused. A record's number is its position in the file, from 1. The first 16 bytes
+// and the first record are stored twice (journal_head.h).
 //
 // Any thread may call these.
 
@@ -31,20 +31,20 @@ enum class RecordKind : uint32_t {
     undo,
     redo,
     saving,  ///< start of a save: from here on each saved file may be the old or the new one
-    /// Has SavedFiles. `about`: number of the last `kept` record whose settings the session's file held; 0: unknown.
+    /// SavedFiles. `about`: number of the last `kept` record whose settings the session's file held; 0: unknown.
     saved,
     /// JournalSpace: from here on positions are in another spacing; earlier ones are converted when they are read.
-    /// Older programs would mix the two, so this kind makes them refuse the journal.
+    /// Older programs would mix the two spacings, so this kind makes them refuse the journal.
     respaced,
     /// SavedFiles, `about` as in `saved`: the user decided about files that other programs had changed; from here on
-    /// their present state is known. Older programs skip it, and ask (or take the files) again.
+    /// the present state of these files is known. Older programs skip it, and ask (or take the files) again.
     known = 128,
     /// SettingValues: kept settings that were changed since the record `about`, or (0) all of them. Older programs skip
     /// them, and use those of the session's file.
     kept = 129,
     /// JournalSpace, once: space of the positions in this journal. Older programs skip it, and accept any spacing.
     space = 130,
-    /// The second record: repeats all bytes before it, never compressed. Older programs skip it.
+    /// The second record: an uncompressed copy of all bytes before it. Older programs skip it.
     head = 131,
 };
 constexpr RecordKind LAST_KIND = RecordKind::respaced;  ///< the last kind that is not an addition
@@ -67,7 +67,7 @@ struct JournalScan {
     uint64_t end = 0;         ///< end of the valid prefix
     uint64_t file_bytes = 0;  ///< including unreadable data at the end
     uint64_t inode = 0;       ///< 0: there is no file
-    /// The bytes that should be at the file's beginning, if some of those are damaged; they are read instead.
+    /// Bytes to use instead of the beginning of the file, if some of the latter are damaged.
     std::vector<std::byte> head{};
 
     /// Checksum of the last record; 0 if there is none.

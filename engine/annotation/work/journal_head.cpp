@@ -41,7 +41,7 @@ std::optional<First> first_record(Bytes bytes)
     return First{parsed->bytes, parsed->record.checksum};
 }
 
-/// The record `head` as it follows `head`, the first bytes and the first record.
+/// The record `head` as it comes after `head`: the file's first bytes and the first record.
 std::vector<std::byte> second_record(Bytes head, uint64_t checksum)
 {
     JournalRecord record{.kind = RecordKind::head};
@@ -57,7 +57,7 @@ Bytes sound_front(Bytes begin)
     return first ? begin.first(header.size() + first->bytes) : Bytes{};
 }
 
-/// Where the repetition begins, or seems to: "SHVRJRNL" after the first bytes, up to damaged bits. Null: nowhere.
+/// Where the repetition seems to begin: at "SHVRJRNL", up to damaged bits, after the first bytes. Null: nowhere.
 std::optional<size_t> place_of_repetition(Bytes begin)
 {
     const std::vector<std::byte> header = journal_header();
@@ -67,18 +67,18 @@ std::optional<size_t> place_of_repetition(Bytes begin)
     return std::nullopt;
 }
 
-/// The same from the repetition.
+/// Like `sound_front`, but taken from the repetition.
 Bytes sound_repetition(Bytes begin)
 {
     const std::optional<size_t> at = place_of_repetition(begin);
     if (!at) return {};
     const Bytes front = sound_front(begin.subspan(*at));
-    // Its own place proves that it repeats this journal's head rather than that of another one, as content.
+    // The place proves that this is a repetition of this journal's head, not content that repeats another's.
     return *at == front.size() + RECORD_HEADER_BYTES ? front : Bytes{};
 }
 
-/// Journals that state another version, in undamaged bytes, are from newer programs. Their numbers must differ from
-/// 1 in two bits at least.
+/// A journal that states another version, in undamaged bytes, is from a newer program. The version numbers of newer
+/// programs must differ from 1 in at least two bits.
 bool is_newer(Bytes begin)
 {
     const std::vector<std::byte> header = journal_header();
@@ -87,7 +87,7 @@ bool is_newer(Bytes begin)
                1;
 }
 
-/// What should be at the beginning: `front`, followed by its repetition if the journal has one.
+/// The bytes that should be at the beginning: `front`, followed by its repetition if the journal has one.
 std::vector<std::byte> expected_head(Bytes begin, Bytes front, bool has_repetition)
 {
     std::vector<std::byte> head(front.begin(), front.end());
@@ -144,8 +144,8 @@ std::vector<std::byte> repaired_head(std::span<const std::byte> begin, const fs:
         return differing(expected_head(begin, front, true));
     const bool is_like_header = bits_between(begin.first(MAGIC_BYTES), header) <= MAX_DAMAGED_BITS;
     if (!is_like_header || is_newer(begin)) return {};
-    // An older journal has no repetition, and this one may be damaged as well: then the first bytes are derived from
-    // the first record.
+    // An older journal has no repetition, and in this one the repetition may be damaged as well: then the first bytes
+    // are derived from the first record.
     std::vector<std::byte> front(begin.begin(), begin.end());
     std::ranges::copy(header, front.begin());
     if (const Bytes sound = sound_front(front); !sound.empty()) return differing(expected_head(front, sound, false));

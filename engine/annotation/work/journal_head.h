@@ -1,10 +1,10 @@
 #pragma once
-// The head of a journal: its first 16 bytes and its first record, which says of which volume it is. A flipped bit there
-// would make all that follows unreadable, so both stand twice: the record `head`, the second one, repeats them, and is
-// itself determined by them. Whichever copy is sound gives the other one.
+// The head of a journal: its first 16 bytes and its first record, which identifies the volume. A flipped bit there
+// would make all that follows unreadable, so both are stored twice: the second record, `head`, repeats them and is
+// itself determined by them. The sound copy restores the damaged one.
 //
-// Older journals have no such record. Their first 16 bytes are known, if a sound first record follows; their first
-// record stands once.
+// Older journals have no record `head`. Their first 16 bytes are known if a sound first record follows; their first
+// record has no copy.
 //
 // Any thread may call these.
 
@@ -28,11 +28,11 @@ public:
 /// The beginning of a file in which a head is looked for.
 constexpr size_t MAX_HEAD_BYTES = 65536;
 
-/// The content of the record `head`, for a journal whose first record has this content.
+/// The content of the record `head`, for a journal whose first record has the content `subject`.
 std::vector<std::byte> repeated_head(std::span<const std::byte> subject);
 
-/// `begin`: the file's first bytes, at most MAX_HEAD_BYTES. Returns the bytes that should stand there if some of
-/// them are damaged; nothing if none is, or if nothing is known about them. Fails with JournalDamaged.
+/// `begin`: the file's first bytes, at most MAX_HEAD_BYTES. If some of them are damaged, returns the bytes that should
+/// be there; empty if none is damaged, or if the right bytes are unknown. Fails with JournalDamaged.
 std::vector<std::byte> repaired_head(std::span<const std::byte> begin, const std::filesystem::path& path);
 
 }  // namespace shvr

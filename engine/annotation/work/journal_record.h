@@ -3,7 +3,7 @@
 // bits. Any thread may call these.
 //
 // Readers trust nothing: lengths are checked against the bytes present before memory is allocated, and the result may
-// still not fit a document (Mask::why_it_does_not_fit and the same of other kinds).
+// still not fit a document (Mask::why_it_does_not_fit and its equivalents for other kinds).
 
 #include <cstddef>
 #include <functional>
@@ -52,7 +52,7 @@ JournalSpace space_of(std::span<const std::byte> bytes);
 SavedFiles saved_files_of(std::span<const std::byte> bytes);
 SettingValues setting_values_of(std::span<const std::byte> bytes);
 std::vector<Change> changes_of(std::span<const std::byte> bytes);
-/// `empty`: an empty document of the same volume. `convert` is called for each of its changes before it is applied.
+/// `empty`: an empty document of the same volume. `convert` is called for each change before the change is applied.
 Document document_of(std::span<const std::byte> bytes, Document empty,
                      const std::function<void(Change&)>& convert = {});
 

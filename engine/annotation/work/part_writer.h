@@ -10,8 +10,8 @@
 
 namespace shvr {
 
-/// `journal`: the one that the mask names, in addition to `files`; null if there is none. Returns a sentence if the old
-/// image is kept under another name, as `foreign` demands.
+/// `journal`: the mask records its name (from `files`) and its last durable record; null if there is none. Returns a
+/// sentence if the old image is kept under another name, as `foreign` demands.
 std::string write_part(Part part, const Document& document, const WorkFiles& files,
                        const std::vector<LabelImage::Color>& looks, const Journal* journal, Foreign foreign);
 

@@ -135,7 +135,7 @@ LoadNotes load(Part part, const WorkFiles& files, Document& into)
     const TraceSpace space = space_of(files.volume);
     switch (part) {
         case Part::mask: {
-            // Reported first: a mask of another size is also of another image, but the size makes the better message.
+            // The size is checked first: a mask of another size is also of another image, but the size explains more.
             const fs::path& file = file_to_read(files, part);
             ImportedMask mask = import_mask(file, space);
             check_mask_image(file, files.volume_hash, files.is_other_name);

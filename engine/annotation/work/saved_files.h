@@ -19,18 +19,18 @@ namespace shvr {
 struct WorkFiles {
     std::filesystem::path journal{};                   ///< empty: work is kept in memory only
     std::filesystem::path mask{}, trace{}, density{};  ///< empty: not saved
-    /// A mask in a format that is only read, with which the work begins until `mask` is saved; empty: none. Set by
-    /// `Work`, which renames `mask` then (saved_mask_path).
+    /// A mask in a read-only format, from which the work starts as long as `mask` has not been saved; empty: none. Set
+    /// by `Work`, which then also renames `mask` (saved_mask_path).
     std::filesystem::path mask_to_read{};
     std::string volume_hash{};  ///< Session::volume_hash
-    /// Whether another hash names the same voxels, too, which may read them all; empty: none does.
+    /// Returns whether another hash names the same voxels; may read them all. Empty: no other hash does.
     std::function<bool(const std::string& hash)> is_other_name{};
     VolumeInfo volume{};       ///< the annotated volume
     SettingValues settings{};  ///< the session's, as read from its file
-    /// Settings as this version writes them, so that files and journals of different versions can be compared. Fails if
-    /// it cannot read them.
+    /// Converts settings to the form that this version writes, so that files and journals of different versions can be
+    /// compared. Fails if the settings cannot be read.
     std::function<SettingValues(const SettingValues&)> normalized{};
-    /// The same for kept settings (Work::keep_settings); empty if the caller keeps none.
+    /// Like `settings` and `normalized`, for kept settings (Work::keep_settings); empty if the caller keeps none.
     SettingValues kept{};
     std::function<SettingValues(const SettingValues&)> normalized_kept{};
 };
@@ -57,14 +57,14 @@ struct LoadNotes {
     std::vector<std::string> losses{};   ///< the file holds more than the document: keep it before saving over it
     std::vector<std::string> remarks{};  ///< how it was read
 };
-/// The file from which a part is read: `mask_to_read` for the mask, until that has been saved.
+/// The file from which a part is read. For the mask it is `mask_to_read`, until `mask` has been saved.
 const std::filesystem::path& file_to_read(const WorkFiles& files, Part part);
 /// Reads the file of a part into a document whose part is empty. Fails if the file is malformed, or of another volume
 /// or image.
 LoadNotes load(Part part, const WorkFiles& files, Document& into);
 
-/// The changes that turn a part of one document into that of the other, both of one volume; none if they are equal. The
-/// selection is ignored.
+/// The changes that turn a part of one document into that of another document of the same volume; none if the parts are
+/// equal. The selection is ignored.
 std::vector<Change> changes_between(Part part, const Document& from, const Document& to);
 
 /// The digest of the file to which a trace would be saved; null if it cannot be saved in that format.
@@ -81,10 +81,10 @@ std::optional<FileStamp> stamp_of(const std::filesystem::path& path);
 
 /// "paint.mask.old", or "paint.mask.old2" and so on if that already exists.
 std::filesystem::path old_of(const std::filesystem::path& path);
-/// Renames a file or folder to its `old_of`, and returns that; null if another process has moved it meanwhile. Fails if
-/// it cannot.
+/// Renames a file or folder to its `old_of`, and returns that name; null if another process has moved the file
+/// meanwhile. Fails if renaming fails.
 std::optional<std::filesystem::path> set_aside(const std::filesystem::path& path);
-/// Renames a file that has another name likewise.
+/// Renames `file` to the `old_of` of `path` likewise; `file` and `path` may differ.
 std::optional<std::filesystem::path> rename_to_old(const std::filesystem::path& file,
                                                    const std::filesystem::path& path);
 

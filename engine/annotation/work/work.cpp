@@ -64,7 +64,7 @@ void Work::begin_journal()
         else
             open_journal();
     } catch (const Error&) {
-        expect_hold();  // a claim explains all else that was not as expected
+        expect_hold();  // if the journal was claimed, reports that instead
         throw;
     }
     record_settings_from_outside();
@@ -239,7 +239,7 @@ bool Work::is_kept() const
     if (!journal_) return true;
     try {
         journal_->flush();
-        // What another process has claimed is kept under the name that it gave it.
+        // A journal that another process has claimed is kept under the name that the other process gave it.
         return journal_->is_in_place() || (hold_ && !hold_->is_kept() && !journal_->present_name().empty());
     } catch (const Error&) {
         return false;

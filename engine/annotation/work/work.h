@@ -7,8 +7,8 @@
 // requires a decision of the user. Nothing is ever overwritten that the journal does not hold (README.md has the
 // table). The first command creates the journal: looking alone leaves no file.
 //
-// One thread at a time: the one that opens it, then the main one. Other threads write the journal (journal.h) and saves
-// (Work::Saving).
+// Used by one thread at a time: the one that opens it, then the main thread. Other threads write the journal
+// (journal.h) and saves (Work::Saving).
 
 #include <filesystem>
 #include <functional>
@@ -32,7 +32,7 @@ struct Notice {
 
 /// Which version counts if another program has changed a saved file.
 enum class Belief {
-    ask,      ///< asks the user, by `Work::disputes`; until `choose` the journal is shown, and nothing can be changed
+    ask,      ///< asks the user, by `Work::disputes`; until `choose` is called, the journal is shown and is read-only
     journal,  ///< the next save keeps the file under another name
     files,    ///< the differences are applied to the work as a command, which can be undone
 };
@@ -67,7 +67,7 @@ public:
         Belief belief = Belief::ask;
         bool only_look = false;  ///< read-only: takes no hold, and accepts no command
         /// The work will be changed at once: a journal that others may still write is taken from them during opening,
-        /// not by the first command, and read again if they write it meanwhile.
+        /// not by the first command. It is read again if they write it meanwhile.
         bool takes_over = false;
         std::shared_ptr<Hold> hold{};  ///< existing hold of this journal; null: the hold is taken during opening
         std::string program = "shvr";  ///< description as in Holder, for a hold that is taken during opening
@@ -81,8 +81,8 @@ public:
 
     /// Decisions to be made; empty: none.
     const std::vector<Dispute>& disputes() const { return disputes_; }
-    /// Resolves all disputes: with the files, applied as one command, or with the journal as it is. Returns messages
-    /// about the choice, and the command, which is valid until the history changes.
+    /// Resolves all disputes in favour of the files, whose differences are applied as one command, or of the journal as
+    /// it is. Returns messages about the choice, and the command, which is valid until the history changes.
     struct Choice {
         std::vector<Notice> notices;
         const Command* command = nullptr;
@@ -93,8 +93,8 @@ public:
 
     /// True if commands and saves are refused.
     bool only_looks() const { return only_looks_; }
-    /// Whether another process has claimed the journal since the last call, as the last write to it revealed. From then
-    /// on this work only looks; `claimed` says why, and where its journal is kept.
+    /// Whether another process has claimed the journal since the last call, as revealed by the last write to the
+    /// journal. From then on this work only looks; `claimed` says why, and where its journal is kept.
     bool look_for_claim();
     const std::string& claimed() const { return claimed_; }
     const std::string& claimed_by() const { return claimed_by_; }  ///< as in `in_words`; empty: no process
@@ -103,7 +103,7 @@ public:
 
     const Document& document() const { return document_; }
     /// The session's lasting settings: the journal's or, if the session's file was changed since it was saved, the
-    /// file's. The first command then records that change as a step of its own.
+    /// file's. In the latter case the first command records the change as a step of its own.
     SettingValues settings() const;
     /// The settings that are restored on opening but are not part of the work, as last kept.
     const SettingValues& kept_settings() const { return kept_; }
@@ -113,27 +113,27 @@ public:
     /// locked by another process, or does not accept the command.
     const Command* perform(Command command);
     void extend(std::vector<Change> changes);
-    /// Sets the sections that differ, as one command; null if none does.
+    /// Sets the sections whose values differ, as one command; null if none does.
     const Command* change_settings(std::string label, const SettingValues& values);
     const Command* undo();
     const Command* redo();
     /// Reverts to the last saved state, or to the last state taken from a saved file, as one command; null if nothing
-    /// differs. The state is read from the journal, so later changes of the files do not matter. Fails if nothing was
-    /// ever saved, or the journal cannot be read; then nothing has changed.
+    /// differs. The state is read from the journal, so later changes of the files do not matter. If nothing was ever
+    /// saved or the journal cannot be read, fails and changes nothing.
     const Command* revert();
-    /// Keeps the sections that differ; this is neither a command nor a reason to save. They are written to the journal,
-    /// if there is one, which the first command starts; until then, and if it cannot be written, they stay in memory
+    /// Keeps the sections that differ; this is neither a command nor a reason to save. They are written to the journal
+    /// once the first command has started it; before that, or if the journal cannot be written, they stay in memory
     /// and are written with the next record. Never fails. Sections set for this run only ("key=value") must not be
     /// passed.
     void keep_settings(const SettingValues& values);
-    /// Not a step of the history. The selected objects must exist.
+    /// Selects objects, which must exist. This is not a step of the history.
     void select_trace(TraceSelection selection) { document_.trace.select(std::move(selection)); }
 
-    /// Writes the files, each atomically, and records that in the journal; a label image gets the groups' `looks`.
+    /// Writes the files, each atomically, and records the save in the journal; a label image gets the groups' `looks`.
     /// Trace and offsets are written only if they have changed or are missing. A file with content that the journal
-    /// lacks is renamed first and kept. Fails if one cannot be written (a retry may succeed), or if there is something
-    /// to save and no file named for it. `save_session` writes the session's file, which then holds `settings()` and
-    /// `kept_settings()`.
+    /// lacks is renamed first and kept. Fails if a file cannot be written (a retry may succeed), or if a part has
+    /// content to save but no file is named for it. `save_session` writes the session's file, which then holds
+    /// `settings()` and `kept_settings()`.
     struct Saved {
         std::vector<std::filesystem::path> files;
         std::vector<Notice> notices;
@@ -144,17 +144,17 @@ public:
     /// stay unsaved. Until `write` has completed, the journal does not record the save.
     class Saving;
     /// Copies the state to be written, at the cost of a copy of the document; fails as `save` does before it writes.
-    /// One at a time; `end_save` must follow.
+    /// Only one save at a time; `end_save` must follow.
     std::unique_ptr<Saving> begin_save(std::vector<LabelImage::Color> looks);
     /// To be called after begin_save in any case, whether or not the files were written.
     Saved end_save(Saving& saving);
     bool is_saving() const { return is_saving_; }
 
     /// Continues the work under other names, none of which may exist yet, with the whole history; the files written
-    /// before stay as they are and are released. In this order, each on disk before the next: a copy of the journal,
-    /// the mark that a save begins, the files, their digests, and `save_session`, which writes `session`: a crash
-    /// before that leaves files that nothing refers to, and after it a whole project. On failure nothing has changed,
-    /// and new files are removed. If there is no history yet, the new journal begins with the first command.
+    /// before stay as they are and are released. Writes in this order, each on disk before the next: a copy of the
+    /// journal, the mark that a save begins, the files, their digests, and `session`, by `save_session`. A crash before
+    /// the session is written leaves files that nothing refers to; after it, a whole project. On failure nothing has
+    /// changed, and new files are removed. If there is no history yet, the new journal begins with the first command.
     Saved save_as(const WorkFiles& to, std::vector<LabelImage::Color> looks, const std::filesystem::path& session = {},
                   const std::function<void()>& save_session = {});
     /// save_as() in the background, like `begin_save`. Until `end_save_as`, commands are refused, since they would be
@@ -164,8 +164,8 @@ public:
                                             const std::filesystem::path& session = {});
     Saved end_save_as(SavingAs& saving);
     bool is_saving_as() const { return is_saving_as_; }
-    /// Writes the document as it is now into other files, which must not exist yet; callable on any thread, even after
-    /// the work has ended.
+    /// A function that writes the document, as it is now, into other files, which must not exist yet; callable on any
+    /// thread, even after the work has ended.
     std::function<void(const WorkFiles& to)> copier(std::vector<LabelImage::Color> looks) const;
     void name_files(const std::filesystem::path& mask, const std::filesystem::path& trace,
                     const std::filesystem::path& density);
@@ -177,7 +177,7 @@ public:
     bool is_kept() const;
     /// Completes background tasks, so that another Work can open the same files before this one is destroyed.
     void settle();
-    /// Waits until the journal is on disk, on another thread; empty if there is none. It may outlive the work.
+    /// A function that waits, on any thread, until the journal is on disk; empty: no journal. It may outlive the work.
     std::function<void()> flusher() const;
     /// Returns whether the trace is unchanged since the last save.
     bool trace_is_saved() const { return !touched_[size_t(Part::trace)]; }
@@ -193,8 +193,8 @@ public:
     struct Limits {
         /// Budget of commands kept in memory; older ones are fetched from the journal.
         uint64_t history_bytes = uint64_t{256} << 20;
-        /// After this many bytes (or twice the last state's size), or this many steps, the journal gets a state:
-        /// opening then takes as long as reading one, and states are at most half of a journal.
+        /// After this many bytes (or twice the last state's size), or this many steps, a state is written to the
+        /// journal. Opening then takes as long as reading one state, and states are at most half of a journal.
         uint64_t bytes_between_states = uint64_t{16} << 20;
         size_t steps_between_states = 20000;
     };
@@ -222,7 +222,7 @@ private:
     void open_fresh();
     std::vector<Notice> open_from_files(const std::string& damage);
     void check_subject() const;
-    /// Returns the reason if it stopped early, and then drops the remaining records from the scan; otherwise empty.
+    /// Returns why it stopped early, in which case the remaining records are dropped from the scan; otherwise empty.
     std::string replay();
     struct Replayed {
         Document document;
@@ -287,7 +287,7 @@ private:
     std::optional<FileDescriptor> scanned_;  ///< its file
     bool is_to_set_aside_ = false;           ///< the journal that was read does not belong to this work
     bool only_looks_ = false;
-    bool takes_files_ = false;  ///< and not a journal that cannot be read
+    bool takes_files_ = false;  ///< the saved files count, not a journal that cannot be read
     bool is_fresh_ = false;     ///< started empty next to files of earlier work
     std::string program_;       ///< as in Holder
     std::string claimed_, claimed_by_;
@@ -295,14 +295,14 @@ private:
     std::vector<Dispute> disputes_;
     std::vector<Change> settings_from_outside_;  ///< difference between settings and the session's file, to be recorded
     SettingValues kept_;                         ///< the present values
-    SettingValues journaled_kept_;               ///< the values in the journal
-    RecordNumber last_kept_ = 0;                 ///< the journal's last record of them
-    RecordNumber known_kept_ = 0;                ///< the record up to which the session's file holds them; 0: not known
-    size_t kept_since_whole_ = 0;                ///< number of records since the last one with all sections
+    SettingValues journaled_kept_;               ///< the kept settings in the journal
+    RecordNumber last_kept_ = 0;                 ///< the journal's last record of kept settings
+    RecordNumber known_kept_ = 0;                ///< last `kept` record that the session's file reflects; 0: not known
+    size_t kept_since_whole_ = 0;                ///< number of `kept` records since the last one with all sections
     bool keeps_settings_ = false;                ///< the caller keeps some settings
     bool kept_from_outside_ = false;             ///< whether the state of the session's file is yet to be recorded
     bool cannot_keep_ = false;                   ///< the journal could not be opened; the first command reports why
-    /// From record `since` on positions are in this space; those before the first are, too.
+    /// The space of the positions from record `since` on; the first one also applies to all earlier records.
     struct SpaceSince {
         RecordNumber since = 0;
         JournalSpace space;
@@ -324,7 +324,7 @@ private:
     bool misses_files_ = false;      ///< the journal holds files that are missing; the next save writes them
     std::array<bool, 3> touched_{};  ///< since the last save
     bool is_saving_ = false;
-    bool is_saving_as_ = false;  ///< then both are true
+    bool is_saving_as_ = false;  ///< `is_saving_` is then true, too
     size_t unsaved_since_saving_ = 0;
     std::array<bool, 3> touched_since_saving_{};
     Progress opening_progress_;  ///< null except while opening
@@ -339,8 +339,8 @@ class Work::Saving {
 public:
     Saving(const Saving&) = delete;
     /// Writes the files and their digests, as `Work::save` does, on any thread; only once. An exception from `progress`
-    /// ends it: then some files may be new and the rest old, as after a failure. `save_names` is for new names of files
-    /// where no session is saved: it writes them into the session's file, and no settings.
+    /// ends the save: then some files may be new and the rest old, as after a failure. `save_names`: used if no session
+    /// is saved; writes new names of files, and no settings, into the session's file.
     void write(const std::function<void()>& save_session = {}, const Progress& progress = {},
                const std::function<void()>& save_names = {});
 
@@ -368,7 +368,7 @@ private:
 class Work::SavingAs {
 public:
     SavingAs(const SavingAs&) = delete;
-    /// As Saving::write. Removes the new files if it does not complete.
+    /// Like Saving::write, but removes the new files if the save does not complete.
     void write(const std::function<void()>& save_session = {}, const Progress& progress = {});
 
 private:
@@ -393,7 +393,7 @@ private:
     bool has_session_ = false, is_written_ = false;
 };
 
-/// Notice that the journal is missing although the mask names it; null if it is present, or none is named.
+/// Returns a notice if the journal is missing although the mask names it; null if it is present or none is named.
 std::optional<Notice> note_missing_journal(const WorkFiles& files);
 
 }  // namespace shvr

@@ -60,7 +60,7 @@ fs::path plain(const fs::path& path)
     return fs::absolute(path).lexically_normal();
 }
 
-/// Whether MASK.json says that the mask was saved with this journal, or one at its path.
+/// Whether MASK.json says that the mask was saved with this journal, or with one at its path.
 bool names_journal(const WorkFiles& files)
 {
     const std::optional<MaskJournal> named = journal_of_mask(files.mask);
@@ -118,14 +118,14 @@ std::vector<Notice> Work::open(const WorkFiles& files, const Opening& opening)
     return notices;
 }
 
-/// A mask in a format that is only read is kept as a label image next to it.
+/// A mask in a read-only format is saved as a label image next to it.
 void Work::name_mask(const fs::path& stated)
 {
     files_.mask = saved_mask_path(stated);
     files_.mask_to_read = files_.mask == stated ? fs::path() : stated;
 }
 
-/// Told at opening, before anything is painted.
+/// Reports the mask that is read, at opening, before anything is painted.
 void Work::tell_mask_to_read(std::vector<Notice>& notices) const
 {
     if (is_in_archive(files_.mask))
@@ -235,7 +235,7 @@ void Work::open_fresh()
     }
 }
 
-/// For work without a journal, or with one that holds no state. `damage`: why it holds none, if known.
+/// Opens work without a journal, or with a journal that holds no state. `damage`: why it holds no state, if known.
 std::vector<Notice> Work::open_from_files(const std::string& damage)
 {
     std::vector<Notice> notices;
@@ -256,7 +256,7 @@ std::vector<Notice> Work::open_from_files(const std::string& damage)
              true});
     for (const Part part : PARTS) {
         note_file(part);
-        // A mask may be a label image in an archive; the files next to it by default cannot be.
+        // A mask may be a label image in an archive; trace and offsets, by default next to it, cannot be.
         const fs::path &file = file_to_read(files_, part), &saved = file_of(files_, part);
         if (is_there(file) || (part == Part::mask && is_in_archive(file))) {
             const LoadNotes notes = load(part, files_, document_);
@@ -443,7 +443,7 @@ void Work::look_at_mask_image(std::vector<Notice>& notices) const
     }
 }
 
-/// The record at which the save of a `saved` record began: it holds the work as it was then.
+/// The record at which the save of a `saved` record began; the save contains the work as it was at that record.
 RecordNumber Work::begin_of_save(const JournalScan& scan, RecordNumber saved)
 {
     for (RecordNumber number = saved - 1; number > 0; --number) {

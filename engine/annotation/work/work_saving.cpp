@@ -74,7 +74,7 @@ std::string write_part(Part part, const Document& document, const WorkFiles& fil
     return {};
 }
 
-/// To files that do not exist yet.
+/// Writes a part to a file that does not exist yet.
 void Work::write(Part part, const Document& document, const WorkFiles& files,
                  const std::vector<LabelImage::Color>& looks, const Journal* journal)
 {
@@ -128,7 +128,7 @@ bool Work::Saving::is_to_write(Part part) const
     return is_there(file) ? touched_[size_t(part)] : holds_any(document_, part) || digest_of(known_, part).has_value();
 }
 
-/// Whether a file's content is missing from the journal: detected at opening, or written by others since.
+/// Whether a file has content that the journal lacks: detected at opening, or written by other programs since.
 bool Work::Saving::is_foreign(Part part) const
 {
     const fs::path& file = file_of(files_, part);
@@ -156,7 +156,7 @@ void Work::Saving::write(Part part)
                                                name_of(part), " as this one knows it; it is kept as ", old->string(),
                                                ", and what is saved is this program's"),
                                       true});
-    // Otherwise written by an interrupted save, or by another program with the same content.
+    // If false, the file, if any, is of an interrupted save, or of another program that wrote the same content.
     const bool is_last_save = seen.digest && seen.digest == digest_of(known_, part);
     try {
         std::string kept = write_part(part, document_, files_, looks_, journal_.get(),

@@ -1,5 +1,5 @@
-// Settings that can be undone: the choice between journal and session file at opening, and the records of changes.
-// Kept settings, restored but no steps of the history: the same choice, and how they are written.
+// Settings that can be undone: the choice between journal and session file at opening, and the records of changes. Kept
+// settings, which are restored but are not steps of the history: the same choice, and their records.
 
 #include <utility>
 
@@ -50,7 +50,7 @@ SettingValues Work::settings() const
     return settings.values();
 }
 
-/// A change of the session's file by another program is a step like any other, so it can be undone, too.
+/// Records a change of the session's file by another program as a step like any other, so it can be undone, too.
 void Work::record_settings_from_outside()
 {
     if (settings_from_outside_.empty()) return;
@@ -80,7 +80,7 @@ const Command* Work::change_settings(std::string label, const SettingValues& val
 
 namespace {
 
-/// After this many records with differences, one with all sections is written, so that opening reads few of them.
+/// After this many records of differences, one of all sections is written, so that opening reads few records.
 constexpr size_t MAX_DIFFERENCES = 256;
 
 SettingValues normalized_by(const std::function<SettingValues(const SettingValues&)>& normalized,

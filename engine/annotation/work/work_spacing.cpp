@@ -11,7 +11,7 @@ std::vector<Change> Work::changes_at(RecordNumber number) const
     return changes;
 }
 
-/// Converts a change through all spacings stated after the record.
+/// Converts a change through all spacings that are stated after its record.
 void Work::bring_to_spacing(Change& change, RecordNumber number) const
 {
     for (size_t i = 1; i < spaces_.size(); ++i)

@@ -1,4 +1,4 @@
-// Other writers of the work's journal: their claims, their files, and the place of this one.
+// Handles other writers of the work's journal: their claims, their files, and the path of this work's own file.
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -56,7 +56,7 @@ bool Work::look_for_claim()
     return true;
 }
 
-/// What is told at opening about processes that may still write the journal.
+/// Reports, at opening, the processes that may still write the journal.
 void Work::tell_doubtful(std::vector<Notice>& notices) const
 {
     if (!hold_) return;
@@ -69,8 +69,8 @@ void Work::tell_doubtful(std::vector<Notice>& notices) const
              true});
 }
 
-/// Begins the journal at once if others may still write it. Records written after their marks are revoked are not kept;
-/// earlier ones are read again.
+/// Begins the journal at once if others may still write it. Records that they write after their marks are revoked are
+/// not kept; earlier records are read again.
 void Work::take_over(std::vector<Notice>& notices)
 {
     constexpr int TRIES = 3;
@@ -84,14 +84,14 @@ void Work::take_over(std::vector<Notice>& notices)
         }
 }
 
-/// Where it is unknown whether others have ended, their file is never written again by this process: it continues in a
-/// copy, which it alone created. Null if all of them have closed the journal meanwhile.
+/// If it is unknown whether others have ended, this process never writes their file again: it continues in a copy that
+/// it alone created. Null if all of them have closed the journal meanwhile.
 std::shared_ptr<Journal> Work::journal_left_to_others()
 {
     expect_as_read(files_.journal, scan_);
     if (!hold_->claim()) return nullptr;
     JournalScan copied = is_to_set_aside_ ? JournalScan{} : scan_;
-    // Without a journal there is nothing to copy: one that others begin at this moment is refused.
+    // Without a journal there is nothing to copy. A journal that others begin at this moment is refused.
     if (scan_.inode == 0) return std::make_shared<Journal>(files_.journal, copied, hold_);
     const fs::path own = hold_->own_name();
     ::unlink(own.c_str());  // left by an attempt that failed

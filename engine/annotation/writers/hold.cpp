@@ -194,7 +194,7 @@ std::string in_words(const Holder& holder)
 
 namespace {
 
-/// Locks JOURNAL.lock; fails with JournalTaken if another process has. Null if no lock is possible.
+/// Locks JOURNAL.lock; fails with JournalTaken if another process has locked it. Null if no lock is possible.
 std::optional<FileDescriptor> locked(const fs::path& journal)
 {
     const fs::path path = lock_path(journal);
@@ -202,7 +202,7 @@ std::optional<FileDescriptor> locked(const fs::path& journal)
     for (int i = 0; i < TRIES; ++i) {
         FileDescriptor file = opened(path, O_RDWR | O_CREAT);
         if (!file) {
-            // Another user's file, which can only be read.
+            // The file belongs to another user and can only be read.
             const FileDescriptor readable = opened(path, O_RDONLY);
             if (!readable) return std::nullopt;
             if (is_locked(readable)) refuse(journal, holder_in(readable));
@@ -221,7 +221,7 @@ std::optional<FileDescriptor> locked(const fs::path& journal)
     return std::nullopt;
 }
 
-/// A copy of the journal that the owner of a mark is about to put in its place.
+/// A copy of the journal, made by the owner of a mark, which is about to put it in the journal's place.
 fs::path copy_beside(const fs::path& mark)
 {
     return fs::path(mark).replace_extension(".copy");
@@ -256,12 +256,12 @@ std::shared_ptr<Hold> Hold::take(const fs::path& journal, std::string_view progr
             if (lock) hold->lock_.emplace(std::move(*lock));
             return hold;
         }
-        // Two that begin at the same moment both step back; processes differ in how long.
+        // Two processes that begin at the same moment both step back, for different times.
         std::this_thread::sleep_for(TURN + std::chrono::microseconds(::getpid() % 97 * 50));
     }
 }
 
-/// Returns false if another process is looking, too, unless this is the last try; fails if one holds the journal.
+/// Returns false if another process is also looking, unless this is the last try; fails if one holds the journal.
 bool Hold::looks_alone(bool is_last_try)
 {
     std::optional<std::vector<WriterMark>> marks = marks_of(journal_, mark_);
@@ -319,8 +319,8 @@ bool Hold::claim()
     std::vector<fs::path> claimed;
     for (const fs::path& mark : doubtful_marks_) {
         const fs::path name = revoked(mark);
-        // A mark that is missing was removed by its owner when it closed the journal, or another process has revoked it
-        // since it was listed: then its owner may still write.
+        // A missing mark was removed by its owner, which closed the journal, or was revoked by another process since it
+        // was listed; in the second case its owner may still write.
         const bool is_revoked = name != mark && std::rename(mark.c_str(), name.c_str()) == 0;
         if (!is_revoked && name != mark && errno != ENOENT)
             fail(name.string(), ": cannot be written: ", reason_of(errno));

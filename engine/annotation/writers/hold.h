@@ -1,9 +1,9 @@
 #pragma once
-// The single writer of a journal: from opening for writing until closing, one process holds it. Two means tell others:
+// The single writer of a journal: from opening for writing until closing, one process holds it. Two means show this:
 //
-// - Its own mark in the journal's folder (writer_mark.h), which no other process can create or mistake. Marks alone
-//   decide which process may write: one that finds the mark of a running process is refused. If it is unknown whether
-//   the owner has ended, the journal's file is never written by another one: a later one continues in a copy (`claim`).
+// - The process's own mark in the journal's folder (writer_mark.h), which no other process can create or mistake.
+//   Marks decide which process may write: one that finds the mark of a running process is refused. If it is unknown
+//   whether an owner has ended, no other process writes its file: a later one continues in a copy (`claim`).
 // - A lock of the system on JOURNAL.lock (open file description), where the file system has locks: it ends with the
 //   process, other computers see it, and older programs know it.
 //
@@ -50,8 +50,8 @@ public:
     Hold(const Hold&) = delete;
 
     const std::filesystem::path& journal() const { return journal_; }
-    /// False if another process has claimed the journal meanwhile: this one must not begin to write it, and the records
-    /// that it still writes into its open file stay separate. Any thread.
+    /// False if another process has claimed the journal meanwhile: this process must not begin to write the journal,
+    /// and the records that it still writes into its open file stay separate. Any thread.
     bool is_kept() const;
     /// Another process that writes the journal now. Null if none does.
     std::optional<Holder> successor() const;
@@ -60,10 +60,10 @@ public:
     /// Releases the lock only, so that this process can take another hold after it has lost this one.
     void unlock() { lock_.reset(); }
 
-    /// Processes that held the journal, and may still: they cannot be asked from here.
+    /// Processes that held the journal and may still hold it: from here, it is unknown whether they have ended.
     const std::vector<Holder>& doubtful() const { return doubtful_; }
-    /// Takes the journal from those. False if all of them have closed it meanwhile. If true, their file must not be
-    /// written: it is to be kept under another name, a copy put in its place, and then `end_claim` called.
+    /// Takes the journal from the doubtful processes. False if all of them have closed it meanwhile. If true, do not
+    /// write their file: keep it under another name, put a copy in its place, and then call `end_claim`.
     bool claim();
     void end_claim();
 

@@ -30,7 +30,7 @@ Renaming after_failure(const fs::path& from, const fs::path& to, int error)
     fail(to.string(), ": cannot be written, to keep ", from.filename().string(), " there: ", reason_of(error));
 }
 
-/// Takes the name by an empty file, and replaces that. To be used only if no other process moves that file meanwhile.
+/// Reserves the name with an empty file, then renames over it. Only for names that no other process moves meanwhile.
 Renaming rename_over_own(const fs::path& from, const fs::path& to)
 {
     const FileDescriptor own(::open(to.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
@@ -54,8 +54,8 @@ Renaming move_to_free(const fs::path& from, const fs::path& to)
     const int error = rename_without_replacing(from, to);
     if (error == 0) return Renaming::done;
     if (!lacks_call(error)) return after_failure(from, to, error);
-    // Network file systems have no such flag. A second link and unlink(2) would not do: another process may have put
-    // another file at `from` between the two.
+    // Network file systems have no RENAME_NOREPLACE. A second link and unlink(2) would not do: another process may have
+    // put another file at `from` between the two.
     struct stat status {};
     if (::lstat(from.c_str(), &status) != 0) return after_failure(from, to, errno);
     if (!S_ISDIR(status.st_mode)) return rename_over_own(from, to);
@@ -70,8 +70,8 @@ Renaming put_at_free(const fs::path& own, const fs::path& to)
     int error = rename_without_replacing(own, to);
     if (error == 0) return Renaming::done;
     if (!lacks_call(error)) return after_failure(own, to, error);
-    // Links instead of renaming over an empty placeholder: another process may already have moved that and put its own
-    // file there.
+    // Links instead of renaming over an empty placeholder: another process may already have moved the placeholder and
+    // put its own file there.
     error = ::link(own.c_str(), to.c_str()) == 0 ? 0 : errno;
     if (error == 0) {
         ::unlink(own.c_str());  // no more than a second name

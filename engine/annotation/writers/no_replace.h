@@ -1,6 +1,6 @@
 #pragma once
-// Gives a file a name that no other file has, even if other processes move files at the same moment: a check before
-// rename(2) would leave a gap in which the other file is replaced. Any thread may call these.
+// Gives a file a name that no other file has, even if other processes move files at the same moment: checking before
+// rename(2) would leave a gap in which another process's file could be replaced. Any thread may call these.
 
 #include <filesystem>
 
@@ -12,11 +12,11 @@ enum class Renaming {
     gone,        ///< there is no `from`
 };
 
-/// Renames the file or folder that has a name, which other processes may move at the same time, to a name from which
-/// nothing is moved again. Fails if it cannot for another reason than those.
+/// Renames the file or folder `from`, which other processes may move at the same time, to a name that nothing is moved
+/// away from. Fails only for reasons other than those of `Renaming`.
 Renaming move_to_free(const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// Renames a file that only this process knows to a name from which others may move it. Fails as above.
+/// Renames `own`, which only this process knows, to a name from which others may move it. Fails as `move_to_free`.
 Renaming put_at_free(const std::filesystem::path& own, const std::filesystem::path& to);
 
 }  // namespace shvr

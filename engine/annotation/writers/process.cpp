@@ -19,7 +19,7 @@ namespace shvr {
 
 namespace {
 
-/// The first bytes of a file of /proc, which state no size; empty if it cannot be read.
+/// The first bytes of a file in /proc (such files state no size); empty if the file cannot be read.
 std::string text_of(const std::string& path)
 {
     const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));

@@ -1,5 +1,5 @@
 #pragma once
-// Names of this computer and of processes, by which another process can tell whether one of them has ended. Any thread.
+// Identifies this computer and processes, so that other processes can tell whether one of them has ended. Any thread.
 
 #include <sys/types.h>
 
@@ -12,13 +12,13 @@ namespace shvr {
 
 std::string host_name();
 
-/// Identifies the running kernel, until it is started again: the boot. Empty if that cannot be determined.
+/// Identifies the boot of the running kernel: differs after each restart. Empty if that cannot be determined.
 std::string boot_name();
-/// The space in which this process's number is unique: containers have their own. 0: not known.
+/// The PID namespace in which this process's number is unique: containers have their own. 0: not known.
 uint64_t process_space();
 
-/// When a process began, in the kernel's ticks since boot: with the number, it identifies the process. Null if it has
-/// ended (also if its parent has not waited for it yet); 0 if that cannot be determined.
+/// When a process began, in the kernel's ticks since boot: together with its number, this identifies the process. Null
+/// if it has ended (even if its parent has not waited for it yet); 0 if that cannot be determined.
 std::optional<uint64_t> start_of(pid_t process);
 
 /// Whether a folder is on a disk of one computer, so that every process that can reach it runs on that computer's

@@ -30,7 +30,7 @@ fs::path folder_of(const fs::path& journal)
     return journal.has_parent_path() ? journal.parent_path() : fs::path(".");
 }
 
-/// The beginning of the names of a journal's marks. A long name is cut, and followed by its checksum (FNV-1a).
+/// The beginning of the names of a journal's marks. A long journal name is cut, and its checksum (FNV-1a) appended.
 std::string beginning_of(const fs::path& journal)
 {
     const std::string name = journal.filename().string();
@@ -48,7 +48,7 @@ std::string plain_host()
     return host.empty() ? "unnamed" : host;
 }
 
-/// The first part of a boot's name, which is random.
+/// The first part of a boot's name; the name is random.
 std::string plain_boot()
 {
     const std::string boot = boot_name();
@@ -61,7 +61,7 @@ uint64_t inode_of(const fs::path& folder)
     return ::stat(folder.c_str(), &status) == 0 ? status.st_ino : 0;
 }
 
-/// What a mark's name tells.
+/// The parts of a mark's name, which identify its owner.
 struct Name {
     std::string host, process, boot, space, start, folder;
 };

@@ -1,6 +1,6 @@
 #pragma once
 // Marks of the processes that may write a journal: files in its folder, each created exclusively by one process and
-// named after it, so that no two processes ever mean the same file by a name, and a name is never used again:
+// named after it. So a name never stands for the files of two processes, and no name is ever used again:
 //
 //     JOURNAL.HOST.PROCESS.KERNEL.START.FOLDER.COUNT.lock
 //
@@ -26,7 +26,7 @@ struct WriterMark {
     };
     std::filesystem::path path;
     Owner owner = Owner::unknown;
-    Holder holder{};            ///< as stated in the file, or else derived from its name and time
+    Holder holder{};            ///< as stated in the file, or else derived from the file's name and time
     bool is_described = false;  ///< false: its owner has not looked for others yet
 };
 
@@ -39,7 +39,7 @@ void describe_mark(const std::filesystem::path& mark, const Holder& holder);
 std::optional<std::vector<WriterMark>> marks_of(const std::filesystem::path& journal,
                                                 const std::filesystem::path& own = {});
 
-/// The name to which a mark is renamed when its owner is not to write any more. Such a mark still counts as one.
+/// The name to which a mark is renamed when its owner must not write any more. A revoked mark still counts as a mark.
 std::filesystem::path revoked(const std::filesystem::path& mark);
 
 }  // namespace shvr

@@ -24,13 +24,13 @@ using gdcm::DataSet;
 using gdcm::Tag;
 
 constexpr int64_t MAX_FRAMES = 65536;
-/// Bounds the size of a decoded slice by that of its file; no codec compresses real slices better.
+/// A larger slice must not expand its file by more than MAX_EXPANSION; no codec compresses real slices better.
 constexpr int64_t LARGE_SLICE = int64_t{64} << 20;
 constexpr int64_t MAX_EXPANSION = 1000;
 
 // ---- Values ---------------------------------------------------------------------------------------------------------
 
-/// A data set; in a file with many frames, also the data sets of one frame and of all frames, which come first.
+/// Looks up values in a data set; in a file with many frames, first in the data sets of one frame and of all frames.
 class Values {
 public:
     explicit Values(std::vector<const DataSet*> sets) : sets_(std::move(sets)) {}
@@ -101,7 +101,7 @@ Sequence sequence_of(const DataSet& set, const Tag& tag)
 }
 
 /// The places where values of one frame may be: in the functional groups (PS3.3, C.7.6.16) of the frame or of all
-/// frames, or in the file itself, which may state those of one frame, too.
+/// frames, or in the file's own data set, which may state a frame's values, too.
 class FrameValues {
 public:
     explicit FrameValues(const DataSet& file)
@@ -145,7 +145,7 @@ private:
     fail(file.path.string(), ": ", field, " is ", found, "; expected ", expected);
 }
 
-/// Float Pixel Data and Double Float Pixel Data (PS3.3, C.7.6.24 and C.7.6.25).
+/// Reads the type of Float Pixel Data or Double Float Pixel Data (PS3.3, C.7.6.24 and C.7.6.25).
 VoxelType read_float_type(DicomFile& file, int64_t allocated, std::optional<ValueRange>& stored)
 {
     const bool is_double = file.stored.layout.numbers == DicomLayout::Numbers::float64;
@@ -197,7 +197,7 @@ Rescale read_rescale(const DicomFile& file, const Values& values, const ValueRan
     return rescale;
 }
 
-/// Spacing Between Slices, which some files state as 0, or else Slice Thickness.
+/// Returns Spacing Between Slices or, if that is missing or 0 (as in some files), Slice Thickness.
 std::optional<double> read_distance(const Values& values)
 {
     const std::optional<double> spacing = values.decimal(Tag(0x0018, 0x0088));

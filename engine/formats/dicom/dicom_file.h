@@ -19,17 +19,17 @@ struct DicomFrame {
     glm::dvec3 along_y{0.0, 1.0, 0.0};     ///< from row to row
     std::optional<glm::dvec2> spacing{};   ///< mm from column to column, from row to row
     bool has_orientation = false;
-    /// mm between slices, as stated; slice thickness if nothing else is. Negative: against the normal.
+    /// mm between slices as the file states it, or else slice thickness. Negative: slices run against the normal.
     std::optional<double> distance{};
     int64_t time_number = 0;  ///< temporal position
-    std::string stack{};      ///< identifies the stack of slices it belongs to, in a file of several
+    std::string stack{};      ///< identifies the frame's stack of slices, in a file of several stacks
     Rescale rescale{};
 };
 
 /// How its pixels are stored.
 struct DicomStored {
     DicomLayout layout{};
-    int bits = 0;      ///< bits per pixel, at most those of its type
+    int bits = 0;      ///< bits per pixel, at most the number of bits of its type
     int high_bit = 0;  ///< index of the highest bit
     bool is_signed = false;
 };
@@ -52,12 +52,12 @@ struct DicomFile {
     std::vector<DicomFrame> frames{};
 };
 
-/// Null if the file is not a DICOM file, or has no pixels (a DICOMDIR, a report). Fails if it is broken, or of a kind
-/// that forms no volume.
+/// Null if the file is not a DICOM file, or has no pixels (a DICOMDIR, a report). Fails if the file is broken, or of a
+/// kind that cannot be part of a volume.
 std::optional<DicomFile> read_dicom_file(const std::filesystem::path& path);
 
-/// The pixels of one frame, x fastest, in native byte order; `bytes` is their expected size. Uncompressed ones are
-/// copied from the file; compressed ones are decoded by GDCM or OpenJPEG, which get only them and nothing else of the
+/// The pixels of one frame, x fastest, in native byte order; `bytes` is their expected size. Uncompressed pixels
+/// are copied from the file; compressed pixels are decoded by GDCM or OpenJPEG, which receive nothing else of the
 /// file.
 std::vector<std::byte> read_dicom_pixels(const DicomFile& file, size_t frame, size_t bytes);
 

@@ -1,7 +1,7 @@
 #pragma once
 // Checks the headers of JPEG pictures within a DICOM file (ITU-T T.81, annex B): GDCM's decoder terminates the program
-// on bytes between two segments, on a version of JFIF it does not know, and on depths it does not expect. Pictures that
-// pass are safe to decode: GDCM decodes or refuses them. Any thread.
+// when it meets bytes between two segments, an unknown version of JFIF, or an unexpected depth. Pictures that pass are
+// safe: GDCM decodes or refuses them. Any thread.
 
 #include <span>
 
@@ -9,11 +9,11 @@
 
 namespace shvr {
 
-/// Whether pixels of that transfer syntax are JPEG pictures of the kinds of T.81, or of JPEG-LS (T.87).
+/// Whether pixels of that transfer syntax are JPEG pictures as in T.81, or JPEG-LS pictures (T.87).
 bool is_jpeg(const std::string& transfer_syntax);
 
-/// Fails if a fragment of Pixel Data begins a picture whose header is damaged, or not of that many grey pixels; or if
-/// the first fragment does not begin a picture.
+/// Fails if a fragment of Pixel Data begins a picture whose header is damaged or does not state `columns` x `rows` grey
+/// pixels; or if the first fragment does not begin a picture.
 void check_jpeg_headers(const InputFile& file, std::span<const DicomLayout::Fragment> fragments, int64_t columns,
                         int64_t rows);
 

@@ -54,7 +54,7 @@ using Codec = std::unique_ptr<opj_codec_t, Destroy<opj_destroy_codec>>;
 using Stream = std::unique_ptr<opj_stream_t, Destroy<opj_stream_destroy>>;
 using Image = std::unique_ptr<opj_image_t, Destroy<opj_image_destroy>>;
 
-/// The boxes of a JP2 file begin with this one (annex I.5.1).
+/// Whether the picture begins with the first box of every JP2 file (annex I.5.1).
 bool is_in_boxes(std::span<const std::byte> picture)
 {
     constexpr unsigned char SIGNATURE[] = {0, 0, 0, 12, 'j', 'P', ' ', ' ', 13, 10, 0x87, 10};

@@ -1,7 +1,7 @@
 #pragma once
-// Checks the lengths that a DICOM file states against its size, without reading any value (PS3.5, 7.1 to 7.5). GDCM
-// trusts lengths: it allocates up to 4 GiB for a value before it notices the end of the file, and follows nested
-// sequences until its stack overflows. GDCM can safely read files that pass this check. Any thread may call this.
+// Checks the lengths that a DICOM file states against the file's size, without reading any value (PS3.5, 7.1 to 7.5).
+// GDCM trusts lengths: it allocates up to 4 GiB for a value before it notices the end of the file, and follows nested
+// sequences until its stack overflows. GDCM can safely read files that pass. Any thread may call these.
 
 #include <cstdint>
 #include <optional>
@@ -22,7 +22,7 @@ struct DicomLayout {
     bool is_encapsulated = false;
     enum class Numbers { whole, float32, float64 };
     Numbers numbers = Numbers::whole;  ///< Pixel Data, Float Pixel Data or Double Float Pixel Data
-    /// The number of that element in group 7fe0.
+    /// The element number, in group 7fe0, of the element that holds the pixels.
     uint16_t pixel_element() const
     {
         return numbers == Numbers::whole ? 0x10 : numbers == Numbers::float32 ? 0x8 : 0x9;
@@ -34,7 +34,7 @@ struct DicomLayout {
 };
 
 bool has_preamble(const InputFile& file);
-/// Whether it begins like a DICOM file: with the preamble, or without it with the first elements of an image.
+/// Whether `file` begins like a DICOM file: with the preamble, or else with the first elements of an image.
 bool begins_as_dicom(const InputFile& file);
 
 /// Null if `file` is not a DICOM file. Fails if lengths contradict each other or the size of the file.

@@ -25,8 +25,8 @@ void turn_bytes(std::span<std::byte> pixels, size_t bytes_of_number)
         std::reverse(pixels.begin() + std::ptrdiff_t(i), pixels.begin() + std::ptrdiff_t(i + bytes_of_number));
 }
 
-/// Extracts numbers of `stored.bits` bits, the highest at `stored.high_bit`; the remaining bits, such as overlays, are
-/// not part of them.
+/// Extracts numbers of `stored.bits` bits, whose highest bit is `stored.high_bit`; drops the other bits, which may hold
+/// overlays.
 template <class Number>
 void take_bits(const DicomStored& stored, std::span<std::byte> pixels)
 {
@@ -86,7 +86,7 @@ std::vector<std::byte> bytes_of_picture(const DicomFile& file, size_t frame)
     return picture;
 }
 
-/// The same in GDCM's form.
+/// The encoded picture `picture` in GDCM's form, a sequence of fragments.
 gdcm::SmartPointer<gdcm::SequenceOfFragments> sequence_of(const DicomFile& file, std::span<const std::byte> picture)
 {
     if (picture.size() > UINT32_MAX)
@@ -115,7 +115,7 @@ bool decodes(const DicomFile& file, const gdcm::DataElement& picture, std::span<
     gdcm::DataElement decoded;
     if (!codec.Decode(picture, decoded)) return false;
     const gdcm::ByteValue* bytes = decoded.GetByteValue();
-    if (bytes == nullptr || bytes->GetLength() < pixels.size()) return false;  // more: padded to an even length
+    if (bytes == nullptr || bytes->GetLength() < pixels.size()) return false;  // larger if padded to an even length
     std::memcpy(pixels.data(), bytes->GetPointer(), pixels.size());
     return true;
 }

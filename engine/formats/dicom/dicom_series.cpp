@@ -18,7 +18,7 @@
 namespace shvr {
 namespace {
 
-/// Positions closer than this count as equal: files state them with about six digits.
+/// Positions closer than this count as equal, since files state positions with about six digits.
 constexpr double SAME_PLACE_MM = 1e-3;
 /// Distances may differ by this fraction.
 constexpr double SAME_DISTANCE = 0.01;
@@ -36,10 +36,10 @@ std::string with_digits(double number)
     return sentence(std::setprecision(6), number);
 }
 
-/// Cosines may differ by this much: files state them with few digits, and scanners compute them for each slice.
+/// Direction cosines may differ by this much: files state few digits, and scanners compute them for each slice.
 constexpr double SAME_DIRECTION = 2e-3;
 
-/// Whether slices can be stacked: equal size and type, and directions that differ by rounding alone.
+/// Whether slices can be stacked: their sizes and types are equal, and their directions differ only by rounding.
 bool are_of_one_kind(const Placed& a, const Placed& b)
 {
     const auto are_near = [](const glm::dvec3& one, const glm::dvec3& other) {
@@ -49,7 +49,7 @@ bool are_of_one_kind(const Placed& a, const Placed& b)
            are_near(a.frame->along_x, b.frame->along_x) && are_near(a.frame->along_y, b.frame->along_y);
 }
 
-/// The slices of the most frequent kind; leaves out, for example, a scout image next to an axial series.
+/// Returns the slices of the most frequent kind; omits, for example, a scout image next to an axial series.
 std::vector<Placed> slices_of_one_kind(const std::vector<Placed>& all, VolumeInfo& info)
 {
     std::vector<std::vector<Placed>> kinds;
@@ -71,7 +71,7 @@ std::vector<Placed> slices_of_one_kind(const std::vector<Placed>& all, VolumeInf
 
 constexpr std::string_view STACK = "stack ";
 
-/// The slices of the only stack, or of the one that the options choose: a file of many frames may hold several.
+/// Returns the slices of the only stack, or of the chosen stack: a file of many frames may hold several stacks.
 std::vector<Placed> choose_stack(const std::string& where, const std::vector<DicomFile>& files, OpenOptions& options)
 {
     std::vector<Placed> all;
@@ -104,14 +104,14 @@ std::vector<Placed> choose_stack(const std::string& where, const std::vector<Dic
     return all;
 }
 
-/// By which slices at one place are ordered.
+/// Sort key of slices at the same position.
 auto number_of(const Placed& slice)
 {
     return std::tuple(slice.frame->time_number, slice.file->time_number, slice.file->instance_number, slice.slice.file,
                       slice.slice.frame);
 }
 
-/// Sorts along the normal, or by slice numbers if files do not state positions. Returns whether they do.
+/// Sorts along the normal, or by slice numbers if files do not state positions. Returns whether files state positions.
 bool sort_slices(std::vector<Placed>& slices, VolumeInfo& info)
 {
     const bool are_placed = std::all_of(slices.begin(), slices.end(), [](const Placed& slice) {
@@ -143,7 +143,7 @@ void leave_out_copies(std::vector<Placed>& slices, VolumeInfo& info)
     }
 }
 
-/// Consecutive slices at equal positions.
+/// Groups consecutive slices at equal positions.
 std::vector<std::vector<Placed>> by_position(const std::vector<Placed>& slices)
 {
     std::vector<std::vector<Placed>> positions;
@@ -157,7 +157,7 @@ std::vector<std::vector<Placed>> by_position(const std::vector<Placed>& slices)
     return positions;
 }
 
-/// The number of slices at most positions.
+/// The number of slices that most positions have.
 size_t usual_count(const std::vector<std::vector<Placed>>& positions)
 {
     std::map<size_t, size_t> counts;
@@ -167,7 +167,7 @@ size_t usual_count(const std::vector<std::vector<Placed>>& positions)
         ->first;
 }
 
-/// Positions with more or fewer slices than usual: a slice was scanned again, or is missing.
+/// Handles positions with more or fewer slices than usual, where a slice was scanned again or is missing.
 void choose_repeated(const std::string& where, const OpenOptions& options, VolumeInfo& info,
                      const std::vector<std::vector<Placed>>& positions, std::vector<Placed>& slices)
 {
@@ -189,8 +189,8 @@ void choose_repeated(const std::string& where, const OpenOptions& options, Volum
     slices = std::move(chosen);
 }
 
-/// If there are several slices at each position, keeps those of one time point. Returns false if all slices state one
-/// position and no times: these are no time points, and the position is that of the first slice.
+/// If there are several slices at each position, keeps those of one time point. Returns false if all slices state the
+/// same position and no times: then they are not time points, and the stated position is that of the first slice.
 bool choose_time(const std::string& where, const OpenOptions& options, VolumeInfo& info, std::vector<Placed>& slices)
 {
     const std::vector<std::vector<Placed>> positions = by_position(slices);
@@ -216,7 +216,7 @@ bool choose_time(const std::string& where, const OpenOptions& options, VolumeInf
     return true;
 }
 
-/// The most frequent distance between slices, with a warning about others.
+/// Returns the most frequent distance between slices; warns if there are other distances.
 double find_distance(const std::vector<Placed>& slices, VolumeInfo& info)
 {
     std::vector<double> distances;
@@ -245,7 +245,7 @@ double find_distance(const std::vector<Placed>& slices, VolumeInfo& info)
     return usual;
 }
 
-/// The step from slice to slice. Their first pixels need not be aligned: gantries tilt.
+/// The step from slice to slice. The slices' first pixels need not be aligned along the normal, since gantries tilt.
 glm::dvec3 step_between(const std::vector<Placed>& slices, double distance, const glm::dvec3& normal)
 {
     const glm::dvec3 way = *slices.back().frame->position - *slices.front().frame->position;
@@ -253,7 +253,7 @@ glm::dvec3 step_between(const std::vector<Placed>& slices, double distance, cons
     return height > 0.0 ? way * (distance / height) : normal * distance;
 }
 
-/// Slices that state other spacings within them cannot be stacked as they are; readers draw them as the first.
+/// Warns of slices that state other pixel spacings than the first slice; they are all drawn with that of the first.
 void warn_of_spacings(const std::vector<Placed>& slices, VolumeInfo& info)
 {
     constexpr double SAME_SPACING = 1e-4;
@@ -273,7 +273,7 @@ void warn_of_spacings(const std::vector<Placed>& slices, VolumeInfo& info)
                                      usual.y, " x ", usual.x, " mm, and all are drawn with that"));
 }
 
-/// The step between slices that state no positions of their own; a negative distance runs against the normal.
+/// The step between slices without positions of their own; if the distance is negative, it runs against the normal.
 glm::dvec3 stated_step(const std::vector<Placed>& slices, const glm::dvec3& normal, VolumeInfo& info)
 {
     const DicomFrame& frame = *slices[0].frame;

@@ -1,6 +1,6 @@
 #pragma once
-// Decides which slices of which DICOM files form a volume, in which order, and where it lies. For source_dicom.cpp. Any
-// thread.
+// Decides which slices of which DICOM files form a volume, their order, and the volume's position. For
+// source_dicom.cpp. Any thread.
 
 #include <string>
 #include <vector>
@@ -14,17 +14,17 @@ struct DicomSlice {
     size_t frame = 0;
 };
 
-/// Slices of one size and direction, from first to last; and the volume's description, except its type and name.
+/// Slices of one size and direction, from first to last, and the volume's description without its type and name.
 struct DicomVolume {
     VolumeInfo info{};
     std::vector<DicomSlice> slices{};
 };
 
-/// The files of the only series, or of the one that the options choose. `where`: for messages.
+/// Returns the files of the only series, or of the series that the options choose. `where`: for messages.
 std::vector<DicomFile> choose_series(const std::string& where, std::vector<DicomFile> files,
                                      const OpenOptions& options);
 
-/// Makes a volume of `files`, which must all be of one series; at least one.
+/// Makes a volume of `files`, which must be at least one file, all of one series.
 DicomVolume arrange_slices(const std::string& where, const std::vector<DicomFile>& files, const OpenOptions& options);
 
 /// For messages: "1 slice", "2 slices".

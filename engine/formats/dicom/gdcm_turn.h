@@ -9,8 +9,8 @@
 
 namespace shvr {
 
-/// To be held while GDCM runs. Also silences GDCM, which would write to standard error, and its decoders to C's
-/// `stderr`, which is therefore redirected to /dev/null meanwhile (the GNU C library allows assigning it; file
+/// Hold this lock while GDCM runs. It also silences GDCM, which would write to standard error, and its decoders, which
+/// write to C's `stderr`: `stderr` is redirected to /dev/null meanwhile (the GNU C library allows assigning it; file
 /// descriptor 2, which sanitizers and C++ use, is left alone).
 class GdcmTurn {
 public:

@@ -103,7 +103,7 @@ std::vector<fs::path> dicom_files_in(const fs::path& folder)
 }
 
 /// The DICOM files in folders below: studies come as folders of patients, studies and series. Folders that cannot be
-/// read are passed over, as are links to folders.
+/// read are skipped, and so are links to folders.
 std::vector<fs::path> dicom_files_below(const fs::path& folder)
 {
     constexpr int MAX_DEPTH = 8;
@@ -155,7 +155,7 @@ struct Opened {
     DicomVolume volume{};
 };
 
-/// One file stands for its whole series. A file of many frames may be a volume of its own: then it is read alone.
+/// One file stands for its whole series. But a file of many frames may be a volume of its own, and is then read alone.
 Opened open_file(const fs::path& path, DicomFile&& file, const OpenOptions& options)
 {
     const std::string where = path.string();

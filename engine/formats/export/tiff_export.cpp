@@ -1,4 +1,4 @@
-// Writes a volume as a TIFF through libtiff, which goes back in the file to link pages.
+// Writes a volume as a TIFF through libtiff, which seeks back in the file to link pages.
 
 #include <tiffio.h>
 
@@ -17,7 +17,7 @@ namespace shvr {
 namespace {
 
 /// The file being written, as seen by libtiff's client functions.
-/// They are called from C, so no exception may escape.
+/// These functions are called from C, so no exception may escape.
 struct ClientFile {
     AtomicWriter& writer;
     int64_t at = 0, size = 0;
@@ -121,8 +121,8 @@ int sample_format(VoxelType type)
     return is_signed ? SAMPLEFORMAT_INT : SAMPLEFORMAT_UINT;
 }
 
-/// Lines for ImageJ, which ignores those whose keys it does not know. Its spacing in x and y are the pages' resolution,
-/// fractions of 32 bits.
+/// Lines for ImageJ, which ignores lines with unknown keys. ImageJ reads the spacing in x and y from the pages'
+/// resolution, fractions of 32 bits.
 std::string description_of(const VolumeInfo& info)
 {
     const std::string unit = plain_unit(info.unit);
@@ -143,7 +143,7 @@ void export_tiff(const std::filesystem::path& path, const VolumeSource& source)
     const Size3& size = info.size;
     const auto voxel_bytes = int64_t(bytes_of(info.type));
     AtomicWriter file(path);
-    // Decides first whether 32-bit offsets suffice, since nothing may be compressed before that is known.
+    // Decides first whether 32-bit offsets suffice, since compression must not start before that is known.
     TiffWriter writer(path, file, size.x * size.y * voxel_bytes > (int64_t{1} << 31) / size.z);
     const int64_t step = export_rows(info);
     const std::string description = description_of(info);

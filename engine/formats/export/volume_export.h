@@ -15,14 +15,14 @@
 
 namespace shvr {
 
-/// The key of an exported NRRD that tells a mask or density offsets from a scan: "shvr_content:=mask".
+/// The key that distinguishes an exported mask or density offsets from a scan in NRRD: "shvr_content:=mask".
 inline constexpr const char* NRRD_CONTENT_KEY = "shvr_content";
 
 bool is_volume_export(const std::filesystem::path& path);
 
 /// Replaces an existing file atomically. Fails for any other extension. An NRRD file keeps the comments, key/value
-/// pairs and fields of the NRRD file that it replaces, except those that describe voxels and axes; `pairs` are set in
-/// it, and ignored for TIFF.
+/// pairs and fields of the NRRD file that it replaces, except those that describe voxels and axes. `pairs` are set in
+/// the new NRRD header; they are ignored for TIFF.
 void export_volume(const std::filesystem::path& path, const VolumeSource& source, const Progress& progress = {},
                    const std::vector<NrrdPair>& pairs = {});
 
@@ -30,7 +30,7 @@ void export_volume(const std::filesystem::path& path, const VolumeSource& source
 void export_nrrd(const std::filesystem::path& path, const VolumeSource& source, const std::vector<NrrdPair>& pairs);
 void export_tiff(const std::filesystem::path& path, const VolumeSource& source);
 
-/// The rows of a slice that an export reads at a time: 256 KiB, or one row.
+/// The number of rows of a slice that an export reads at a time: as many as 256 KiB hold, at least one.
 int64_t export_rows(const VolumeInfo& info);
 
 }  // namespace shvr

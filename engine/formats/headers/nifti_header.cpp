@@ -64,7 +64,7 @@ NiftiHeader parse(const Fields& fields, const Places& places)
     return header;
 }
 
-/// Whether `head` is big-endian: it must begin with `bytes`, 348 or 540, in one of the byte orders.
+/// Returns whether `head` is big-endian; it must begin with the number `bytes` (348 or 540) in one of the byte orders.
 std::optional<bool> byte_order(std::string_view head, int32_t bytes)
 {
     if (head.size() < size_t(bytes)) return {};
@@ -123,7 +123,7 @@ std::optional<NiftiAxes> qform_axes(const NiftiHeader& header)
     const double c = header.quaternion.y;
     const double d = header.quaternion.z;
     const double rest = 1.0 - (b * b + c * c + d * d);
-    // The stored numbers are rounded, so the quaternion of a half turn may come out slightly too long.
+    // Stored numbers are rounded, so b, c and d of a half turn may be slightly longer than 1.
     if (!(rest > -1e-3)) return {};
     const double a = std::sqrt(std::max(0.0, rest));
     const double scale = 1.0 / std::sqrt(a * a + b * b + c * c + d * d);

@@ -36,7 +36,7 @@ struct NiftiHeader {
 /// Null if `head`, the first bytes of a file, is not a NIfTI header.
 std::optional<NiftiHeader> parse_nifti_header(std::string_view head);
 
-/// Whether it is a header of Analyze 7.5, the predecessor of NIfTI-1.
+/// Whether `head` is a header of Analyze 7.5, the predecessor of NIfTI-1.
 bool is_analyze_header(std::string_view head);
 
 /// The steps and the origin given by the header's qform, if its numbers are valid.

@@ -51,7 +51,7 @@ std::optional<glm::dvec3> take_vector(std::string_view& rest)
     return vector;
 }
 
-/// One entry per axis of the file; null for an axis that is not spatial ("none", or NaNs).
+/// One entry per axis of the file; null for an axis that is not spatial, whose direction is "none" or NaNs.
 std::vector<std::optional<glm::dvec3>> axis_directions(const HeaderFields& fields, size_t dimension)
 {
     std::string_view rest = fields.required(DIRECTIONS, DIRECTIONS_EXPECTED);
@@ -72,7 +72,7 @@ std::vector<std::optional<glm::dvec3>> axis_directions(const HeaderFields& field
     return directions;
 }
 
-/// Whether the first of four axes is the non-spatial one; otherwise it is the last.
+/// Whether the first of four axes is the non-spatial axis; otherwise, the last axis is.
 bool first_is_not_space(const HeaderFields& fields)
 {
     constexpr const char* EXPECTED = "3, or 4 with kinds or space directions that say which axis is none of space";
@@ -92,7 +92,7 @@ bool first_is_not_space(const HeaderFields& fields)
     fields.refuse("dimension", EXPECTED);
 }
 
-/// Whether the first of three axes is that of colours or components, and the others are spatial.
+/// Whether the first of three axes holds colours or components, and the other two are spatial.
 bool is_picture(std::string_view kinds)
 {
     const std::vector<std::string_view> words = words_of(kinds);
@@ -153,7 +153,7 @@ glm::dvec3 space_origin(const HeaderFields& fields)
     return is_known ? *origin : glm::dvec3(0.0);
 }
 
-/// A known frame, and whether the file's x axis is opposite to the frame's.
+/// A known coordinate frame, and whether the file's x axis is opposite to the frame's x axis.
 struct Space {
     std::string frame;
     bool is_left_handed = false;
@@ -178,7 +178,7 @@ Space space_of(const HeaderFields& fields, VolumeInfo& info)
     return {};
 }
 
-/// Where the samples of an axis lie in its cells: at their ends, or in their middles.
+/// Whether the samples of an axis lie at the ends of its cells; otherwise they lie in the middles.
 bool is_node_centered(const HeaderFields& fields, const NrrdAxes& axes, size_t axis, bool& is_stated)
 {
     const char* const name = fields.has("centers") ? "centers" : "centerings";
@@ -194,8 +194,8 @@ bool is_node_centered(const HeaderFields& fields, const NrrdAxes& axes, size_t a
     return false;
 }
 
-/// Returns the steps stated by "axis mins" and "axis maxs", NaN for an axis without them; null if the header lacks both
-/// fields.
+/// Returns the steps that "axis mins" and "axis maxs" state, with NaN for an axis without them. Null if the header has
+/// neither field.
 std::optional<std::vector<double>> steps_of_ends(const HeaderFields& fields, const NrrdAxes& axes, VolumeInfo& info)
 {
     const char* const mins_name = fields.has("axismins") ? "axismins" : "axis mins";
@@ -250,7 +250,7 @@ std::optional<glm::dmat3> steps_of_spacings(const HeaderFields& fields, const Nr
         if (std::isnan(steps[axis][axis]) && info.size[axis] == 1 && !fields.has("spacings"))
             steps[axis][axis] = std::abs(steps[axis == 0 ? 1 : 0][axis == 0 ? 1 : 0]);
     for (int axis = 0; axis < 3; ++axis) {
-        // The square of anything below 1e-162 is 0.
+        // The square of anything below 1e-162 underflows to 0.
         if (!std::isfinite(glm::length(steps[axis])) || glm::length(steps[axis]) == 0.0) {
             fields.refuse(NAME, sentence(axes.dimension, " finite numbers other than 0"));
         }

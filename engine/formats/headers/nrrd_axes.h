@@ -1,6 +1,6 @@
 #pragma once
-// The axes of an NRRD header: which of them are spatial, how long they are, where they lie. For source_nrrd.cpp. Any
-// thread may call these.
+// The axes of an NRRD header: which of them are spatial, their lengths, and their positions in space. For
+// source_nrrd.cpp. Any thread may call these.
 
 #include <vector>
 
@@ -8,8 +8,8 @@
 
 namespace shvr {
 
-/// Three spatial axes, and at most one more: before them (values of a voxel) or after them (time points). A picture has
-/// two spatial axes after its channels, and one slice.
+/// Three spatial axes, and at most one other axis: before them (values of a voxel) or after them (time points). A
+/// picture has an axis of channels, then two spatial axes, and one slice.
 struct NrrdAxes {
     size_t dimension = 3;
     size_t first = 0;  ///< index of the first spatial axis

@@ -20,7 +20,7 @@ constexpr const char* DATA_FILE = "ElementDataFile";
 struct MhdHeader {
     HeaderFields fields;
     int64_t length = 0;            ///< bytes up to and including the line of ElementDataFile
-    std::string_view file_list{};  ///< the lines after it
+    std::string_view file_list{};  ///< the lines after ElementDataFile
 };
 
 MhdHeader read_mhd_header(const std::filesystem::path& path, const std::string& head)
@@ -35,7 +35,7 @@ MhdHeader read_mhd_header(const std::filesystem::path& path, const std::string& 
             fail(path.string(), ": line ", line_number, " is ", in_quotes(line), "; expected \"key = value\"");
         }
         header.fields.add(line.substr(0, separator), line.substr(separator + 1));
-        // Scenes of other objects repeat their fields; refuse them by their type first.
+        // Headers of other kinds of objects repeat fields; refuse such headers by their object type first.
         const std::string* type = header.fields.find("ObjectType");
         if (type != nullptr && lower_case(*type) != "image") header.fields.refuse("ObjectType", "Image");
     }
@@ -44,7 +44,7 @@ MhdHeader read_mhd_header(const std::filesystem::path& path, const std::string& 
     return header;
 }
 
-/// The first of these names that the header contains; if it contains none, the first of all.
+/// The first of `names` that the header contains; if it contains none of them, the first of `names`.
 const char* first_of(const HeaderFields& fields, std::initializer_list<const char*> names)
 {
     for (const char* name : names) {

@@ -1,5 +1,5 @@
-// NRRD, versions 1 to 6 (http://teem.sourceforge.net/nrrd/format.html): voxels raw or compressed with gzip, in the
-// header's own file, in another one or in many.
+// NRRD, versions 1 to 6 (http://teem.sourceforge.net/nrrd/format.html): voxels raw or compressed with gzip; in the
+// header's own file, in another file, or in several files.
 
 #include <utility>
 
@@ -89,13 +89,13 @@ bool is_big_endian(const HeaderFields& fields, VoxelType type)
     return endian == "big";
 }
 
-/// Skips lines and bytes of one file, as the header states for all files.
+/// Finds the voxels in one file: skips the lines and bytes that the header states for all files.
 RawVoxels::Part place_in(const HeaderFields& fields, const std::filesystem::path& file, int64_t from, bool deflated)
 {
     constexpr int64_t MOST = int64_t{1} << 62;
     const char* const byte_skip = fields.has("byteskip") ? "byteskip" : "byte skip";
     const char* const line_skip = fields.has("lineskip") ? "lineskip" : "line skip";
-    // A negative skip (from the end) does not work on compressed bytes; lines are skipped before decompression.
+    // Compressed bytes allow no negative skip (from the end). Lines are skipped before decompression.
     const int64_t bytes = fields.whole(byte_skip, 0, deflated ? 0 : -1, MOST);
     if (bytes == RawVoxels::AT_END) return {file, RawVoxels::AT_END};
     const int64_t begin = skip_lines(fields, file, from, fields.whole(line_skip, 0, 0, MOST));

@@ -79,8 +79,8 @@ std::vector<fs::path> slices_in(const fs::path& folder, const RawLayout& layout,
     return slices;
 }
 
-/// One file per slice: counts on from the last number in the name of the first file, which holds `bytes`. Empty if that
-/// name contains no digits.
+/// The files of `count` slices, one slice each: counts on from the last number in the name of `first`, which holds
+/// `bytes` bytes. Empty if that name contains no digits.
 std::vector<fs::path> slices_from(const fs::path& first, int64_t count, int64_t bytes)
 {
     const std::string name = first.filename().string();

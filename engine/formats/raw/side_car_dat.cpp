@@ -34,7 +34,7 @@ std::optional<std::string> attribute(std::string_view xml, const std::string& ta
     return {};
 }
 
-/// "x y z" of <Tag X="x" Y="y" Z="z">; null if the tag has none of them.
+/// Returns "x y z" from <Tag X="x" Y="y" Z="z">; null if the tag has none of these attributes.
 std::optional<std::string> attributes(std::string_view xml, const std::string& tag,
                                       std::initializer_list<const char*> names)
 {
@@ -66,7 +66,7 @@ std::optional<std::string> element(std::string_view xml, const std::string& tag)
     return text;
 }
 
-/// Fields under the names that both formats share.
+/// Reads Dragonfly's XML into fields with the names that both formats share.
 HeaderFields dragonfly_fields(const fs::path& path, std::string_view xml)
 {
     HeaderFields fields(path);

@@ -1,4 +1,4 @@
-// Raw voxels whose file name states size and type. A warning says that these are a guess.
+// Raw voxels whose file name states size and type. A warning says that size and type are a guess.
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
@@ -43,7 +43,7 @@ void type_in_name(std::string word, std::optional<VoxelType>& type, std::optiona
     }
 }
 
-/// The type with which the voxels fill the file exactly.
+/// The type with which the voxels would fill the file exactly.
 VoxelType type_by_length(const fs::path& path, const VolumeInfo& info)
 {
     const int64_t count = voxel_count(info);

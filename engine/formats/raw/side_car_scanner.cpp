@@ -1,5 +1,5 @@
 // Headers that CT scanners write next to raw voxels: VGStudio's .vgi, Nikon's .xtekct, and .vol.info of PyHST (ESRF).
-// Layouts after files of these programs; none of them is documented publicly.
+// The layouts are derived from files of these programs; none of them is documented publicly.
 
 #include <array>
 #include <utility>
@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view FILE_SECTION = "[file1]", NEXT_FILE_SECTION = "[file2]";
 
-/// Adds the lines "name = value", inside the section that describes the voxel file, or outside of it. If a field
-/// repeats, the first one counts.
+/// Adds the lines "name = value" to `fields`: those inside the section that describes the voxel file, or, unless
+/// `is_inside`, those outside of it. If a field repeats, the first one counts.
 void add_lines(std::string_view text, bool is_inside, HeaderFields& fields)
 {
     bool is_of_file = false;
@@ -54,7 +54,7 @@ Size3 size_of(const HeaderFields& fields, const std::array<const char*, 3>& name
     return size;
 }
 
-/// The type that the file's size leaves for that number of voxels, where the header states none.
+/// The type that follows from the file's size and the number of voxels, if the header states no type.
 VoxelType type_by_size(const HeaderFields& fields, const fs::path& voxels, VolumeInfo& info)
 {
     std::error_code error;
@@ -169,7 +169,7 @@ SideCar read_vgi(const HeaderFields& fields, fs::path raw)
     return made;
 }
 
-/// A header that was renamed with its voxels names others, so only the names of existing files count.
+/// Whether the header names another existing file. Other names do not count: a renamed header states an old name.
 bool is_of_another(const HeaderFields& fields, const fs::path& raw)
 {
     const std::string* const name = fields.find("Name");

@@ -19,15 +19,15 @@ struct SideCar {
 /// Our own format: `document` describes the voxels of `raw`. Unknown keys are refused.
 SideCar read_json_side_car(const JsonDocument& document, const std::filesystem::path& raw);
 
-/// The text format of NSI and Inviwo, or Dragonfly's XML. `raw` is empty if the side-car itself was opened; it then
-/// names its voxel file. Null if the file is something else.
+/// Reads the text format of NSI and Inviwo, or Dragonfly's XML. `raw` is empty if the user opened the side-car itself,
+/// which then names its voxel file. Null if the file has another format.
 std::optional<SideCar> read_dat_side_car(const std::filesystem::path& path, std::filesystem::path raw);
 
-/// Whether the name is that of a header that CT scanners write: .vgi (VGStudio), .xtekct (Nikon), .vol.info (PyHST).
+/// Whether a file name is that of a header written by CT scanners: .vgi (VGStudio), .xtekct (Nikon), .vol.info (PyHST).
 bool is_scanner_header(const std::filesystem::path& path);
-/// Reads such a header. `raw` is empty if the header itself was opened. Fails if it is broken.
+/// Reads such a header. `raw` is empty if the user opened the header itself. Fails if the header is broken.
 SideCar read_scanner_header(const std::filesystem::path& path, std::filesystem::path raw);
-/// The header next to these voxels; null if there is none.
+/// The scanner header stored next to the voxels in `raw`; null if there is none.
 std::optional<SideCar> find_scanner_header(const std::filesystem::path& raw);
 
 /// Parses "scan_512x512x300_16bit.raw". Null if the name contains no size.

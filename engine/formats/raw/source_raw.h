@@ -1,6 +1,6 @@
 #pragma once
-// Voxels stored one after the other: the content of RAW files, and the data described by the headers of NRRD, MetaImage
-// and NIfTI, in one file or many, raw or deflated.
+// Voxels stored one after the other, in one file or many, raw or deflated: RAW files, and the data that headers of
+// NRRD, MetaImage and NIfTI describe.
 
 #include "engine/volume/source.h"
 
@@ -16,15 +16,15 @@ struct RawVoxels {
 
     std::filesystem::path file{};
     int64_t offset_bytes = 0;  ///< AT_END: the voxels are the last bytes of the file
-    /// Null: the file does not state it. Little-endian is assumed, with a warning, which suggests the other order if
-    /// neighbours are more similar in it.
+    /// Null: the file does not state its byte order. Little-endian is then assumed, with a warning that suggests
+    /// big-endian if neighbouring voxels are more similar in that order.
     std::optional<bool> big_endian = false;
     bool is_deflated = false;   ///< compressed with gzip or zlib, from `offset_bytes` of the file on
     int64_t skip_bytes = 0;     ///< if deflated: decoded bytes before the voxels
-    int64_t bytes_after = 0;    ///< bytes that the header describes after the voxels: other time points
+    int64_t bytes_after = 0;    ///< bytes after the voxels that the header describes as other time points
     std::vector<Part> parts{};  ///< used instead of `file`: each holds an equal share of the voxels, in this order
     int64_t channels = 1;       ///< number of values of each voxel, stored one after the other
-    int64_t channel = 0;        ///< the one to read
+    int64_t channel = 0;        ///< index of the value to read
 };
 
 /// May add to `info.warnings`. Fails if a file is not a regular file or is too short; allocates nothing large.

@@ -37,7 +37,7 @@ fs::path with_suffix(fs::path path, const char* suffix)
     return path += suffix;
 }
 
-/// Null if the document is something else (a session, another program's settings).
+/// Null if the document is not a side-car (but, for example, another program's settings).
 std::optional<JsonDocument> parse_json(const fs::path& path)
 {
     JsonDocument document = read_json(path, MAX_HEADER_BYTES, {.depth = 64, .expected = "size and type"});

@@ -1,7 +1,7 @@
 #pragma once
-// PNG, BMP and JPEG files as slices: their size and samples, and their rows. libpng and libjpeg decode; BMP needs no
-// library. Sizes are checked against the file before memory is taken; rows are decoded one at a time. Any
-// thread may call these.
+// PNG, BMP and JPEG files as slices: their size, samples and rows. libpng and libjpeg decode; BMP needs no library.
+// Sizes are checked against the file before memory is allocated; rows are decoded one at a time. Any thread may call
+// these.
 
 #include <filesystem>
 #include <functional>
@@ -23,7 +23,7 @@ struct PictureLayout {
     VoxelType type = VoxelType::uint8;
     int samples = 1;            ///< per pixel, as rows hold them
     bool has_alpha = false;     ///< the last sample
-    bool is_sliceable() const;  ///< one value for each pixel, besides alpha
+    bool is_sliceable() const;  ///< whether each pixel has one value, apart from alpha
     bool operator==(const PictureLayout&) const = default;
 };
 /// "512x512 pixels of uint8", "512x512 pixels of 3 samples of uint8"
@@ -36,13 +36,13 @@ class PictureFile {
 public:
     virtual ~PictureFile() = default;
     virtual const PictureLayout& layout() const = 0;
-    /// Calls `take` for rows from 0 up to `end_row`, or only from `first_row` on. Once only.
+    /// Calls `take` for the rows before `end_row`, from row 0 or from `first_row` on. May be called once only.
     virtual void read(int64_t first_row, int64_t end_row, const TakeRow& take) = 0;
 };
 
-/// The format by the file's first bytes; null: none of them, as for TIFF.
+/// The format, recognised by the file's first bytes; null for all other formats, including TIFF.
 std::optional<SliceFormat> picture_format(const std::filesystem::path& path);
-/// Reads the header. Fails, naming the file, if it is not a sound one of that format, or not supported.
+/// Reads the header. Fails, naming the file, if the header is damaged, of another format, or not supported.
 std::unique_ptr<PictureFile> open_picture(const std::filesystem::path& path, SliceFormat format);
 
 // One for each format, for open_picture.
@@ -52,8 +52,8 @@ std::unique_ptr<PictureFile> open_jpeg_picture(const std::filesystem::path& path
 
 /// Fails unless each side is 1 to 2^20.
 void check_picture_size(const std::filesystem::path& path, int64_t width, int64_t height);
-/// Fails if the pixels have more bytes than a file of `file_bytes` can expand to, by the factor that its compression
-/// allows at most: then it is truncated, or made to exhaust memory.
+/// Fails if `pixel_bytes` exceeds `file_bytes` times `factor`, the maximum expansion of the file's compression: then
+/// the file is truncated, or made to exhaust memory.
 void check_expansion(const std::filesystem::path& path, int64_t pixel_bytes, int64_t file_bytes, int64_t factor);
 
 /// A file for the C libraries, closed at the end.

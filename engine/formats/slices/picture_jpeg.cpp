@@ -13,7 +13,7 @@
 namespace shvr {
 namespace {
 
-/// A block of 8 x 8 pixels takes at least a bit.
+/// Every block of 8 x 8 pixels takes at least one bit of the file.
 constexpr int64_t MAX_EXPANSION = 512;
 
 class JpegPicture final : public PictureFile {
@@ -55,7 +55,7 @@ public:
 
 private:
     static void leave(j_common_ptr jpeg) { std::longjmp(static_cast<JpegPicture*>(jpeg->client_data)->on_error_, 1); }
-    /// Damage of the pixels, which libjpeg would only warn of.
+    /// Records damage of the pixels; libjpeg by itself would only warn.
     static void note(j_common_ptr jpeg, int level)
     {
         if (level < 0 && jpeg->err->msg_code != JWRN_EXTRANEOUS_DATA) leave(jpeg);
@@ -68,7 +68,7 @@ private:
         fail(path_.string(), ": is no sound JPEG (libjpeg: ", message, "); expected one that is complete");
     }
 
-    // The functions that libjpeg jumps back to create no objects that would have to be destroyed.
+    // On errors, libjpeg jumps back to the functions below; they create no objects that would have to be destroyed.
 
     void read_header()
     {

@@ -44,7 +44,7 @@ public:
         }
         for (int64_t y = first_row; is_interlaced_ && y < end_row; ++y)
             take(y, std::span(pixels_).subspan(size_t(y) * row_bytes, row_bytes));
-        // The end of the last row is also that of the checked stream.
+        // The checked stream ends with the last row.
         if (end_row == layout_.height) finish();
     }
 
@@ -61,7 +61,7 @@ private:
         fail(path_.string(), ": is no sound PNG (libpng: ", error_, "); expected one that is complete");
     }
 
-    // The functions that libpng jumps back to create no objects that would have to be destroyed.
+    // On errors, libpng jumps back to the functions below; they create no objects that would have to be destroyed.
 
     void read_header()
     {
@@ -70,7 +70,7 @@ private:
         png_read_info(png_, info_);
     }
 
-    /// The header, before any memory is taken for pixels.
+    /// Checks the header before memory is allocated for pixels.
     void check_stored()
     {
         layout_.width = png_get_image_width(png_, info_);
@@ -87,7 +87,7 @@ private:
                  " bytes of them: save it without interlacing");
     }
 
-    /// Values stay as they are stored; palettes become grey or colours.
+    /// Keeps values as stored, but expands palettes to grey or colours.
     void set_conversions()
     {
         if (setjmp(png_jmpbuf(png_)) != 0) refuse();

@@ -14,10 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Logs beyond that many in a folder are not looked at.
+/// Maximum number of logs in a folder that are considered.
 constexpr int MAX_LOGS = 1000;
 
-/// The log in the slice's folder with the longest name that the slice's begins with.
+/// Of the logs in the slice's folder whose names are prefixes of the slice's name, the one with the longest name.
 std::optional<fs::path> log_of(const fs::path& slice)
 {
     const std::string name = lower_case(slice.filename().string());
@@ -38,7 +38,7 @@ std::optional<fs::path> log_of(const fs::path& slice)
     return found;
 }
 
-/// The values of the log; those of the reconstruction replace those of the acquisition.
+/// The values of the log by lower-case key; those of the section [Reconstruction] by "reconstruction/KEY".
 std::map<std::string, std::string> values_of(const fs::path& log)
 {
     std::map<std::string, std::string> values;

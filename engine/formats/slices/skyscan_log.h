@@ -8,9 +8,9 @@
 
 namespace shvr {
 
-/// Sets the spacing of `info`, whose size is known, from the log that belongs to the slice, with a warning if that
-/// differs from what the slices state. Does nothing if there is no such log. A log that does not fit, or that is
-/// malformed, is left out with a warning.
+/// Sets the spacing of `info`, whose size is known, from the log that belongs to the slice, with a warning if the log's
+/// spacing differs from that of the slices. Does nothing if there is no such log. A log that does not fit the slices,
+/// or that is malformed, is ignored with a warning.
 void apply_skyscan_log(const std::filesystem::path& slice, VolumeInfo& info);
 
 }  // namespace shvr

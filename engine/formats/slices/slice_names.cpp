@@ -33,7 +33,7 @@ SliceName taken_apart(const fs::path& path)
     return name;
 }
 
-/// Compares as numbers, however long; fractions are decimal digits after a point.
+/// Compares numbers of any length, given as digits; fractions are decimal digits after a point.
 bool is_less(const std::string& a, const std::string& b)
 {
     const size_t whole_a = std::min(a.find('.'), a.size()), whole_b = std::min(b.find('.'), b.size());
@@ -49,8 +49,8 @@ bool comes_before(const SliceName& a, const SliceName& b)
     return a.file < b.file;
 }
 
-/// The names with the two numbers around the only point read as one decimal number, "z_8.5": for names of one pattern.
-/// Null if they have no such point, or several.
+/// Reads the two numbers around the only point of each name as one decimal number, as in "z_8.5". All names must have
+/// the same pattern. Null if the names have no such point, or several points.
 std::optional<std::vector<SliceName>> with_decimals(std::vector<SliceName> names)
 {
     const std::string& pattern = names.front().pattern;
@@ -70,8 +70,8 @@ std::optional<std::vector<SliceName>> with_decimals(std::vector<SliceName> names
     return names;
 }
 
-/// The number that counts the slices: the first one that differs from file to file and never decreases. Null if the
-/// names belong to several series.
+/// The index of the number that counts the slices: the first number that differs from file to file and never decreases.
+/// Null if the names belong to several series.
 std::optional<size_t> counting_number(const std::vector<SliceName>& names)
 {
     for (size_t number = 0; number < names.front().numbers.size(); ++number) {
@@ -91,7 +91,7 @@ std::string series_of(const SliceName& name, size_t last_number)
     return series;
 }
 
-/// Removes single pictures of another pattern that are no slices of the one series of several files.
+/// If one pattern has several files, removes single pictures of other patterns that are no slices of that series.
 void remove_odd_pictures(const DiffersInSize& differs, std::vector<SliceName>& names,
                          std::vector<std::string>& warnings)
 {
@@ -147,7 +147,7 @@ size_t check_one_series(const fs::path& folder, const char* kind, std::vector<Sl
              in_quotes(names.front().file), " and ", in_quotes(names[1].file),
              " among them; expected the numbered slices of one volume: number them, or open one of the files");
     }
-    // Sorted by pattern; within one, by the numbers before the last one that differs.
+    // Distinguishes series by pattern or, within one pattern, by the numbers before the last one that differs.
     size_t last_number = 0;
     for (size_t i = 0; is_one_pattern && i < names.front().numbers.size(); ++i) {
         const auto is_other = [&](const SliceName& name) { return name.numbers[i] != names.front().numbers[i]; };
@@ -170,7 +170,7 @@ void warn_of_gaps(const std::vector<SliceName>& names, size_t number, std::vecto
         const std::string& a = names[i - 1].numbers[number];
         const std::string& b = names[i].numbers[number];
         const std::optional<double> lower = number_of(a.empty() ? "0" : a), upper = number_of(b);
-        constexpr double MOST = 9e15;  // doubles hold every whole number up to it
+        constexpr double MOST = 9e15;  // doubles represent every whole number up to this
         if (!lower || !upper || *upper > MOST) return;
         const double found = *upper - *lower;
         if (!step) step = found;
@@ -189,7 +189,7 @@ constexpr std::string_view JPEG_EXTENSIONS[] = {".jpg", ".jpeg"};
 
 bool has_extension(const fs::path& path, std::span<const std::string_view> extensions)
 {
-    // Other systems keep metadata in files whose names begin with a dot ("._slice1.tif").
+    // Some systems keep metadata in files whose names begin with a dot ("._slice1.tif").
     return std::ranges::find(extensions, lower_case(path.extension().string())) != extensions.end() &&
            !path.filename().string().starts_with('.');
 }

@@ -15,7 +15,7 @@ namespace shvr {
 
 inline constexpr size_t MAX_SLICES = size_t{1} << 20;
 
-/// A file's name without its extension, split up: "Slice_007b" is "slice_/b" and "007". No name holds a slash.
+/// A file's name without its extension, split up: "Slice_007b" becomes "slice_/b" and "007". Names contain no slash.
 struct SliceName {
     std::string file;
     std::string pattern;
@@ -23,25 +23,25 @@ struct SliceName {
     std::vector<std::string> numbers;  ///< without leading zeros
 };
 
-/// The names in a folder with one of these extensions, in lower case; `kind`: "TIFFs", for messages. At most
-/// MAX_SLICES.
+/// The names of files in `folder` with one of these extensions, which are in lower case. `kind` names such files in
+/// messages, as in "TIFFs". At most MAX_SLICES.
 std::vector<SliceName> slice_names_in(const std::filesystem::path& folder, std::span<const std::string_view> extensions,
                                       const char* kind);
 
-/// Whether the picture in the first file has another size than that in the second.
+/// Whether the picture in the first file differs in size from the picture in the second.
 using DiffersInSize = std::function<bool(const std::string& a, const std::string& b)>;
-/// Brings names of one series into order and drops pictures that belong to none: a single name of its own pattern with
-/// fewer numbers, or of another size. `warnings` name those, and gaps in the numbering, since slices are drawn evenly
-/// spaced. Fails if there are several series, or names without numbers.
+/// Sorts the names of one series and drops pictures that belong to no series: a single name of its own pattern with
+/// fewer numbers, or with another picture size. Adds `warnings` that name the dropped pictures, and warnings about gaps
+/// in the numbering, since slices are drawn evenly spaced. Fails if there are several series, or names without numbers.
 void order_slices(const std::filesystem::path& folder, const char* kind, const DiffersInSize& differs,
                   std::vector<SliceName>& names, std::vector<std::string>& warnings);
 
-/// Formats of slices, and how many files of each a folder holds: the slices are of the one with most files.
+/// Formats of slices. If a folder holds files of several formats, the slices are of the format with the most files.
 enum class SliceFormat { tiff, png, bmp, jpeg };
 inline constexpr SliceFormat SLICE_FORMATS[] = {SliceFormat::tiff, SliceFormat::png, SliceFormat::bmp,
                                                 SliceFormat::jpeg};
 std::span<const std::string_view> extensions_of(SliceFormat format);
-/// Null if the folder holds none. Of equally many, the first in the order above.
+/// The format with the most files; of equally frequent formats, the first in the order above. Null if there is none.
 std::optional<SliceFormat> main_slice_format(const std::filesystem::path& folder);
 
 }  // namespace shvr

@@ -30,8 +30,8 @@ const char* name_of(SliceFormat format)
     return "";
 }
 
-/// Decoded slices: bricks need a part of each slice, and a picture is decoded from its first row on. Random eviction,
-/// as for blocks of TIFFs: passes that cycle through a volume need next what was used longest ago.
+/// Caches decoded slices: bricks need a part of each slice, and pictures are decoded from their first row on. Evicts at
+/// random, as for blocks of TIFFs: passes that cycle through a volume next need the slice used longest ago.
 class SliceCache {
 public:
     using Slice = std::shared_ptr<const std::vector<std::byte>>;
@@ -103,7 +103,7 @@ public:
     }
 
 private:
-    /// Decodes the rows of a slice up to the last one of the box, whose part of slice z goes into `voxels`.
+    /// Decodes slice z up to the last row of the box, and copies the box's part of the slice into `voxels`.
     void decode(int64_t z, const VoxelBox& box, std::span<std::byte> voxels) const
     {
         const fs::path& path = pictures_.files[size_t(z)];
@@ -126,7 +126,7 @@ private:
     mutable SliceCache cache_;
 };
 
-/// The channel of colours that the options choose; the alpha of grey pictures is left out.
+/// The colour channel that the options choose. The alpha channel of grey pictures is dropped.
 int channel_of(const std::string& name, const PictureLayout& layout, const OpenOptions& options,
                std::vector<std::string>& warnings)
 {

@@ -75,7 +75,7 @@ private:
 };
 
 /// Refuses files with fields of programs that store stacks in unsupported ways: read as a page, such a stack would
-/// become one slice of many.
+/// become one slice instead of many.
 void refuse_other_stacks(const TiffFile& file, uint64_t directory)
 {
     constexpr std::pair<uint16_t, const char*> TAGS[] = {{33629, "MetaMorph (UIC2)"}, {33630, "MetaMorph (UIC3)"}};
@@ -100,7 +100,7 @@ public:
         const TiffPage first_page(*file_, directories_.pages.front().offset, 1);
         refuse_other_stacks(*file_, directories_.pages.front().offset);
 
-        // An OME-TIFF states which pages are planes. In other files, those with the most voxels are.
+        // An OME-TIFF states which pages are planes. In other files, the pages with the most voxels are the planes.
         const uint32_t first = pages_to_show(directories_).front();
         description_ = read_description(*file_, first_page.text(TIFFTAG_IMAGEDESCRIPTION),
                                         layout_of_page(first).samples, TiffRole::whole);
@@ -166,8 +166,8 @@ private:
         std::swap(description_.channels, description_.slices);
     }
 
-    /// A stack that was recorded as time points or channels of one slice each: time points of one channel are taken as
-    /// slices unless one of them is chosen; others by the choice "slices".
+    /// Handles a stack that was recorded as time points or channels of one slice each. Time points of one channel
+    /// become slices unless one of them is chosen; otherwise the choice "slices" has this effect.
     void take_frames_as_slices()
     {
         TiffDescription& description = description_;
@@ -190,7 +190,7 @@ private:
         }
     }
 
-    /// From "channels fastest" to "time points fastest", as slices are.
+    /// Reorders pages from "channels vary fastest" to "time points vary fastest", the order of slices.
     void put_frames_first(std::vector<uint32_t>& of_pages) const
     {
         const std::vector<uint32_t> before = of_pages;
@@ -198,7 +198,7 @@ private:
         for (size_t i = 0; i < before.size(); ++i) of_pages[i / channels + frames * (i % channels)] = before[i];
     }
 
-    /// Checks pages of different kinds. Their pictures may be equal all the same, but stored in different ways.
+    /// Checks the pages of each kind. Kinds may differ only in how equal pictures are stored.
     void check_kinds()
     {
         std::vector<int64_t> pages(directories_.kinds.size());
@@ -214,7 +214,7 @@ private:
         }
     }
 
-    /// The run of equal pages with the most voxels. Other pages must come before or after it, and are left out.
+    /// The run of equal pages with the most voxels. All other pages come before or after the run, and are left out.
     std::vector<uint32_t> main_series(const std::vector<uint32_t>& pages)
     {
         if (pages.size() < directories_.pages.size()) {
@@ -278,8 +278,8 @@ private:
         description_.pages.clear();
     }
 
-    /// Checks ImageJ's layout for stacks above 4 GiB, which also works for small ones: the first directory is the only
-    /// one, and the voxels of the images follow each other without gaps.
+    /// Checks ImageJ's layout for stacks above 4 GiB, which also works for smaller stacks: the file has only one
+    /// directory, and the voxels of the images follow each other without gaps.
     void check_contiguous(int64_t planes)
     {
         const TiffPage page(*file_, directories_.pages.front().offset, 1);
@@ -298,7 +298,7 @@ private:
             if (extent.offset == first.offset + block * layout.block_height * layout.block_row_bytes()) continue;
             refuse("whose strips have gaps; expected strips that follow each other, or a page for each image");
         }
-        // No overflow: `planes` is at most 2^20, and a page has at most 2^40 pixels, whose samples the file holds.
+        // No overflow: `planes` is at most 2^20; a page has at most 2^40 pixels, whose samples the file holds.
         int64_t needed = 0;
         if (__builtin_mul_overflow(planes, layout.page_bytes(), &needed) ||
             !file_->holds(uint64_t(first.offset), uint64_t(needed))) {
@@ -308,8 +308,8 @@ private:
         is_contiguous_ = true;
     }
 
-    /// Checks that the pages that OME-XML names are alike. Pages at the end of a file that was aborted are missing:
-    /// their slices cannot be read, the others can.
+    /// Checks that the pages that OME-XML names are alike. If the writing of a file was aborted, pages are missing at
+    /// its end: their slices cannot be read, the others can.
     void check_planes()
     {
         uint32_t lacking = 0;
@@ -336,7 +336,7 @@ private:
                                                      "aborted; their slices cannot be read"));
     }
 
-    /// The same for pages in several files.
+    /// Does the same as check_planes() for pages in several files.
     void check_planes_in_files()
     {
         std::map<std::pair<uint32_t, uint32_t>, TiffLayout> layouts;  // by file and kind

@@ -16,7 +16,7 @@ struct TiffVolume {
     std::vector<TiffSlice> slices{};  ///< one for each z
 };
 
-/// Opens the stack's files when they are read; `file`, if given, is the only one and already open.
+/// Makes a source that opens files when they are read. `file`, if given, is the only file, already open.
 std::unique_ptr<VolumeSource> make_tiff_source(TiffVolume volume, std::unique_ptr<const TiffFile> file);
 
 /// Sets `info.type` and `recipe` for the chosen channel of each pixel; warns about any change of values. `description`
@@ -24,7 +24,7 @@ std::unique_ptr<VolumeSource> make_tiff_source(TiffVolume volume, std::unique_pt
 void apply_recipe(TiffVolume& volume, const TiffPage& page, const TiffPixelChannel& channel,
                   const TiffDescription& description);
 
-/// The pages that may be slices: neither smaller copies nor masks, unless all pages are.
+/// The pages that may be slices. Omits smaller copies and masks, unless all pages are such.
 std::vector<uint32_t> pages_to_show(const TiffDirectories& directories);
 
 /// One file, whatever its name.

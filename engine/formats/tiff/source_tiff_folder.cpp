@@ -75,7 +75,7 @@ private:
         }
         const TiffDirectory& directory = directories.pages[shown.front()];
         const size_t number = shown.front() + 1;
-        // Directories in thousands of files are mostly alike, so libtiff reads only one of each kind.
+        // Directories in thousands of files are mostly alike, so libtiff reads only one directory of each kind.
         const auto known = layouts_.find(directories.kinds[directory.kind].fields);
         if (known != layouts_.end()) {
             check_amount(file, known->second, 1);
@@ -127,7 +127,7 @@ std::unique_ptr<VolumeSource> open_tiff_folder(const fs::path& path, const OpenO
 {
     std::vector<SliceName> names = slice_names_in(path, extensions_of(SliceFormat::tiff), KIND);
     if (names.empty()) return nullptr;
-    // A preview of one page lies next to slices of another format.
+    // A TIFF of one page next to slices of another format is a preview.
     const auto has_one_page = [&] {
         return pages_to_show(read_directories(TiffFile(path / names.front().file))).size() == 1;
     };

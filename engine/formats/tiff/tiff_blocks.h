@@ -1,6 +1,6 @@
 #pragma once
 // Reads a rectangle of one page. Uncompressed samples are read straight to their destination. A block that is needed as
-// a whole is decoded there; a block that is needed in part is decoded once and cached for neighbouring reads.
+// a whole is decoded into the destination; a block needed in part is decoded once and cached for neighbouring reads.
 
 #include <map>
 #include <mutex>
@@ -13,14 +13,14 @@ namespace shvr {
 /// Place of a slice of a volume in its file.
 struct TiffSlice {
     uint32_t file = 0;       ///< index into the volume's files
-    uint32_t page = 1;       ///< in that file, for messages; 0: the file lacks it
+    uint32_t page = 1;       ///< number of the page in that file, for messages; 0: the file lacks it
     uint64_t directory = 0;  ///< in that file
-    /// ImageJ's long stacks have one directory; the voxels of later slices follow those that it names at this distance.
+    /// ImageJ's long stacks have one directory: a slice's voxels lie this far behind those that the directory names.
     int64_t shift_bytes = 0;
 };
 
-/// Caches decoded blocks: at most `MAX_BYTES`, but at least the last one. Any thread may use it; two threads that want
-/// the same block decode it once.
+/// Caches decoded blocks: at most `MAX_BYTES`, but always the last block. Any thread may use it; if two threads want
+/// the same block, it is decoded once.
 class TiffBlockCache {
 public:
     static constexpr size_t MAX_BYTES = size_t{64} << 20;

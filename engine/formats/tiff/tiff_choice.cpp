@@ -29,7 +29,7 @@ std::string numbers_to(int64_t count)
     return text;
 }
 
-/// The words to request each channel with: its name if that is a word, otherwise its number.
+/// The words by which a user chooses each channel: its name if that is a word, otherwise its number.
 std::string channel_choices(const std::vector<std::string>& names)
 {
     constexpr size_t MOST = 8;
@@ -84,7 +84,7 @@ bool is_grey_ramp(const std::vector<uint16_t>& palette)
     const auto last = double(palette.size() - 1);
     for (size_t i = 0; i < palette.size(); ++i) {
         const double expected = double(i) / last;
-        // The value was stored as 8 bits in the higher byte, or as 16 bits.
+        // Allows for both ways of storing a palette value: 8 bits in the higher byte, or 16 bits.
         if (std::abs(palette[i] / 65535.0 - expected) > 1.0 / 250.0) return false;
     }
     return true;
@@ -99,7 +99,7 @@ std::vector<TiffPixelChannel> palette_channels(const TiffPage& page, const TiffL
     for (int color = 0; color < 3; ++color) is_ramp = is_ramp && is_grey_ramp(palette_of(page, layout, color));
     if (is_ramp) return {{}};
     if (description.writer != TiffDescription::Writer::unknown) {
-        // Here a palette only displays the intensities; it is not part of them.
+        // Here the palette only serves to display the intensities, and is not part of them.
         warnings.emplace_back("the colours of its lookup table were left out");
         return {{}};
     }

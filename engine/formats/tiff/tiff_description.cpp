@@ -15,7 +15,7 @@ namespace {
 constexpr double UM_PER_INCH = 25400.0;
 constexpr double UM_PER_CM = 10000.0;
 
-/// The unit in micrometres; null if it is not a known unit of length.
+/// Returns the length of a unit in micrometres; null if it is not a known unit of length.
 std::optional<double> um_of(const std::string& unit)
 {
     constexpr std::pair<const char*, double> LENGTHS[] = {
@@ -27,7 +27,7 @@ std::optional<double> um_of(const std::string& unit)
     return {};
 }
 
-/// Null if it is a word for voxels rather than a unit of length.
+/// Returns the unit of length; null if `stated` is a word for voxels instead.
 std::optional<std::string> length_unit(const std::string& stated)
 {
     const std::string unit = plain_unit(stated);
@@ -41,7 +41,7 @@ std::optional<std::string> length_unit(const std::string& stated)
     return unit;
 }
 
-/// The distance between pixels according to the resolution fields.
+/// The number of pixels per unit according to the resolution fields.
 struct Resolution {
     std::optional<double> x, y;  ///< pixels per unit
     double um_per_unit = 0.0;    ///< 0: the fields name no unit
@@ -57,7 +57,7 @@ Resolution resolution_of(const TiffFile& file, uint64_t directory, const TiffPag
     const uint16_t unit = page.number16(TIFFTAG_RESOLUTIONUNIT, RESUNIT_INCH);
     if (unit == RESUNIT_INCH) resolution.um_per_unit = UM_PER_INCH;
     if (unit == RESUNIT_CENTIMETER) resolution.um_per_unit = UM_PER_CM;
-    // Values written by programs for screens and printers, which mean nothing here. 1 stands for "unknown".
+    // Values that programs write for screens and printers, and that mean nothing here. 1 stands for "unknown".
     const double dots_per_inch = *resolution.x * (resolution.um_per_unit == UM_PER_CM ? 2.54 : 1.0);
     for (const double usual : {72.0, 75.0, 90.0, 96.0, 100.0, 120.0, 144.0, 150.0, 200.0, 300.0, 600.0, 1200.0}) {
         if (std::abs(dots_per_inch - usual) < 0.02 * 2.54) resolution.is_for_printing = true;
@@ -66,7 +66,7 @@ Resolution resolution_of(const TiffFile& file, uint64_t directory, const TiffPag
     return resolution;
 }
 
-/// Axes may be stated in different units; all are converted to that of x.
+/// Converts the spacings of y and z, which may be stated in other units than that of x, to the unit of x.
 void use_one_unit(TiffDescription& description)
 {
     for (int axis = 1; axis < 3; ++axis) {
@@ -102,7 +102,7 @@ void add_resolution(TiffDescription& description, const Resolution& resolution)
         return;
     }
     if (has_unit || (is_imagej && resolution.um_per_unit == 0.0)) {
-        // ImageJ states pixels per its own unit.
+        // ImageJ states pixels per unit of its own description.
         description.spacing[0] = 1.0 / *resolution.x;
         description.spacing[1] = 1.0 / *resolution.y;
         return;
@@ -116,7 +116,7 @@ void add_resolution(TiffDescription& description, const Resolution& resolution)
         return;
     }
     if (resolution.um_per_unit == 0.0) {
-        // Without a unit, the two state only the aspect ratio of a pixel.
+        // Without a unit, the two values state only the aspect ratio of a pixel.
         if (*resolution.x == *resolution.y) return;
         description.spacing[0] = 1.0;
         description.spacing[1] = *resolution.x / *resolution.y;
@@ -124,11 +124,11 @@ void add_resolution(TiffDescription& description, const Resolution& resolution)
     }
     description.spacing[0] = resolution.um_per_unit / *resolution.x;
     description.spacing[1] = resolution.um_per_unit / *resolution.y;
-    if (description.spacing[2]) *description.spacing[2] *= resolution.um_per_unit;  // ImageJ's, in the same unit
+    if (description.spacing[2]) *description.spacing[2] *= resolution.um_per_unit;  // ImageJ states it in the same unit
     for (std::string& unit : description.unit) unit = "um";
 }
 
-/// Resolution fields are fractions of 32 bits: takes the exact spacing if they were derived from it.
+/// Resolution fields are 32-bit fractions, so the exact spacing is taken instead if the fields were derived from it.
 void take_place(VolumeInfo& info, const TiffDescription::Place& place, const std::string& unit)
 {
     constexpr double TOLERANCE = 1e-5;
@@ -175,7 +175,7 @@ void apply_tiff_spacing(VolumeInfo& info, const TiffDescription& stated, const T
     }
     glm::dvec3 spacing(description.spacing[0].value_or(1.0));
     spacing.y = description.spacing[1].value_or(spacing.x);
-    // ImageJ omits a slice distance of 1.
+    // ImageJ omits the distance between slices if it is 1.
     spacing.z = description.spacing[2].value_or(is_imagej ? 1.0 : spacing.x);
     const bool is_nothing = !unit && spacing == glm::dvec3(1.0);
     if (!description.spacing[2] && info.size.z > 1 && !is_nothing) {

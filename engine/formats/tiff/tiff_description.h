@@ -1,6 +1,6 @@
 #pragma once
 // The descriptions of the whole stack that programs write into a TIFF's ImageDescription: "key=value" lines by ImageJ,
-// XML by OME-TIFF. Also spacing, from there or from the page's resolution fields. Any thread may call these.
+// XML by OME-TIFF. Also the spacing, from the description or the page's resolution fields. Any thread may call these.
 
 #include <optional>
 #include <string>
@@ -16,17 +16,17 @@ struct TiffDescription {
     enum class Writer { unknown, imagej, ome };
     Writer writer = Writer::unknown;
 
-    /// Each is 1 if nothing is stated. A channel here is a page of its own; colours of a pixel are not counted.
+    /// Each is 1 if nothing is stated. Each channel here has pages of its own; the colours of a pixel are not counted.
     int64_t slices = 1, channels = 1, frames = 1;
-    /// The page (from 0) of slice z, channel c, frame t, at index z + slices * (c + channels * t). Empty: pages are in
-    /// ImageJ's order, channels fastest, then slices, then frames.
+    /// The page (from 0) of slice z, channel c, frame t is at index z + slices * (c + channels * t). Empty if pages are
+    /// in ImageJ's order: channels fastest, then slices, then frames.
     static constexpr uint32_t NO_PAGE = UINT32_MAX;
     std::vector<uint32_t> pages{};
-    /// A stack of OME in several files: the files, and for each of `pages` the index of the file that holds it. Empty:
-    /// all pages are in the one file that states it.
+    /// For an OME stack in several files: the files, and for each of `pages` the index of the file that holds it. Empty
+    /// if all pages are in the file that has the description.
     std::vector<std::filesystem::path> files{};
     std::vector<uint32_t> file_of_page{};
-    std::vector<std::string> channel_names{};  ///< may be fewer than channels; names may be ""
+    std::vector<std::string> channel_names{};  ///< may be fewer than `channels`; names may be ""
 
     std::optional<double> spacing[3]{};  ///< ImageJ: only z
     std::string unit[3]{};               ///< as written; "" if not stated
@@ -39,18 +39,18 @@ struct TiffDescription {
     };
     Place place{};
 
-    bool counts_from_minus_32768 = false;  ///< signed 16-bit, as ImageJ stores it
+    bool counts_from_minus_32768 = false;  ///< true: signed 16 bits as ImageJ stores them
     std::vector<std::string> warnings{};
 };
 
-/// Whether the file is the whole volume or one of several files; an OME-TIFF may refer to the others.
+/// Whether the file is the whole volume, or one of several files for its slices. An OME-TIFF may refer to other files.
 enum class TiffRole { whole, slice };
 
 /// `samples`: number of channels of an OME-TIFF that each pixel holds. Fails if the description is of a known kind but
-/// broken, or, in the role `whole`, describes more than this file.
+/// broken. In the role `whole`, also fails if it describes more than this file.
 TiffDescription read_description(const TiffFile& file, std::string_view text, int samples, TiffRole role);
 
-/// Puts spacing and unit into `info`, with a warning for everything that had to be assumed. `page` is the first one.
+/// Puts spacing and unit into `info`, with a warning for everything that had to be assumed. `page`: the first page.
 void apply_tiff_spacing(VolumeInfo& info, const TiffDescription& description, const TiffFile& file, uint64_t directory,
                         const TiffPage& page);
 

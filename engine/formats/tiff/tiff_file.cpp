@@ -13,7 +13,7 @@
 namespace shvr {
 
 TiffFile::TiffFile(std::filesystem::path path)
-    // Without O_NONBLOCK, opening a FIFO blocks until a writer appears, before we can detect that it is a FIFO.
+    // Without O_NONBLOCK, opening a FIFO would block until a writer appears, before it can be recognised as a FIFO.
     : path_(std::move(path)), file_(::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK))
 {
     const std::string name = path_.string();

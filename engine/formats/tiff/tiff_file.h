@@ -1,7 +1,7 @@
 #pragma once
-// A TIFF file and its chain of directories, without libtiff: libtiff takes some microseconds for each directory, and a
-// file may have a million. This finds just enough to know how many pages there are, which of them are alike and where
-// they start. libtiff (tiff_page.h) reads one page of each kind on opening, and others when their voxels are read.
+// A TIFF file and its chain of directories, read without libtiff, because libtiff takes some microseconds for each
+// directory, and a file may have a million. Finds only how many pages there are, which of them are alike and where they
+// start. libtiff (tiff_page.h) reads one page of each kind on opening, and other pages when their voxels are read.
 // Nothing changes after construction; any thread may read.
 
 #include <array>
@@ -15,12 +15,12 @@
 
 namespace shvr {
 
-/// The maximum number of pages: the longest side of a volume.
+/// The maximum number of pages, which is also the maximum length of a volume's side.
 inline constexpr size_t MAX_TIFF_PAGES = size_t{1} << 20;
 
 class TiffFile {
 public:
-    /// Fails if it is not a regular file, cannot be opened or does not begin like a TIFF.
+    /// Fails if `path` is not a regular file, cannot be opened or does not begin like a TIFF.
     explicit TiffFile(std::filesystem::path path);
 
     /// Whether the first bytes are those of a TIFF or BigTIFF.
@@ -29,13 +29,13 @@ public:
     const std::filesystem::path& path() const { return path_; }
     int64_t size_bytes() const { return size_bytes_; }
     bool is_big_endian() const { return is_big_endian_; }
-    /// BigTIFF: offsets have 8 bytes instead of 4.
+    /// Whether offsets have 8 bytes instead of 4, as in BigTIFF.
     bool has_wide_offsets() const { return has_wide_offsets_; }
     uint64_t first_directory() const { return first_directory_; }
 
-    /// Reads all of `bytes`, or fails if the file was truncated.
+    /// Fills all of `bytes`; fails if the file was truncated.
     void read(int64_t offset, std::span<std::byte> bytes) const;
-    /// Reads at most `bytes`; returns how many.
+    /// Reads at most the size of `bytes`; returns the number of bytes read.
     size_t read_some(int64_t offset, std::span<std::byte> bytes) const;
     bool holds(uint64_t offset, uint64_t bytes) const;
 
@@ -53,11 +53,11 @@ struct TiffDirectory {
     uint32_t kind = 0;    ///< index into TiffDirectories::kinds
 };
 
-/// Pages with equal fields for size, layout and meaning, as far as the fields are stored in the directory itself.
+/// Pages with equal values in the fields for size, layout and meaning, compared as stored in the directory itself.
 struct TiffKind {
     size_t first_page = 0;
-    bool is_reduced = false;  ///< whether it is marked as a smaller copy of another page, or as a mask
-    std::string fields{};     ///< pages of two files are equivalent if this is equal
+    bool is_reduced = false;  ///< whether the page is marked as a smaller copy of another page, or as a mask
+    std::string fields{};     ///< the values of these fields; pages of two files are equivalent if they are equal
 };
 
 struct TiffDirectories {
@@ -67,11 +67,11 @@ struct TiffDirectories {
 };
 
 /// Fails, naming page and field, if the chain leaves the file, contains a cycle or is longer than `MAX_TIFF_PAGES`, or
-/// if the strips that a page states do not fit into the file.
+/// if the strips of a page do not fit into the file.
 TiffDirectories read_directories(const TiffFile& file);
 
-/// The quotient of a rational field of the directory at `offset`, which libtiff would round to a float; null if the
-/// field is missing, or not finite and above 0.
+/// Returns the quotient of a rational field of the directory at `offset`, without libtiff's rounding to a float. Null
+/// if the field is missing, not finite, or not above 0.
 std::optional<double> rational_field(const TiffFile& file, uint64_t offset, uint16_t tag);
 /// Whether the directory at `offset` has the field.
 bool has_field(const TiffFile& file, uint64_t offset, uint16_t tag);

@@ -1,5 +1,5 @@
-// ImageJ's description: lines of "key=value", the first of which is its version. (Written by ij/io/FileSaver.java, read
-// by ij/io/FileOpener.java.)
+// ImageJ's description: lines of "key=value"; the first line states ImageJ's version. (Written by ij/io/FileSaver.java,
+// read by ij/io/FileOpener.java.)
 
 #include <charconv>
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace shvr {
 namespace {
 
-/// Java's Properties write non-ASCII characters as \uXXXX.
+/// Decodes \uXXXX, which Java's Properties write for non-ASCII characters.
 std::string without_escapes(std::string_view text)
 {
     std::string plain;
@@ -74,7 +74,7 @@ private:
     std::map<std::string, std::string> values_;
 };
 
-/// As many numbers as `Value` has, separated by spaces; null if they are malformed.
+/// Reads as many numbers, separated by spaces, as `Value` has components; null if they are malformed.
 template <class Value, size_t COUNT>
 std::optional<Value> numbers_of(const std::string& text)
 {
@@ -92,7 +92,7 @@ std::optional<Value> numbers_of(const std::string& text)
     return value;
 }
 
-/// Reads lines that only we write.
+/// Reads the lines "shvr_...", which only this program writes.
 void read_place(const Lines& lines, TiffDescription& description)
 {
     description.place = {numbers_of<glm::dvec3, 3>(lines.text("shvr_spacing")),
@@ -129,7 +129,7 @@ TiffDescription read_imagej_description(const std::string& subject, std::string_
     description.channels = std::max<int64_t>(1, lines.count("channels"));
     description.frames = std::max<int64_t>(1, lines.count("frames"));
     description.slices = lines.count("slices");
-    // A file that states no number of slices has as many as there are images per channel and frame.
+    // A file that states no number of slices has as many slices as there are images per channel and frame.
     if (description.slices == 0) {
         description.slices = std::max<int64_t>(1, images / (description.channels * description.frames));
     }
@@ -146,7 +146,7 @@ TiffDescription read_imagej_description(const std::string& subject, std::string_
     description.unit[0] = unit;
     description.unit[1] = y_unit.empty() ? unit : y_unit;
     description.unit[2] = z_unit.empty() ? unit : z_unit;
-    // Old versions wrote a signed distance.
+    // Old versions of ImageJ wrote a signed distance.
     if (const std::optional<double> spacing = lines.number("spacing"); spacing && std::isfinite(*spacing)) {
         if (*spacing != 0.0) description.spacing[2] = std::abs(*spacing);
     }

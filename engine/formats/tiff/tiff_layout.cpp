@@ -10,14 +10,14 @@
 namespace shvr {
 namespace {
 
-/// Limited because a block is decoded as a whole.
+/// Maximum size of a block that must be decoded, limited because it is decoded as a whole.
 constexpr int64_t MAX_BLOCK_BYTES = int64_t{1} << 31;
 
 struct Compression {
     int scheme;
     const char* name;
-    /// How many bytes one byte can decode to, by the format's own rules, rounded up. 0: instead, one bit is known to
-    /// decode to at most one row. Formats that encode areas of one colour have no bound.
+    /// How many bytes one byte can decode to, by the format's own rules, rounded up. 0: no such number, but one bit
+    /// decodes to at most one row. Formats that encode areas of one colour have no bound.
     int64_t largest_ratio;
     bool is_read;
 };
@@ -29,13 +29,13 @@ constexpr Compression COMPRESSIONS[] = {
     {COMPRESSION_CCITTFAX3, "CCITT group 3", 0, true},
     {COMPRESSION_CCITTFAX4, "CCITT group 4", 0, true},
     {COMPRESSION_CCITTRLEW, "CCITT RLE", 0, true},
-    {COMPRESSION_LZW, "LZW", 4096, true},                // 9 bits for at most 4093 bytes
+    {COMPRESSION_LZW, "LZW", 4096, true},                // 9 bits decode to at most 4093 bytes
     {COMPRESSION_JPEG, "JPEG", 4096, true},              // one bit per block of 64 samples, in each of few scans
-    {COMPRESSION_ADOBE_DEFLATE, "Deflate", 1032, true},  // 2 bits for 258 bytes
+    {COMPRESSION_ADOBE_DEFLATE, "Deflate", 1032, true},  // 2 bits decode to 258 bytes
     {COMPRESSION_DEFLATE, "Deflate", 1032, true},
     {COMPRESSION_PACKBITS, "PackBits", 64, true},  // 2 bytes for 128
     {COMPRESSION_LZMA, "LZMA", 16384, true},       // measured on zeros: 6900
-    {COMPRESSION_ZSTD, "Zstandard", 65536, true},  // limit of the ratio: at least 4 bytes for a block of 128 KiB
+    {COMPRESSION_ZSTD, "Zstandard", 65536, true},  // at least 4 bytes encode a block of 128 KiB
     {COMPRESSION_WEBP, "WebP", UNBOUNDED, true},
     {COMPRESSION_OJPEG, "old-style JPEG", 1, false},
     {COMPRESSION_SGILOG, "LogLuv", 1, false},
@@ -209,7 +209,7 @@ void check_is_supported(const TiffPage& page, const TiffLayout& layout)
              "64 "
              "bits");
     }
-    // Their one bit per row means one for the few pixels of a fax, not for thousands of channels.
+    // In fax formats one bit may stand for a row, that is, for a fax's few pixels, not for thousands of channels.
     if (known->largest_ratio == 0 && ((layout.samples != 1 && !layout.is_planar) || layout.bits != 1))
         fail(page.subject(), ": has ", layout.samples, " samples of ", layout.bits, " bits a pixel by ", known->name,
              "; expected one of 1 bit, as there is in a fax");
@@ -251,7 +251,7 @@ TiffExtent extent_of_block(const TiffFile& file, const TiffPage& page, const Tif
     uint64_t bytes = TIFFGetStrileByteCount(page.handle(), index);
     const int64_t row_of_blocks = block / layout.blocks_across() % layout.blocks_down();
     const int64_t decoded = layout.rows_of_block(row_of_blocks) * layout.block_row_bytes();
-    // Old programs state more bytes than the pixels need, up to the next strip's bytes or beyond the file's end.
+    // Old programs state more bytes than the pixels need: up to the next strip's start, or beyond the end of the file.
     if (layout.compression == COMPRESSION_NONE) bytes = std::min(bytes, uint64_t(decoded));
     const auto refuse = [&](const auto&... words) {
         fail(page.subject(), ": ", name_of_block(layout), block + 1, " of ", layout.blocks(), words...);
@@ -273,7 +273,7 @@ TiffExtent extent_of_block(const TiffFile& file, const TiffPage& page, const Tif
 void check_blocks(const TiffFile& file, const TiffPage& page, const TiffLayout& layout)
 {
     check_amount(file, layout, 1);
-    // Each block has at least one byte of the file, which bounds the memory for them.
+    // Each block has at least one byte in the file, which bounds the memory needed for the list of blocks.
     if (layout.blocks() > file.size_bytes()) {
         fail(page.subject(), ": has ", layout.blocks(), " strips or tiles; expected at most one for each of the ",
              file.size_bytes(), " bytes of the file");

@@ -1,7 +1,7 @@
 #pragma once
-// The content and storage of one page: size, samples, compression, and its blocks (strips or tiles). Everything a page
-// states about its blocks is checked against the file before memory is allocated for them. Any thread may call these; a
-// TiffPage belongs to one thread at a time.
+// The content and storage of one page: size, samples, compression, and its blocks (strips or tiles). All that a page
+// states about its blocks is checked against the file before memory is allocated for them. Any thread may call these
+// functions; a TiffPage belongs to one thread at a time.
 
 #include "engine/formats/stored_numbers.h"
 #include "engine/formats/tiff/tiff_page.h"
@@ -17,12 +17,12 @@ struct TiffLayout {
     int samples = 1;                   ///< per pixel
     int photometric = 1;               ///< PHOTOMETRIC_...
     int orientation = 1;               ///< ORIENTATION_...
-    std::vector<int> extra_samples{};  ///< EXTRASAMPLE_..., one for each sample beyond the colour
+    std::vector<int> extra_samples{};  ///< EXTRASAMPLE_..., one for each sample after the colour samples
 
     // Its storage
     int compression = 1;  ///< COMPRESSION_...
     bool is_lsb_first = false;
-    bool is_planar = false;  ///< each block holds one sample of its pixels
+    bool is_planar = false;  ///< each block holds only one sample of each of its pixels
     bool is_tiled = false;
     int64_t block_width = 0, block_height = 0;
 
@@ -31,41 +31,41 @@ struct TiffLayout {
     int64_t blocks() const { return blocks_across() * blocks_down() * (is_planar ? samples : 1); }
     int block_samples() const { return is_planar ? 1 : samples; }
     int64_t block_row_bytes() const { return (block_width * block_samples() * bits + 7) / 8; }
-    /// Number of rows in a block: strips end with the page, tiles do not.
+    /// Number of rows in a block: the last strip of a page ends with the page, but tiles always have all their rows.
     int64_t rows_of_block(int64_t row_of_blocks) const;
     /// Uncompressed size.
     int64_t page_bytes() const;
 
-    /// Whether the file's bytes are the samples, except for their byte order.
+    /// Whether the file's bytes are the samples themselves, apart from their byte order.
     bool is_bare() const { return compression == 1 && !is_lsb_first; }
 };
 
-/// The layout that the page states; fails only if it cannot be a picture.
+/// Returns the layout that the page states; fails only if it cannot be a picture.
 TiffLayout layout_of(const TiffPage& page);
 /// Whether pages with these layouts can be slices of one volume.
 bool show_the_same(const TiffLayout& a, const TiffLayout& b);
-/// "512x512 pixels of uint16", "512x512 pixels of 3 samples of 8 bits".
+/// Describes a layout, as in "512x512 pixels of uint16" or "512x512 pixels of 3 samples of 8 bits".
 std::string in_words(const TiffLayout& layout);
 
-/// Integers of 64 bits are no voxel type: their bits are read as float64.
+/// No voxel type holds 64-bit integers, so their bits are read as float64.
 StoredNumber stored_number_of(const TiffLayout& layout);
-/// The type that holds the samples exactly, or their bits; null if there is none.
+/// Returns the voxel type that holds the samples, or at least their bits, exactly; null if there is none.
 std::optional<VoxelType> voxel_type_of(const TiffLayout& layout);
 
-/// Fails, stating what is expected instead, if the page's kind of picture or its compression is not supported.
+/// Fails if the page's kind of picture or its compression is not supported; the message states what is expected.
 void check_is_supported(const TiffPage& page, const TiffLayout& layout);
 
-/// Where a block is in the file. Fails if that is outside the file, or too short for the block.
+/// The position of a block in the file. Fails if it is outside the file, or too short for the block.
 struct TiffExtent {
     int64_t offset = 0;
     int64_t bytes = 0;
 };
 TiffExtent extent_of_block(const TiffFile& file, const TiffPage& page, const TiffLayout& layout, int64_t block);
-/// Checks all blocks of a page, and that none overlap.
+/// Checks all blocks of a page, and that no two of them overlap.
 void check_blocks(const TiffFile& file, const TiffPage& page, const TiffLayout& layout);
-/// Fails if a file of that size cannot contain `pages` such pages.
+/// Fails if a file of this size cannot contain `pages` pages with this layout.
 void check_amount(const TiffFile& file, const TiffLayout& layout, int64_t pages);
-/// Maximum memory that libtiff may allocate at once to decode blocks of such a page.
+/// Returns the maximum memory that libtiff may allocate at once to decode blocks of a page with this layout.
 int64_t decoding_memory(const TiffFile& file, const TiffLayout& layout);
 
 }  // namespace shvr

@@ -1,5 +1,5 @@
 #pragma once
-// Whole numbers as TIFF directories hold them, in either byte order. Any thread may call these.
+// Whole numbers as TIFF directories store them, in either byte order. Any thread may call this function.
 
 #include <bit>
 #include <cstddef>
@@ -10,7 +10,7 @@ namespace shvr {
 
 static_assert(std::endian::native == std::endian::little, "what is not big-endian is taken as it is");
 
-/// A number of 1, 2, 4 or 8 bytes. Written for speed: some files have a million directories.
+/// Reads a number of 1, 2, 4 or 8 bytes. Written for speed: some files have a million directories.
 inline uint64_t tiff_number(const std::byte* bytes, size_t count, bool is_big_endian)
 {
     const auto read = [&](auto bits, auto swapped) -> uint64_t {

@@ -15,10 +15,10 @@
 namespace shvr {
 namespace {
 
-/// Limited because the parser takes several times as much memory.
+/// The maximum size of the XML, limited because the parser takes several times as much memory.
 constexpr size_t MAX_XML_BYTES = size_t{16} << 20;
 
-/// The name without its namespace: "OME:Image" -> "Image".
+/// Returns a node's name without its namespace: "OME:Image" -> "Image".
 std::string_view name_of(const pugi::xml_node& node)
 {
     const std::string_view name = node.name();
@@ -81,7 +81,7 @@ public:
     }
 
 private:
-    /// The XML of the whole data set in another file next to this one: "x.companion.ome", or a TIFF.
+    /// Reads the XML of the whole data set from another file in the same folder: "x.companion.ome", or a TIFF.
     TiffDescription read_companion(const pugi::xml_node& elsewhere)
     {
         const std::string stated = elsewhere.attribute("MetadataFile").value();
@@ -147,7 +147,7 @@ private:
         result_.slices = side(pixels, "SizeZ");
         result_.frames = side(pixels, "SizeT");
         result_.channels = side(pixels, "SizeC");
-        // The colours of one pixel are channels that share a page.
+        // The colours of a pixel are channels that share one page.
         if (result_.channels % samples_ != 0) {
             fail(subject_, ": SizeC is ", result_.channels, "; expected a multiple of the ", samples_,
                  " samples of a pixel");
@@ -175,7 +175,7 @@ private:
         return axis == 'Z' ? result_.slices : axis == 'C' ? result_.channels : result_.frames;
     }
 
-    /// The index in `pages` of plane number `plane` of DimensionOrder.
+    /// Returns the index in `pages` of the plane whose number in DimensionOrder is `plane`.
     size_t place_of(int64_t plane) const
     {
         int64_t at[3] = {};  // Z, C, T
@@ -218,7 +218,7 @@ private:
     void read_planes(const pugi::xml_node& pixels)
     {
         const auto planes = int64_t(result_.pages.size());
-        std::map<std::string, uint32_t> files;  // by the name that is stated; number 0 is this file
+        std::map<std::string, uint32_t> files;  // by the name in the XML; number 0 is this file
         std::vector<uint32_t> file_of_page(result_.pages.size());
         int64_t stated = 0;
         bool is_stated = false;
@@ -250,7 +250,7 @@ private:
         for (int64_t i = 0; i < planes && !is_stated; ++i) result_.pages[place_of(i)] = uint32_t(i);
     }
 
-    /// A single file that has been renamed is this one.
+    /// Sets the files of a stack in several files. A stack in one file of another name is this file, renamed.
     void name_files(const std::map<std::string, uint32_t>& files, std::vector<uint32_t> file_of_page)
     {
         if (files.size() < 2 || role_ != TiffRole::whole) return;
@@ -271,8 +271,8 @@ private:
 
     std::filesystem::path path_;
     std::string subject_;
-    std::string own_uuid_{};     ///< of this file
-    bool is_companion_ = false;  ///< the XML that is read now is in another file
+    std::string own_uuid_{};     ///< the UUID of this file
+    bool is_companion_ = false;  ///< whether the XML being read is in another file
     int samples_;
     TiffRole role_;
     std::string order_;

@@ -11,7 +11,7 @@
 namespace shvr {
 namespace {
 
-/// Samples of any number of bits follow each other without gaps within a row, highest bit first.
+/// Returns sample `index` of a row in which samples of `bits` bits follow each other without gaps, highest bit first.
 uint32_t packed_sample(std::span<const std::byte> row, int64_t index, int bits)
 {
     const int64_t first_bit = index * bits;
@@ -33,7 +33,7 @@ void store_each(std::span<std::byte> voxels, const Value& value)
     }
 }
 
-/// Takes every `step`-th element of `row`, from `first` on.
+/// Takes every `step`-th element of `row`, beginning with element `first`.
 template <class Bits>
 void gather(std::span<const std::byte> row, int64_t first, int64_t step, std::span<std::byte> voxels)
 {
@@ -80,7 +80,7 @@ std::vector<uint16_t> palette_of(const TiffPage& page, const TiffLayout& layout,
     }
     const size_t entries = size_t{1} << layout.bits;
     std::vector<uint16_t> palette(colors[color], colors[color] + entries);
-    // Some programs write bytes where 16 bits belong; libtiff's tools also treat them as bytes.
+    // Some programs write 8-bit values where 16 bits belong; like libtiff's tools, this treats the values as bytes.
     const auto is_byte = [](uint16_t entry) { return entry <= 255; };
     const bool are_bytes = std::all_of(colors, colors + 3, [&](const uint16_t* of_color) {
         return of_color != nullptr && std::all_of(of_color, of_color + entries, is_byte);

@@ -1,5 +1,5 @@
 #pragma once
-// Converts samples, as the blocks of a TIFF hold them, to voxels. Any thread may call these.
+// Converts samples, in the form in which a TIFF's blocks store them, to voxels. Any thread may call these.
 
 #include <span>
 
@@ -7,26 +7,26 @@
 
 namespace shvr {
 
-/// Selects the part of the pages that a volume uses, and its conversion.
+/// The part of the pages that a volume uses, and how its samples are converted to voxels.
 struct TiffRecipe {
     VoxelType type = VoxelType::uint8;
     int sample = 0;          ///< index within the pixel
     int palette_color = -1;  ///< 0 to 2: colour of the palette (red, green, blue); -1: the samples themselves
     bool palette_has_8_bits = false;
-    uint64_t exchanged_bits = 0;  ///< XORed into each voxel; inverts white and black, and subtracts ImageJ's 32768
+    uint64_t exchanged_bits = 0;  ///< XORed into each voxel; inverts black and white, and subtracts ImageJ's 32768
     bool mirrors_x = false;       ///< the page's first column is the right side of the picture
     bool mirrors_y = false;
 };
 
-/// Whether a row of voxels is a row of the block, byte for byte (except for byte order and `exchanged_bits`).
+/// Whether rows of voxels equal rows of the block, byte for byte, except for byte order and `exchanged_bits`.
 bool is_plain(const TiffLayout& layout, const TiffRecipe& recipe);
 
-/// 2^bits entries of one colour of the page's palette; fails if it has none.
+/// Returns the 2^bits entries of one colour of the page's palette; fails if the page has no palette.
 std::vector<uint16_t> palette_of(const TiffPage& page, const TiffLayout& layout, int color);
-/// Whether entries are 8-bit values widened as v * 257 (written twice) or v * 256.
+/// Whether the entries are 8-bit values v widened to v * 257 (the byte written twice) or to v * 256.
 bool has_8_bits(const std::vector<uint16_t>& palette);
 
-/// Fills `voxels` with the pixels from `first` on of one row of a block, in native byte order.
+/// Fills `voxels` with pixels of one row of a block, beginning with pixel `first`, in native byte order.
 void unpack_row(const TiffLayout& layout, const TiffRecipe& recipe, const std::vector<uint16_t>& palette,
                 std::span<const std::byte> row, int64_t first, std::span<std::byte> voxels);
 

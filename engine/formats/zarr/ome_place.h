@@ -14,12 +14,12 @@ namespace shvr {
 
 inline constexpr const char* OME_PLACEMENT = "shvr_placement";
 
-/// The centre of voxel 0 along the volume's own axes, in its unit.
+/// Returns the centre of voxel 0, measured along the volume's own axes, in the volume's unit.
 glm::dvec3 ome_translation(const VolumeInfo& info);
 
-/// Sets `directions`, `origin` and `frame` of `info` from the attributes of an
-/// image that states `translation`. If the two disagree, the translation wins,
-/// since other programs use it; an invalid placement is ignored, with a warning.
+/// Sets `directions`, `origin` and `frame` of `info` from the attributes of an image that states `translation`. If the
+/// placement and `translation` disagree, `translation` wins, since other programs use it; an invalid placement is
+/// ignored, with a warning.
 void read_ome_place(const JsonNode& attributes, const std::optional<glm::dvec3>& translation, VolumeInfo& info);
 
 }  // namespace shvr

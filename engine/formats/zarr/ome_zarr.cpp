@@ -15,7 +15,7 @@ namespace {
 
 using Path = std::filesystem::path;
 
-/// Units: as we write them, as the specification names them, and their length in metres.
+/// A unit: its name in this program, its name in the specification, and its length in metres.
 struct Unit {
     const char* plain;
     const char* name;
@@ -46,7 +46,7 @@ Axis read_axis(const JsonNode& node)
     const std::array<std::string_view, 3> kinds{"space", "channel", "time"};
     Axis axis;
     if (!node.is_object() && !node.is_text()) node.refuse(EXPECTED);
-    const JsonNode name = node.is_object() ? node["name"] : node;  // version 0.3 gives only names
+    const JsonNode name = node.is_object() ? node["name"] : node;  // version 0.3 states only the names of axes
     axis.name = lower_case(name.any_text(EXPECTED));
     axis.kind = kind_of(axis.name);
     if (const JsonNode kind = node["type"]; kind.exists()) axis.kind = kinds[kind.choice(kinds)];
@@ -92,7 +92,7 @@ void place_axes(const JsonNode& node, const std::vector<Axis>& axes, OmeImage& i
     if (!is_there[0] || !is_there[1] || !is_there[2]) node.refuse("axes of space called x, y and z");
 }
 
-/// One number per axis, all finite; scales must be above 0.
+/// Reads one finite number per axis; for scales, numbers must be above 0.
 std::vector<double> read_numbers(const JsonNode& node, size_t axes, bool is_scale)
 {
     const std::string expected =
@@ -125,7 +125,7 @@ struct Transformation {
     }
 };
 
-/// Applies the transformations of a dataset, or of all datasets.
+/// Applies the transformations that `owner` states: one dataset, or the multiscale for all of its datasets.
 void apply_transformations(const JsonNode& owner, size_t axes, Transformation& transformation)
 {
     constexpr const char* EXPECTED = "a list of at most 8 objects of type scale, translation or identity";
@@ -143,7 +143,7 @@ void apply_transformations(const JsonNode& owner, size_t axes, Transformation& t
     }
 }
 
-/// If units differ, all axes are converted to that of x.
+/// Returns factors that convert each axis to the unit of x if the units differ.
 glm::dvec3 unit_factors(const Path& path, const std::vector<Axis>& axes, OmeImage& image)
 {
     std::array<std::optional<std::string>, 3> units;

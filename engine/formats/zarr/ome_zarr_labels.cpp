@@ -19,7 +19,7 @@ std::optional<std::array<uint8_t, 4>> rgba_of(const JsonNode& node)
     return channels;
 }
 
-/// `take` fails if the entry is not as `expected`; the first failure is reported.
+/// Calls `take` for each entry; `take` fails if an entry is not as `expected`. Only the first failure adds a warning.
 template <class Take>
 void go_through(const JsonNode& list, const char* expected, std::vector<std::string>& warnings, const Take& take)
 {
@@ -58,14 +58,14 @@ LabelLooks read_label_looks(const std::filesystem::path& folder)
     go_through(label["colors"], "a label-value and an rgba of four whole numbers from 0 to 255", result.warnings,
                [&](const JsonNode& entry) {
                    const int64_t value = value_of(entry);
-                   const JsonNode rgba = entry["rgba"];  // without one, the reader chooses
+                   const JsonNode rgba = entry["rgba"];  // without "rgba", the reader chooses a colour
                    if (rgba.exists()) looks.try_emplace(value, LabelLook{value, rgba_of(rgba), {}});
                });
     std::map<int64_t, std::string> names;
     go_through(label["properties"], "a label-value, and a name that is a text", result.warnings,
                [&](const JsonNode& entry) {
                    const int64_t value = value_of(entry);
-                   const JsonNode name = entry["name"];  // without one: properties of other kinds
+                   const JsonNode name = entry["name"];  // entries without "name" have properties of other kinds
                    if (name.exists()) names.try_emplace(value, name.any_text());
                });
     for (auto& [value, name] : names) {

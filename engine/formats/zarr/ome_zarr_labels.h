@@ -1,7 +1,7 @@
 #pragma once
-// The label descriptions of an OME-Zarr label image (https://ngff.openmicroscopy.org/0.5/#labels-md; those of 0.4 are
-// the same): "image-label" with "colors" [{"label-value", "rgba"}] and "properties" [{"label-value", "name", ...}]. Any
-// thread may call it.
+// The label descriptions of an OME-Zarr label image (https://ngff.openmicroscopy.org/0.5/#labels-md; 0.4 has the same):
+// "image-label" with "colors" [{"label-value", "rgba"}] and "properties" [{"label-value", "name", ...}]. Any thread may
+// call these functions.
 
 #include <array>
 #include <cstdint>
@@ -18,13 +18,13 @@ struct LabelLook {
     std::string name{};                            ///< may be empty
 };
 struct LabelLooks {
-    std::vector<LabelLook> looks{};       ///< ascending; if a label occurs twice, its first entry
-    std::vector<std::string> warnings{};  ///< warnings: at most one per list, about its first invalid entry
+    std::vector<LabelLook> looks{};       ///< ascending; for a label that occurs twice, only its first entry
+    std::vector<std::string> warnings{};  ///< at most one per list, about the first invalid entry of the list
 };
 
-/// Whether the folder (or the path into an archive) is a label image; false if it cannot be read.
+/// Whether the folder (or the path into an archive) holds a label image; false if that cannot be read.
 bool is_ome_zarr_label(const std::filesystem::path& folder);
-/// Empty if the folder (or the path into an archive) is not a label image. Fails if its attributes are not JSON.
+/// Empty if the folder (or the path into an archive) holds no label image. Fails if its attributes are not JSON.
 LabelLooks read_label_looks(const std::filesystem::path& folder);
 
 }  // namespace shvr

@@ -27,9 +27,9 @@ constexpr int VERSION = 1;
 constexpr int64_t MAX_RECORD_BYTES = int64_t{1} << 20;
 constexpr size_t HEADER_BYTES = 64;
 constexpr char MAGIC[] = "SHVRTAB1";
-/// Enough for the ranges of 10^13 voxels.
+/// Maximum size of a table: enough for the ranges of 10^13 voxels.
 constexpr int64_t MAX_TABLE_BYTES = int64_t{2} << 30;
-/// Zstd's smallest block is four bytes long, and decodes to at most 128 KiB.
+/// Maximum that one byte of zstd decodes to: the smallest block has four bytes, and decodes to at most 128 KiB.
 constexpr int64_t MAX_OUT_OF_A_BYTE = int64_t{32} << 10;
 
 // ---- volume.json ----------------------------------------------------------------------------------------------------
@@ -48,7 +48,7 @@ glm::dmat3 read_matrix(const JsonNode& node)
     return {rows[0].vector(any_number()), rows[1].vector(any_number()), rows[2].vector(any_number())};
 }
 
-/// Older projects have no such key.
+/// Reads a provenance. Older projects lack this key; their values count as stated by the file.
 Provenance read_provenance(const JsonNode& node)
 {
     constexpr std::array<std::string_view, 3> NAMES{"assumed", "file", "given"};
@@ -86,7 +86,7 @@ void put(std::vector<std::byte>& bytes, const T& value)
 
 constexpr std::string_view SPARSE = "/s";
 
-/// The whole header except its checksum.
+/// Returns the whole header except its checksum.
 std::vector<std::byte> header_of(const ProjectTable& table, uint64_t frame_bytes)
 {
     std::vector<std::byte> header;
@@ -119,7 +119,7 @@ std::vector<std::byte> content_of(const ProjectTable& table)
 
 uint64_t checksum_of(std::span<const std::byte> header, std::span<const std::byte> elements)
 {
-    // The hash of the header is the seed of the hash of the elements.
+    // The hash of the header seeds the hash of the elements, so it covers both.
     return XXH3_64bits_withSeed(elements.data(), elements.size(), XXH3_64bits(header.data(), header.size()));
 }
 
@@ -282,7 +282,7 @@ std::vector<std::byte> to_bytes(const ProjectTable& table)
 
 namespace {
 
-/// The bytes that the frame says it holds, which must be those of a whole number of elements and keys.
+/// Returns the size that the frame states for its content, which must be a whole number of elements with their keys.
 int64_t bytes_of_list(const Path& file, const ProjectTable& table, std::span<const std::byte> frame)
 {
     const unsigned long long stated = ZSTD_getFrameContentSize(frame.data(), frame.size());

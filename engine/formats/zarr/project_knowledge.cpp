@@ -22,7 +22,7 @@ ProjectTable table_for(const VolumeInfo& info, int level)
             .counts = size_of_level(size_of_level(info.size, level), 5)};
 }
 
-/// The chunks that have a checksum other than 0.
+/// Returns the chunks that have a checksum other than 0.
 std::vector<StoredChunk> stored_chunks_of(const ProjectTable& table)
 {
     std::vector<StoredChunk> chunks;
@@ -45,7 +45,7 @@ void try_to(const Read& read, std::vector<std::string>& warnings)
     }
 }
 
-/// Chunk side that an import writes for every level.
+/// Side of a chunk, in voxels, that an import writes for every level.
 constexpr int64_t PROJECT_CHUNK = 64;
 
 std::string list_of(const std::vector<int64_t>& numbers)
@@ -61,7 +61,7 @@ void check_arrays(const fs::path& folder, const ProjectRecord& record, std::vect
     for (int level = 0; level < record.levels; ++level) {
         const ZarrPlace array = zarr_folder(folder / std::to_string(level));
         const bool is_3 = array.has("zarr.json");
-        if (!is_3 && !array.has(".zarray")) continue;  // opening the image reports it
+        if (!is_3 && !array.has(".zarray")) continue;  // opening the image reports the missing array
         const auto warn = [&](const char* key, const auto& found, const auto& expected) {
             warnings.push_back(sentence(
                 array.path_of(is_3 ? "zarr.json" : ".zarray").string(), ": key ", key, " is ", found, "; expected ",
@@ -71,7 +71,7 @@ void check_arrays(const fs::path& folder, const ProjectRecord& record, std::vect
         try {
             found = read_zarr_metadata(array, is_3 ? 3 : 2);
         } catch (const Error&) {
-            continue;  // opening the image reports it
+            continue;  // opening the image reports this error
         }
         const Size3 size = size_of_level(record.info.size, level);
         const std::vector<int64_t> shape{size.z, size.y, size.x}, chunks(3, PROJECT_CHUNK);

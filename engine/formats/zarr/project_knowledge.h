@@ -1,6 +1,6 @@
 #pragma once
-// What a project folder states about its volume in addition to the voxels, as far as it can be read; all of it is
-// optional. For source_ome_zarr.cpp.
+// The data that a project folder states about its volume in addition to the voxels, as far as they can be read; all of
+// them are optional. For source_ome_zarr.cpp.
 
 #include <filesystem>
 #include <optional>
@@ -16,12 +16,12 @@ struct ProjectKnowledge {
     std::vector<std::optional<ProjectTable>> ranges{};  ///< by level
 };
 
-/// Puts the record's data about the volume into `info`, and sets the checksums that `volumes`, its levels, verify.
-/// Damaged parts are ignored, with a warning; the image still opens.
+/// Puts the record's data about the volume into `info`, and gives `volumes`, the image's levels, the checksums to
+/// verify. Damaged parts are ignored, with a warning; the image still opens.
 ProjectKnowledge read_project_knowledge(const std::filesystem::path& folder, VolumeInfo& info,
                                         std::vector<ZarrVolume>& volumes);
 
-/// The range of a brick of a level, which must lie inside it; null if unknown.
+/// Returns the range of a brick; the brick must lie inside the level. Null if the range is unknown.
 std::optional<ValueRange> range_of(const ProjectKnowledge& knowledge, const VolumeInfo& info, int level,
                                    const Size3& brick);
 

@@ -2,8 +2,8 @@
 // folder or an archive (zarr_store.h). A project is such an image with a folder shvr/ (project.h), which holds ranges
 // and statistics.
 //
-// Levels are the datasets that are aligned with level 0 as source.h requires: each twice as coarse, along every axis.
-// Others are left out, with a warning.
+// Levels are the datasets that are aligned with level 0 as source.h requires: each level is twice as coarse as the one
+// before, along every axis. Other datasets are left out, with a warning.
 
 #include <algorithm>
 #include <cmath>
@@ -95,8 +95,8 @@ private:
         });
     }
 
-    /// Adds the block of the last voxel, which a level whose size was rounded down lacks, and which may be alone in its
-    /// block.
+    /// A level whose size was rounded down lacks the last voxels along an axis. Adds the chunks of those voxels if they
+    /// contain no other voxels.
     void add_beyond(int level, std::vector<glm::ivec3>& chunks) const
     {
         const ZarrVolume& volume = volumes_[size_t(level)];
@@ -114,7 +114,7 @@ private:
         });
     }
 
-    /// Fills in the last voxel by repeating the one before it. A level whose size was rounded down lacks it.
+    /// Fills in the last voxel along an axis, if rounding down cut it off, by repeating the voxel before it.
     void read_beyond(int level, const VoxelBox& box, std::span<std::byte> voxels) const
     {
         const Size3 size = volumes_[size_t(level)].size();
@@ -193,7 +193,7 @@ Size3 size_along(const ZarrMetadata& metadata, const std::array<size_t, 3>& xyz)
     return {metadata.shape[xyz[0]], metadata.shape[xyz[1]], metadata.shape[xyz[2]]};
 }
 
-/// Why a dataset cannot be level `level`; empty if it can.
+/// Returns why a dataset cannot be level `level`; empty if it can.
 std::string objection(const OmeImage& image, const ZarrMetadata& first, size_t dataset, const ZarrMetadata& metadata,
                       int level)
 {
@@ -223,8 +223,8 @@ std::string objection(const OmeImage& image, const ZarrMetadata& first, size_t d
         if (!(std::abs(ratio / factor - 1.0) < 1e-3)) {
             return sentence("is ", ratio, " times as coarse along ", "xyz"[axis], ", not ", factor, " times");
         }
-        // Its first voxel must be centred on the voxels it covers. If it lies on the first of them, the translation,
-        // which older programs do not write, is assumed to be missing.
+        // The centre of the level's first voxel must be the centre of the voxels it covers. If it is the first of those
+        // voxels instead, the translation is assumed to be missing: older programs do not write it.
         const double offset = (stated.translation ? (*stated.translation)[axis] : 0.0) -
                               (fine.translation ? (*fine.translation)[axis] : 0.0);
         const double voxels = offset / (*fine.scale)[axis];
@@ -236,7 +236,7 @@ std::string objection(const OmeImage& image, const ZarrMetadata& first, size_t d
     return {};
 }
 
-/// Since version 0.5 the axis names of the image and of its first level must agree.
+/// Warns if the axis names of the image and of its first level differ; since version 0.5 they must agree.
 void compare_names(const ZarrPlace& array, const OmeImage& image, const ZarrMetadata& metadata,
                    std::vector<std::string>& warnings)
 {
@@ -316,7 +316,7 @@ std::unique_ptr<VolumeSource> open_image(const ZarrPlace& place, const ZarrNode&
                    folder.string());
 }
 
-/// The axes called x, y and z; null unless each exists exactly once.
+/// Returns the axes called x, y and z; null unless each name occurs exactly once.
 std::optional<std::array<size_t, 3>> named_axes(const ZarrMetadata& metadata)
 {
     std::array<size_t, 3> xyz{};
@@ -328,7 +328,7 @@ std::optional<std::array<size_t, 3>> named_axes(const ZarrMetadata& metadata)
     return xyz;
 }
 
-/// A bare array states no spacing and, in version 2, nothing about its axes.
+/// Opens a bare array, which states no spacing and, in version 2, nothing about its axes.
 std::unique_ptr<VolumeSource> open_array(const ZarrPlace& place, int version, const OpenOptions& options)
 {
     const fs::path folder = place.path_of("");
@@ -359,7 +359,7 @@ std::unique_ptr<VolumeSource> open_array(const ZarrPlace& place, int version, co
                    folder.string());
 }
 
-/// The images in a group that is not an image itself: bioformats2raw puts them into 0, 1, ... or lists them.
+/// Lists the images in a group that is no image itself: bioformats2raw puts them into 0, 1, ... or lists them.
 std::vector<std::string> images_in(const ZarrPlace& group)
 {
     const ZarrPlace listing = group / "OME";
@@ -402,8 +402,8 @@ std::unique_ptr<VolumeSource> open_group(const ZarrPlace& place, const ZarrNode&
     return open_image(inner, *image, options);
 }
 
-/// Refuses an archive and names the usual mistakes: the folder was zipped instead of its content, or it holds something
-/// else.
+/// Refuses an archive and names the usual mistake: the folder was zipped instead of its content, or the archive holds
+/// something else.
 [[noreturn]] void refuse_archive(const fs::path& path, const ZarrPlace& place)
 {
     std::string first;

@@ -12,10 +12,10 @@ namespace shvr {
 namespace {
 
 constexpr int64_t KEPT_INDEX_BYTES = int64_t{16} << 20;
-/// Maximum number of names searched for one that resembles a chunk's but is none.
+/// Maximum number of names searched for one that looks like a chunk's name but is not one of this array.
 constexpr int64_t MAX_NAMES_LOOKED_AT = 1024;
 
-/// Numbers between separators of any kind, with or without a leading "c", as in "0.1.2" or "c/0/1/2".
+/// Whether a key consists of numbers between any separators, perhaps after a "c", as in "0.1.2" or "c/0/1/2".
 bool is_like_chunk(std::string_view key)
 {
     if (key.starts_with("c/") || key.starts_with("c.")) key.remove_prefix(2);
@@ -39,15 +39,15 @@ uint64_t end_of(const IndexEntry& entry)
     return __builtin_add_overflow(entry.offset, entry.bytes, &end) ? ~uint64_t{0} : end;
 }
 
-/// The places that share bytes with another place, ascending. Identical places count as one: some writers store equal
-/// chunks once.
+/// Returns the entries that share bytes with another entry, ascending. Identical entries count as one, since some
+/// writers store equal chunks once.
 std::vector<IndexEntry> overlapping(std::vector<IndexEntry> entries)
 {
     std::ranges::sort(entries);
     const auto repeated = std::ranges::unique(entries);
     entries.erase(repeated.begin(), repeated.end());
     std::vector<IndexEntry> found;
-    const IndexEntry* last = nullptr;  // the one that reaches furthest so far
+    const IndexEntry* last = nullptr;  // the entry that reaches furthest so far
     for (const IndexEntry& entry : entries) {
         if (entry.bytes == 0) continue;
         if (last != nullptr && entry.offset < end_of(*last)) found.insert(found.end(), {*last, entry});
@@ -123,8 +123,8 @@ bool ZarrChunks::is_missing(std::span<const int64_t> chunk) const
     }
 }
 
-/// Returns the indices of the chunk or shard with this key; empty if it is not the key of a chunk or shard.
-/// Visits each chunk of a shard that lies in the array.
+/// Calls `take` with the indices of each stored chunk of a shard, except chunks that lie beyond the end of the array.
+/// Returns false as soon as `take` does.
 template <class Take>
 bool ZarrChunks::list_shard(std::span<const int64_t> shard, const Take& take) const
 {
@@ -159,7 +159,7 @@ bool ZarrChunks::list(std::span<const std::optional<int64_t>> at, int64_t most,
         take(chunk);
         return true;
     };
-    std::string folder;  // the innermost folder that contains them all
+    std::string folder;  // the innermost folder that contains all matching chunks
     if (metadata_.separator == '/') {
         folder = metadata_.has_prefix ? "c/" : "";
         for (size_t axis = 0; axis + 1 < at.size() && at[axis]; ++axis) {
@@ -221,7 +221,7 @@ ZarrChunks::Part ZarrChunks::part_of(std::span<const int64_t> chunk, const std::
     return part;
 }
 
-/// The places of a shard's chunks, one per chunk; empty if the shard does not exist.
+/// Returns a shard's index, with one part per chunk; empty if the shard does not exist.
 Block ZarrChunks::index_of(const std::string& shard) const
 {
     const ZarrSharding& sharding = *metadata_.sharding;
@@ -267,7 +267,7 @@ std::vector<int64_t> chunk_numbers(const ZarrMetadata& metadata, std::string_vie
         numbers.push_back(*number);
         rest.remove_prefix(std::min(rest.size(), end + 1));
     }
-    // A key with another spelling of the same numbers, as in "00", is a different key.
+    // A key that spells the same numbers in another way, as in "00", is a different key.
     return metadata.key_of(numbers) == key ? numbers : std::vector<int64_t>();
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// The stored chunks of a Zarr array, each a file (or an entry of an archive), or a part of a shard. Any thread may call
-// it.
+// The stored chunks of a Zarr array: each is a file (or an entry of an archive), or a part of a shard. Any thread may
+// call these.
 //
 // The index of a shard is read once and kept, up to 16 MiB of indices; its checksums must match. The contents of an
 // index are untrusted: a chunk must lie inside its shard and outside the index, and must not share bytes with another
@@ -24,34 +24,34 @@ public:
     ZarrChunks(ZarrPlace array, ZarrMetadata metadata);
 
     const ZarrMetadata& metadata() const { return metadata_; }
-    /// The file of a chunk, or of its shard. Chunks are identified by their index along each axis of the array.
+    /// Returns the file of a chunk, or of its shard. A chunk is identified by its index along each axis of the array.
     std::filesystem::path path_of(std::span<const int64_t> chunk) const;
-    /// The chunk's file or, in a shard, the shard's file and the chunk's indices.
+    /// Returns the chunk's file; for a chunk in a shard, the shard's file and the chunk's indices.
     std::string name_of(std::span<const int64_t> chunk) const;
 
-    /// The bytes as stored; null if the chunk is missing. Fails if they cannot be read, or are more than a chunk can
-    /// need.
+    /// Returns the stored bytes; null if the chunk is missing. Fails if they cannot be read, or if there are more than
+    /// a chunk can need.
     std::optional<std::vector<std::byte>> read(std::span<const int64_t> chunk) const;
-    /// True if the chunk is certainly not stored; false if that cannot be determined.
+    /// True if the chunk is certainly not stored; false if it is stored, or if that cannot be determined.
     bool is_missing(std::span<const int64_t> chunk) const;
-    /// Calls `take` with the indices of every stored chunk that matches `at` (null: any), in no particular order. Stops
-    /// and returns false as soon as there are more than `most`, or enough other names that listing would take much
-    /// longer than for `most` chunks. Reads names and the indices of shards, and never probes for missing chunks. Fails
-    /// if those cannot be read.
+    /// Calls `take` with the indices of every stored chunk that matches `at` (null: any index), in no particular order.
+    /// Stops and returns false after `most` matches, or once other names make listing much longer than for `most`
+    /// chunks. Reads only names and the indices of shards, and never probes for missing chunks. Fails if names or
+    /// indices cannot be read.
     bool list(std::span<const std::optional<int64_t>> at, int64_t most,
               const std::function<void(std::span<const int64_t> chunk)>& take) const;
-    /// The path of a value, among the first few, whose name resembles a chunk's but is not one of this array: its
-    /// indices lie beyond the array, or their number or spelling is wrong. Empty if none is found.
+    /// Returns the path of a value, among the first few, whose name resembles a chunk's but names no chunk here:
+    /// indices lie beyond the array, or their number or spelling is wrong. Empty if no such value is found.
     std::string stray() const;
-    /// The voxels of a stored chunk, native byte order, axes in `metadata().order`.
+    /// Decodes a stored chunk to voxels in native byte order, with axes in `metadata().order`.
     Block decoded(std::span<const std::byte> stored, const std::string& name) const;
 
-    /// The file of the metadata, and whether it still exists.
+    /// The file that holds the metadata, and whether that file still exists.
     std::filesystem::path metadata_path() const { return array_.path_of(metadata_.key()); }
     bool is_there() const { return array_.has(metadata_.key()); }
 
 private:
-    /// Where a chunk lies in its shard; both are ABSENT for a chunk that is not stored.
+    /// The bytes of a chunk in its shard. Both numbers are ABSENT for a chunk that is not stored.
     struct Part {
         uint64_t offset, bytes;
     };
@@ -70,7 +70,7 @@ private:
     mutable ChunkCache indices_;
 };
 
-/// The index of the chunk or shard with that name within an array; empty if it is none of this array.
+/// Returns the indices of the chunk or shard that `key` names; empty if it names none of this array.
 std::vector<int64_t> chunk_numbers(const ZarrMetadata& metadata, std::string_view key);
 
 }  // namespace shvr

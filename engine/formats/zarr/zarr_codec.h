@@ -1,7 +1,7 @@
 #pragma once
-// Compresses and decompresses chunks of Zarr: blosc, zstd, zlib, gzip, or none; and checks their checksums, crc32c.
-// Stored data is untrusted: its size, stated or found, must be exactly what the metadata promise. Any thread may call
-// these.
+// Compresses and decompresses chunks of Zarr (blosc, zstd, zlib, gzip, or none), and verifies their checksums (crc32c).
+// Stored data is untrusted: a chunk's size, both as stated and as decoded, must be exactly what the metadata promise.
+// Any thread may call these.
 
 #include <span>
 #include <string>
@@ -11,24 +11,24 @@
 
 namespace shvr {
 
-/// The maximum size of any compressor's output for a chunk: longer files are refused before they are read.
+/// Maximum size that any compressor gives to a chunk: longer files are refused before they are read.
 int64_t longest_stored(int64_t chunk_bytes);
 
-/// Fails if that few bytes cannot decode to `chunk_bytes`; called before memory is allocated.
+/// Fails if `stored_bytes` are too few to decode to `chunk_bytes`. Called before memory is allocated.
 void check_stored_size(std::span<const ZarrCompressor> codecs, size_t stored_bytes, size_t chunk_bytes,
                        const std::string& name);
-/// Fills `chunk` exactly, or fails with `name`, the chunk's name, in the message.
+/// Fills `chunk` exactly, or fails. `name`: the chunk's name, for the message.
 void decode_chunk(std::span<const ZarrCompressor> codecs, std::span<const std::byte> stored, std::span<std::byte> chunk,
                   const std::string& name);
-/// Verifies and removes the checksum at the end of `stored`; fails if there are too few bytes, or it does not match.
+/// Verifies the checksum at the end of `stored` and removes it. Fails if it does not match, or bytes are missing.
 std::span<const std::byte> without_checksum(std::span<const std::byte> stored, const std::string& name);
 
-/// Applies one of these compressors; not crc32c.
+/// Decompresses a chunk with the given compressor, which must not be crc32c.
 void decompress_chunk(ZarrCompressor::Kind kind, std::span<const std::byte> stored, std::span<std::byte> chunk,
                       const std::string& name);
 
-/// Equal input gives equal bytes. Supports only blosc and none, which we write. The result lies in `memory`, which is
-/// allocated once and reused, or is `chunk` itself.
+/// Compresses a chunk; equal input gives equal bytes. Supports only blosc and none, the codecs that we write. The
+/// result either lies in `memory`, which is allocated once and then reused, or is `chunk` itself.
 std::span<const std::byte> compress_chunk(const ZarrCompressor& compressor, std::span<const std::byte> chunk,
                                           size_t voxel_bytes, std::vector<std::byte>& memory);
 

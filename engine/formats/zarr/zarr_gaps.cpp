@@ -12,13 +12,13 @@
 namespace shvr {
 namespace {
 
-/// A brick and its apron touch no more chunks of usual size; this many probes are faster than most listings.
+/// A brick with its apron touches at most this many chunks of usual size; that few probes beat most listings.
 constexpr int64_t FEW_FILES = 8;
 constexpr size_t MANY_LOOKS = 4096;
-/// Chunks along an axis have numbers below 2^21.
+/// Bits for a chunk's number along an axis, which is below 2^21.
 constexpr int CODE_BITS = 21;
 
-/// Spreads bit i to bit 3 i.
+/// Returns a number with bit i moved to bit 3 i.
 uint64_t spread(uint64_t number)
 {
     uint64_t code = 0;
@@ -26,7 +26,7 @@ uint64_t spread(uint64_t number)
     return code;
 }
 
-/// Morton's code: the chunks of a cube of 2^k chunks a side follow each other.
+/// Returns the chunk's Morton code, by which the chunks of a cube of 2^k chunks per side follow each other.
 uint64_t code_of(const Size3& chunk)
 {
     return spread(uint64_t(chunk.x)) | spread(uint64_t(chunk.y)) << 1 | spread(uint64_t(chunk.z)) << 2;
@@ -42,7 +42,7 @@ glm::ivec3 chunk_of(uint64_t code)
 
 using Codes = std::span<const uint64_t>;
 
-/// Whether one of the codes, all of the cube of 2^bits chunks at `corner`, lies in a box of chunks.
+/// Whether any of the codes, which all belong to the cube of 2^bits chunks at `corner`, lies in a box of chunks.
 bool any_in(Codes codes, const Size3& corner, int bits, const VoxelBox& box)
 {
     const Size3 end = corner + (int64_t{1} << bits);
@@ -63,13 +63,13 @@ bool any_in(Codes codes, const Size3& corner, int bits, const VoxelBox& box)
 
 }  // namespace
 
-/// What is known of a level. The mutex must be held for any access.
+/// The known facts about a level. The mutex must be held for any access.
 struct ZarrGaps::Level {
     std::mutex mutex{};
     std::optional<std::vector<uint64_t>> codes{};     ///< codes of all stored chunks, ascending
-    int64_t more_than = 0;                            ///< lower bound of the number of stored chunks, if there were too
-                                                      ///< many to list
-    bool is_unlistable = false;                       ///< a name or the index of a shard could not be read
+    int64_t more_than = 0;                            ///< lower bound of the number of stored chunks if there were
+                                                      ///< too many to list
+    bool is_unlistable = false;                       ///< set if a name or the index of a shard could not be read
     std::unordered_map<uint64_t, bool> is_missing{};  ///< results of probes
 
     void list(const ZarrVolume& volume, int64_t most)
@@ -84,7 +84,7 @@ struct ZarrGaps::Level {
         codes = std::move(found);
         is_missing = {};
     }
-    /// A failure to list is reported by whichever read needs the data.
+    /// Lists the chunks if possible. A failure is not reported here: whichever read needs the data reports it.
     void try_to_list(const ZarrVolume& volume)
     {
         if (is_unlistable) return;
@@ -115,7 +115,7 @@ std::optional<ValueRange> ZarrGaps::range(int level, const VoxelBox& box) const
     for (int below = level; below >= 0; --below) {
         if (!are_missing(below, chunks_below(level, box, below)).value_or(false)) return std::nullopt;
         const ZarrVolume& volume = volumes_[size_t(below)];
-        // An array that was removed must not look empty.
+        // If the array was removed, its chunks are unknown rather than missing.
         if (!volume.is_there()) return std::nullopt;
         const double fill = volume.fill();
         if (!std::isfinite(fill)) continue;
@@ -144,7 +144,7 @@ ZarrGaps::Chunks ZarrGaps::chunks_below(int level, const VoxelBox& box, int belo
 {
     const ZarrVolume& volume = volumes_[size_t(below)];
     const int64_t factor = int64_t{1} << (level - below);
-    // A level whose size was rounded down lacks its last voxels; the last existing ones stand in for them.
+    // A level whose size was rounded down lacks its last voxels; the last existing voxels stand in for them.
     const Size3 lower = glm::min(box.lower * factor, volume.size() - int64_t{1});
     const Size3 upper = glm::min(box.upper * factor, volume.size());
     return {lower / volume.chunk(), (upper - int64_t{1}) / volume.chunk() + int64_t{1}};

@@ -1,13 +1,13 @@
 #pragma once
-// Finds where a Zarr image stores nothing, so that sparse volumes from other programs are skipped without being read.
+// Finds the parts of a Zarr image that are not stored, so that sparse volumes of other programs are skipped unread.
 //
-// In such files levels need not be means of each other, so a part of a coarse level is a gap only if everything below
-// it, down to level 0, is one.
+// In the files of other programs, a coarse level need not hold the means of the finer one, so a part of a coarse level
+// is a gap only if everything that it covers, down to level 0, is a gap.
 //
-// The chunks of a level are listed once, on the first query (ZarrChunks::list), and kept as 8 bytes each. A few chunks
-// are probed one by one instead, as long as that is faster, so that in dense images, where a coarse level already gives
-// the answer, no level is listed. Levels with more than MAX_LISTED chunks are listed only on request; there, a query
-// that would need more than MAX_FILES probes is not answered. Any thread may call it.
+// The chunks of a level are listed once, on the first query (ZarrChunks::list), and kept as 8 bytes each. As long as it
+// is faster, a few chunks are probed one by one instead; so no level is listed in dense images, where a coarse level
+// already answers the query. Levels with more than MAX_LISTED chunks are listed only on request; without that list, a
+// query that would need more than MAX_FILES probes is not answered. Any thread may call these.
 
 #include <memory>
 #include <mutex>
@@ -24,21 +24,21 @@ public:
     static constexpr int64_t MAX_FILES = 512;
     static constexpr int64_t MAX_LISTED = int64_t{1} << 20;
 
-    /// `levels` are those of one image, finest first, and must outlive it.
+    /// `levels`: all levels of one image, finest first; they must outlive this object.
     explicit ZarrGaps(const std::vector<ZarrVolume>& levels);
     ~ZarrGaps();
 
-    /// The range of the values of `box`, a part of `level`, and of everything below it in finer levels, if none of
-    /// their chunks is stored: the range of the fill values, lower > upper if none is finite. Null if a chunk is
-    /// stored, or cannot be looked up.
+    /// Returns the range of the fill values if no chunk is stored for `box`, a part of `level`, nor for the same
+    /// space in finer levels; lower > upper if no fill value is finite. Null if a chunk is stored, or cannot be
+    /// looked up.
     std::optional<ValueRange> range(int level, const VoxelBox& box) const;
-    /// The stored chunks of a level, sorted by z, then y, then x; null if there are more than `most`. Fails if they
-    /// cannot be listed.
+    /// Returns the stored chunks of a level, sorted by z, then y, then x; null if there are more than `most`. Fails if
+    /// they cannot be listed.
     std::optional<std::vector<glm::ivec3>> stored(int level, int64_t most) const;
 
 private:
     struct Level;
-    /// A range of chunks, from and to.
+    /// A range of chunks: from `begin` up to, but not including, `end`.
     struct Chunks {
         Size3 begin{0}, end{0};
     };

@@ -1,8 +1,8 @@
 #pragma once
-// A volume inside a Zarr array: three of its axes, at a fixed index along the others, chunk by chunk.
+// A volume inside a Zarr array: three of the array's axes, at a fixed index along the others. It is read by chunks.
 //
-// A missing chunk holds the fill value; a chunk that cannot be read or decoded is an `Error` with its path. Chunks at
-// the end of an axis have the full size, and their part outside the array is never looked at. Any thread may call it.
+// A missing chunk holds the fill value; a chunk that cannot be read or decoded causes an `Error` with its path. Chunks
+// at the end of an axis have the full size, and their part outside the array is ignored. Any thread may call these.
 
 #include <filesystem>
 #include <functional>
@@ -18,13 +18,13 @@
 
 namespace shvr {
 
-/// Selects the three axes of an array that form a volume, and its index along the others.
+/// The three axes of an array that form a volume, and the fixed indices along the other axes.
 struct ZarrView {
-    std::array<size_t, 3> xyz{2, 1, 0};  ///< the array's axis along x, y and z
-    std::vector<int64_t> at{};           ///< index along every axis of the array; ignored for x, y and z
+    std::array<size_t, 3> xyz{2, 1, 0};  ///< indices of the array's axes for x, y and z
+    std::vector<int64_t> at{};           ///< index along each axis of the array; ignored for the axes in `xyz`
 };
 
-/// The checksum of a chunk's stored bytes, which finds damage even if they still decode. 0: no chunk is stored.
+/// Returns the checksum of a chunk's stored bytes, to find damage even in bytes that still decode. 0: not stored.
 uint64_t checksum_of(std::span<const std::byte> stored);
 
 /// A chunk that an import wrote: its number (ZarrVolume::index_of), and the checksum of its stored bytes.
@@ -38,40 +38,40 @@ public:
 
     const ZarrMetadata& metadata() const { return chunks_->metadata(); }
     const Size3& size() const { return size_; }      ///< voxels
-    const Size3& chunk() const { return chunk_; }    ///< voxels of a chunk
+    const Size3& chunk() const { return chunk_; }    ///< voxels of a chunk along each axis
     const Size3& counts() const { return counts_; }  ///< chunks
     int64_t index_of(const Size3& chunk) const { return shvr::index_of(chunk, counts_); }
     /// The file of a chunk, or of the shard that holds it.
     std::filesystem::path path_of(const Size3& chunk) const;
 
-    /// Sets all chunks that are stored, ascending, with which chunks are compared from now on. Not while other threads
-    /// read.
+    /// Sets the list of all chunks that should be stored, ascending. From now on, chunks are verified against it. Must
+    /// not be called while other threads read.
     void expect(std::vector<StoredChunk> chunks) { expected_ = std::move(chunks); }
 
-    /// The voxels of a chunk, x fastest, in native byte order; empty if all are the fill value.
+    /// Returns the voxels of a chunk, x fastest, in native byte order; empty if all of them are the fill value.
     Block load(const Size3& chunk) const;
 
-    /// True if the chunk is not stored, and is expected to be missing: it holds the fill value. Reads at most the index
-    /// of a shard.
+    /// Whether the chunk is not stored and is expected to be missing, so that it holds the fill value. Reads at most
+    /// the index of a shard.
     bool is_missing(const Size3& chunk) const;
-    /// Calls `take` for each chunk that is stored, or should be, in no particular order; stops and returns false if
-    /// there are more than `most`. Reads names and the indices of shards at most, and never probes for missing chunks.
+    /// Calls `take` for each chunk that is stored, or should be, in no particular order. Stops and returns false if
+    /// there are more than `most`. Reads only names and the indices of shards, and never probes for missing chunks.
     bool list_stored(int64_t most, const std::function<void(const Size3& chunk)>& take) const;
     /// As ZarrChunks::stray.
     std::string stray_chunk() const { return chunks_->stray(); }
-    /// The value of voxels in missing chunks.
+    /// The value of voxels in chunks that are not stored.
     double fill() const;
     /// Whether the array still exists where it was opened.
     bool is_there() const { return chunks_->is_there(); }
 
-    /// Copies the voxels of `box`, which lies inside the volume, x fastest. `get` returns the chunks.
+    /// Copies the voxels of `box`, x fastest; the box lies inside the volume. `get` returns the chunks.
     void read(const VoxelBox& box, std::span<std::byte> voxels,
               const std::function<std::shared_ptr<const Block>(const Size3& chunk)>& get) const;
 
 private:
     std::vector<int64_t> numbers_of(const Size3& chunk) const;
     Block arranged(Block chunk) const;
-    /// 0: no chunk is expected. Call only if some are known.
+    /// Returns the checksum that a chunk must have; 0: it must not be stored. Call only if checksums are known.
     uint64_t expected_checksum(const Size3& chunk) const;
 
     std::shared_ptr<const ZarrChunks> chunks_;

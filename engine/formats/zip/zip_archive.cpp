@@ -17,7 +17,7 @@ namespace {
 
 constexpr uint64_t HEADER_BYTES = 30;  ///< size of a local header, without name and extra fields
 constexpr uint32_t HEADER_MARK = 0x04034b50;
-/// The maximum that a byte of deflate can decode to (zlib's technical notes).
+/// Maximum number of bytes that one byte of deflate can decode to (zlib's technical notes).
 constexpr uint64_t MAX_OUT_OF_A_BYTE = 1032;
 
 FileDescriptor opened(const std::filesystem::path& path)
@@ -41,7 +41,7 @@ uint32_t crc_of(std::span<const std::byte> bytes)
     return uint32_t(::crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
-/// Ends the stream in every case.
+/// A zlib stream for raw deflate data that its destructor always ends.
 struct RawInflater {
     z_stream stream{};
     bool is_ready = false;
@@ -100,7 +100,7 @@ void ZipArchive::read_at(uint64_t offset, std::span<std::byte> bytes) const
     }
 }
 
-/// The offset of the entry's stored bytes, all of which precede the directory.
+/// Returns the offset of the entry's stored bytes, all of which must lie before the directory.
 uint64_t ZipArchive::data_of(const ZipEntry& entry) const
 {
     const std::string name = name_of(entry);

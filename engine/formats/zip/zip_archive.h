@@ -1,6 +1,6 @@
 #pragma once
-// A zip archive with random access: its directory is read once, on opening; entries, stored or deflated, are read by
-// name. Archives are untrusted (zip_directory.h). Nothing is ever unpacked into files. Any thread may call it
+// A zip archive with random access. Its directory is read once, on opening; its entries, stored or deflated, are read
+// by name. Archives are untrusted (zip_directory.h). Nothing is ever unpacked into files. Several threads may call it
 // concurrently.
 
 #include <filesystem>
@@ -25,10 +25,10 @@ public:
     /// Null if there is none.
     const ZipEntry* find(std::string_view name) const;
 
-    /// The decoded bytes, whose size and CRC-32 are as the directory says. Fails if there are more than `max_bytes`, or
-    /// the entry is encrypted, compressed in another way, damaged, or not in the file.
+    /// Returns the decoded bytes; their size and CRC-32 must be as the directory states. Fails if there are more than
+    /// `max_bytes`, or if the entry is encrypted, compressed in another way, damaged, or outside the file.
     std::vector<std::byte> read(const ZipEntry& entry, int64_t max_bytes) const;
-    /// Whether parts of it can be read: it is stored uncompressed.
+    /// Whether the entry is stored uncompressed, so that parts of it can be read.
     static bool is_plain(const ZipEntry& entry);
     /// Reads bytes of a plain entry from `offset` on; the entry must have enough. Its CRC-32 is not checked.
     void read_part(const ZipEntry& entry, int64_t offset, std::span<std::byte> part) const;

@@ -9,10 +9,10 @@
 namespace shvr {
 namespace {
 
-constexpr uint64_t END_BYTES = 22;      ///< size of the end record, without its comment
-constexpr uint64_t LOCATOR_BYTES = 20;  ///< size of zip64's locator, right before the end record
-constexpr uint64_t END64_BYTES = 56;    ///< of zip64's end record, without extensions
-constexpr uint64_t ENTRY_BYTES = 46;    ///< without name, extra fields and comment
+constexpr uint64_t END_BYTES = 22;      ///< size of the end record without the archive's comment
+constexpr uint64_t LOCATOR_BYTES = 20;  ///< size of zip64's locator, which lies right before the end record
+constexpr uint64_t END64_BYTES = 56;    ///< size of zip64's end record, without extensions
+constexpr uint64_t ENTRY_BYTES = 46;    ///< size of an entry, without name, extra fields and comment
 constexpr uint64_t MAX_COMMENT = 65535;
 /// Enough for ten million entries.
 constexpr uint64_t MAX_DIRECTORY = uint64_t{1} << 30;
@@ -23,7 +23,7 @@ constexpr uint32_t IN_ZIP64 = 0xffffffff;
 
 /// Where the directory is.
 struct End {
-    uint64_t at = 0;  ///< offset of the first end record: the directory ends here, or before
+    uint64_t at = 0;  ///< offset of the first end record, which is an upper limit of the directory's end
     uint64_t entries = 0, bytes = 0, offset = 0;
 };
 
@@ -44,7 +44,7 @@ void check_parts(const std::string& path, bool is_one_part)
     if (!is_one_part) fail(path, ": is one part of a multi-part archive; expected a single file: join the parts first");
 }
 
-/// Takes zip64's end record, if there is one before the end record at `end.at`.
+/// Takes the values of zip64's end record, if a locator before the end record at `end.at` points to it.
 void take_zip64(const std::string& path, const ReadAt& read_at, End& end)
 {
     if (end.at < LOCATOR_BYTES) return;
@@ -82,7 +82,7 @@ End find_end(const std::string& path, uint64_t file_bytes, const ReadAt& read_at
     refuse(path, "has no end record: it is truncated, or not a zip archive");
 }
 
-/// Reads values of 64 bits from an extra field if the entry has all ones, in this order.
+/// Reads, from an extra field and in this order, 64-bit values for those fields of the entry that are all ones.
 void take_zip64_sizes(const std::string& path, std::string_view extra, ZipEntry& entry)
 {
     const bool wanted[] = {entry.bytes == IN_ZIP64, entry.stored_bytes == IN_ZIP64, entry.header == IN_ZIP64};
@@ -103,13 +103,13 @@ void take_zip64_sizes(const std::string& path, std::string_view extra, ZipEntry&
         }
         return;
     }
-    // If there is no such field, the size is taken literally: 2^32 - 1.
+    // If there is no such extra field, the size is taken literally: 2^32 - 1.
 }
 
 std::vector<ZipEntry> entries_of(const std::string& path, const std::vector<char>& bytes, uint64_t count)
 {
     std::vector<ZipEntry> entries;
-    entries.reserve(size_t(count));  // bounded by the size of the directory
+    entries.reserve(size_t(count));  // the number of entries is bounded by the size of the directory
     std::string_view rest(bytes.data(), bytes.size());
     for (uint64_t number = 0; number < count; ++number) {
         if (rest.size() < ENTRY_BYTES || little_endian<uint32_t>(rest.data()) != ENTRY_MARK)
@@ -150,7 +150,7 @@ ZipDirectory read_zip_directory(const std::string& path, uint64_t file_bytes, co
     }
     ZipDirectory directory{.offset = end.offset, .bytes = read(read_at, end.offset, end.bytes)};
     std::vector<ZipEntry>& entries = directory.entries = entries_of(path, directory.bytes, end.entries);
-    // Writers that append, as zarr-python's do when attributes change, leave the old entry in place.
+    // Writers that append, as zarr-python does when attributes change, leave the old entry in place.
     std::ranges::reverse(entries);
     std::ranges::stable_sort(entries, {}, &ZipEntry::name);
     const auto repeated = std::ranges::unique(entries, {}, &ZipEntry::name);

@@ -1,5 +1,5 @@
 #pragma once
-// A chunk of a volume being imported, and the levels above it. For import_pyramid.cpp.
+// A chunk of a volume being imported, and the coarser levels made from it. For import_pyramid.cpp.
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,8 @@
 
 namespace shvr {
 
-/// The voxels of one level below a chunk, and the range of level 0 below each. Rows are always IMPORT_CHUNK voxels
-/// long, so that loops over them have a length known at compile time; `side` rows make a slice.
+/// The voxels of one level below a chunk, and for each voxel its range in level 0. Rows are always IMPORT_CHUNK voxels
+/// long, so that loops over them have a length known at compile time; a slice has `side` rows.
 template <class T>
 struct ImportCube {
     explicit ImportCube(int64_t rows) : side(rows), values(size_t(rows * rows * IMPORT_CHUNK)) {}
@@ -29,7 +29,7 @@ struct ImportCube {
     std::vector<T> values, lower, upper;
 };
 
-/// Level 0 needs ranges only if it contains non-finite voxels, which have an empty range.
+/// Finds the ranges of level 0. They are needed only if some voxels are not finite; those have an empty range.
 template <class T>
 void find_own_ranges(ImportCube<T>& cube)
 {
@@ -74,7 +74,7 @@ void halve_ranges(const ImportCube<T>& fine, const HalvingRows<T>& rows, T* lowe
 
 enum class CubeRanges { none, halved };
 
-/// The next level, with its ranges if they are wanted.
+/// Makes the next coarser level, with its ranges if they are wanted.
 template <class T>
 void halve_cube(const ImportCube<T>& fine, ImportCube<T>& coarse, Halving how, CubeRanges ranges = CubeRanges::halved)
 {

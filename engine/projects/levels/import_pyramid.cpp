@@ -13,7 +13,7 @@ namespace {
 
 constexpr int REACH = IMPORT_REACH;
 
-/// The slices of a level held in memory: 64 of them, or the whole level.
+/// The slices of a level that are in memory: 64 slices, or the whole level.
 template <class T>
 struct Window {
     Window(const Size3& size_of_volume, int level)
@@ -28,7 +28,7 @@ struct Window {
         upper.resize(values.size());
     }
 
-    /// The index in the window of a voxel of the level.
+    /// Returns the index in the window of a voxel of the level.
     size_t at(int64_t x, int64_t y, int64_t z) const
     {
         return size_t(x + size.x * (y + size.y * (is_whole ? z : z % IMPORT_CHUNK)));
@@ -36,7 +36,7 @@ struct Window {
 
     Size3 size;
     bool is_whole;
-    bool keeps_ranges;  ///< whether the six levels above are made from it
+    bool keeps_ranges;  ///< whether the next six coarser levels are made from this level
     int64_t slices;
     std::vector<T> values, lower, upper;
 };
@@ -139,7 +139,7 @@ private:
 
     const Window<T>& window_of(int level) const { return windows_[size_t(level - 1)]; }
 
-    /// Fills every row with `put`; the fill value outside the extent.
+    /// Fills every row with `put`, and with the fill value outside the extent.
     template <class Put>
     void fill(ImportCube<T>& cube, const Size3& extent, const Put& put) const
     {
@@ -170,7 +170,7 @@ private:
         }
     }
 
-    /// Chunks do not overlap, so neither do the regions they write.
+    /// Needs no lock: chunks do not overlap, so neither do the regions they write.
     static void store(const ImportCube<T>& cube, const Size3& origin, Window<T>& window)
     {
         for (int64_t z = 0; z < cube.extent.z; ++z) {
@@ -207,7 +207,7 @@ private:
     Halving how_;
     T fill_{};
     std::vector<std::unique_ptr<ImportRanges<T>>> tables_;  ///< by level
-    std::vector<Window<T>> windows_;                        ///< by level, from 1
+    std::vector<Window<T>> windows_;                        ///< by level, starting at level 1
     std::vector<Scratch> scratch_;                          ///< by worker
 };
 

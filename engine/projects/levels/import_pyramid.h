@@ -1,14 +1,14 @@
 #pragma once
 // Makes the levels of a volume while its level 0 streams through in chunks of 64^3 voxels.
 //
-// A voxel of level l + 1 is the mean of the 2^3 voxels of level l below it; at the volume's end, of those that exist,
-// and always of the finite ones. Integers are rounded to nearest, ties to even; for labels it is the most frequent one
-// (halving.h). Since 64 is 2^6, a chunk alone determines its voxels of the six levels above it. Voxels of levels 1 to 5
-// are gathered until 64 slices of a level are complete; higher levels are small and kept whole. So memory depends on
-// the size of a slice, not on the number of slices: about 43 bytes per voxel of a slice of 16 bits.
+// A voxel of level l + 1 is the mean of the 2^3 voxels of level l below it. Only finite voxels inside the volume count.
+// Integers are rounded to nearest, ties to even; for labels, the voxel is the most frequent label (halving.h). Since 64
+// is 2^6, a chunk alone determines its voxels in the next six coarser levels. Voxels of levels 1 to 5 are gathered
+// until 64 slices of a level are complete; higher levels are small and kept whole. So memory depends on the size of a
+// slice, not on the number of slices: about 43 bytes per voxel of a slice of 16 bits.
 //
-// The pass also finds, for every level and every brick of 32^3 voxels, the smallest and largest finite value of level 0
-// below the brick and one voxel of its level around it.
+// For every brick of 32^3 voxels of every level, the pass also finds the smallest and largest finite value of the
+// voxels of level 0 below the brick and below the voxels next to it.
 
 #include <array>
 #include <memory>
@@ -23,11 +23,11 @@ namespace shvr {
 
 /// Voxels along each axis of a chunk, at every level.
 inline constexpr int64_t IMPORT_CHUNK = 64;
-/// A chunk determines this many levels above its own.
+/// A chunk determines its voxels in this many coarser levels.
 inline constexpr int IMPORT_REACH = 6;
 static_assert(IMPORT_CHUNK == int64_t{1} << IMPORT_REACH);
 
-/// Enough levels that one brick of 32^3 voxels holds the coarsest.
+/// Number of levels, such that a single brick of 32^3 voxels covers the coarsest level.
 int level_count(const Size3& size);
 
 class ImportPyramid {
@@ -35,8 +35,8 @@ public:
     virtual ~ImportPyramid() = default;
 
     /// Takes the chunk whose first voxel is at `origin`, with `extent` voxels inside the volume; rows and slices lie
-    /// `row_bytes` and `slice_bytes` apart. Returns all its 64^3 voxels, the fill value outside the volume; they stay
-    /// valid until the next call with the same `worker`. Different workers may add different chunks at once.
+    /// `row_bytes` and `slice_bytes` apart. Returns all its 64^3 voxels, with the fill value outside the volume, valid
+    /// until the next call with the same `worker`. Different workers may add different chunks at once.
     struct Chunk {
         Size3 origin{0};
         Size3 extent{0};
@@ -46,20 +46,20 @@ public:
     };
     virtual std::span<const std::byte> add(const Chunk& chunk, int worker) = 0;
 
-    /// Whether a layer of chunks of `level` (1 ... 5) is complete as soon as `slices` slices of level 0 have been
-    /// added. Higher levels are complete at the end.
+    /// Whether a layer of chunks of `level` (1 ... 5) is complete once `slices` slices of level 0 have been added.
+    /// Layers of higher levels are complete only at the end.
     bool completes_layer(int level, int64_t slices) const;
-    /// Computes everything that needs the whole volume: levels above the sixth. Call after the last chunk.
+    /// Computes the levels above the sixth, which need the whole volume. Call after the last chunk.
     virtual void finish() = 0;
-    /// The voxels of a chunk of a complete layer, as `add` returns them.
+    /// Returns the voxels of a chunk of a complete layer, in the form in which `add` returns them.
     virtual std::span<const std::byte> gather(int level, const Size3& chunk, int worker) = 0;
-    /// Call once the layer of `level` has been written; its memory is reused for the next one.
+    /// Call once the layer of `level` has been written; the next layer reuses its memory.
     virtual void clear_layer(int level) = 0;
 
     /// The elements of PROJECT/shvr/ranges-LEVEL.
     virtual std::vector<std::byte> ranges(int level) const = 0;
 
-    /// Valid only between two layers of chunks of level 0.
+    /// Call only between two layers of chunks of level 0.
     virtual void save(StateWriter& state) const = 0;
     virtual void load(StateReader& state) = 0;
 

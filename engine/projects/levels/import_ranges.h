@@ -1,5 +1,5 @@
 #pragma once
-// The ranges of the bricks of a level, found while its chunks stream through.
+// Finds the ranges of the bricks of a level, while its chunks stream through.
 
 #include <algorithm>
 #include <cmath>
@@ -35,17 +35,17 @@ ImportRange<T> range_of_voxel(const FillVoxel& voxel)
     return std::isfinite(double(value)) ? ImportRange<T>{value, value} : ImportRange<T>{};
 }
 
-/// The part of a brick, and of the voxel around it, inside a cube.
+/// The part of a brick and of the voxels next to it that lies inside a cube.
 template <class T>
 struct BrickPart {
-    int64_t brick;  ///< its number, x fastest
+    int64_t brick;  ///< the brick's number, x fastest
     int64_t voxels;
     ImportRange<T> range;
 };
 
 namespace ranges {
 
-/// The part of a cube, along one axis, inside a brick and the voxel around it.
+/// The part of a cube, along one axis, inside a brick or the voxels next to it.
 struct Segment {
     int64_t brick, begin, end;
 };
@@ -90,7 +90,7 @@ void add_columns(const ImportCube<T>& cube, const Segment& y, const Segment& z, 
 
 }  // namespace ranges
 
-/// The parts of bricks inside a cube; `bricks`: number of bricks of its level along each axis.
+/// The parts of bricks inside a cube; `bricks`: number of bricks of the cube's level along each axis.
 template <class T>
 std::vector<BrickPart<T>> brick_parts(const ImportCube<T>& cube, const Size3& origin, const Size3& bricks)
 {
@@ -104,7 +104,7 @@ std::vector<BrickPart<T>> brick_parts(const ImportCube<T>& cube, const Size3& or
     return found;
 }
 
-/// The ranges of all bricks of a level. Different cubes may be added at once.
+/// The ranges of all bricks of a level. Different cubes may be added at the same time.
 template <class T>
 class ImportRanges {
 public:

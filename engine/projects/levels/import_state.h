@@ -1,6 +1,6 @@
 #pragma once
-// The state that an import needs to resume after an interruption, in one file with one checksum: byte strings in a
-// fixed order, each with its length, in a zstd frame, behind a header with a checksum. One thread.
+// The state that an import needs to resume after an interruption, in one file with one checksum: a header with the
+// checksum, then a zstd frame of byte strings in a fixed order, each preceded by its length. One thread.
 
 #include <cstring>
 #include <filesystem>
@@ -22,7 +22,7 @@ public:
         put(std::as_bytes(std::span(elements)));
     }
 
-    /// Replaces the file atomically; on return its content is on the disk.
+    /// Replaces the file atomically; when it returns, the content is on the disk.
     void write(const std::filesystem::path& file) const;
 
 private:
@@ -31,13 +31,13 @@ private:
 
 class StateReader {
 public:
-    /// Fails if the file is damaged or of another version.
+    /// Fails if the file is damaged or has another version.
     explicit StateReader(const std::filesystem::path& file);
 
-    /// The next piece; fails if there is none.
+    /// Returns the next piece; fails if there is none.
     std::span<const std::byte> take();
     std::string take_text();
-    /// Fills existing elements; fails if the file has another number of them.
+    /// Fills existing elements; fails if the file has a different number of elements.
     template <class T>
     void take_all(std::vector<T>& elements)
     {
@@ -45,7 +45,7 @@ public:
         if (piece.size() != elements.size() * sizeof(T)) refuse();
         if (!piece.empty()) std::memcpy(elements.data(), piece.data(), piece.size());
     }
-    /// Elements whose number the file states.
+    /// Reads elements whose number the file states.
     template <class T>
     std::vector<T> take_list()
     {

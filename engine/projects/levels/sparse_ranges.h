@@ -1,6 +1,6 @@
 #pragma once
-// The ranges of the bricks of a level of which only some chunks are made: those that differ from bricks in which
-// nothing is stored.
+// The ranges of the bricks of a level of which only some chunks are made: stores only ranges that differ from the range
+// of bricks in which nothing is stored.
 
 #include <algorithm>
 #include <cmath>
@@ -13,17 +13,17 @@
 
 namespace shvr {
 
-/// Different cubes may be added at once, each once.
+/// Different cubes may be added at the same time, each cube once.
 template <class T>
 class SparseRanges {
 public:
     struct Brick {
         uint64_t number = 0;
-        int64_t voxels = 0;  ///< known ones of the brick and the voxel around it
+        int64_t voxels = 0;  ///< known voxels of the brick and next to it
         ImportRange<T> range{};
     };
 
-    /// `size`: of the level. `rest`: the range below a voxel for which no chunk is made.
+    /// `size`: size of the level. `rest`: the range of voxels in chunks that are not made.
     SparseRanges(const Size3& size, const ImportRange<T>& rest)
         : size_(size), counts_(size_of_level(size, 5)), rest_(rest)
     {}
@@ -34,11 +34,11 @@ public:
         const std::scoped_lock lock(mutex_);
         for (const BrickPart<T>& part : parts)
             bricks_.push_back({.number = uint64_t(part.brick), .voxels = part.voxels, .range = part.range});
-        // Each time as many as are known have come, so that sorting costs little and memory at most twice as much.
+        // Merges once the number of bricks has doubled, so that sorting costs little and memory at most doubles.
         if (bricks_.size() > merged_ + std::max(merged_, MIN_MERGED)) merge();
     }
 
-    /// Bricks whose range is not that of the rest, ascending, once all cubes have been added.
+    /// Call once all cubes have been added. Returns the bricks whose range differs from `rest`, in ascending order.
     std::vector<Brick> bricks()
     {
         merge();

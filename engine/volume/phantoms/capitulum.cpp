@@ -1,5 +1,5 @@
-// A flower head: stem bundles that go on as abaxial veins along the bowl and into the bracts, adaxial veins below the
-// receptacle, and veins that descend from florets.
+// A flower head: stem bundles that continue as abaxial veins along the bowl and into the bracts, adaxial veins below
+// the receptacle, and veins that descend from florets.
 
 #include <cmath>
 #include <optional>
@@ -112,7 +112,7 @@ void Capitulum::add_abaxial()
     }
 }
 
-/// Along radii, or with waves around them, from the outer end inwards.
+/// Adds adaxial veins from the outer end inwards, along radii or waving around them.
 void Capitulum::add_spokes()
 {
     const double thick = radius(0.024);
@@ -121,7 +121,7 @@ void Capitulum::add_spokes()
     for (int i = 0; i < species_.spokes; ++i) {
         const double turns = (double(i) + 0.2 * (random(SPOKES, i) - 0.5)) / species_.spokes;
         const double phase = random(WAVES, i);
-        // Every second one of those that are joined ends half-way, at its neighbour.
+        // Every second one of the joined veins ends half-way, at its neighbour.
         const double from = is_joined && i % 2 == 1 ? std::max(0.34, adaxial_from()) : adaxial_from();
         std::vector<Vein> spoke;
         constexpr int PIECES = 8;
@@ -159,7 +159,7 @@ void Capitulum::add_joins(const std::vector<std::vector<Vein>>& spokes)
     }
 }
 
-/// Below each floret a node; each joined to the two nearest that come later along parastichies.
+/// Adds a node below each floret, and joins it to the two nearest nodes that come later along the parastichies.
 void Capitulum::add_net()
 {
     const double thick = radius(0.024);
@@ -184,7 +184,7 @@ void Capitulum::add_net()
         for (size_t i = 0; i < std::min<size_t>(2, later.size()); ++i) model_.link(*nodes[size_t(k)], later[i].second);
     }
     if (!stage_.joins_between) return;
-    // The outermost parastichies run out at the abaxial veins below.
+    // The outermost parastichies end at the abaxial veins below them.
     for (const Vein& rim : abaxial_rim_) {
         if (rim.rho > 0.9) continue;
         if (const auto net = nearest(adaxial_, model_.nodes[rim.node].voxel)) model_.link(rim.node, *net);
@@ -193,7 +193,7 @@ void Capitulum::add_net()
 
 void Capitulum::add_florets()
 {
-    // From the rim inwards: those towards the axis join others further out.
+    // From the rim inwards, because veins nearer to the axis join veins further out.
     for (int k = spec_.florets - 1; k >= 0; --k)
         if (floret_place(spec_, k).rho >= stage_.florets_from) add_floret(k);
 }
@@ -203,7 +203,7 @@ void Capitulum::add_floret(int k)
     const auto [turns, rho] = floret_place(spec_, k);
     const double thick = radius(0.018);
     const double surface = receptacle_height(species_, rho);
-    // Florets mature from the rim inwards; those of the middle are faint.
+    // Florets mature from the rim inwards; veins of florets near the middle are faint.
     const double maturity = std::clamp((rho - stage_.florets_from) / 0.5, 0.0, 1.0);
     const double seen = GROUND_TISSUE + (VEIN - GROUND_TISSUE) * (0.5 + 0.5 * maturity);
     const double body = 0.55 / std::sqrt(double(spec_.florets));
@@ -246,7 +246,7 @@ void Capitulum::add_phloem()
     }
 }
 
-/// Ground tissue between the receptacle and the bowl and in the stem, with a dermal layer; air around.
+/// Returns ground tissue between the receptacle and the bowl and in the stem, with a dermal layer; air around it.
 std::function<double(const glm::dvec3&)> Capitulum::tissue() const
 {
     return [species = species_, middle = middle_, scale = scale_, blur = spec_.flaws.blur](const glm::dvec3& voxel) {

@@ -1,6 +1,6 @@
 #pragma once
-// Forms of flower heads: species and stages of the thesis (5.2, figures 5.3 and 5.4), as parameters. Lengths are in
-// radii of the head, heights above the middle of the volume, rho the distance from the axis. Pure functions.
+// Forms of flower heads: species and stages of the thesis (5.2, figures 5.3 and 5.4), as parameters. Unit of length:
+// radius of the head. Heights are above the volume's middle; rho is the distance from the axis. Pure functions.
 
 #include <algorithm>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace shvr {
 
-/// Sections of Gerbera hybrida, which are colour groups (thesis 5.2).
+/// Colour groups of the sections of Gerbera hybrida (thesis 5.2).
 inline constexpr uint8_t ABAXIAL = 1, ADAXIAL = 2, FLORET = 3;
 
 enum class AdaxialPattern { straight, joined, net };
@@ -19,25 +19,25 @@ struct CapitulumSpecies {
     const char* name;
     AdaxialPattern pattern;
     int spokes;            ///< adaxial veins; of a net none
-    double rim, dome;      ///< height of the receptacle's edge, and of its middle above it
+    double rim, dome;      ///< height of the receptacle's edge, and height of the receptacle's middle above its edge
     double adaxial_inner;  ///< where adaxial veins end inwards
-    double depth, droop;   ///< of adaxial veins below the receptacle: at the edge, and more per radius inwards
+    double depth, droop;   ///< adaxial veins' depth below the receptacle's edge, and its increase per radius inwards
 };
 
-/// A flat, a depressed and an elongated sphere.
+/// Species whose heads are a flat, a depressed and an elongated sphere.
 inline constexpr CapitulumSpecies CAPITULUM_SPECIES[] = {
     {"gerbera", AdaxialPattern::straight, 12, 0.15, 0.12, 0.28, 0.10, 0.0},
     {"helianthus", AdaxialPattern::joined, 16, 0.15, -0.18, 0.06, 0.06, 0.28},
     {"bellis", AdaxialPattern::net, 0, -0.05, 0.75, 0.08, 0.10, 0.0},
 };
 
-/// What is there at a stage, as rho. Veins of florets exist outside `florets_from`.
+/// The parts that exist at a stage; members give their extent as rho. Veins of florets exist outside `florets_from`.
 struct CapitulumStage {
     char name;
-    double adaxial_from, adaxial_to;  ///< empty if equal; `adaxial_from` never inside of the species' inner end
+    double adaxial_from, adaxial_to;  ///< equal: no adaxial veins; `adaxial_from` is at least the species' inner end
     double florets_from;
     bool joins_rim;  ///< florets of the rim with abaxial veins
-    /// The others with adaxial veins, or near the axis with each other; and adaxial with abaxial veins.
+    /// Joins other florets with adaxial veins, or with each other near the axis; and adaxial with abaxial veins.
     bool joins_between;
 };
 inline constexpr CapitulumStage CAPITULUM_STAGES[] = {
@@ -50,7 +50,7 @@ inline constexpr CapitulumStage CAPITULUM_STAGES[] = {
 /// Outside it, florets join abaxial veins.
 inline constexpr double RIM_FROM = 0.86;
 
-/// Heights of the receptacle's surface, of abaxial veins in the bowl below it, and of adaxial veins between the two.
+/// Heights of the receptacle's surface, of abaxial veins in the bowl below it, and of adaxial veins between them.
 inline double receptacle_height(const CapitulumSpecies& species, double rho)
 {
     return species.rim + species.dome * (1.0 - rho * rho);
@@ -67,10 +67,10 @@ inline double adaxial_height(const CapitulumSpecies& species, double rho)
 struct FloretPlace {
     double turns, rho;
 };
-/// Floret k of n, from the axis outwards (Vogel 1979: equal areas): angles of successive florets, or pairs of opposite
-/// ones of a bijugate head, differ by the divergence angle.
+/// Returns floret k of n, counted from the axis outwards (Vogel 1979: equal areas). The angles of successive florets,
+/// or of successive pairs of opposite florets in a bijugate head, differ by the divergence angle.
 FloretPlace floret_place(const PhantomSpec& spec, int k);
-/// Differences of numbers of florets that may be neighbours on a parastichy, ascending.
+/// Returns the possible differences of the numbers of two florets that are neighbours on a parastichy, ascending.
 std::vector<int> parastichy_steps(const PhantomSpec& spec);
 
 }  // namespace shvr

@@ -32,7 +32,7 @@ VolumeInfo info_of(const PhantomSpec& spec, VoxelType type)
     return info;
 }
 
-/// Visits the centres of a box's voxels in the order of reading.
+/// Visits the centres of a box's voxels in reading order.
 template <class Visit>
 void each_voxel(const VoxelBox& box, const Visit& visit)
 {

@@ -20,7 +20,7 @@ uint32_t hash_at(uint32_t seed, FlawRandom purpose, const Size3& at)
     return hash_of(mixed(seed) ^ purpose, uint32_t(at.x), uint32_t(at.y), uint32_t(at.z));
 }
 
-/// The sum of a hash's four bytes is nearly normal; scaled to a deviation of 1.
+/// Returns nearly normal noise: the sum of the hash's four bytes, scaled to a standard deviation of 1.
 double normal_of(uint32_t hash)
 {
     constexpr double DEVIATION = 147.8016689;
@@ -45,10 +45,10 @@ FlawedIntensity::FlawedIntensity(const PhantomFlaws& flaws, const Size3& size, u
     }
 }
 
-/// One ball at most in each cell of 8^3 voxels.
+/// Adds bright balls, at most one in each cell of 8^3 voxels.
 double FlawedIntensity::with_specks(double intensity, const glm::dvec3& voxel) const
 {
-    constexpr double CELL = 8.0, MEAN_BALL = 25.7;  // voxels of a ball, on the average of its radii
+    constexpr double CELL = 8.0, MEAN_BALL = 25.7;  // MEAN_BALL: voxels of a ball, averaged over the range of radii
     const Size3 cell(glm::floor(voxel / CELL));
     uint32_t hash = hash_at(seed_, SPECKS, cell);
     if (unit_of(hash) * MEAN_BALL * 100.0 >= flaws_.specks * CELL * CELL * CELL) return intensity;
@@ -62,7 +62,7 @@ double FlawedIntensity::with_specks(double intensity, const glm::dvec3& voxel) c
     return std::max(intensity, GROUND_TISSUE + CONTRAST * cover_of(std::sqrt(squared) - radius, flaws_.blur));
 }
 
-/// One ring in three is not flat; a detector's row holds four slices.
+/// Returns the rings' height: two rings in three are flat (height 0); a row of the detector covers four slices.
 double FlawedIntensity::rings(const glm::dvec3& voxel) const
 {
     const double dx = voxel.x - centre_.x, dy = voxel.y - centre_.y;
@@ -75,7 +75,7 @@ double FlawedIntensity::rings(const glm::dvec3& voxel) const
     return height(ring) * (1.0 - share) + height(ring + 1.0) * share;
 }
 
-/// Planes along z, three voxels thick, that fade to both sides within an eighth of the volume's radius.
+/// Returns streaks: planes along z, three voxels thick, fading on both sides within 1/8 of the volume's radius.
 double FlawedIntensity::streaks(const glm::dvec3& voxel) const
 {
     double sum = 0.0, sign = 1.0;

@@ -1,5 +1,5 @@
 #pragma once
-// What a kind of phantom hands over: tubes, tissues and the graph. A model is made by one thread and not changed then.
+// The data of a kind of phantom: tubes, tissues and the graph. One thread builds a model, which is then not changed.
 
 #include <functional>
 
@@ -16,8 +16,8 @@ struct PhantomModel {
     std::vector<ProceduralTruth::Node> nodes;
     std::vector<std::array<size_t, 2>> links;
     std::map<std::string, uint8_t> sections;
-    uint8_t group_of_separate = 0;  ///< of tubes that the partial mask leaves out; 0: there is no partial mask
-    /// Intensity where no tube is, in voxel coordinates; sums, products, divisions and square roots alone.
+    uint8_t group_of_separate = 0;  ///< group of tubes that the partial mask leaves out; 0: no partial mask
+    /// Intensity outside all tubes, in voxel coordinates; uses only sums, products, divisions and square roots.
     std::function<double(const glm::dvec3& voxel)> tissue = [](const glm::dvec3&) { return GROUND_TISSUE; };
 
     size_t add_node(const glm::dvec3& voxel, double radius, uint8_t group)
@@ -25,7 +25,7 @@ struct PhantomModel {
         nodes.push_back({voxel, radius, group});
         return nodes.size() - 1;
     }
-    /// An internode and the tube around it, in the group of the second node.
+    /// Adds an internode and the tube around it, in the group of the second node.
     void link(size_t from, size_t to, double intensity_from = VEIN, double intensity_to = VEIN)
     {
         links.push_back({from, to});
@@ -49,14 +49,14 @@ Phantom make_procedural_phantom(const PhantomSpec& spec);
 PhantomModel make_section(const PhantomSpec& spec);
 PhantomModel make_capitulum(const PhantomSpec& spec);
 
-/// How much of a voxel at this distance from a flat surface lies inside, for a surface that is `blur` voxels thick.
+/// Returns the fraction of a voxel inside a flat surface at this distance, for a surface that is `blur` voxels thick.
 inline double cover_of(double distance, double blur)
 {
     const double cover = 0.5 - distance / blur;
     return cover < 0.0 ? 0.0 : cover > 1.0 ? 1.0 : cover;
 }
 
-/// A random number of a phantom, 0 <= result < 1.
+/// Returns a random number of a phantom, 0 <= result < 1.
 double random_unit(uint32_t seed, uint32_t purpose, uint32_t index, uint32_t of = 0);
 
 }  // namespace shvr

@@ -1,4 +1,4 @@
-// The kinds that are functions of their own (procedural/), as phantoms.
+// Phantoms made of the kinds that are functions of their own (procedural/).
 
 #include "engine/base/error.h"
 #include "engine/volume/phantoms/phantom_model.h"
@@ -7,7 +7,7 @@ namespace shvr {
 
 namespace {
 
-/// The colour groups of a volume's voxels, at their centres.
+/// A volume whose voxels are the colour groups at the voxels' centres.
 class GroupSource final : public VolumeSource {
 public:
     GroupSource(VolumeInfo volume, std::function<uint8_t(const glm::dvec3&)> group)

@@ -1,6 +1,6 @@
 // A part of a flower head between its centre and its rim, as in the thesis's study (chapter 6): adaxial veins that run
-// outwards (x), florets' veins that descend to them from the receptacle above (z), joins between the two, and bundles
-// that are joined to none of these. Positions are shares of the volume's shortest side.
+// outwards (x), florets' veins that descend to them from the receptacle above (z), joins between these two kinds of
+// veins, and bundles that are joined to neither. Positions are fractions of the volume's shortest side.
 
 #include <array>
 #include <cmath>
@@ -14,11 +14,11 @@ namespace {
 enum SectionRandom : uint32_t { PLACES = 71, RADII };
 constexpr uint8_t SECTION_ADAXIAL = 2, SECTION_FLORET = 3, SECTION_SEPARATE = 4;
 constexpr double MIN_RADIUS = 0.0130, MAX_RADIUS = 0.0210;
-/// The truth's nodes were sized by hand: where a vein is thin for its course, they exceed it. These factors give the
+/// The truth's nodes were sized by hand; where a vein is locally thin, they are wider than it. These factors give the
 /// scores of the thesis's own truth (table 6.1): .971 for nodes, 1 for internodes, which lie at the mean of two nodes.
 constexpr double WIDE_NODE = 1.105, NODE = 0.88;
-/// Bundles that are joined to none fill 29.9 % of all bundles' voxels, for a Dice score of .824: the square of their
-/// radius is this share of the others' volume (over pi, in cubes of the side).
+/// Separate bundles, which are joined to no others, fill 29.9 % of all bundles' voxels, for a Dice score of .824: the
+/// square of their radius is this fraction of the other bundles' volume (over pi, in cubes of the side).
 constexpr double SEPARATE_SHARE = 0.1527;
 
 class Section {
@@ -53,7 +53,7 @@ private:
     {
         return random_unit(spec_.seed, purpose, uint32_t(index));
     }
-    /// Adds a node; `place` in shares of the side. The vein's own radius differs from the node's.
+    /// Adds a node at `place`, in fractions of the side. The vein's own radius differs from the node's.
     size_t add_node(const glm::dvec3& place, uint8_t group, bool is_wide)
     {
         const double radius = scale_ * (MIN_RADIUS + (MAX_RADIUS - MIN_RADIUS) * random(RADII, model_.nodes.size()));
@@ -68,7 +68,7 @@ private:
                                 .group = group,
                                 .intensity = {VEIN, VEIN}});
     }
-    /// A segment of `inner` nodes between two; the first of one or two, or the middle of three, is wide.
+    /// Adds a segment of `inner` nodes between two nodes. The first inner node is wide; if there are three, the second.
     void add_segment(size_t from, size_t to, int inner, uint8_t group, const glm::dvec3& bend)
     {
         const glm::dvec3 a = (model_.nodes[from].voxel - corner_) / scale_;
@@ -100,7 +100,7 @@ private:
     glm::dvec3 corner_;
     PhantomModel model_;
     std::vector<double> veins_;                     ///< radius of the vein at each node
-    std::array<std::vector<size_t>, VEINS> stops_;  ///< ends and branches of each adaxial vein, outwards
+    std::array<std::vector<size_t>, VEINS> stops_;  ///< nodes of each adaxial vein: its ends and branches, outwards
 };
 
 void Section::add_adaxial()
@@ -127,7 +127,7 @@ void Section::add_joins()
     add_segment(stops_[1][5], stops_[2][3], 2, SECTION_ADAXIAL, down);
 }
 
-/// The florets themselves stand on the receptacle, in no group.
+/// Adds the florets themselves, which stand on the receptacle and belong to no group.
 void Section::add_florets()
 {
     const std::array<std::array<size_t, 2>, 6> below = {{{0, 2}, {0, 4}, {1, 3}, {1, 5}, {2, 2}, {2, 4}}};
@@ -144,8 +144,8 @@ void Section::add_florets()
     }
 }
 
-/// Abaxial veins below; florets' veins that end in the ground tissue: one by itself, one that leaves 1.5 voxels between
-/// itself and another floret's vein, one that is fused with another by half of its radius.
+/// Adds abaxial veins below, and florets' veins that end in the ground tissue: one alone, one at a distance of 1.5
+/// voxels from another floret's vein, and one fused with another floret's vein by half of its radius.
 void Section::add_separate()
 {
     double joined = 0.0;
@@ -158,7 +158,7 @@ void Section::add_separate()
     for (const double y : {0.36, 0.66})
         add_separate_tube({0.06, y, 0.16}, {0.94, y + 0.02 * (random(PLACES, VEINS) - 0.5), 0.10}, radius);
     add_separate_tube({0.62, 0.12, 0.82}, {0.60, 0.10, 0.46}, radius);
-    // Next to the upper halves of the third and of the fifth floret's vein, whose radius there is at most this.
+    // Adds tubes next to the upper halves of the third and fifth floret's veins, outside each half's larger radius.
     const auto next_to = [&](size_t link, double apart) {
         const auto& [from, to] = model_.links[link];
         const double away = (std::max(veins_[from], veins_[to]) + radius + apart) / scale_;

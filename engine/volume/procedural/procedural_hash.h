@@ -1,11 +1,11 @@
 #pragma once
-// The noise of procedural volumes: an integer hash, equal on every machine. Its constants are part of the goldens.
+// The noise of procedural volumes: an integer hash, equal on every machine. Golden test data depend on its constants.
 
 #include <cstdint>
 
 namespace shvr {
 
-/// lowbias32 of Chris Wellons' hash prospector (2018): bias 0.17.
+/// The hash lowbias32 of Chris Wellons' hash prospector (2018); its bias is 0.17.
 constexpr uint32_t mixed(uint32_t bits)
 {
     bits ^= bits >> 16;
@@ -27,7 +27,7 @@ constexpr uint32_t hash_of(uint32_t seed, uint32_t x, uint32_t y, uint32_t z)
     return mixed(x ^ row_hash(seed, y, z));
 }
 
-/// 0 <= result < 1, a multiple of 2^-24.
+/// Returns a multiple of 2^-24, 0 <= result < 1.
 constexpr double unit_of(uint32_t hash)
 {
     return (hash >> 8) * 0x1p-24;

@@ -19,16 +19,16 @@ public:
     virtual glm::dvec3 gradient(const glm::dvec3& voxel) const = 0;
     virtual std::optional<ProceduralTruth> truth() const { return std::nullopt; }
 
-    /// Evaluates the rows of a box; fastest if z varies faster than y. Every value equals `value` at the voxel's
-    /// centre, bit for bit.
+    /// Evaluates the rows of a box; fastest if z varies faster than y. Each value equals, bit for bit, `value` at the
+    /// voxel's centre.
     class Rows {
     public:
         virtual ~Rows() = default;
         virtual void evaluate(int64_t y, int64_t z, std::span<double> values) = 0;
     };
     virtual std::unique_ptr<Rows> rows(const VoxelBox& box) const;
-    /// Likewise for a coarser level, whose voxels span `side` voxels of a volume of `size` voxels; box, y and z count
-    /// voxels of that level. Values are those at voxel centres, except for features thinner than a voxel
+    /// Returns rows of a coarser level. Its voxels span `side` voxels of a volume of `size` voxels; box, y and z count
+    /// voxels of the coarser level. Values are evaluated at voxel centres, except for features thinner than a voxel
     /// (ProceduralSpec).
     virtual std::unique_ptr<Rows> coarse_rows(double side, const Size3& size, const VoxelBox& box) const;
 };

@@ -41,7 +41,7 @@ public:
     bool has_gradient() const override { return false; }
     glm::dvec3 gradient(const glm::dvec3&) const override { return glm::dvec3(0.0); }
 
-    /// A node for each ball that lies in the volume as a whole; in volumes of more than MAX_CELLS cells none.
+    /// Returns a node for each ball that lies entirely in the volume; none in volumes of more than MAX_CELLS cells.
     std::optional<ProceduralTruth> truth() const override
     {
         ProceduralTruth truth;
@@ -62,7 +62,7 @@ public:
     }
 
 private:
-    /// In sixteenths of a voxel; the centre from the cell's lower corner.
+    /// Lengths in sixteenths of a voxel; the centre is relative to the cell's lower corner.
     struct Ball {
         glm::dvec3 centre;
         double radius;
@@ -104,7 +104,7 @@ double mix(double a, double b, double t)
     return a + (b - a) * t;
 }
 
-/// Value noise: random values on a lattice, blended smoothly in between. 0 <= value < 1.
+/// Value noise: random values on a lattice with smooth blending between them. 0 <= value < 1.
 class Octave {
 public:
     Octave(uint32_t seed, double period) : seed_(seed), period_(period) {}
@@ -120,7 +120,7 @@ public:
         return {int64_t(index), scaled - index};
     }
 
-    /// Blended along y and z at lattice column `x`.
+    /// Returns the value at lattice column `x`, blended along y and z.
     double column(int64_t x, const Place& y, const Place& z) const
     {
         const double wy = smooth(y.fraction);
@@ -163,7 +163,7 @@ private:
     }
 
     uint32_t seed_;
-    double period_;  ///< voxels; a power of two, which makes fractions exact
+    double period_;  ///< voxels; a power of two, so that fractions are exact
 };
 
 class Fog final : public ProceduralKind {

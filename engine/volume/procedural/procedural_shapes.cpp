@@ -65,7 +65,7 @@ private:
     double slope_;
 };
 
-/// Marschner and Lobb 1994, An evaluation of reconstruction filters for volume rendering.
+/// The test signal of Marschner and Lobb 1994, An evaluation of reconstruction filters for volume rendering.
 class MarschnerLobb final : public ProceduralKind {
 public:
     explicit MarschnerLobb(const Size3& size) : scale_(2.0 / glm::dvec3(size)) {}
@@ -82,7 +82,7 @@ public:
         return FULL / (2.0 * (1.0 + ALPHA)) * slope * scale_;
     }
 
-    /// The part that varies with x and y is the same in every slice.
+    /// Computes the part that varies with x and y once, since it is the same in every slice.
     class PlaneRows final : public Rows {
     public:
         PlaneRows(const MarschnerLobb& kind, const VoxelBox& box)
@@ -126,7 +126,7 @@ private:
     glm::dvec3 scale_;  ///< voxel -> [-1,1]
 };
 
-/// Between voxel centres the field interpolates its voxels trilinearly.
+/// A checkerboard of voxels; between voxel centres the field is trilinear.
 class Checker final : public ProceduralKind {
 public:
     double value(const glm::dvec3& voxel) const override
@@ -146,7 +146,7 @@ private:
     struct Wave {
         double value, slope;
     };
-    /// A triangle wave: 1 at the centres of even voxels, -1 at those of odd ones.
+    /// A triangle wave: 1 at the centres of even voxels, -1 at the centres of odd voxels.
     static Wave wave(double coordinate)
     {
         const double centre = std::floor(coordinate - 0.5);

@@ -1,6 +1,6 @@
-// Tubes like the vascular bundles of a stem: eight curved ones from bottom to top, fanning out, and five thinner
+// Tubes like the vascular bundles of a stem: eight curved tubes from bottom to top, fanning out, and five thinner
 // branches. Their centre lines are cubic Bezier curves split into short straight segments; a tube is everything within
-// its radius of them. Noise is one random number per voxel; it is constant between voxel centres.
+// its radius of its centre line. Noise is one random number per voxel, constant within each voxel.
 
 #include <algorithm>
 #include <array>
@@ -20,7 +20,7 @@ constexpr double NOISE_DEVIATION = 0.03 * (TUBE - BACKGROUND);
 constexpr uint32_t BUNDLES = 8;
 constexpr uint32_t BRANCHES = 5;
 
-/// The sum of a hash's four bytes is nearly normal: mean 510, variance 4 (256^2 - 1) / 12.
+/// Returns nearly normal noise: the sum of the hash's four bytes has mean 510 and variance 4 (256^2 - 1) / 12.
 double noise_of(uint32_t hash)
 {
     constexpr double DEVIATION = 147.8016689;
@@ -28,7 +28,7 @@ double noise_of(uint32_t hash)
     return (double(sum) - 510.0) * (NOISE_DEVIATION / DEVIATION);
 }
 
-/// Converts the distance to the nearest tube's surface (negative inside) to intensity, soft over two voxels.
+/// Converts the distance to the nearest tube's surface (negative inside) to intensity; the edge is two voxels wide.
 double profile(double distance)
 {
     const double t = std::clamp(0.5 * (1.0 - distance), 0.0, 1.0);
@@ -59,7 +59,7 @@ struct Segment {
     {
         return p.x >= lower.x && p.x <= upper.x && p.y >= lower.y && p.y <= upper.y && p.z >= lower.z && p.z <= upper.z;
     }
-    /// Returns the vector from the nearest point of the centre line.
+    /// Returns the vector from the nearest point of the centre line to `p`.
     glm::dvec3 offset(const glm::dvec3& p) const
     {
         const glm::dvec3 d = p - begin;
@@ -73,7 +73,7 @@ struct Segment {
     }
 };
 
-/// Control points in [0,1]^3 of the volume; the ends lie slightly outside.
+/// Control points in [0,1]^3, the unit cube of the volume; the ends lie slightly outside it.
 using Bezier = std::array<glm::dvec3, 4>;
 
 glm::dvec3 point_on(const Bezier& c, double t)
@@ -98,7 +98,7 @@ public:
         return profile(nearest) + noise_of(hash);
     }
 
-    /// Leaves out the noise, which is constant within a voxel and jumps at its faces.
+    /// Excludes the noise, which is constant within a voxel and jumps at the voxel's faces.
     glm::dvec3 gradient(const glm::dvec3& voxel) const override
     {
         double nearest = 1.0;
@@ -166,7 +166,7 @@ public:
     };
     std::unique_ptr<Rows> rows(const VoxelBox& box) const override { return std::make_unique<BinnedRows>(*this, box); }
 
-    /// Like BinnedRows, but tubes are at least MIN_THICKNESS voxels of the level thick.
+    /// Like BinnedRows, but tubes are at least MIN_THICKNESS voxels of the coarse level thick.
     class CoarseRows final : public Rows {
     public:
         CoarseRows(const Tubes& kind, double side, const Size3& size, int64_t first_x)
@@ -213,7 +213,7 @@ public:
     std::optional<ProceduralTruth> truth() const override { return truth_of_tubes(strands_, size_); }
 
 private:
-    /// The n-th random number of tube `tube`, from -1 to 1.
+    /// Returns the n-th random number of tube `tube`, from -1 to 1.
     double random(uint32_t tube, uint32_t n) const
     {
         return 2.0 * unit_of(hash_of(seed_ ^ 0x5eed70beu, n, tube, 0)) - 1.0;
@@ -245,7 +245,7 @@ void Tubes::make_segments()
     const auto inside = [](double x, double y, double z) {
         return glm::dvec3(std::clamp(x, 0.06, 0.94), std::clamp(y, 0.06, 0.94), z);
     };
-    // Radii 2 to 6 voxels at 128 voxels a side, growing with the fourth root of the side.
+    // Radii are 2 to 6 voxels if the side is 128 voxels, and grow with the fourth root of the side.
     const double scale = std::sqrt(std::sqrt(double(std::min({size_.x, size_.y, size_.z})) / 128.0));
     std::array<Bezier, BUNDLES> bundles;
     std::array<double, BUNDLES> radii{};

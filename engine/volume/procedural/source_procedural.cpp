@@ -93,7 +93,7 @@ public:
 
     int levels() const override { return levels_; }
 
-    /// A huge volume takes too long to measure voxel by voxel, so a coarse level is measured instead.
+    /// A huge volume takes too long to measure at level 0, so a coarse level is measured instead.
     std::optional<VolumeStatistics> statistics() const override
     {
         if (voxel_count(info()) <= int64_t{1} << 33) return std::nullopt;
@@ -148,7 +148,7 @@ private:
     int levels_;
 };
 
-/// For kinds that are cheap to evaluate: one value at a time.
+/// Evaluates one value at a time, for kinds that are cheap to evaluate.
 class PointRows final : public ProceduralKind::Rows {
 public:
     PointRows(const ProceduralKind& kind, int64_t first_x) : kind_(kind), first_x_(first_x) {}

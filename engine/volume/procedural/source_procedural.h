@@ -1,8 +1,8 @@
 #pragma once
 // Deterministic volumes with a known value and gradient, for tests, benchmarks and goldens. No file is involved and no
 // voxel is stored: `read` evaluates the function. Equal parameters give equal bits on every machine: the noise is an
-// integer hash instead of library random numbers, and transcendental functions do not affect a voxel's rounding where
-// that can be avoided.
+// integer hash instead of library random numbers, and where possible, transcendental functions do not affect the
+// rounding of a voxel.
 
 #include <array>
 
@@ -13,8 +13,8 @@ namespace shvr {
 /// A scalar field in voxel coordinates (the centre of voxel i is at i + 0.5), in intensity units.
 struct ScalarField {
     std::function<double(glm::dvec3 voxel)> value;
-    /// d value / d voxel; empty if the field has no useful derivative (speckles). For `tubes` it leaves out the noise,
-    /// which is constant within a voxel and jumps at its faces. At a kink, it is the slope of one side.
+    /// d value / d voxel; empty if the field has no useful derivative (speckles). For `tubes` the gradient excludes the
+    /// noise, which is constant within a voxel and jumps at its faces. At a kink, it is the slope of one side.
     std::function<glm::dvec3(glm::dvec3 voxel)> gradient;
 };
 
@@ -25,15 +25,15 @@ struct ProceduralSpec {
     VoxelType type = VoxelType::uint8;
     glm::dvec3 spacing{1.0};
     std::string unit = "voxel";
-    /// Number of levels; each is the same function, sampled at the centres of larger voxels. 0: one level, or for more
-    /// than 2^33 voxels as many as are needed to end with a single brick. Tubes thinner than one and a half voxels of a
-    /// level are drawn that thick on it: otherwise they would fall between the centres of its voxels.
+    /// Number of levels. Each samples the same function, at the centres of larger voxels. 0: one level; or, for more
+    /// than 2^33 voxels, enough levels to end with a single brick. Tubes thinner than 1.5 voxels of a level are drawn
+    /// 1.5 voxels thick on that level: otherwise they would fall between the centres of its voxels.
     int levels = 0;
     bool operator==(const ProceduralSpec&) const = default;
 };
 
-/// Voxels are the field at their centres, rounded half up; for int8 every intensity is lowered by 128, so that none is
-/// clamped.
+/// Voxels have the field's value at their centres, rounded half up; for int8 every intensity is lowered by 128, so that
+/// none is clamped.
 ///
 /// constant        every voxel 128.
 /// ramp            rises along x from 0 at voxel centre 0 to 250 at the last centre.
@@ -54,9 +54,9 @@ std::vector<std::string> procedural_kinds();
 ScalarField procedural_field(const ProceduralSpec& spec);
 std::unique_ptr<VolumeSource> open_procedural(const ProceduralSpec& spec);
 
-/// The known contents of a volume, for drawing, tracing or exporting them.
+/// The known contents of a volume, used to draw, trace or export it.
 struct ProceduralTruth {
-    /// The colour group of a position in voxel coordinates; 0: background.
+    /// Returns the colour group at a position in voxel coordinates; 0: background.
     std::function<uint8_t(const glm::dvec3& voxel)> group;
     struct Node {
         glm::dvec3 voxel{0.0};
@@ -64,9 +64,9 @@ struct ProceduralTruth {
         uint8_t group = 1;
     };
     std::vector<Node> nodes;                   ///< along the centre lines
-    std::vector<std::array<size_t, 2>> links;  ///< internodes, each in the group of its second node
+    std::vector<std::array<size_t, 2>> links;  ///< internodes; each has the group of its second node
 };
-/// Null for kinds whose parts are not known. Fails as `open_procedural` does.
+/// Returns null for kinds whose parts are not known. Fails as `open_procedural` does.
 std::optional<ProceduralTruth> procedural_truth(const ProceduralSpec& spec);
 
 }  // namespace shvr

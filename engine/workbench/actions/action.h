@@ -1,7 +1,7 @@
 #pragma once
-// The actions of the user. Keys, mouse, menus, panels, the stylus and scripts make actions and change nothing; the
-// workbench carries them out in one place, in order. Each has a stable id and arguments as JSON (action_rows.h), so it
-// can be logged, replayed and written in a script. Plain data; any thread.
+// The actions of the user. Keys, mouse, menus, panels, the stylus and scripts only create actions; the workbench
+// carries them out in one place, in order. Each has a stable id and arguments as JSON (action_rows.h), so it can be
+// logged, replayed and written in a script. Plain data; any thread.
 
 #include <variant>
 #include <vector>
@@ -43,7 +43,7 @@ struct VariantOfRows<std::tuple<Rows...>> {
 using Action = VariantOfRows<ActionRows>::Type;
 using Actions = std::vector<Action>;
 
-/// Index of an alternative of Action, and of its row.
+/// Index of an alternative of Action, and of its row in the tables.
 template <class Kind, class Rows = ActionRows>
 inline constexpr size_t INDEX_OF_KIND = 0;
 template <class Kind, class... Rows>

@@ -1,6 +1,6 @@
 #pragma once
-// A row of the tables of actions. A table stands below the structs of its actions, and an action is one row of it: id,
-// name, group, meaning, arguments, condition, and the service whose `act` carries it out. All else follows from the
+// A row of the tables of actions. A table stands below the structs of its actions. Each row is one action: id, name,
+// group, meaning, arguments, condition, and the service whose `act` carries it out. Everything else follows from the
 // tables: the variant Action (action.h), lines of JSON and text (action_rows.h), dispatch (workbench.cpp).
 //
 // Arguments and conditions are generic functions, so that headers with tables need neither Fields nor Model:
@@ -33,8 +33,8 @@ struct ActionRow {
     Needs needs = Needs::document;
 };
 
-/// `fields(Fields&, Kind&)` visits the arguments; `why_not(const Model&, const Kind&)` returns the reason why the
-/// action would do nothing, empty if it is available; Service has `void act(const Kind&)`.
+/// `fields(Fields&, Kind&)` visits the arguments. `why_not(const Model&, const Kind&)` returns why the action would do
+/// nothing; empty if it is available. Service has `void act(const Kind&)`.
 template <class KindOfRow, class ServiceOfRow, class VisitFields, class WhyNot>
 struct FullRow : ActionRow {
     using Kind = KindOfRow;

@@ -32,7 +32,7 @@ constexpr const auto& full_row()
 template <class Kind>
 constexpr bool IS_SCRIPT_OP = std::is_constructible_v<ScriptOp, Kind>;
 
-/// A default-constructed action: the alternative with that index.
+/// Returns a default-constructed action of the alternative with index `index`.
 template <size_t INDEX = 0>
 Action default_action(size_t index)
 {
@@ -41,7 +41,7 @@ Action default_action(size_t index)
     return Action(std::in_place_index<INDEX>);
 }
 
-/// The key that names the action, then its arguments.
+/// Visits the key "op", which names the action, then the action's arguments.
 Fields::Visit with_op(std::string& op, const Fields::Visit& arguments)
 {
     return [&op, arguments](Fields& f) {
@@ -50,7 +50,7 @@ Fields::Visit with_op(std::string& op, const Fields::Visit& arguments)
     };
 }
 
-/// Ids of the registry and names of scripts' operations, each once.
+/// Returns the ids of the registry and the names of scripts' operations, each once.
 std::vector<std::string_view> known_ids()
 {
     std::vector<std::string_view> ids;

@@ -1,8 +1,8 @@
 #pragma once
-// The registry of actions: for each its stable id, name, group and meaning, its arguments as JSON and as text, and the
+// The registry of actions: the stable id, name, group and meaning of each, its arguments as JSON and as text, and the
 // reason why it is unavailable now. Keys, menus, palette, scripts and logs all refer to ids. Pure; any thread.
 //
-//   {"op":"orbit","right_degrees":3}     a line of a script or of a log
+// {"op":"orbit","right_degrees":3} a line of a script or of a log
 //   orbit right_degrees=3                the same as text
 
 #include <span>
@@ -21,18 +21,18 @@ const ActionRow& row_of(const Action& action);
 
 /// Returns a line of JSON that `read_action` parses as the same action.
 std::string line_of(const Action& action);
-/// Fails for unknown ids, keys and values; the message names what was expected.
+/// Fails for unknown ids, keys and values; the message names the expected ones.
 Action read_action(const JsonNode& line);
 /// `origin` names the text in messages.
 Action read_action(std::string_view line, const std::string& origin);
-/// Returns the action as text; values with spaces are JSON texts.
+/// Returns the action as text; values that contain spaces are written as JSON.
 std::string text_of(const Action& action);
 Action action_of_text(const std::string& text);
 
 /// Returns why the action would do nothing or be refused: "nothing is open", "no node is selected"; empty if it is
-/// available. Applying may still fail for reasons that only the device or a file knows.
+/// available. Carrying it out may still fail for reasons known only to the device or visible only in a file.
 std::string why_not(const Model& model, const Action& action);
-/// Returns whether the action only has to wait until ended strokes are painted.
+/// Returns whether the action is blocked only until ended strokes are painted.
 bool waits_for_strokes(const Model& model, const Action& action);
 
 }  // namespace shvr::ui

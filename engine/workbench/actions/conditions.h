@@ -1,6 +1,6 @@
 #pragma once
-// Conditions that several actions share: the reason why they are unavailable now, in words that fit after a colon or
-// into a tooltip; empty if they are available. Pure; any thread.
+// Conditions that several actions share. Each returns the reason why an action is unavailable now, in words that fit
+// after a colon or into a tooltip; empty if it is available. Pure; any thread.
 
 #include <cstdint>
 #include <string>
@@ -21,7 +21,7 @@ std::string why_without_selection(const Model& model);
 std::string why_without_node(const Model& model);
 /// `group`: group of the new nodes or internodes.
 std::string why_without_group(const Model& model, uint8_t group);
-/// `name`: name of a transfer function that the user has kept.
+/// `name`: name of a transfer function that the user has saved.
 std::string why_not_own(const Model& model, const std::string& name);
 
 }  // namespace shvr::ui

@@ -1,5 +1,5 @@
 #pragma once
-// Actions on the hand. Devices are those of haptics/devices; the choice is kept for all scans.
+// Actions on the haptic device ("the hand"). Devices are those of haptics/devices; the choice is kept for all scans.
 
 #include "engine/workbench/actions/action_row.h"
 
@@ -7,11 +7,11 @@ namespace shvr::ui {
 
 class Hand;
 
-struct LetGo {  ///< switches forces off from the next tick on, until switched on again
+struct LetGo {  ///< switches forces off from the next tick on, until they are switched on again
     bool on = true;
 };
 
-struct GrabVolume {  ///< the volume moves and turns with the stylus until released; the probe stays on its voxel
+struct GrabVolume {  ///< the volume moves and rotates with the stylus until released; the probe stays at its voxel
     bool on = false;
 };
 
@@ -23,18 +23,18 @@ struct FindDevices {};  ///< searches for connected devices again
 
 struct CalibrateDevice {};  ///< reopens the device, so that its rest position becomes the origin
 
-/// Records the stylus's motion and forces, tick by tick, into a file (haptics/replay/README.md).
+/// Records the stylus's motion and forces, tick by tick, to a file (haptics/replay/README.md).
 struct RecordStylus {
-    std::filesystem::path path;  ///< empty: a free name next to the session
+    std::filesystem::path path;  ///< empty: an unused name next to the session
 };
 
 struct StopRecording {};
 
-/// Moves the probe along such a file, tick by tick, as a hand would with the present guidance: its first button paints,
-/// or adds nodes in the trace tool.
+/// Moves the probe along a recorded file, tick by tick, as a hand would under the current guidance. The stylus's first
+/// button paints, or adds nodes in the trace tool.
 struct FollowStylus {
     std::filesystem::path path;
-    bool by_hand = true;             ///< a modelled hand holds a modelled stylus; false: the recorded device's answers
+    bool by_hand = true;             ///< simulates a hand with a stylus; false: uses the recorded device's answers
     double node_every_voxels = 8.0;  ///< distance between nodes, along x
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Actions on the view. Angles in degrees; pixels are those of a pane, numbered as in Screen::parts.
+// Actions on the view. Angles are in degrees; pixels are pixels of a pane, and panes are numbered as in Screen::parts.
 
 #include "engine/workbench/actions/action_row.h"
 
@@ -15,7 +15,7 @@ struct Roll {
     double degrees = 0.0;
 };
 
-/// Distances along the camera's right, up and forward; 1 is the height of the view at the target's depth.
+/// Moves the camera by distances along its right, up and forward; 1 is the height of the view at the target's depth.
 struct Move {
     glm::dvec3 heights{0.0};
 };
@@ -26,17 +26,17 @@ struct Zoom {  ///< in a slice: all slices
     double factor = 1.0;
 };
 
-/// Moves the camera in the plane of a map, or the slices, following the mouse.
+/// Follows the mouse in a map: moves the camera in the map's plane, or moves the slices.
 struct DragInMap {
     size_t pane = 0;
     glm::dvec2 pixels{0.0};
 };
 
 struct LookFrom {
-    std::string camera;  ///< a camera of the session, or a side of the volume
+    std::string camera;  ///< name of a camera of the session, or of a side of the volume
 };
 
-/// Stores the present view under a name, replacing a camera of that name. Without a name it gets a new one.
+/// Stores the current view as a camera; an existing camera of that name is replaced. Empty: an unused name.
 struct KeepCamera {
     std::string name;
 };
@@ -49,25 +49,25 @@ struct RenameCamera {
     std::string name, to;
 };
 
-/// Sets the pivot of turning to the visible point at a pixel.
+/// Sets the pivot of rotations to the visible point at a pixel.
 struct PivotAt {
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
 };
 
-/// Moves the camera to look at a voxel, from the same side and distance as before.
+/// Moves the camera so that it looks at a voxel from the same side and distance as before.
 struct GoTo {
     glm::dvec3 voxel{0.0};
 };
 
-/// Moves a cutting plane: axis 0 ... 2, lower or upper plane, as a fraction of the volume's size.
+/// Moves a cutting plane (axis 0 ... 2, lower or upper plane) by a fraction of the volume's size.
 struct MoveCut {
     int axis = 0;
     bool upper = false;
     double share = 0.0;
 };
 
-/// Moves a clip plane of the camera, as a fraction of the distance to the target.
+/// Moves a clip plane of the camera, by a fraction of the distance to the target.
 struct MoveClip {
     bool far = false;
     double share = 0.0;
@@ -80,18 +80,18 @@ struct PlaceClips {
 
 struct ResetCuts {};
 
-/// Fits the volume, or its part within the cutting planes, into the view, from the current direction.
+/// Fits the volume, or the part of it within the cutting planes, into the view without rotating the camera.
 struct FitView {
-    size_t pane = 0;  ///< pane; if it shows a slice, all slices are fitted and the camera stays
+    size_t pane = 0;  ///< if this pane shows a slice, all slices are fitted and the camera stays
 };
 
 /// Returns to the camera that the session opens with.
 struct ResetView {};
 
-/// Looks at the selection, from the current distance.
+/// Looks at the selection from the current distance.
 struct LookAtSelection {};
 
-struct UpdateOcclusion {};  ///< computes occlusion again if it is not updated automatically
+struct UpdateOcclusion {};  ///< computes occlusion again, for use when it is not updated automatically
 
 inline constexpr const char* LOOKING_GROUP = "Looking";
 

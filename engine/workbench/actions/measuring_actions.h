@@ -1,5 +1,5 @@
 #pragma once
-// Actions of measuring. Measurements exist while the scan is open, and are no part of the work.
+// Actions that measure distances. Measurements last while the scan is open, and are not saved with the work.
 
 #include "engine/workbench/actions/action_row.h"
 
@@ -7,14 +7,14 @@ namespace shvr::ui {
 
 class Reader;
 
-struct MeasureAt {  ///< sets one end at the visible point; the second ends the measurement
+struct MeasureAt {  ///< sets one end at the visible point; the second end completes the measurement
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
 };
 
 struct ClearMeasurements {};
 
-struct CopyMeasurements {};  ///< all measurements, as a table for the clipboard
+struct CopyMeasurements {};  ///< copies all measurements to the clipboard as a table
 
 inline constexpr const char* MEASURING_GROUP = "Measuring";
 

@@ -1,5 +1,5 @@
 #pragma once
-// Actions of the brush. Strokes of scripts (PaintOp) are actions, too.
+// Actions of the brush. The strokes of scripts (PaintOp) are also actions.
 
 #include "engine/annotation/script/script.h"
 #include "engine/session/session.h"
@@ -9,7 +9,7 @@ namespace shvr::ui {
 
 class Painter;
 
-struct Paint {  ///< begins and ends a stroke at the probe; with the trace tool, its beginning adds a node
+struct Paint {  ///< begins or ends a stroke at the probe; with the trace tool, beginning a stroke adds a node
     bool on = false;
 };
 

@@ -7,31 +7,31 @@ namespace shvr::ui {
 
 class Prober;
 
-/// Limits of the probe's radius in the window, in voxels along x. Sessions and scripts may use other radii.
+/// Limits of the probe's radius in the interface, in voxels along x. Sessions and scripts may use other radii.
 inline constexpr double MIN_RADIUS_VOXELS = 0.5, MAX_RADIUS_VOXELS = 60.0;
 
-struct ProbeTo {  ///< moves the probe with the mouse, in the plane through the probe
+struct ProbeTo {  ///< moves the probe with the mouse, in the plane that contains the probe
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
-    bool jumps = false;  ///< not a motion of the hand: an open stroke paints nothing in between
+    bool jumps = false;  ///< not a motion of the hand: an open stroke does not paint the way there
 };
 
-/// Moves it onto the visible structure: the largest rise of opacity along the ray (Renderer::pick).
+/// Moves the probe onto the visible structure: to the steepest rise of opacity along the ray (Renderer::pick).
 struct ProbeOnto {
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
 };
 
-/// Follows the mouse along the visible surface. While a stroke is open, the depth changes by at most the radius plus
-/// the probe's distance across the picture, so that the stroke stays on the surface where it began. If nothing is
-/// visible, the probe keeps its depth.
+/// Moves the probe with the mouse along the visible surface. While a stroke is open, the probe's depth changes by at
+/// most its radius plus the distance it moves across the picture, so that the stroke stays on the surface where it
+/// began. If nothing is visible, the depth stays.
 struct ProbeAlong {
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
     bool jumps = false;
 };
 
-struct PushProbe {  ///< moves the probe away from the viewer of a pane, to the right and up, in voxels
+struct PushProbe {  ///< moves the probe by voxels: away from the viewer of a pane, to the right, and up
     size_t pane = 0;
     double voxels = 0.0, right = 0.0, up = 0.0;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Actions on the settings, and on transfer functions kept for all scans (transfer_presets.h).
+// Actions on the settings, and on the transfer functions saved for all scans (transfer_presets.h).
 
 #include "engine/workbench/actions/action_row.h"
 
@@ -8,18 +8,18 @@ namespace shvr::ui {
 class PresetShelf;
 class SettingsEditor;
 
-/// Changes any settings at once, by a patch of the session (session_patch.h). Lasting settings become a history step.
+/// Changes any settings at once, by a patch of the session (session_patch.h). Lasting settings form a history step.
 struct Set {
     std::string patch;
 };
 
-/// Adds the first unused group to the session, and activates it.
+/// Adds the first unused group to the session and activates it.
 struct NewGroup {};
 
-/// Makes a step of all changes since the last one; also happens when the hand lets go.
+/// Makes one history step of all changes since the last step; this also happens when the hand lets go.
 struct EndStep {};
 
-/// Sets black and white of slices so that almost all voxels lie between them.
+/// Sets the black and white levels of slices so that almost all voxels lie between them.
 struct AutoContrast {};
 
 struct KeepPreset {
@@ -34,7 +34,7 @@ struct ForgetPreset {
     std::string name;
 };
 
-/// Takes the transfer function of a file, which need not be among the kept ones.
+/// Applies the transfer function in a file; the file need not be one of the saved presets.
 struct TakePreset {
     std::filesystem::path path;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Actions on the trace. Operations of scripts on it are actions, too.
+// Actions on the trace. The trace operations of scripts are also actions.
 
 #include "engine/annotation/script/script.h"
 #include "engine/workbench/actions/action_row.h"
@@ -8,33 +8,33 @@ namespace shvr::ui {
 
 class Tracer;
 
-/// Maximum distance of a node that counts as near the probe, in radii of the probe.
+/// Maximum distance between a node and the probe at which the node counts as near, in radii of the probe.
 inline constexpr double NEARBY_RADII = 4.0;
 
-struct DragNode {  ///< the selection moves with the probe until released, as one step of the history
+struct DragNode {  ///< moves the selection with the probe until released; the whole drag is one history step
     bool on = false;
 };
 
-/// Adds a node at the visible point, linked with the selected one.
+/// Adds a node at the visible point and links it with the selected node.
 struct NodeAt {
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
 };
 
-/// Selects the visible node or internode at the pixel; else activates the group painted there; else clears the
-/// selection.
+/// Selects the visible node or internode at the pixel. Without one, activates the group painted there; without paint,
+/// clears the selection.
 struct SelectAt {
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
     bool whole_segment = false;
 };
 
-/// Selects the next node by number, and looks at it.
+/// Selects the node with the next number and looks at it.
 struct StepNode {
     bool back = false;
 };
 
-/// Links the two nodes between which the last deletion cut the trace.
+/// Links the two nodes that the last deletion disconnected.
 struct MendCut {};
 
 inline constexpr const char* TRACING_GROUP = "Tracing";

@@ -1,5 +1,5 @@
 #pragma once
-// Actions on the window, its keys and its preferences.
+// Actions on the window, on keys and on preferences.
 
 #include "engine/workbench/actions/action_row.h"
 
@@ -19,18 +19,18 @@ struct ChooseKeys {
     std::string set;
 };
 
-/// Binds other keys to a shortcut: its id, and chords separated by spaces; none: it has no key.
+/// Binds keys to a shortcut, given by its id; `keys`: chords separated by spaces; empty: the shortcut has no key.
 struct BindKeys {
     std::string shortcut, keys;
 };
 
-/// Sets the size of the picture, to which pixels of panes refer.
+/// Sets the size of the picture. Pixels of panes refer to this size.
 struct Resize {
     glm::uvec2 pixels{0};
 };
 
-/// Binds the next key that is pressed to that shortcut; Escape keeps the binding, Delete removes its keys. An
-/// empty id: stops waiting for a key.
+/// Waits for a key and binds the next pressed key to that shortcut; Escape keeps the binding, Delete removes the
+/// shortcut's keys. An empty id ends the waiting.
 struct AwaitKey {
     std::string shortcut;
 };
@@ -39,32 +39,32 @@ struct ShowHelp {
     bool on = true;
 };
 
-/// Shows all messages, with their weight; they count as read while they are shown.
+/// Shows all messages with their severity; messages count as read while they are shown.
 struct ShowMessages {
     bool on = true;
 };
 
-/// Shows the device's time for each pass of a picture.
+/// Shows the GPU time of each pass of a picture.
 struct ShowPasses {
     bool on = true;
 };
 
-/// Writes the pass times of the present picture, for later comparison.
+/// Writes the pass times of the current picture, for later comparison.
 struct SavePasses {
     std::filesystem::path path;
 };
 
-/// Compares with such a file, or with the output of `shvr profile --json`; an empty path ends the comparison.
+/// Compares pass times with a saved file or with output of `shvr profile --json`; an empty path ends the comparison.
 struct ComparePasses {
     std::filesystem::path path;
 };
 
-/// Shows a box to type in, which finds all shortcuts, actions and settings.
+/// Shows the palette: a text box that searches all shortcuts, actions and settings.
 struct ShowPalette {
     bool on = true;
 };
 
-/// Changes preferences (preferences.h), by a patch of their file: {"theme": "light"}; null restores a default.
+/// Changes preferences (preferences.h) by a merge patch of their file: {"theme": "light"}; null restores a default.
 struct Prefer {
     std::string patch;
 };

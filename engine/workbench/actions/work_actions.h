@@ -18,39 +18,39 @@ class Saver;
 class SettingsEditor;
 class TaskRunner;
 
-/// Continues under another name, with the whole history; existing files stay as they are.
+/// Saves and continues under another name, with the whole history; existing files stay unchanged.
 struct SaveAs {
     std::filesystem::path path;  ///< the session's new file
 };
 
-/// Writes everything shown into files of another name, and continues as before. Empty path: next to the session.
+/// Writes everything shown to files of another name; the document keeps its own name. Empty path: next to the session.
 struct CopySession {
     std::filesystem::path path;
 };
 
-/// Exporting, importing, labelling and comparing are tasks (engine/tasks), each a background job.
+/// Cancels a background job. The tasks of engine/tasks (export, import, label, compare) each run as one job.
 struct CancelJob {
     uint64_t number = 0;
 };
 
 struct Screenshot {
-    bool is_large = false;  ///< larger than the window, by the session's interaction.screenshot_scale
+    bool is_large = false;  ///< larger than the window, by the factor interaction.screenshot_scale of the session
 };
 
-/// Runs in the background: the open document stays until the next one is loaded.
+/// Opens a file in the background; the open document stays until the new one is loaded.
 struct Open {
     std::filesystem::path path;
-    std::string settings{};      ///< settings for this opening, as --set takes them: "volume.channel=red", one per line
-    bool saves_outside = false;  ///< the user agrees that the session writes files outside its folder
+    std::string settings{};      ///< settings for this opening, one per line, as for --set: "volume.channel=red"
+    bool saves_outside = false;  ///< the user agrees that the session may write files outside its folder
 };
 
-/// Inspects a file without its voxels, for the open dialog: Model::candidate.
+/// Inspects a file for the open dialog, without reading its voxels; the result is Model::candidate.
 struct LookAtFile {
     std::filesystem::path path;  ///< empty: ends the inspection
     std::string settings{};      ///< as in Open
 };
 
-/// The use of a file, determined by its contents or stated by the user.
+/// The use of a file, either detected from its contents or stated by the user.
 enum class FileUse { by_contents, scan, mask, offsets, trace, look };
 inline constexpr Spelling<FileUse> FILE_USES[] = {
     {FileUse::by_contents, "by_contents"}, {FileUse::scan, "scan"},   {FileUse::mask, "mask"},
@@ -60,26 +60,26 @@ constexpr std::span<const Spelling<FileUse>> spellings_of(FileUse)
     return FILE_USES;
 }
 
-/// Takes a file dropped onto the window: opens volumes, sessions, projects and pictures, and takes annotation and
-/// transfer functions into the open document, as steps that undo takes back. The contents decide the kind of file; if
-/// they leave open whether it is a scan or annotation, the user is asked (Model::unclear_file). If one of several
-/// files can be opened, the others are taken into it.
+/// Takes a file dropped onto the window. Volumes, sessions, projects and pictures are opened; annotation and transfer
+/// functions are added to the open document, as steps that can be undone. The contents decide the kind of file; if they
+/// leave open whether it is a scan or annotation, the user is asked (Model::unclear_file). If one of several dropped
+/// files can be opened, the others are added to it.
 struct TakeFile {
     std::filesystem::path path;
-    std::string beside{};  ///< paths of files dropped with it, one per line
+    std::string beside{};  ///< paths of the other files dropped together with this one, one per line
     FileUse use = FileUse::by_contents;
 };
 
-/// Loads annotation or a transfer function into the open document, as a step that undo takes back. Opens nothing.
+/// Loads annotation or a transfer function into the open document, as a step that can be undone. Opens no document.
 struct LoadAnnotation {
     std::filesystem::path path;
     FileUse what = FileUse::by_contents;
 };
 
-/// Withdraws the question about a dropped file, which is left alone.
+/// Dismisses the question about a dropped file; the file is not used.
 struct DismissUnclearFile {};
 
-/// Corrects the volume's spacing: saves the work, and reopens it with the new spacing. Positions stay at their voxels.
+/// Corrects the volume's spacing: saves the work, and reopens it with the new spacing. Positions in voxels stay.
 struct CorrectSpacing {
     glm::dvec3 spacing{1.0};
     std::string unit;
@@ -88,20 +88,20 @@ struct CorrectSpacing {
 /// Marks the notes about recovered work as read.
 struct DismissNotices {};
 
-/// Removes a path from the recently opened ones; the file stays.
+/// Removes a path from the list of recently opened paths; the file stays.
 struct ForgetRecent {
     std::filesystem::path path;
 };
 
-/// If another program has changed saved annotation: takes the files, as a step that undo takes back, or the journal.
+/// Chooses between the journal and annotation files that another program changed; taking the files can be undone.
 struct ChooseBelief {
     bool takes_files = false;
 };
 
-/// Saves everything that is shown under names of its own, and opens it.
+/// Saves everything that is shown under new names, and opens this copy.
 struct WorkOnCopy {};
 
-/// Opens the example that ships, as the user's own copy.
+/// Opens a copy, owned by the user, of the example that ships.
 struct OpenExample {};
 
 inline constexpr const char* WORK_GROUP = "Work";
@@ -137,7 +137,7 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
     row<ExportTask, TaskRunner>(
         {"export", "Export", WORK_GROUP, "writes annotation in formats of other programs, and measurements"},
         TASK_FIELDS,
-        // Evaluated in each frame of its dialog, hence without disk access; the task itself checks the disk.
+        // This condition is evaluated in each frame of its dialog, hence without disk access; the task checks the disk.
         [](const auto& model, const ExportTask& task) -> std::string {
             if ((!task.trace.empty() || !task.mesh.empty()) && model.trace.nodes().empty())
                 return "nothing is traced yet, so there is neither a trace nor a mesh to write";
@@ -204,8 +204,9 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
     row<DismissUnclearFile, FileTaker>({"dismiss_unclear_file", "Cancel", WORK_GROUP,
                                         "leaves a dropped file alone that could be scan or annotation", Needs::nothing},
                                        NO_FIELDS,
-                                       [](const auto& model, const DismissUnclearFile&)
-                                           -> std::string { return model.unclear_file ? "" : "no file is unclear"; }),
+                                       [](const auto& model, const DismissUnclearFile&) -> std::string {
+                                           return model.unclear_file ? "" : "no file is unclear";
+                                       }),
     row<CorrectSpacing, Saver>(
         {"correct_spacing", "Correct the spacing", WORK_GROUP,
          "saves, and reopens with another spacing; nodes stay at their voxels"},
@@ -220,8 +221,9 @@ inline constexpr auto WORK_ACTIONS = std::tuple{
     row<DismissNotices, Opener>(
         {"dismiss_notices", "Dismiss", WORK_GROUP, "marks the notices about recovered and set-aside files as read"},
         NO_FIELDS,
-        [](const auto& model, const DismissNotices&)
-            -> std::string { return model.recovered.empty() ? "there is nothing to be dismissed" : ""; }),
+        [](const auto& model, const DismissNotices&) -> std::string {
+            return model.recovered.empty() ? "there is nothing to be dismissed" : "";
+        }),
     row<ForgetRecent, PreferenceKeeper>(
         {"forget_recent", "Forget", WORK_GROUP, "removes a path from the list of recent files; the file stays",
          Needs::nothing},

@@ -4,13 +4,13 @@ namespace shvr::ui {
 
 namespace {
 
-// Latin and its extensions; dashes, quotes and dots; arrows and signs that panels use.
+// Latin and its extensions; dashes, quotes and dots; arrows and other signs that panels use.
 constexpr std::pair<uint32_t, uint32_t> ALWAYS[] = {{0x20, 0x7e},     {0xa0, 0x17f},    {0x2010, 0x2026},
                                                     {0x2190, 0x2195}, {0x221a, 0x221a}, {0x2248, 0x2248},
                                                     {0x2264, 0x2265}, {0xfffd, 0xfffd}};
 constexpr uint32_t FIRST_RARE = 0x530;  ///< after Greek and Cyrillic
 
-/// Returns the first character and removes it; 0 for broken bytes.
+/// Removes the first character from `text` and returns it; returns 0 for invalid UTF-8.
 uint32_t take_character(std::string_view& text)
 {
     const uint8_t first = uint8_t(text.front());

@@ -1,5 +1,5 @@
 #pragma once
-// The characters that the font must hold: European languages from the start, others once a text has them. Pure;
+// The characters that the font must contain: those of European languages always, others once a text uses them. Pure;
 // one thread.
 
 #include <bitset>
@@ -15,12 +15,12 @@ public:
     static constexpr uint32_t LIMIT = 0x10000;  ///< Dear ImGui knows no characters above
 
     GlyphSet();
-    /// Adds UTF-8 text; skips broken bytes. Returns whether it has a character that no earlier text had.
+    /// Adds UTF-8 text, skipping invalid bytes. Returns whether the text has a character that no earlier text had.
     bool add(std::string_view text);
     bool add(uint32_t character);
-    /// Returns whether a character was added that some fonts lack.
+    /// Returns whether any added character is missing from some fonts.
     bool has_rare() const { return has_rare_; }
-    /// Returns first and last character of each run, ascending.
+    /// Returns the first and last character of each contiguous range, ascending.
     std::vector<std::pair<uint16_t, uint16_t>> ranges() const;
 
 private:

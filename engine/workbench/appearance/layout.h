@@ -1,6 +1,6 @@
 #pragma once
-// The panels, where each is, and how much of the window is left for the picture. Lengths are in font sizes
-// unless stated otherwise, so that a layout fits every scale. Pure; any thread.
+// The panels, their positions, and the part of the window left for the picture. Lengths are in font sizes unless stated
+// otherwise, so that a layout fits every scale. Pure; any thread.
 
 #include <map>
 #include <optional>
@@ -14,7 +14,7 @@
 
 namespace shvr::ui {
 
-/// `side`: below the others at the right; `floating`: a window of its own; `hidden`: not shown.
+/// `side`: in the column at the right; `floating`: in a window of its own; `hidden`: not shown.
 enum class PanelPlace { side, floating, hidden };
 inline constexpr Spelling<PanelPlace> PANEL_PLACES[] = {
     {PanelPlace::side, "side"}, {PanelPlace::floating, "floating"}, {PanelPlace::hidden, "hidden"}};
@@ -35,15 +35,15 @@ std::span<const PanelRow> panel_rows();
 /// Null where there is none.
 const PanelRow* panel_named(std::string_view id);
 
-/// Changes that the user made to a panel; everything else keeps its default.
+/// The user's changes to a panel's layout; members without a value keep their defaults.
 struct PanelLayout {
     std::optional<PanelPlace> place;
     std::optional<bool> folded;
-    std::optional<glm::dvec2> at, size;  ///< position (from the upper left corner) and size as a floating window
+    std::optional<glm::dvec2> at, size;  ///< position (of the upper left corner) and size if floating
     bool operator==(const PanelLayout&) const = default;
 };
 
-/// Last position of a window: help, messages and the like.
+/// Last position and size of a window such as help or messages.
 struct WindowPlace {
     std::optional<glm::dvec2> at, size;
     bool operator==(const WindowPlace&) const = default;
@@ -62,15 +62,15 @@ struct WindowLayout {
 
     PanelPlace place_of(const PanelRow& row) const;
     bool is_folded(const PanelRow& row) const;
-    /// Returns whether any panel is at the right.
+    /// Returns whether any panel is in the column at the right.
     bool has_side() const;
     bool operator==(const WindowLayout&) const = default;
 };
 
-/// Width of the panels at the right, in units of the window: as wide as wanted, but at most half of the window.
+/// Width of the column of panels at the right, in window units: the chosen width, but at most half of the window.
 double side_units(const WindowLayout& layout, double window_units, double font_units);
 
-/// Corner of a floating panel, moved into a window of the given size so that its title can be reached.
+/// Returns the corner of a floating panel, moved into a window of the given size so that its title can be reached.
 glm::dvec2 within_reach(const glm::dvec2& at, const glm::dvec2& size, const glm::dvec2& window);
 
 }  // namespace shvr::ui

@@ -1,5 +1,5 @@
 #pragma once
-// The panels' table, from top to bottom. ui/panels checks while it compiles that each row has a function that draws it.
+// The table of panels, from top to bottom. ui/panels checks at compile time that each row has a function to draw it.
 
 #include "engine/workbench/appearance/layout.h"
 

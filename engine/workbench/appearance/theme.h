@@ -1,7 +1,7 @@
 #pragma once
-// The colours of the interface by purpose, in two themes. Every text can be read on every surface: the contrast by
-// WCAG 2.1 is at least MIN_TEXT_CONTRAST, also where a widget is greyed (tests/unit/ui/theme_test.cpp). Pure; any
-// thread.
+// The colours of the interface by purpose, in two themes. Every text is readable on every surface: the contrast as
+// defined by WCAG 2.1 is at least MIN_TEXT_CONTRAST, even if a widget is greyed (tests/unit/ui/theme_test.cpp). Pure;
+// any thread.
 
 #include <array>
 #include <span>
@@ -24,7 +24,7 @@ enum class ColorRole {
     // Texts
     text,
     faint_text,  ///< hints, keys, disabled items
-    warning,     ///< colour of a mark next to the word or sign that names it
+    warning,     ///< colour of a warning mark; a word or sign next to it gives its meaning
     error,
     accent_text,  ///< headings
     // Surfaces that texts stand on
@@ -62,14 +62,14 @@ enum class ColorRole {
 };
 
 inline constexpr double MIN_TEXT_CONTRAST = 4.5;
-/// Opacity of a greyed widget over the window's surface.
+/// Opacity of a greyed widget, blended over the window's surface.
 inline constexpr float DISABLED_SHARE = 0.75f;
 
 Shade shade_of(ColorRole role, Theme theme);
 std::span<const ColorRole> text_roles();
 std::span<const ColorRole> surface_roles();
 
-/// Returns (L1 + 0.05) / (L2 + 0.05) of the relative luminances, 1 ... 21.
+/// Returns (L1 + 0.05) / (L2 + 0.05), 1 ... 21, where L1 >= L2 are the relative luminances.
 double contrast(const Shade& a, const Shade& b);
 /// Blends `over` onto `below` with weight `share` (and 1 - share for `below`), as the device does.
 Shade blended(const Shade& over, const Shade& below, float share);

@@ -11,7 +11,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Keys whose names have several letters, and their display names.
+/// Keys with names of several letters, each with its display name.
 constexpr std::pair<const char*, const char*> NAMED_KEYS[] = {
     {"Space", "Space"}, {"Delete", "Delete"},       {"Insert", "Insert"},      {"Home", "Home"},
     {"End", "End"},     {"PageUp", "Page Up"},      {"PageDown", "Page Down"}, {"Up", "Up"},
@@ -111,7 +111,7 @@ std::vector<const Shortcut*> Keymap::shortcuts_for(const Chord& chord) const
     for (const Shortcut& shortcut : shortcuts())
         if (std::ranges::any_of(chords_of(shortcut), [&](const Chord& bound) { return means(shortcut, bound, chord); }))
             found.push_back(&shortcut);
-    // A shortcut bound with Shift precedes one that Shift only slows.
+    // A shortcut bound to the chord with Shift precedes a shortcut that Shift only slows down.
     const auto is_exact = [&](const Shortcut* shortcut) {
         return std::ranges::find(chords_of(*shortcut), chord) != chords_of(*shortcut).end();
     };

@@ -15,14 +15,14 @@ namespace shvr::ui {
 /// Number of stylus buttons that can be bound.
 inline constexpr uint32_t MAX_BUTTONS = 8;
 
-/// A key with its modifiers. Keys are named: "A", "7", "[", "F5", "PageUp", "Space"; the first button of a stylus is
-/// "Stylus1".
+/// A key with its modifiers. Keys have names: "A", "7", "[", "F5", "PageUp", "Space"; "Stylus1" is the first button of
+/// a stylus.
 struct Chord {
     bool control = false, alt = false, shift = false;
     std::string key;
     auto operator<=>(const Chord&) const = default;
 };
-/// Parses "Ctrl+Shift+Z"; nothing if the text is no chord.
+/// Parses "Ctrl+Shift+Z"; returns no value if the text is not a chord.
 std::optional<Chord> chord_of(std::string_view text);
 /// Returns the text that `chord_of` parses as this chord.
 std::string text_of(const Chord& chord);
@@ -32,11 +32,11 @@ std::string in_words(const Chord& chord);
 class Keymap {
 public:
     using Changes = KeyChanges;
-    /// Fails if an id names no shortcut or a text is no chord.
+    /// Fails if an id is not that of a shortcut, or a text is not a chord.
     explicit Keymap(KeySet set = KeySet::modern, const Changes& changes = {});
 
-    /// Returns the shortcuts bound to this chord: one, unless the user bound a chord twice. If a shortcut is slowed by
-    /// Shift, it is also returned with Shift down.
+    /// Returns the shortcuts bound to this chord: one, unless the user bound a chord twice. A shortcut that Shift slows
+    /// down is also returned for its chord with Shift.
     std::vector<const Shortcut*> shortcuts_for(const Chord& chord) const;
     /// Returns the chords of a shortcut.
     const std::vector<Chord>& chords_of(const Shortcut& shortcut) const;
@@ -44,7 +44,7 @@ public:
     std::string text_of(const Shortcut& shortcut) const;
     /// Returns the other shortcuts that share a chord with this one.
     std::vector<const Shortcut*> rivals_of(const Shortcut& shortcut) const;
-    /// Describes each chord that is bound to more than one shortcut, in a sentence.
+    /// Returns one sentence for each chord that is bound to more than one shortcut.
     std::vector<std::string> conflicts() const;
 
 private:

@@ -20,7 +20,7 @@ bool is_action_id(std::string_view word)
     return std::ranges::any_of(action_rows(), [&](const ActionRow& row) { return row.id == word; });
 }
 
-/// The table is made once, since it does not change.
+/// Returns the table of settings, which is built once, since it does not change.
 const std::vector<SessionKey>& keys_of_settings()
 {
     static const std::vector<SessionKey> KEYS = keys_of([](Fields& f) {
@@ -30,7 +30,7 @@ const std::vector<SessionKey>& keys_of_settings()
     return KEYS;
 }
 
-/// An entry for a typed action, with the reason if the text is no valid action or the action is unavailable now.
+/// Returns an entry for a typed action, with the reason if the text is not a valid action or the action is unavailable.
 template <class Make>
 PaletteEntry typed(const Model& model, std::string_view text, const char* group, const Make& make)
 {
@@ -99,7 +99,7 @@ std::vector<PaletteEntry> palette_entries(const Model& model, std::string_view t
     text = trimmed(text);
     std::vector<PaletteEntry> entries, as_typed;
     add_typed(as_typed, model, text);
-    // A text whose action is unavailable may be the beginning of a shortcut's name.
+    // If the action of a text is unavailable, the text may instead be the beginning of a shortcut's name.
     const bool is_done = !as_typed.empty() && as_typed.front().why_not.empty();
     if (is_done) entries = as_typed;
     add_shortcuts(entries, model, text);

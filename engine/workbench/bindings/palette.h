@@ -17,7 +17,7 @@ struct PaletteEntry {
     std::string keys{};              ///< keys as displayed
     std::string why_not{};           ///< reason why the entry is unavailable now; empty: available
     std::optional<Action> action{};  ///< action that the entry performs
-    std::string completion{};        ///< text that continues the input, in place of an action
+    std::string completion{};        ///< text that continues the input; if set, the entry has no action
 };
 
 /// Returns entries, best match first: a typed action or setting, shortcuts, then possible completions of the text.

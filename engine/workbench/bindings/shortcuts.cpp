@@ -39,7 +39,7 @@ Action choose(const Model& model, double)
     return edited(model.session, [](Session& s) { s.probe.brush.group = GROUP; });
 }
 
-/// Actions without a position take that of the pointer or, without a pointer, the middle of the first pane.
+/// Makes an action at the pointer or, without a pointer, at the middle of the first pane.
 template <class Kind>
 Action at_pointer(const Model& model, double)
 {
@@ -53,7 +53,7 @@ Action at_pointer(const Model& model, double)
     return action;
 }
 
-/// The pane under the pointer, or the first one.
+/// Makes an action for the pane under the pointer, or for the first pane.
 template <class Kind>
 Action at_pane(const Model& model, double)
 {
@@ -62,14 +62,14 @@ Action at_pane(const Model& model, double)
     return action;
 }
 
-/// Moves the probe by a voxel, as seen in the pane under the pointer.
+/// Moves the probe by a voxel; directions are those of the pane under the pointer.
 template <int AWAY, int RIGHT, int UP>
 Action step_probe(const Model& model, double amount)
 {
     return PushProbe{model.pointer ? model.pointer->pane : 0, AWAY * amount, RIGHT * amount, UP * amount};
 }
 
-/// Looks from the NUMBER-th view that the user kept, in the order of names, without the window's own one.
+/// Looks from the NUMBER-th saved view, in the order of names, not counting the window's own view.
 template <size_t NUMBER>
 Action look_from_kept(const Model& model, double)
 {
@@ -237,11 +237,11 @@ Action move_clip(const Model&, double amount)
     return MoveClip{FAR, CLIP_SHARE * DIRECTION * amount};
 }
 
-/// Values near 0 become exactly 0, which costs nothing to render.
+/// Rounds values near 0 to exactly 0, which costs nothing to render.
 template <double DistanceBlend::*VALUE, int DIRECTION>
 Action blend(const Model& model, double amount)
 {
-    // A size above 1 whitens everything behind the depth at which it reaches 1.
+    // A size above 1 makes everything white behind the depth at which it reaches 1.
     constexpr double MOST = VALUE == &DistanceBlend::size ? 1.0 : MAX_BLEND;
     return edited(model.session, [&](Session& s) {
         const double next = std::clamp(s.blend.*VALUE + BLEND_STEP * DIRECTION * amount, 0.0, MOST);
@@ -281,7 +281,7 @@ Action neighbour_group(const Model& model, double)
     return edited(model.session, [&](Session& s) { s.probe.brush.group = next_group(model, DIRECTION); });
 }
 
-/// Closes the frontmost dialog; if there is none, the mouse returns to the turn tool.
+/// Closes the frontmost dialog; without a dialog, selects the mouse's turn tool.
 Action step_back(const Model& model, double amount)
 {
     if (model.shows_palette) return ShowPalette{false};
@@ -316,9 +316,9 @@ constexpr Shortcut both(const char* id, const char* group, const char* name, Mod
     return {id, group, name, mode, action, {keys, keys}, is_by_position};
 }
 
-// In the thesis planes and blending have letters, and the keys that push outwards or pull back add Ctrl. Today Ctrl+C,
-// Ctrl+V and Ctrl+Y mean something else, and a letter typed by mistake must not cut the volume: those shortcuts have no
-// keys until the user assigns some.
+// In the thesis, planes and blending have letters as keys, and the keys that push outwards or pull back add Ctrl. Today
+// Ctrl+C, Ctrl+V and Ctrl+Y have other meanings, and a letter typed by mistake must not cut the volume: those shortcuts
+// have no keys until the user assigns some.
 constexpr Shortcut SHORTCUTS[] = {
     {"undo", WORK_KEYS, "Undo", Mode::repeated, plain<UndoOp>, {"Ctrl+Z", "Ctrl+Z"}},
     {"redo", WORK_KEYS, "Redo", Mode::repeated, plain<RedoOp>, {"Ctrl+Y Ctrl+Shift+Z", "Ctrl+Shift+Z"}},
@@ -512,7 +512,7 @@ constexpr Shortcut SHORTCUTS[] = {
     both("move_back", MOVE_KEYS, "Move back", Mode::hold, move<0, 0, -1>, "S", true),
     both("move_left", MOVE_KEYS, "Move left", Mode::hold, move<-1, 0, 0>, "A", true),
     both("move_right", MOVE_KEYS, "Move right", Mode::hold, move<1, 0, 0>, "D", true),
-    // Thesis 4.2.3: Q is up and E down; programs of today have it the other way round.
+    // Thesis 4.2.3: Q moves up and E down; today's programs do the opposite.
     {"move_down", MOVE_KEYS, "Move down", Mode::hold, move<0, -1, 0>, {"Q", "E"}, true},
     {"move_up", MOVE_KEYS, "Move up", Mode::hold, move<0, 1, 0>, {"E", "Q"}, true},
 

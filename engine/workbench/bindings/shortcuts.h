@@ -1,7 +1,7 @@
 #pragma once
-// Shortcuts for keys, menu items, the palette and stylus buttons: an action with a name of its own and arguments that
-// depend on the current state. Two sets of keys ship: today's conventions, and the thesis's appendix C as printed.
-// Pure; any thread.
+// Shortcuts for keys, menu items, the palette and stylus buttons. A shortcut is an action with its own name; its
+// arguments depend on the current state. Two sets of keys ship: today's conventions, and the thesis's appendix C as
+// printed. Pure; any thread.
 
 #include <array>
 #include <span>
@@ -16,8 +16,8 @@ namespace shvr::ui {
 struct Shortcut {
     enum class Mode {
         tap,        ///< once per press
-        repeated,   ///< acts once per press, and again with the keyboard's auto-repeat
-        step,       ///< acts once per press; by a fifth of the amount with Shift
+        repeated,   ///< acts once per press, and again at the keyboard's auto-repeat
+        step,       ///< acts once per press; with Shift, by a fifth of the amount
         hold,       ///< continuous while held; slower with Shift
         while_held  ///< starts when pressed and ends when released
     };
@@ -25,17 +25,17 @@ struct Shortcut {
     const char* group = "";  ///< heading in menus, help and palette
     const char* name = "";   ///< "Undo"
     Mode mode = Mode::tap;
-    /// `amount`: 1 for a tap, less with Shift, 5 per second while held; for `while_held` 1 at the start and 0 at the
+    /// `amount`: for a tap 1, less with Shift; while held, 5 per second; for `while_held`, 1 at the start and 0 at the
     /// end.
     Action (*action)(const Model& model, double amount) = nullptr;
     /// Chords by KeySet, separated by spaces: "Ctrl+Y Ctrl+Shift+Z" (keymap.h).
     std::array<const char*, 2> keys{"", ""};
-    bool is_by_position = false;  ///< the letter means the key at that place of an American keyboard
+    bool is_by_position = false;  ///< the letter means the key at its position on an American keyboard
 
     bool is_slowed() const { return mode == Mode::step || mode == Mode::hold; }
 };
 
-/// Returns all shortcuts; those of a group are adjacent.
+/// Returns all shortcuts; shortcuts of the same group are adjacent.
 std::span<const Shortcut> shortcuts();
 /// Returns null if there is none.
 const Shortcut* shortcut_named(std::string_view id);

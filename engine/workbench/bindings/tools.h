@@ -1,5 +1,5 @@
 #pragma once
-// Descriptions of the mouse tools: name, key, and the effect of buttons and wheel. Pure; any thread.
+// Descriptions of the mouse tools: name, key, and the effects of buttons and wheel. Pure; any thread.
 
 #include <span>
 #include <string>
@@ -22,7 +22,7 @@ const ToolRow& row_of(Tool tool);
 
 /// Returns the message shown when the tool is selected.
 std::string sentence_of(Tool tool);
-/// Describes the mouse over a pane of that kind, in one line: "left: paint, right or middle: turn, wheel: zoom".
+/// Describes the mouse over a pane of kind `over`, in one line: "left: paint, right or middle: turn, wheel: zoom".
 std::string mouse_in_words(Tool tool, Pane::Kind over = Pane::Kind::main);
 
 }  // namespace shvr::ui

@@ -11,13 +11,13 @@ namespace {
 
 constexpr int64_t MAX_VALUES = 65536;  ///< what integers of 16 bits can be
 
-/// Bins like VolumeSource::measure; values are relative to the minimum.
+/// Returns the bin as VolumeSource::measure assigns it; values are relative to the minimum.
 size_t bin_of(double value, int64_t span, size_t bins)
 {
     return std::min(bins - 1, size_t(value / double(span) * double(bins)));
 }
 
-/// The values that voxels may have: `intervals` equal steps from 0 to `span`, which may be rounded down or up.
+/// The possible voxel values: `intervals` equal steps from 0 to `span`. Each value may be rounded down or up.
 struct Lattice {
     int64_t span = 1, intervals = 1;
     double step() const { return double(span) / double(intervals); }
@@ -25,7 +25,7 @@ struct Lattice {
     double upper(int64_t k) const { return std::ceil(double(k) * double(span) / double(intervals)); }
 };
 
-/// Counts the values that fall into each bin; rounded values count in every bin into which they may fall.
+/// Counts the possible values in each bin; a rounded value counts in every bin into which it may fall.
 std::vector<int64_t> values_in_bins(const Lattice& lattice, size_t bins)
 {
     std::vector<int64_t> values(bins, 0);
@@ -38,7 +38,7 @@ std::vector<int64_t> values_in_bins(const Lattice& lattice, size_t bins)
     return values;
 }
 
-/// Returns whether there are voxels in a bin without a value.
+/// Returns whether a bin that cannot hold any value contains voxels.
 bool is_refuted(const std::vector<int64_t>& values, const std::vector<int64_t>& counts)
 {
     for (size_t bin = 0; bin < counts.size(); ++bin)
@@ -46,7 +46,7 @@ bool is_refuted(const std::vector<int64_t>& values, const std::vector<int64_t>& 
     return false;
 }
 
-/// Measures how much a histogram jumps from one bin that can hold values to the next.
+/// Measures the jumps of a histogram between successive bins that can hold values.
 double roughness(const std::vector<int64_t>& values, const std::vector<int64_t>& counts)
 {
     double sum = 0.0, last = std::numeric_limits<double>::quiet_NaN();
@@ -59,19 +59,19 @@ double roughness(const std::vector<int64_t>& values, const std::vector<int64_t>&
     return sum;
 }
 
-/// Determines the possible voxel values, as far as a histogram shows them. The greatest value is one of them.
+/// Determines the possible voxel values, as far as the histogram reveals them. The greatest value is among them.
 Lattice lattice_of(int64_t span, const std::vector<int64_t>& counts)
 {
     const double bin_width = double(span) / double(counts.size());
-    // Steps wider than a bin leave bins without values empty. A rounded value may fall into either of two bins, so
-    // most, not all, of the other bins must be empty.
+    // Steps wider than a bin leave the bins between two values empty. A rounded value may fall into either of two bins,
+    // so most, but not all, of the bins without a value must be empty.
     for (int64_t intervals = 1; double(span) > bin_width * double(intervals); ++intervals) {
         const Lattice lattice{span, intervals};
         const bool is_apart = span % intervals == 0 || lattice.step() >= std::max(4.0 * bin_width, 3.0);
         if (is_apart && !is_refuted(values_in_bins(lattice, counts.size()), counts)) return lattice;
     }
-    // With narrower steps, bins differ by one value, which shows as a comb; counting with the right step makes it
-    // smooth.
+    // With narrower steps, the numbers of values in two bins differ by one, which shows as a comb; dividing by the
+    // number of values of the right step makes the histogram smooth.
     constexpr double CLEARLY = 0.6;
     Lattice best{span, span};
     double least = CLEARLY * roughness(values_in_bins(best, counts.size()), counts);
@@ -84,7 +84,7 @@ Lattice lattice_of(int64_t span, const std::vector<int64_t>& counts)
     return best;
 }
 
-/// A bar for each value, halfway to its neighbours.
+/// Adds a bar for each value; the bar extends halfway to the neighbouring values.
 void add_values(const Lattice& lattice, double lowest, const std::vector<int64_t>& counts, HistogramBars& made)
 {
     for (int64_t k = 0; k <= lattice.intervals; ++k) {
@@ -96,12 +96,12 @@ void add_values(const Lattice& lattice, double lowest, const std::vector<int64_t
     }
 }
 
-/// A curve that maps few values to many, as when a scan was brightened, skips values here and there: each bar that has
-/// voxels is extended halfway to the next.
+/// Closes small gaps: an intensity curve that maps few values to many, as when a scan was brightened, skips some
+/// values. Each bar that has voxels is extended halfway to the next such bar.
 void join_small_gaps(std::vector<HistogramBar>& bars)
 {
     constexpr size_t MAX_GAP = 2;    // consecutive empty bars
-    constexpr size_t MIN_SHARE = 4;  // bars are joined if for this many filled bars at least one is empty
+    constexpr size_t MIN_SHARE = 4;  // bars are joined if at least one bar is empty for every MIN_SHARE filled bars
     std::vector<size_t> filled;
     for (size_t i = 0; i < bars.size(); ++i)
         if (bars[i].voxels > 0.0) filled.push_back(i);

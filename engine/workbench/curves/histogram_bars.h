@@ -9,19 +9,19 @@ namespace shvr::ui {
 
 struct HistogramBar {
     double lower = 0.0, upper = 0.0;  ///< intensities
-    double voxels = 0.0;              ///< per value that voxels can have within the bar; for floats, in the whole bar
+    double voxels = 0.0;              ///< per possible voxel value within the bar; for floats, in the whole bar
 };
 struct HistogramBars {
     std::vector<HistogramBar> bars;
-    std::vector<HistogramBar> fill{};  ///< a bar for each fill value, which lies outside all others
-    /// Voxel values are the minimum plus multiples of this, rounded if it is no whole number; 0: floats, or the values
-    /// are unknown.
+    std::vector<HistogramBar> fill{};  ///< a bar for each fill value, which lies outside all other values
+    /// Voxel values are the minimum plus multiples of this step, rounded if the step is not a whole number; 0: floats,
+    /// or the values are unknown.
     double step = 0.0;
 };
 
-/// Volumes are measured in 256 bins, and the number of integer voxel values per bin varies by one: drawn directly, the
-/// smooth histogram of a volume with 300 grey values looks like a comb, and so does one whose values are multiples of
-/// a step. So bars count voxels per possible value, and bars without a possible value are joined with others.
+/// Volumes are measured in 256 bins, and the number of integer voxel values per bin varies by one. Drawn directly, the
+/// smooth histogram of a volume with 300 grey values looks like a comb; so does one whose values are multiples of a
+/// step. So bars count voxels per possible value, and bars without a possible value are joined with others.
 HistogramBars histogram_bars(VoxelType type, const VolumeStatistics& statistics);
 
 /// Returns the height of a bar, 0 ... 1; `most` is the maximum count.

@@ -1,6 +1,6 @@
 #pragma once
-// The direction of the light as a point on a ball: x right, y up, on the half that faces the viewer.
-// Pure; any thread.
+// The direction of the light as a point on the half of a ball that faces the viewer: x right, y up. Pure; any
+// thread.
 
 #include <glm/glm.hpp>
 
@@ -11,12 +11,12 @@ inline constexpr glm::dvec3 USUAL_LIGHT{0.3, 0.5, 1.0};
 
 /// Returns a unit vector.
 glm::dvec3 light_direction(const glm::dvec3& set);
-/// Projects a direction onto a ball of radius 1; light from behind the ball lies at its edge.
+/// Projects a direction onto a ball of radius 1; for light from behind the ball, the result lies at its edge.
 glm::dvec2 place_on_ball(const glm::dvec3& direction);
-/// Returns the direction of a point; points outside the ball are moved to its edge.
+/// Returns the direction of a point on the ball; points outside the ball are moved to its edge.
 glm::dvec3 direction_at(const glm::dvec2& place);
 
-/// The direction as angles: degrees to the right of the viewer, and above.
+/// The direction as angles: degrees to the right of the viewer, and degrees above the viewer.
 struct LightAngles {
     double right_degrees = 0.0, up_degrees = 0.0;
 };

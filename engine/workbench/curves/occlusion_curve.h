@@ -1,6 +1,6 @@
 #pragma once
-// The curve that maps arriving light to displayed light, as edited by hand: points on a square, x and y
-// from 0 to 1. Pure; any thread.
+// The curve that maps arriving light to displayed light, edited by hand: points in a square with x and y from 0 to 1.
+// Pure; any thread.
 
 #include <optional>
 #include <vector>
@@ -13,9 +13,9 @@ namespace shvr::ui {
 
 using OcclusionPoints = std::vector<OcclusionPoint>;
 
-/// Converts a power into points, as a start for editing.
+/// Converts the curve of a power to points, as a start for editing.
 OcclusionPoints points_of_power(double power);
-/// Returns the nearest point within `reach`, which is given along each axis.
+/// Returns the nearest point within `reach`, which is a distance along each axis.
 std::optional<size_t> point_under(const OcclusionPoints& points, const glm::dvec2& place, const glm::dvec2& reach);
 /// Moves a point within the square and between its neighbours, so that its index stays the same.
 OcclusionPoints moved(OcclusionPoints points, size_t point, const OcclusionPoint& to);
@@ -23,7 +23,7 @@ OcclusionPoints moved(OcclusionPoints points, size_t point, const OcclusionPoint
 size_t add(OcclusionPoints& points, const OcclusionPoint& point);
 /// Removes a point; keeps at least two.
 OcclusionPoints without(OcclusionPoints points, size_t point);
-/// Returns the point on the curve in the middle of the widest gap.
+/// Returns the point on the curve in the middle of the widest gap between points.
 OcclusionPoint in_widest_gap(const OcclusionPoints& points);
 
 }  // namespace shvr::ui

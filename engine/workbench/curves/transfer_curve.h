@@ -2,8 +2,8 @@
 // The transfer function as a curve edited by hand: positions on a rectangle, hit tests for the mouse, and
 // changes of the points. Pure; any thread.
 //
-// Left to right are intensities; upwards is opacity, as its square root, so that small opacities can be seen and
-// dragged.
+// Intensities increase from left to right. The vertical axis is the square root of opacity, so that small opacities can
+// be seen and dragged.
 
 #include <optional>
 #include <vector>
@@ -15,7 +15,7 @@ namespace shvr::ui {
 /// Intensities and opacities in pixels, y down.
 struct CurveAxes {
     glm::vec2 begin{0.0f}, end{1.0f};  ///< upper left and lower right corner
-    double lower = 0.0, upper = 1.0;   ///< intensities at the left and at the right
+    double lower = 0.0, upper = 1.0;   ///< intensities at the left and right edges
 
     float x_of(double intensity) const;
     float y_of(double opacity) const;
@@ -24,7 +24,7 @@ struct CurveAxes {
     glm::vec2 place_of(const ControlPoint& point) const;
 };
 
-/// The intensities that a widget shows: the volume's and the function's.
+/// The range of intensities that a widget shows: it contains the volume's and the function's range.
 struct CurveRange {
     double lower = 0.0, upper = 1.0;
 };
@@ -39,13 +39,13 @@ public:
         size_t point = 0;
         bool operator==(const Found&) const = default;
     };
-    /// Threshold lines, and begin and end of their labels along x; the paint threshold's label is in the first row.
+    /// Threshold lines, and the start and end of their labels along x. The paint threshold's label is in the first row.
     struct Lines {
         double paint_threshold = 0.0, haptic_threshold = 0.0;
         glm::vec2 paint_word{0.0f}, haptic_word{0.0f};
     };
     /// Hit distances. The mouse grabs points within `pixels`, then labels, whose rows are `label` high, then lines. If
-    /// two lines are at one position, it grabs the paint threshold, except in the row of the other line's label.
+    /// both lines are at the same position, it grabs the paint threshold, except in the row of the other line's label.
     struct Reach {
         float pixels = 9.0f, label = 17.0f;
     };
@@ -57,14 +57,14 @@ public:
     /// The edited function, with values clamped to the range of a transfer function.
     TransferFunction function() const;
 
-    /// Returns the item under the mouse: points before lines, the nearest first.
+    /// Returns the item under the mouse: points take precedence over lines; of several, the nearest.
     Found under(const CurveAxes& axes, const glm::vec2& mouse, const Lines& lines, const Reach& reach) const;
 
-    /// Adds a point with the function's colour there. Returns its index.
+    /// Adds a point with the colour that the function has there. Returns its index.
     size_t add(double intensity, double opacity);
     /// Removes a point; keeps at least two. Returns the index of the point that is then selected.
     size_t remove(size_t point);
-    /// Moves a point; it stays between its neighbours, so that its index stays the same.
+    /// Moves a point, clamped between its neighbours so that its index stays the same.
     void move(size_t point, double intensity, double opacity);
     double held_between_neighbors(size_t point, double intensity) const;
     /// Shifts all points by `by`, limited so that the curve still overlaps [lowest, highest]. Returns the actual shift.
@@ -74,8 +74,8 @@ private:
     Points points_;
 };
 
-/// Distance that all points move per wheel notch, a fraction of the displayed range; a tenth of it if slow. A whole
-/// number, at least one, if voxels are integers.
+/// Returns the distance that all points move per wheel notch, a fraction of the displayed range; a tenth of it if slow.
+/// If voxels are integers, the distance is a whole number, at least one.
 double wheel_shift(double notches, const CurveRange& range, bool is_slow, bool is_whole);
 
 }  // namespace shvr::ui

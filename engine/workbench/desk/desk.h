@@ -16,24 +16,24 @@
 
 namespace shvr::ui {
 
-/// Returns the last part of a path, also of a folder with a slash at its end.
+/// Returns the last part of a path, even if the path ends with a slash.
 std::string short_name(const std::filesystem::path& path);
 
 struct WorkbenchOptions {
     View::Options view{};
     bool has_servo = true;  ///< guidance and haptic devices run; false: guidance has no effect
-    /// For scripts, which do exactly what they state: no setting becomes a step or is kept, saves write annotation
-    /// alone, to the files that the session names, and the selection stays.
+    /// Set for scripts, which do exactly what they state: no setting becomes a step or is kept, saves write only
+    /// annotation, to the files that the session names, and the selection stays.
     bool is_script = false;
-    bool saves_outside = false;           ///< sessions may write outside their folders without a question
-    bool allow_force = false;             ///< lets a haptic device with a verified profile push the hand
-    std::filesystem::path preferences{};  ///< the file (preferences_file.h); empty: none are read or kept
+    bool saves_outside = false;           ///< sessions may write outside their folders without asking
+    bool allow_force = false;             ///< allows a haptic device with a verified profile to exert forces
+    std::filesystem::path preferences{};  ///< path of the file (preferences_file.h); empty: neither read nor saved
     std::function<double()> now_s{};      ///< seconds of any clock; null: the system's
     std::string version{};                ///< the program's, for reports; empty: unknown
-    DeviceSource devices{};               ///< source of haptic devices; without functions: this machine
-    /// Slices follow a probe that leaves their plane, and the move is logged; false: the log's own actions move them.
+    DeviceSource devices{};               ///< source of haptic devices; if its functions are empty: this machine
+    /// Slices follow a probe that leaves their plane, and the move is logged; false: only logged actions move slices.
     bool slices_follow = true;
-    TextDrawer draw_texts{};  ///< draws labels into picture files; null: they have none
+    TextDrawer draw_texts{};  ///< draws labels into picture files; null: no labels
 };
 
 struct Desk {
@@ -42,15 +42,15 @@ struct Desk {
 
     Renderer& renderer;
     WorkbenchOptions options;
-    /// Null: nothing is open. Opening replaces the document, so services keep a reference to this pointer and never to
-    /// the document.
+    /// The open document; null: nothing is open. Opening replaces the document, so services keep a reference to this
+    /// pointer, never to the document itself.
     std::unique_ptr<Document> document;
     uint64_t openings = 0;  ///< how often a document was opened
     double opened_s = 0.0;  ///< when this one was
     MessageLog messages;
     bool are_messages_shown = false;  ///< then all of them have been read
     std::function<void(const std::string&)> log;
-    std::vector<std::string> logged_instead;  ///< lines to log in place of the action under way
+    std::vector<std::string> logged_instead;  ///< lines to log instead of the action being carried out
     Jobs jobs;
     Jobs savers{{.wake = {}, .seconds = {}, .first = Jobs::Number{1} << 32}};  ///< saves wait for no other job
     /// Both are the workbench's, which sets them.
@@ -58,11 +58,11 @@ struct Desk {
     std::function<Model()> model;
 
     void say(std::string text, Weight weight = Weight::done);
-    /// Logs these in place of the action under way. The point seen at a pixel depends on the paint and the bricks of
-    /// that moment, so its position is logged instead.
+    /// Logs these actions instead of the action being carried out. The point seen at a pixel depends on the paint and
+    /// the bricks at that moment, so the point's position is logged instead of the pixel.
     void log_instead(const Actions& actions);
     DocumentModel document_model() const;
-    /// Objects that a model's references refer to while no document is open.
+    /// Empty objects that a model's references refer to while no document is open.
     struct Nothing {
         Session session;
         VolumeInfo volume;

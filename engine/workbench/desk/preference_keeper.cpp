@@ -27,7 +27,7 @@ void PreferenceKeeper::act(const BindKeys& action)
     keys_of_it.clear();
     preferences.unusable_keys.erase(action.shortcut);
     for (const std::string_view chord : words_of(action.keys)) keys_of_it.emplace_back(chord);
-    // A binding equal to the default is not stored, so that it follows a later choice of the set.
+    // A binding equal to the default is not stored, so that it changes if the user later chooses the other set.
     if (Keymap(preferences.key_set, preferences.keys).chords_of(*shortcut) ==
         Keymap(preferences.key_set).chords_of(*shortcut))
         preferences.keys.erase(action.shortcut);
@@ -57,7 +57,7 @@ void PreferenceKeeper::act(const ForgetRecent& action)
     prefer(std::move(preferences));
 }
 
-/// A file that cannot be read stays as it is, and nothing is saved until it can be read.
+/// Reads the file. An unreadable file stays as it is, and nothing is saved until it can be read.
 void PreferenceKeeper::load()
 {
     if (options_.preferences.empty()) return;
@@ -73,7 +73,7 @@ void PreferenceKeeper::load()
     for (const std::string& conflict : keymap_.conflicts()) say(conflict, Weight::warning);
 }
 
-/// A failed save is reported, and changes nothing else.
+/// Takes new preferences and saves them. If saving fails, the failure is reported and the preferences still apply.
 void PreferenceKeeper::prefer(Preferences preferences)
 {
     if (preferences == preferences_) return;

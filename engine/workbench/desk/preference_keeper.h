@@ -1,5 +1,5 @@
 #pragma once
-// The user's preferences: keys, theme, layout and recently opened paths, written to their file by a saver.
+// The user's preferences: keys, theme, layout and recently opened paths. A saver writes them to their file.
 
 #include "engine/workbench/bindings/keymap.h"
 #include "engine/workbench/desk/service.h"
@@ -16,9 +16,9 @@ public:
     void act(const Prefer& action);
     void act(const ForgetRecent& action);
 
-    /// Reads the file. An unreadable file stays as it is, and nothing is written until it can be read.
+    /// Reads the file. If it is unreadable, it stays as it is, and nothing is written until it can be read.
     void load();
-    /// Takes these and saves them. A failed save is reported, and changes nothing else.
+    /// Takes new preferences and saves them. If saving fails, the failure is reported and the preferences still apply.
     void prefer(Preferences preferences);
     /// Puts a path first in the list of recently opened paths.
     void note_opened(const std::filesystem::path& path);
@@ -26,9 +26,9 @@ public:
     const Preferences& preferences() const { return preferences_; }
     const Keymap& keymap() const { return keymap_; }
     const std::string& awaits_key() const { return awaits_key_; }
-    /// Returns the keys of a shortcut as displayed; empty if it has none.
+    /// Returns the keys of a shortcut as displayed; empty if the shortcut has none.
     std::string keys_of(const char* shortcut) const;
-    /// Returns "; Ctrl + T sets that"; empty if the shortcut has no key.
+    /// Returns text with the key of a shortcut, such as "; Ctrl + T sets that"; empty if the shortcut has no key.
     std::string with_key(const char* before, const char* shortcut, const char* after) const;
     PreferenceModel model() const;
 

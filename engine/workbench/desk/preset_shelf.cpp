@@ -13,7 +13,7 @@ std::filesystem::path PresetShelf::folder() const
     return options_.preferences.parent_path() / "transfer_functions";
 }
 
-/// Loads the presets that ship, then the user's own.
+/// Loads the presets that ship with the program, then the user's own.
 void PresetShelf::load()
 {
     presets_.clear();
@@ -36,7 +36,7 @@ const TransferPreset& PresetShelf::own(const std::string& name) const
     return *found;
 }
 
-/// The file of a preset that ships is never created: two presets would look the same in the list.
+/// Never returns the file name of a preset that ships: both presets would look the same in the list.
 std::filesystem::path PresetShelf::free_file(const std::string& name) const
 {
     const std::filesystem::path file = preset_file(folder(), name);

@@ -1,5 +1,5 @@
 #pragma once
-// Transfer functions that the user keeps for all scans, in a folder next to the preferences.
+// Transfer functions that the user saves for all scans, in a folder next to the preferences.
 
 #include "engine/session/transfer_presets.h"
 #include "engine/workbench/desk/service.h"
@@ -13,7 +13,7 @@ public:
     void act(const RenamePreset& action);
     void act(const ForgetPreset& action);
 
-    /// Loads the presets that ship, then the user's own.
+    /// Loads the presets that ship with the program, then the user's own.
     void load();
     PresetModel model() const { return {.presets = presets_}; }
 

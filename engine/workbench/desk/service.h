@@ -2,9 +2,9 @@
 // The base of all services: short names for the members of the desk, and a step of the main loop.
 //
 // A service has its own state, carries out the actions whose rows name it (`act`), and contributes its part of the
-// model. Its header includes no other service: the functions of others that it calls are the members of its struct
-// `Others` (services.h connects them), so that a test constructs it alone. None is called before all services are
-// constructed.
+// model. Its header includes no other service: the functions of other services that it calls are members of its struct
+// `Others` (connected in services.h), so that a test can construct it alone. No such function is called before all
+// services are constructed.
 
 #include <functional>
 #include <string>
@@ -14,7 +14,7 @@
 
 namespace shvr::ui {
 
-/// A function that the constructor of a service requires: a struct of them that lacks one does not compile.
+/// A function that a service's constructor requires: code that leaves such a member unset does not compile.
 template <class Signature>
 class Call : public std::function<Signature> {
 public:
@@ -35,13 +35,13 @@ protected:
     explicit Service(Desk& desk);
     virtual ~Service() = default;
 
-    /// State of a step that may fail and is then retried.
+    /// State of a step of the main loop that may fail and is then retried.
     struct Attempt {
         std::string said;       ///< message of the last failure
         double failed_s = 0.0;  ///< time of the last failure; 0: never
         double again_s = 0.0;
     };
-    /// Runs `part`. A failure becomes a message, and the part is retried a little later. DeviceLost is rethrown.
+    /// Runs `part`. A failure becomes a message, and `part` is retried a little later. DeviceLost is rethrown.
     void attempt(Attempt& state, const std::function<void()>& part);
     void say(std::string text, Weight weight = Weight::done) { desk_.say(std::move(text), weight); }
     void log_instead(const Actions& actions) { desk_.log_instead(actions); }

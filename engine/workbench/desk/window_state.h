@@ -1,5 +1,5 @@
 #pragma once
-// Window state besides the picture: dialogs, lists, full screen, and the passes window.
+// Window state other than the picture: dialogs, lists, full screen, and the passes window.
 
 #include "engine/workbench/desk/preference_keeper.h"
 #include "engine/workbench/desk/service.h"
@@ -22,7 +22,7 @@ public:
     void act(const ShowFullScreen& action);
 
     bool is_full_screen() const { return is_full_screen_; }
-    /// Returns the requested keyboard focus and clears it; empty: none.
+    /// Returns the requested target of the keyboard focus and clears the request; empty: none.
     std::string take_focus() { return std::exchange(focus_, {}); }
     WindowModel model() const;
 

@@ -93,14 +93,14 @@ Document::Document(Renderer& renderer, Read read, const View::Options& view_opti
     take_kept_settings();
     choose_for_volume(session);
     begin_with_turning();
-    if (!is_script_) annotator.work().select_trace({});  // so that the next node is not linked with a forgotten one
+    if (!is_script_) annotator.work().select_trace({});  // so that the next node is not linked with an earlier one
     renderer.scene().show(annotator.document());
     renderer.scene().show_surfaces(surfaces, annotator.document().trace, session.groups);
     note_saved();
 }
 
-/// Selects a harmless tool, so that the first drag in an opened scan changes nothing, whatever was painted last; older
-/// sessions also state the tool that paints where the right button painted. --set may still choose.
+/// Selects a harmless tool, so that the first drag in an opened scan changes nothing, whatever tool was used last.
+/// Sessions of versions whose right button painted also state the paint tool. --set may still choose a tool.
 void Document::begin_with_turning()
 {
     const bool is_chosen =
@@ -114,7 +114,7 @@ void Document::choose_thresholds(Session& of) const
     shvr::choose_thresholds(of, volume(), statistics);
 }
 
-/// Restores the last view and probe position, even if they could not be saved.
+/// Restores the last view and probe position from the journal, even if they could not be saved.
 void Document::take_kept_settings()
 {
     const SettingValues kept = without_overridden(annotator.work().kept_settings(), overridden_);
@@ -126,7 +126,7 @@ void Document::take_kept_settings()
     if (probe.voxel) touch.place(*probe.voxel * volume().spacing);
 }
 
-/// Chooses settings that neither the file nor the journal states. Called after both are read, so it changes neither.
+/// Chooses settings that neither the file nor the journal states. Call it after both are read: it changes neither.
 void Document::choose_for_volume(Session& of) const
 {
     if (!of.probe.node_radius_voxels) of.probe.node_radius_voxels = automatic_node_radius(volume());
@@ -234,7 +234,7 @@ Session Document::saved_session() const
 
 // ---- Saving ---------------------------------------------------------------------------------------------------------
 
-/// The user's settings, as they would be written. Surfaces are left out: nothing here changes them, and there are many.
+/// Returns the user's settings as they would be written, but not surfaces: nothing here changes them, they are many.
 Session Document::edits() const
 {
     Session edits = saved_session();
@@ -319,10 +319,10 @@ std::optional<LocalBall> Document::ball_at(const glm::dvec3& voxel, const std::o
     const double finest = std::min({info.spacing.x, info.spacing.y, info.spacing.z});
     const glm::dvec3 size(info.size), ahead = way ? glm::normalize(*way) : glm::dvec3(0.0);
     if (glm::any(glm::lessThan(voxel, glm::dvec3(0.0))) || glm::any(glm::greaterThan(voxel, size))) return {};
-    // Most structures are thin, so few voxels have to be read for them.
+    // Small sizes are tried first: most structures are thin, so few voxels have to be read for them.
     for (const double most_voxels : {6.0, 12.0, 24.0}) {  // along the finest axis
         const double most = most_voxels * finest;
-        // A middle is at most `most` from the voxel, or from one at most that far behind it, and looks that far.
+        // The centre is within `most` of the voxel, or of a point up to `most` behind it; the radius is at most `most`.
         const glm::dvec3 about = voxel + 0.5 * most * ahead / info.spacing;
         const glm::dvec3 reach = (way ? 2.5 : 2.0) * most / info.spacing + 2.0;
         const VoxelBox box{Size3(glm::clamp(glm::floor(about - reach), glm::dvec3(0.0), size - 1.0)),

@@ -1,9 +1,9 @@
 #pragma once
-// The open document: session, volume, mask and history, with the objects that show, edit and touch them. Main thread;
-// reading a document and writing its files run on other threads.
+// The open document: session, volume, mask and history, with the objects that show, edit and touch them. Main thread,
+// but a document is read and its files are written on other threads.
 //
-// Whether it is saved is computed, not stored: the session as it would be saved is compared with the one last read or
-// written. The comparison ignores the camera and the probe's position, since looking around changes them.
+// Whether the document is saved is computed, not stored: the session as it would be saved is compared with the session
+// last read or written. The comparison ignores the camera and the probe's position, since looking around changes them.
 
 #include <filesystem>
 #include <memory>
@@ -39,17 +39,17 @@ struct Document {
         bool is_script = false;  ///< as WorkbenchOptions::is_script
     };
     /// Reads the saved work of a session. `overridden`: "key=value" settings in which the session differs from its
-    /// file. `hold`: the hold of the document that this one replaces, which may be the same. If another process writes
-    /// the work, or the session would write outside its folder and `may_write_outside` is not set, it is opened
-    /// read-only. Fails if it cannot be read. Any thread.
+    /// file. `hold`: the hold of the document that is replaced, which may be this document. If another process writes
+    /// the work, or if the session would write outside its folder and `may_write_outside` is not set, the document is
+    /// opened read-only. Fails if it cannot be read. Any thread.
     static Read read(OpenedSession opened, const std::filesystem::path& input,
                      const std::vector<std::string>& overridden, Work::Opening opening, bool may_write_outside);
-    /// Shows it in the renderer's scene, which has its volume. Fails as Scene::show does. The mouse moves the probe.
+    /// Shows the document in the scene, which has its volume. Fails like Scene::show. The mouse moves the probe.
     Document(Renderer& renderer, Read read, const View::Options& view_options);
     Document(const Document&) = delete;
 
     std::filesystem::path session_path;  ///< where the session is saved
-    Session session;                     ///< has thresholds of the probe: the file's, or the volume's
+    Session session;                     ///< includes thresholds of the probe: the file's, or chosen for the volume
     std::shared_ptr<const VolumeSource> source;
     VolumeStatistics statistics;
     Camera camera;
@@ -60,24 +60,24 @@ struct Document {
     Touch touch;
     std::vector<SurfaceLook> surfaces;  ///< moved out of the session, since views copy the session every frame
     std::vector<Notice> messages;       ///< notes from opening the work
-    std::string holder;                 ///< another process that writes the work, in words; empty: none
-    std::string outside;                ///< files that the session would write outside its folder, which the user has
-                                        ///< not agreed to (annotation_files.h); empty: none
+    std::string holder;                 ///< description of another process that writes the work; empty: none
+    std::string outside;                ///< files that the session would write outside its folder, if the user has not
+                                        ///< agreed to that (annotation_files.h); empty: none
     bool drags_node = false;            ///< the selection follows the probe
-    glm::dvec3 drag_from{0.0};          ///< where tools acted as that began, voxels: a selected node goes to the probe,
-                                        ///< several parts keep their distance from it
+    glm::dvec3 drag_from{0.0};          ///< where tools acted when the drag began, in voxels: one selected node goes to
+                                        ///< the probe, several parts keep their distance from it
 
-    // State of the open document that is no part of the work
-    std::optional<glm::dvec3> measuring_from;               ///< first end of a measurement without a second end
+    // State of the open document that is not part of the work
+    std::optional<glm::dvec3> measuring_from;               ///< first end of a measurement that lacks its second end
     std::optional<glm::dvec3> picked_pivot;                 ///< volume space
     std::optional<std::pair<uint32_t, uint32_t>> cut_ends;  ///< nodes that the last deletion separated
-    /// Probe position at the end of its last stroke: until the probe moves, its ball does not cover the fresh paint.
+    /// Probe position at the end of its last stroke: until the probe moves, its ball is not drawn over the fresh paint.
     std::optional<glm::dvec3> painted_at;
 
     /// Loads everything onto the device again with the current settings. Fails like Renderer::load and
     /// Scene::show_surfaces.
     void load_again(Renderer& renderer);
-    /// Shows it in the renderer's scene, a new one with its volume.
+    /// Shows the document in the renderer's scene, which is a new scene with the document's volume.
     void show_again(Renderer& renderer);
 
     const VolumeInfo& volume() const { return source->info(); }
@@ -86,12 +86,12 @@ struct Document {
     /// touched structure, a node in its ball, or a centre line that passes through it.
     ToolPlace tool_place() const;
     glm::dvec3 tool_voxel() const { return tool_place().point / volume().spacing; }
-    /// Returns where tools would act with the probe at `point` and nothing touched.
+    /// Returns where tools would act if the probe were at `point` and touched nothing.
     ToolPlace tool_place_at(const glm::dvec3& point) const;
-    /// Returns which voxels can be felt: by default those that the view shows.
+    /// Returns the limits of the voxels that can be felt: by default the voxels that the view shows.
     FeltLimits felt_limits() const;
     const BrushSettings& brush() const { return session.probe.brush; }
-    /// Chooses missing thresholds for the volume; likewise the size of nodes and the slices' contrast.
+    /// Chooses missing thresholds for the volume; choose_for_volume() also the size of nodes and the slices' contrast.
     void choose_thresholds(Session& of) const;
     void choose_for_volume(Session& of) const;
     double probe_radius() const { return brush().radius_voxels * volume().spacing.x; }
@@ -99,21 +99,21 @@ struct Document {
     /// Returns a stroke with the current brush at the probe's position, without a path.
     PaintOp stroke() const;
     PaintOp dab() const;
-    /// Returns the node to select or link with: the nearest unselected one within reach.
+    /// Returns the node to select or to link with: the nearest one within reach that is not selected.
     std::optional<uint32_t> nearby_node() const;
     TraceMarks trace_marks() const;
-    /// Returns how the selection is moved if the drag ends now.
+    /// Returns the operation that moves the selection if the drag ends now.
     MoveOp drag_move() const;
     TraceDefaults trace_defaults() const;
-    /// Returns whether the cut can still be mended: both of its ends exist, and nothing links them.
+    /// Returns whether the cut can still be mended: both of its ends exist, and no link joins them.
     bool is_cut() const;
-    /// Returns the largest ball in the structure above the paint threshold at a point; with `way`, in the structure
-    /// that a line of sight enters there, at most the probe's radius aside (local_radius.h). Null if it is unknown.
-    /// Reads 30^3 voxels, up to 124^3 in wide structures.
+    /// Returns the largest ball in the structure above the paint threshold at a point. With `way`, the structure is the
+    /// one that a line of sight in that direction enters there, at most the probe's radius aside (local_radius.h). Null
+    /// if it is unknown. Reads 30^3 voxels, up to 124^3 in wide structures.
     std::optional<LocalBall> ball_at(const glm::dvec3& voxel, const std::optional<glm::dvec3>& way = {}) const;
-    /// Returns the box of the probe's ball, at least one voxel of the volume.
+    /// Returns the bounding box of the probe's ball; it contains at least one voxel of the volume.
     VoxelBox voxels_around_probe() const;
-    /// The view and the probe, which are saved silently and do not count as changes of the work.
+    /// The view and the probe. They are saved without a message, and do not count as changes of the work.
     struct Place {
         Camera camera;
         glm::dvec3 probe_voxel{0.0};
@@ -122,13 +122,13 @@ struct Document {
         bool operator==(const Place&) const = default;
     };
     Place place() const;
-    /// Returns the session as it would be saved, with the current place.
+    /// Returns the session as it would be saved, with the current view and probe.
     Session saved_session() const;
-    /// is_saved(): closing would lose no work and no setting, except perhaps the place.
+    /// is_saved(): closing would lose neither work nor settings, except perhaps the view and the probe.
     bool has_session_file() const { return session_text_.has_value(); }
     bool is_saved() const { return work_is_saved() && edits_are_saved(); }
     bool work_is_saved() const { return only_looks() || annotator.work().is_saved(); }
-    /// Returns whether painting and saving are unavailable, and why.
+    /// Returns whether the document is read-only: painting and saving are unavailable. why_only_looks(): the reason.
     bool only_looks() const { return annotator.work().only_looks(); }
     std::string why_only_looks() const
     {
@@ -136,33 +136,33 @@ struct Document {
                                : "its session writes outside its folder: " + outside;
     }
     bool is_script() const { return is_script_; }
-    /// Call after any possible change of the session, except the place: clears the cached answer of is_saved().
+    /// Call after any possible change of the session, except of view and probe: clears the cached result of is_saved().
     void note_edit() { edits_are_saved_.reset(); }
-    /// Writes view, probe and the like to the journal, if there is one; adds no step to the history.
+    /// Writes view, probe and similar settings to the journal, if there is one; adds no step to the history.
     void keep_settings();
-    /// Adds a step of all settings changed since the last one to the history. Not while a stroke is running.
+    /// Adds all settings changed since the last step to the history, as one step. Not while a stroke is running.
     /// Returns whether there was anything to record.
     bool record_settings();
-    /// Takes the settings of the work, after undo and redo.
+    /// Applies the settings of the work's history, after undo and redo.
     void take_settings();
-    /// A save in the background: a snapshot of the files at its start. Each file is replaced atomically: mask, offsets
-    /// and trace, then the session. Files that others changed meanwhile are kept under other names.
+    /// A save in the background: a snapshot of the files at its start. Each file is replaced atomically: first mask,
+    /// offsets and trace, then the session. Files that other programs changed meanwhile are kept under other names.
     class Saving;
     enum class Parts { all, session, work };
-    /// Fails if nothing can be saved; writes nothing. `end_save` must follow, whatever the result.
+    /// Fails if nothing can be saved; writes nothing. `end_save` must be called afterwards, whatever the save's result.
     std::shared_ptr<Saving> begin_save(Parts parts = Parts::all);
-    /// Returns the written parts. After a save under another name the document has that name.
+    /// Returns the parts that were written. After a save under another name, the document has that name.
     Work::Saved end_save(Saving& saving);
-    /// Returns whether only the place changed, and the session has a file: saving it needs no message. So just looking
-    /// at a volume creates no file.
+    /// Returns whether only view or probe changed, and the session has a file: saving these needs no message. Merely
+    /// looking at a volume thus creates no file.
     bool has_view_to_keep() const;
-    /// Returns whether settings must be saved; false while any is overridden for this run.
+    /// Returns whether settings must be saved; false while any setting is overridden for this run.
     bool has_settings_to_save() const { return !edits_are_saved() && overridden_.empty(); }
-    /// Saves under another name, under which the work continues with the whole history; existing files stay as they
-    /// are. Until it has ended, commands are refused. `path`: the session's. Fails if a file of that name exists.
+    /// Saves under another name; the work continues there with the whole history, and existing files stay unchanged.
+    /// Commands are refused until the save has ended. `path`: the session's. Fails if a file of that name exists.
     std::shared_ptr<Saving> begin_save_as(const std::filesystem::path& path);
-    /// Returns a function that writes mask, offsets, trace and session as they are now into new files, on any thread,
-    /// and returns the session's path. `path`: that path; empty: a free one next to this session. Fails if it exists.
+    /// Returns a function that writes the current mask, offsets, trace and session to new files, on any thread, and
+    /// returns the session's path. `path`: that path; empty: an unused one next to this session. Fails if it exists.
     std::function<std::filesystem::path()> copier(const std::filesystem::path& path = {}) const;
 
 private:
@@ -176,21 +176,21 @@ private:
 
     bool is_script_ = false;
     std::vector<std::string> overridden_;      ///< settings that differ from the file
-    std::optional<std::string> session_text_;  ///< contents of the session file, as this process last read or wrote it
-    Session saved_edits_;                      ///< edits() of the session last read or written
+    std::optional<std::string> session_text_;  ///< contents of the session file when this process last read or wrote it
+    Session saved_edits_;                      ///< result of edits() for the session last read or written
     Place saved_place_;
     mutable std::optional<bool> edits_are_saved_;  ///< cached answer of edits_are_saved()
 };
 
-/// Returns the path of a session: a session file's own; for a volume, file or folder, one next to it.
+/// Returns a session's path: for a session file, its own path; for a volume or folder, a path next to it.
 std::filesystem::path session_path_of(const std::filesystem::path& input);
-/// Returns the file's contents; nothing if there is no file.
+/// Returns the file's contents; no value if there is no such file.
 std::optional<std::string> text_of_session(const std::filesystem::path& path);
 
 class Document::Saving {
 public:
     Saving(const Saving&) = delete;
-    /// Writes the files. On any thread, once. Fails if a file cannot be written.
+    /// Writes the files. Call once, on any thread. Fails if a file cannot be written.
     void write(ProgressReporter& reporter);
     bool is_written() const { return is_written_; }
     bool is_under_another_name() const { return as_ != nullptr; }
@@ -205,8 +205,8 @@ private:
     std::unique_ptr<Work::SavingAs> as_;  ///< the save is under another name
     std::filesystem::path session_path_;
     std::string text_;                       ///< contents of the session file to write
-    std::optional<std::string> text_there_;  ///< existing contents, as this process last read or wrote them
-    std::optional<AnnotationNames> names_;   ///< written into the session file, which is not saved otherwise
+    std::optional<std::string> text_there_;  ///< contents of the existing file when this process last read or wrote it
+    std::optional<AnnotationNames> names_;   ///< written into the session file if the session is not saved otherwise
     std::filesystem::path names_path_;
     Session edits_;
     Place place_;

@@ -17,14 +17,14 @@ std::filesystem::path beside(const std::filesystem::path& session_file, const ch
     return std::filesystem::path(session_file).replace_extension(extension);
 }
 
-/// The session under another name, with files named after it.
+/// Returns the session renamed to `path`, with its files named after it.
 Session renamed(Session session, const std::filesystem::path& path)
 {
     name_annotation(session, path);
     return session;
 }
 
-/// Fails if the path is not a name for a session, or exists.
+/// Fails if the path is not a valid name for a session, or exists already.
 std::filesystem::path new_session_path(const std::filesystem::path& path)
 {
     if (path.extension() != ".json") fail(path.string(), ": is no name for a session; expected one that ends in .json");
@@ -78,8 +78,8 @@ std::shared_ptr<Document::Saving> Document::begin_save(Parts parts)
     return saving;
 }
 
-/// Projects of earlier versions keep a byte for every voxel; from their next save on they keep painted bricks only. The
-/// old files stay.
+/// Projects of earlier versions store a byte for every voxel; from their next save on they store only painted bricks.
+/// The old files stay.
 void Document::name_sparse_files(Parts parts, Saving& saving)
 {
     const bool is_named_here =
@@ -95,16 +95,16 @@ void Document::name_sparse_files(Parts parts, Saving& saving)
     saving.names_path_ = session_path;
 }
 
-/// Keeps the rest of the file as it is now, even if another program has written it meanwhile.
+/// Writes the names into the session file as it is now, even if another program wrote it meanwhile; the rest stays.
 void Document::Saving::write_names()
 {
     const std::optional<std::string> there = text_of_session(names_path_);
-    if (!there) return;  // then names by default are those of a new project
+    if (!there) return;  // then default names are those of a new project
     text_ = with_names(*there, *names_, names_path_);
     write_file_atomically(names_path_, std::as_bytes(std::span(text_)));
 }
 
-/// Keeps contents that another program has written there since; the notice names the new place.
+/// Moves contents that another program wrote there meanwhile to another file, which the notice names.
 void Document::Saving::write_session()
 {
     if (const std::optional<std::string> there = text_of_session(session_path_); there && there != text_there_)
@@ -141,7 +141,7 @@ Work::Saved Document::end_save(Saving& saving)
     if (saving.as_ && saving.is_written_) {
         session = renamed(std::move(session), saving.session_path_);
         session_path = saving.session_path_;
-        overridden_.clear();  // settings made for this run only are in the new file, too
+        overridden_.clear();  // the new file also contains settings that were made for this run only
     }
     if (saving.notice_) saved.notices.push_back(*saving.notice_);
     if (saving.has_session_ || (saving.names_ && !saving.text_.empty())) session_text_ = saving.text_;
@@ -189,8 +189,8 @@ std::shared_ptr<Document::Saving> Document::begin_save_as(const std::filesystem:
     return saving;
 }
 
-/// Only GraphML keeps all of a trace, so a trace from another format is saved to a new file and its source is left
-/// unchanged.
+/// Only GraphML can store a whole trace, so a trace read from another format is saved to a new file, and the original
+/// file stays unchanged.
 void Document::name_trace()
 {
     if (annotator.work().trace_is_saved()) return;

@@ -1,7 +1,7 @@
 #pragma once
-// Saves pictures of the view: as shown, once it is sharp, or larger, rendered part by part while nothing else needs
-// the device, and written while rendered. Compression is slow and runs on a thread; everything else runs on the main
-// thread.
+// Saves pictures of the view: as shown, once the view is sharp, or larger. A larger picture is rendered part by part
+// while nothing else needs the device, and written at the same time. Compression is slow and runs on its own thread;
+// everything else runs on the main thread.
 
 #include <filesystem>
 #include <functional>
@@ -22,13 +22,13 @@ public:
     void take() { is_wanted_ = true; }
     /// Returns the metadata for the file of a picture.
     using Texts = std::function<PictureTexts(const std::filesystem::path& picture)>;
-    /// `stem` as for `advance`. `figure`: drawn over the picture. Fails if the file cannot be written.
+    /// `stem`: as for `advance`. `figure`: the drawing over the picture. Fails if the file cannot be written.
     void take_large(const std::filesystem::path& stem, Renderer& renderer, const Session& session, const Camera& camera,
                     const RenderOptions& options, const Texts& texts, Figure figure);
-    /// Cancels a large picture, because its volume changes or closes.
+    /// Cancels a large picture, for use when its volume changes or closes.
     void drop_large() { large_.reset(); }
     bool has_large() const { return large_ != nullptr; }
-    /// Path of the large picture, and the fraction of it that is drawn, 0 ... 1.
+    /// Path of the large picture, and the fraction of the picture that is drawn, 0 ... 1.
     const std::filesystem::path& large_path() const { return large_path_; }
     double progress() const { return large_ ? large_->progress() : 0.0; }
     bool is_writing() const { return written_.valid(); }
@@ -38,7 +38,7 @@ public:
         std::string progress;  ///< likewise, but replaced as it changes
     };
     /// Call every frame. `stem`: base of the file's name, "scan" for scan-view-1.png. `is_still`: the device is idle.
-    /// `figure`: returns the drawing over a picture as shown. Fails if a picture cannot be made; then it is cancelled.
+    /// `figure`: returns the drawing over a picture as shown. Fails if a picture cannot be made, and then cancels it.
     Turn advance(Screen& screen, const std::filesystem::path& stem, bool is_still, const Texts& texts,
                  const std::function<Figure()>& figure);
     /// Waits until the last picture is written.

@@ -1,5 +1,5 @@
 #pragma once
-// Makes actions that change settings. Pure; any thread.
+// Creates actions that change settings. Pure; any thread.
 
 #include "engine/session/session_patch.h"
 #include "engine/workbench/actions/action.h"
@@ -7,7 +7,7 @@
 
 namespace shvr::ui {
 
-/// Returns the action that sets the settings as changed by `edit`.
+/// Returns the action that changes the settings as `edit` does.
 template <class Edit>
 Set edited(const Session& session, const Edit& edit)
 {
@@ -17,7 +17,7 @@ Set edited(const Session& session, const Edit& edit)
     return {patch.empty() ? "{}" : patch};
 }
 
-/// Adds that action if it changes anything. `edit(Session&)`.
+/// Adds an action that changes the settings as `edit(Session&)` does, if it changes anything.
 template <class Edit>
 void set(Actions& actions, const Model& model, const Edit& edit)
 {

@@ -1,13 +1,13 @@
 #pragma once
-// Motion of a device that reports speeds, as actions of the view. Pure; any thread.
+// Converts the motion of a device that reports speeds to actions on the view. Pure; any thread.
 
 #include "engine/workbench/actions/action.h"
 #include "haptics/device.h"
 
 namespace shvr::ui {
 
-/// Moves the view for `seconds`: the picture follows the puck. Full deflection moves it by its height, or
-/// rotates it by 90 degrees, per second. Empty while the puck rests.
+/// Moves the view for `seconds`: the picture follows the puck. At full deflection, the picture moves by its height, or
+/// rotates by 90 degrees, per second. Returns no actions while the puck is at rest.
 Actions moves_of_puck(const DeviceState& state, double seconds);
 
 }  // namespace shvr::ui

@@ -26,7 +26,7 @@ private:
     int64_t count_ = 0;
 };
 
-/// The mean radius (the probe's if there is none), at least half a voxel, times the factor; in voxels along x.
+/// Returns factor * max(mean radius, half a voxel), in voxels along x; uses the probe's radius if there is no mean.
 double scaled_radius(const Model& model, const Mean& mean, double factor)
 {
     const double probe = model.brush().radius_voxels * model.volume.spacing.x;

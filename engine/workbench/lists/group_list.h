@@ -19,30 +19,30 @@ struct GroupRow {
     int depth = 0;         ///< below the groups without a parent
     bool is_found = true;  ///< false: listed only as an ancestor of a matching group
 };
-/// Returns groups that have a key, are described, painted, traced or chosen, each below its parent. `search`: a part
-/// of the name, ignoring case, or a number; empty: all.
+/// Returns the groups that have a key, are described, painted, traced or chosen; each is listed below its parent.
+/// `search`: part of a name, ignoring case, or a number; empty: all groups.
 std::vector<GroupRow> listed_groups(const Groups& groups, const std::array<int64_t, 256>& voxels,
                                     std::span<const uint8_t> traced, uint8_t chosen, const std::string& search = {});
 /// Returns "3  leaf trace"; "0  unpainted".
 std::string label_of_group(const Groups& groups, uint8_t group);
 
-/// Returns the smallest unused number; 0 if all are used.
+/// Returns the smallest unused group number; 0 if all are used.
 uint8_t free_group(const Groups& groups, const std::array<int64_t, 256>& voxels, std::span<const uint8_t> traced);
 
-/// Returns why a group may not be put below another (0: at the top); empty: it may.
+/// Returns why a group may not become a child of `parent` (0: top level); empty if it may.
 std::string why_not_below(const Groups& groups, uint8_t group, uint8_t parent);
 
 /// Statistics of a trace's nodes and internodes in a group. Radii are means, in physical units.
 struct TracedGroup {
     size_t nodes = 0, internodes = 0;
     double node_radius = 0.0, internode_radius = 0.0;
-    bool tapers = true;  ///< internodes taper from node to node; false: all have one radius
+    bool tapers = true;  ///< internodes taper from node to node; false: all of the group have one radius
 };
 std::array<TracedGroup, 256> traced_groups(const TraceGraph& trace);
 /// Returns the groups that have a node or an internode.
 std::vector<uint8_t> groups_in(const std::array<TracedGroup, 256>& traced);
 
-/// Returns the groups that a picture shows: painted or traced, neither hidden, excluded by `view.solo` nor clear.
+/// Returns the groups visible in a picture: painted or traced, and not hidden, excluded by `view.solo` or transparent.
 std::vector<uint8_t> drawn_groups(const Session& session, const std::array<int64_t, 256>& voxels,
                                   const TraceGraph& trace);
 

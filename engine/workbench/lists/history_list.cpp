@@ -11,7 +11,7 @@ public:
     explicit Places(const VolumeInfo& volume) : volume_(volume) {}
 
     void add(const TraceNode& node) { add(node.position / volume_.spacing, node.position / volume_.spacing); }
-    /// Runs are long in x only, so their bounds follow from their ends and the sides of a brick's rows.
+    /// A run covers consecutive voxels of a brick, x fastest, so its bounds follow from its first and last voxel.
     template <class Value>
     void add(const BrickChange<Value>& change)
     {

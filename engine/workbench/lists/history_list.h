@@ -1,5 +1,5 @@
 #pragma once
-// The steps of the history as a list to display and to jump in. Pure; the main thread.
+// The history as a list of steps, to display and to jump to a step. Pure; the main thread.
 
 #include <optional>
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace shvr::ui {
 
-/// Row N is the state after N steps: row 0 is the start, row `rows - 1` the newest.
+/// Row N is the state after N steps: row 0 is the start, row `rows - 1` the newest state.
 struct HistoryList {
     const History* history = nullptr;
-    size_t done = 0;        ///< number of steps done, not counting a changed setting
-    bool is_ahead = false;  ///< a changed setting is not a step yet: it is shown as the last and present row
+    size_t done = 0;        ///< number of steps done; a changed setting that is not a step does not count
+    bool is_ahead = false;  ///< a changed setting is not a step yet: shown as an additional last row, the present one
 
     size_t rows() const;
     size_t present() const { return done + is_ahead; }
@@ -21,12 +21,12 @@ struct HistoryList {
 };
 HistoryList history_list(const Model& model);
 
-/// Returns the undo or redo, of one or more steps, that leads to a row; nothing if it is the present row.
+/// Returns the undo or redo, of one or more steps, that leads to a row; no value if the row is the present one.
 std::optional<Action> go_to_row(const HistoryList& list, size_t row);
 
-/// The bounding box, in voxels, of the changes in the step that leads to that row: paint and offsets, nodes and ends of
-/// internodes without their radii. Nothing if the step has no place, like a change of settings. Fails if the journal
-/// cannot be read.
+/// Returns the bounding box, in voxels, of the changes in the step that leads to that row: paint, offsets, nodes and
+/// ends of internodes, without radii. No value if the step has no position, like a change of settings. Fails if the
+/// journal cannot be read.
 struct PlaceBox {
     glm::dvec3 lower{0.0}, upper{0.0};  ///< in voxels
     glm::dvec3 middle() const { return (lower + upper) * 0.5; }

@@ -1,5 +1,5 @@
 #pragma once
-// Form for opening a file with user-chosen options, and its conversion to settings. Pure; any thread.
+// The form for opening a file with options that the user chooses, and its conversion to settings. Pure; any thread.
 
 #include <string>
 
@@ -20,11 +20,11 @@ struct LoadForm {
     int offset_bytes = 0;
 };
 
-/// Returns settings as the action Open takes them, one per line.
+/// Returns the settings in the form that the action Open takes: one per line.
 std::string settings_of(const LoadForm& form);
-/// Returns "512 x 512 x 300 voxels of uint16, 0.8 x 0.8 x 1.2 um".
+/// Returns size, type and spacing as text: "512 x 512 x 300 voxels of uint16, 0.8 x 0.8 x 1.2 um".
 std::string size_in_words(const VolumeInfo& volume);
-/// Returns "stated by the file", "typed", "assumed: the file states none".
+/// Returns the origin as text: "stated by the file", "typed", "assumed: the file states none".
 const char* in_words(Provenance provenance);
 
 }  // namespace shvr::ui

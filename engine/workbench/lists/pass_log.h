@@ -1,6 +1,6 @@
 #pragma once
-// GPU time of each pass of pictures: over the last frames of the window, and in a saved run.
-// Pure, except for reading and writing; the main thread.
+// GPU time of each pass of a picture, over the last frames of the window and in a saved run. Pure, except for reading
+// and writing; the main thread.
 
 #include <deque>
 #include <filesystem>
@@ -17,30 +17,30 @@ namespace shvr::ui {
 struct PassRun {
     std::string name;                    ///< the file's name
     std::vector<View::PassTime> passes;  ///< in the file's order
-    bool is_of_profile = false;          ///< printed by shvr profile: each time is the median of a frame
+    bool is_of_profile = false;          ///< printed by `shvr profile`: each time is the median over frames
     const View::PassTime* find(const std::string& pass) const;
 };
-/// Reads a file that `save_passes` wrote, or the output of `shvr profile --json`. Fails naming file, key and value.
+/// Reads a file from `save_pass_run` or the output of `shvr profile --json`. Errors name file, key and value.
 PassRun read_pass_run(const std::filesystem::path& file);
 void save_pass_run(const std::filesystem::path& file, const std::vector<View::PassTime>& passes);
 
-/// Returns "1.8 times", "0.4 ms more"...: the difference of a pass from the run; empty if the run has no such pass.
+/// Returns the difference between a pass and the run, "1.8 times", "0.4 ms more"...; empty if the run lacks the pass.
 std::string change_in_words(const View::PassTime& pass, const PassRun& run);
 
-/// Pass times of the present picture, frame by frame of the window. Their totals grow until the picture changes; the
-/// graph shows the difference from one frame to the next.
+/// Pass times of the present picture, recorded in each frame of the window. The totals grow until the picture changes;
+/// the graph shows the difference between successive frames.
 class PassLog {
 public:
     static constexpr size_t MAX_FRAMES = 240;
 
-    /// Records a frame at that time; does nothing while frozen.
+    /// Records the passes of a frame at time `now_s`; does nothing while frozen.
     void note(double now_s, const std::vector<View::PassTime>& passes);
     void set_frozen(bool is_frozen) { is_frozen_ = is_frozen; }
     bool is_frozen() const { return is_frozen_; }
     /// Returns the times last recorded.
     const std::vector<View::PassTime>& passes() const { return passes_; }
-    /// Returns the milliseconds of a pass in each recorded frame, oldest first; the sum of all passes if the name is
-    /// empty.
+    /// Returns the milliseconds of a pass in each recorded frame, oldest first; if the name is empty, the sum of all
+    /// passes.
     std::vector<float> graph(const std::string& pass = {}) const;
     /// Returns the time from the oldest frame to the newest.
     double seconds() const;

@@ -1,7 +1,7 @@
 #pragma once
-// The last actions, for bug reports. Actions that follow the mouse arrive many times a second: a run of one kind is
-// one entry, which holds the last. Actions are stored as they are and formatted only on request, so that recording
-// one costs its copy. The main thread.
+// The last actions, for bug reports. Actions that follow the mouse arrive many times a second, so a run of actions of
+// one kind is one entry, which stores the last of them. Actions are stored unformatted and formatted only on request,
+// so recording an action costs only its copy. The main thread.
 
 #include <cstdint>
 #include <deque>
@@ -17,10 +17,10 @@ public:
     static constexpr size_t MAX_ENTRIES = 50;
 
     void begin(const Action& action);
-    /// Marks the last action begun as carried out.
+    /// Marks the most recently begun action as carried out.
     void note_done() { entries_.back().is_done = true; }
-    /// Returns lines that replay the actions, oldest first (action_rows.h), followed by " # " and a note that the
-    /// action was refused, or the length of its run.
+    /// Returns lines that replay the actions, oldest first (action_rows.h). After " # ", a line states that the action
+    /// was refused, or the length of its run.
     std::vector<std::string> lines() const;
 
 private:

@@ -1,6 +1,6 @@
 #pragma once
-// A trace as lists: its segments, and its nodes. Built once for each state of the trace, so that the cost of scrolling
-// depends on the visible rows alone. Pure; the main thread.
+// A trace as two lists: its segments and its nodes. They are built once for each state of the trace, so that the cost
+// of scrolling depends only on the visible rows. Pure; the main thread.
 
 #include <string>
 #include <vector>
@@ -11,13 +11,13 @@
 namespace shvr::ui {
 
 struct SegmentRow {
-    uint32_t internode = 0;        ///< number of its smallest internode, which identifies it
+    uint32_t internode = 0;        ///< number of the segment's smallest internode, which identifies the segment
     uint32_t first = 0, last = 0;  ///< nodes at its ends
     size_t nodes = 0;
     uint8_t group = 0;       ///< group of most of its length
     bool is_mixed = false;   ///< its internodes have several groups
     double length = 0.0;     ///< physical units
-    glm::dvec3 middle{0.0};  ///< position of its middle node, in volume space
+    glm::dvec3 middle{0.0};  ///< position of the segment's middle node, in volume space
 };
 struct NodeRow {
     uint32_t node = 0;
@@ -30,7 +30,7 @@ enum class TraceOrder { number, group, nodes, length };
 
 class TraceList {
 public:
-    /// Rebuilds the rows unless trace and order are those of the last call. Returns whether the rows were rebuilt.
+    /// Rebuilds the rows unless trace and order are the same as in the last call. Returns whether it rebuilt them.
     bool update(const TraceGraph& trace, TraceOrder order, bool is_descending);
     const std::vector<SegmentRow>& segments() const { return segments_; }
     /// Nodes in the order of their numbers; `order` applies to segments only.
@@ -46,13 +46,13 @@ private:
     std::vector<NodeRow> nodes_;
 };
 
-/// Selects the segment and looks at its middle; `spacing`: the volume's.
+/// Selects the segment and looks at its middle; `spacing`: the volume's spacing.
 Actions select_segment(const SegmentRow& row);
 Action go_to(const SegmentRow& row, const glm::dvec3& spacing);
 /// Does the same for a node.
 Actions select_node(const NodeRow& row);
 Action go_to(const NodeRow& row, const TraceGraph& trace, const glm::dvec3& spacing);
-/// Returns whether the selection is that segment, or part of it.
+/// Returns whether the selection is the segment of that row, or part of the segment.
 bool is_selected(const SegmentRow& row, const TraceSelection& selection);
 
 }  // namespace shvr::ui

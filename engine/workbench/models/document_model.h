@@ -1,5 +1,5 @@
 #pragma once
-// View of the open document; without one, of an empty session.
+// Read-only view of the open document; if none is open, of an empty session.
 
 #include <filesystem>
 #include <span>
@@ -19,10 +19,10 @@ struct DocumentModel {
     const VolumeStatistics& statistics;
     const Camera& camera;
     const std::filesystem::path& session_path;
-    bool has_session_file = false;  ///< false: a bare scan that was never saved
-    std::string_view holder{};      ///< another process that writes the project: this window then only looks
-    std::string_view outside{};     ///< files that the session would write outside its folder, without the user's
-                                    ///< agreement: this window then only looks
+    bool has_session_file = false;  ///< false: the document is a bare scan that was never saved
+    std::string_view holder{};      ///< another process that writes the project: this window is then read-only
+    std::string_view outside{};     ///< files that the session would write outside its folder, if the user has not
+                                    ///< agreed: this window is then read-only
     const MessageLog& messages;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// View of the haptic device and the hand, and texts that describe its states to the user. Pure; any thread.
+// Read-only view of the haptic device and the hand, and texts that describe their states. Pure; any thread.
 
 #include <filesystem>
 #include <optional>
@@ -19,9 +19,9 @@ struct HandView {
     std::string in_use;   ///< id of the open device; empty: none is open, and the mouse moves the probe
     std::string opening;  ///< id of the device being opened; empty: none
     std::string name = "mouse", serial, connection;
-    std::string trouble;       ///< trouble of the open device, or why the last one could not be opened
+    std::string trouble;       ///< fault of the open device, or why the last device could not be opened
     bool is_puck = false;      ///< the device reports speeds
-    bool moves_probe = false;  ///< true: a device moves the probe; false: the mouse
+    bool moves_probe = false;  ///< a device moves the probe; false: the mouse does
     bool is_realtime = false;  ///< whether the running servo has realtime priority
     bool is_let_go = false, is_grabbing = false;
     TapState tap;
@@ -31,7 +31,7 @@ struct HandView {
 
 /// Returns "Touch (serial 1234)".
 std::string name_in_words(const std::string& name, const std::string& serial);
-/// Describes a listed device: "moves the probe", "can push the hand", or why it cannot.
+/// Describes a listed device: "moves the probe", "can push the hand", or why the device cannot be used.
 std::string state_in_words(const DeviceListing& device, const HandView& hand);
 
 struct Finding {
@@ -39,16 +39,16 @@ struct Finding {
     std::string text;
     bool operator==(const Finding&) const = default;
 };
-/// Describes the servo's state and its reasons, one sentence each, the gravest first. Omits force if none is wanted.
+/// Describes the servo's state and its causes, one sentence each, most severe first. Omits force if it is not wanted.
 std::vector<Finding> findings_of(const HandView& hand, const ServoState& servo, bool is_guided);
 
-/// Returns "1000 times a second, half of them within 12 us".
+/// Returns a text like "1000 times a second, half of them within 12 us".
 std::string rhythm_in_words(const ServoState& servo);
-/// Describes whether the servo has realtime priority, and the remedy if it does not.
+/// Describes whether the servo has realtime priority, and how to get it if not.
 Finding realtime_in_words(bool is_realtime, uint64_t allowed_priority);
 /// Returns the limit of this system: RLIMIT_RTPRIO.
 uint64_t allowed_realtime_priority();
-/// Returns "cool", "warm", "hot" with the share of the motors' continuous limit; empty for a device without motors.
+/// Returns "cool", "warm" or "hot" with the fraction of the motors' continuous limit; empty for devices without motors.
 std::string heat_in_words(double heat, const DeviceCaps& caps);
 
 /// Returns the bars of a plot, oldest first.

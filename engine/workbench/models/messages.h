@@ -11,7 +11,7 @@
 
 namespace shvr::ui {
 
-/// Returns the message of an exception, as shown to the user.
+/// Returns an exception's message as it is shown to the user.
 inline std::string told_of(const std::exception& error)
 {
     return dynamic_cast<const std::bad_alloc*>(&error) ? "host memory is exhausted" : error.what();
@@ -19,7 +19,7 @@ inline std::string told_of(const std::exception& error)
 
 enum class Weight {
     done,     ///< the result of an action
-    warning,  ///< something is not as expected, but work goes on
+    warning,  ///< something is unexpected, but work continues
     error     ///< something was not done
 };
 
@@ -42,7 +42,7 @@ public:
         ++unread_[size_t(weight)];
         if (messages_.size() > MAX_MESSAGES) messages_.pop_front();
     }
-    /// Replaces the text of the last message, for progress; adds one if there is none.
+    /// Replaces the text of the last message, for example to show progress; adds a message if there is none.
     void amend(double time_s, std::string text)
     {
         if (messages_.empty()) return add(time_s, Weight::done, std::move(text));
@@ -50,15 +50,15 @@ public:
     }
     /// Returns all kept messages, oldest first.
     const std::deque<Message>& all() const { return messages_; }
-    /// Returns the last message; empty before the first.
+    /// Returns the last message; empty before the first message.
     const std::string& last() const
     {
         static const std::string NOTHING;
         return messages_.empty() ? NOTHING : messages_.back().text;
     }
     uint64_t count() const { return count_; }
-    /// Returns the first message of that weight after message number `count`, unless it was dropped; null if there is
-    /// none.
+    /// Returns the first message of that weight after message number `count`, unless that message was dropped; null if
+    /// there is none.
     const Message* first_after(uint64_t count, Weight weight) const
     {
         for (const Message& message : messages_)
@@ -75,8 +75,8 @@ private:
     std::array<uint64_t, 3> unread_{};
 };
 
-/// Shortens paths to their last names, for narrow places: "Saved .../leaf.json". A path begins a
-/// word, and ends before " and " or punctuation that a space follows, or with the text.
+/// Shortens paths to their last names, for narrow places: "Saved .../leaf.json". A path starts at the start of a word.
+/// It ends before " and ", before punctuation followed by a space, or at the end of the text.
 std::string without_folders(const std::string& text);
 
 }  // namespace shvr::ui

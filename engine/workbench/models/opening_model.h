@@ -18,17 +18,17 @@ struct Candidate {
     std::filesystem::path path;
     std::string settings;  ///< settings used to inspect it
     bool is_being_read = true;
-    std::string failure;            ///< why it cannot be opened with them; empty: it can, as far as known
-    std::vector<Choice> choices{};  ///< alternatives, if it cannot be opened because one must be chosen
+    std::string failure;            ///< why the file cannot be opened; empty: it can, as far as is known
+    std::vector<Choice> choices{};  ///< alternatives to choose from, if the file cannot be opened without a choice
     std::string kind;               ///< "Volume", "Session", "Project", "Picture of a session"
     bool is_project = false;        ///< the file needs no import
-    VolumeInfo volume{};            ///< valid, like the members below, only if `failure` is empty
+    VolumeInfo volume{};            ///< valid only if `failure` is empty, as are the members below
     int levels = 1;
     std::string memory{};  ///< required host and device memory
     std::vector<std::string> warnings{};
 };
 
-/// A file that could be a scan or annotation of the open one: the user says which (TakeFile).
+/// A file that could be a scan or annotation of the open scan; the user decides which (TakeFile).
 struct UnclearFile {
     std::filesystem::path path;
     std::string beside{};     ///< as in TakeFile
@@ -37,9 +37,9 @@ struct UnclearFile {
 
 /// Made by the opener.
 struct OpeningModel {
-    std::span<const std::string> recovered{};  ///< notes on recovered or set-aside work at opening, until dismissed
+    std::span<const std::string> recovered{};  ///< notes at opening on recovered or set-aside work, until dismissed
     std::string_view opening{};                ///< name of the file being opened; empty: none
-    /// Why the last Open failed, and its path; empty: it did not fail.
+    /// Why the last Open failed, and the path of its file; empty: it did not fail.
     std::string_view open_failure{};
     const std::filesystem::path* failed_path = nullptr;
 };

@@ -21,10 +21,10 @@ constexpr std::span<const Spelling<KeySet>> spellings_of(KeySet)
     return KEY_SETS;
 }
 
-/// Chords by shortcut id, in place of the defaults; an empty list leaves a shortcut without a key.
+/// Chords that replace the defaults, by shortcut id; an empty list leaves the shortcut without a key.
 using KeyChanges = std::map<std::string, std::vector<std::string>>;
 
-/// Selects what a device that reports speeds (a SpaceMouse) moves.
+/// Selects whether a device that reports speeds (a SpaceMouse) moves the view or the probe.
 enum class PuckMoves { view, probe };
 inline constexpr Spelling<PuckMoves> PUCK_MOVES[] = {{PuckMoves::view, "view"}, {PuckMoves::probe, "probe"}};
 constexpr std::span<const Spelling<PuckMoves>> spellings_of(PuckMoves)
@@ -32,7 +32,7 @@ constexpr std::span<const Spelling<PuckMoves>> spellings_of(PuckMoves)
     return PUCK_MOVES;
 }
 
-/// A haptic device by the data that stay the same at another port. Without a name: the first usable one.
+/// A haptic device, by data that stay the same at another USB port. Empty name: the first usable device.
 struct ChosenDevice {
     std::string name, serial;
     bool operator==(const ChosenDevice&) const = default;
@@ -45,17 +45,17 @@ struct Preferences {
 
     KeySet key_set = KeySet::modern;
     KeyChanges keys;                            ///< changes to the chords of the set
-    KeyChanges unusable_keys;                   ///< changes in the file that name no shortcut or chord; kept there
+    KeyChanges unusable_keys;                   ///< changes with an unknown shortcut or chord; the file keeps them
     std::vector<std::filesystem::path> recent;  ///< newest first, each once
     Theme theme = Theme::dark;
     double font_pixels = 14.0;    ///< at a scale of 1
-    std::optional<double> scale;  ///< scale of the whole interface; none: the screen's
-    /// Limits of device and host memory, from the next start on; none: as much as fits.
+    std::optional<double> scale;  ///< scale of the whole interface; none: the screen's scale
+    /// Limits of device and host memory, effective from the next start; none: all that is available.
     std::optional<double> budget_device_mib, budget_host_mib;
     WindowLayout layout;
     ChosenDevice device;
     PuckMoves puck = PuckMoves::view;
-    int hints_seen = 0;  ///< number of dismissed first hints, of three (appearance/hints.h)
+    int hints_seen = 0;  ///< number of first hints that were dismissed, 0 ... 3 (appearance/hints.h)
 
     void note_opened(const std::filesystem::path& path);
     bool operator==(const Preferences&) const = default;

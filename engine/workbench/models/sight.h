@@ -1,5 +1,5 @@
 #pragma once
-// Readings at the probe and at the pointer: plain data of the model. Any thread.
+// Values read at the probe and at the pointer: plain data of the model. Any thread.
 
 #include <optional>
 
@@ -16,14 +16,14 @@ struct Pointer {
 
 /// Values of the volume and the annotation at a point.
 struct Reading {
-    glm::dvec3 voxel{0.0};            ///< position of the probe; over a slice, of the pointer
-    bool is_inside = false;           ///< inside the volume; if false, the next three are unknown
-    std::optional<double> intensity;  ///< in the file's units; null: it cannot be read, or is not read yet
+    glm::dvec3 voxel{0.0};            ///< position of the probe; over a slice, position of the pointer
+    bool is_inside = false;           ///< inside the volume; if false, the next three members are unknown
+    std::optional<double> intensity;  ///< in the file's units; null: it cannot be read, or was not read yet
     double offset = 0.0;              ///< density offset added by painting
     uint8_t group = 0;
-    /// Depth of the probe in the first pane: physical units along the view, from the start of the drawn volume.
+    /// Depth of the probe in the first pane: physical units along the view, from where the drawn volume begins.
     double depth = 0.0;
-    /// Share of the voxels in the probe's ball at or above the threshold; null: unknown.
+    /// Fraction of the voxels in the probe's ball whose value is at or above the threshold; null: unknown.
     std::optional<double> relevant_share;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// View of preferences and the window's own state.
+// Read-only view of the preferences and of the window's own state.
 
 #include <cstdint>
 #include <map>
@@ -35,7 +35,7 @@ struct WindowModel {
     bool asks_what_to_open = false, shows_preferences = false;
     std::string_view gpu_name{};
     uint64_t device_bytes = 0, device_budget = 0;
-    std::map<std::string, uint64_t> bytes_by_name{};  ///< device memory by name; filled only while the passes are shown
+    std::map<std::string, uint64_t> bytes_by_name{};  ///< device memory by name; empty unless the passes are shown
     const PassRun* compared_passes = nullptr;         ///< null: compared with nothing
 };
 
@@ -43,7 +43,7 @@ struct WindowModel {
 struct ReportModel {
     const RecentActions* recent = nullptr;  ///< the last actions; null: none are recorded
     std::string_view version{};             ///< the program's version
-    double ui_frame_ms = 0.0;               ///< median of the last frames; set by the window
+    double ui_frame_ms = 0.0;               ///< median over the last frames, set by the window
 };
 
 }  // namespace shvr::ui

@@ -1,5 +1,5 @@
 #pragma once
-// View of the annotation: painting, tracing, history and saving.
+// Read-only view of the annotation: painting, tracing, history and saving.
 
 #include <array>
 #include <optional>
@@ -11,9 +11,9 @@ namespace shvr::ui {
 
 /// Made by the painter.
 struct PaintModel {
-    bool is_painting = false;     ///< a stroke is open, or not yet fully painted
+    bool is_painting = false;     ///< a stroke is open, or has ended but is not fully painted yet
     bool stroke_is_open = false;  ///< the hand is down
-    /// Number of voxels that painting would change now; nothing if no preview is shown or it is pending.
+    /// Number of voxels that painting would change now; no value if no preview is shown or the preview is pending.
     std::optional<int64_t> previewed_voxels;
     std::array<int64_t, 256> voxels_by_group{};
 };
@@ -23,7 +23,7 @@ struct TraceModel {
     const TraceGraph& trace;
     std::optional<uint32_t> nearby_node;  ///< near the probe, and not selected
     bool drags_node = false;
-    bool is_cut = false;  ///< the last deletion cut the trace in two, and the cut has not been mended
+    bool is_cut = false;  ///< the last deletion cut the trace in two, and the cut is not mended yet
 };
 
 /// Made by the settings' editor.
@@ -35,9 +35,9 @@ struct HistoryModel {
 /// Made by the saver.
 struct SaveModel {
     bool is_saved = true;
-    bool is_saving = false;               ///< files are being written; later changes are not in them
-    bool is_saving_as = false;            ///< saving under another name: commands are refused until it ends
-    std::span<const Dispute> disputes{};  ///< saved files that other processes have changed; empty: nothing to choose
+    bool is_saving = false;               ///< files are being written; they do not include later changes
+    bool is_saving_as = false;            ///< saving under another name is under way: commands are refused
+    std::span<const Dispute> disputes{};  ///< saved files that other processes changed; empty: no choice is needed
 };
 
 }  // namespace shvr::ui

@@ -35,8 +35,8 @@ bool is_opened(FileContent content)
            content == FileContent::picture;
 }
 
-/// Returns whether the points of a transfer function are relative to the tissue of any volume, as in preset files, and
-/// not at intensities.
+/// Returns whether the points of a transfer function are relative to the tissue of any volume, as in preset files,
+/// rather than given as intensities.
 bool is_preset(const std::string& text, const std::filesystem::path& path)
 {
     const JsonDocument json(text, path.string());
@@ -56,7 +56,7 @@ void FileTaker::act(const Open& action)
     others_.begin_open(action.path, lines_of(action.settings), {});
 }
 
-/// Opens a copy: the shipped example must stay as it is, since its folder may be read-only and others open it, too.
+/// Opens a copy: the shipped example must stay unchanged, since its folder may be read-only and others open it, too.
 void FileTaker::act(const OpenExample&)
 {
     if (options_.preferences.empty())
@@ -133,7 +133,7 @@ void FileTaker::act(const TakeFile& action)
     const std::filesystem::path open = document_ ? document_->session.volume_path : std::filesystem::path();
     jobs_.start("looking at " + short_name(action.path), [this, path = action.path, volume, open](ProgressReporter&) {
         WhatItIs found = what_is(path, volume ? &*volume : nullptr);
-        // The scan that is open is no annotation of itself.
+        // The open scan cannot be annotation of itself.
         std::error_code ignored;
         if (found.may_be_annotation && std::filesystem::equivalent(path, open, ignored))
             found = {.content = FileContent::volume};
@@ -145,7 +145,7 @@ void FileTaker::act(const TakeFile& action)
     });
 }
 
-/// By intent: no scan is closed by it, whatever the file is.
+/// The user asked for annotation, so this never closes the open scan, whatever the file is.
 void FileTaker::act(const LoadAnnotation& action)
 {
     unclear_.reset();
@@ -176,8 +176,8 @@ void FileTaker::ask_what_it_is(UnclearFile file)
     unclear_ = std::move(file);
 }
 
-/// Annotation that comes with a scan must not go into the one that is still open. A volume as large as that is the scan
-/// of a mask that is dropped with it; without one, the user is asked.
+/// Annotation dropped together with a scan must not be added to the scan that is still open. A volume as large as the
+/// open scan counts as a scan if a mask is dropped with it; without a mask, the user is asked.
 void FileTaker::take_together(std::vector<std::filesystem::path> paths)
 {
     std::optional<VolumeInfo> volume;
@@ -244,8 +244,8 @@ void FileTaker::take_transfer_function(const std::filesystem::path& path)
     });
 }
 
-/// Reads it on the worker; it becomes one step of the history, together with the names and colours of groups that a
-/// mask states and the session does not.
+/// Reads the annotation on the worker. It becomes one step of the history, together with the names and colours of
+/// groups that a mask states and the session lacks.
 void FileTaker::take_annotation(Part part, const std::filesystem::path& path)
 {
     const VolumeInfo volume = document_->volume();

@@ -1,5 +1,5 @@
 #pragma once
-// Opens, describes or takes files, also those dropped onto the window. Their contents decide their kind.
+// Opens, describes or takes files, including files dropped onto the window. The contents of a file decide its kind.
 
 #include "engine/tasks/file_content.h"
 #include "engine/workbench/desk/service.h"

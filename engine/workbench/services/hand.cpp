@@ -10,9 +10,9 @@ namespace shvr::ui {
 
 namespace {
 
-constexpr double MAX_PUCK_STEP_S = 0.1;    ///< limits motion in one step: a hung frame must not throw the view far away
-constexpr double TAPS_PER_SECOND = 5.0;    ///< rate of repetition while a button is held, as for keys
-constexpr double MAX_BUTTON_STEP_S = 0.5;  ///< limits motion in one step: a hung frame must not throw the view far away
+constexpr double MAX_PUCK_STEP_S = 0.1;    ///< limits motion in one step: a hung frame must not move the view far
+constexpr double TAPS_PER_SECOND = 5.0;    ///< rate at which a held button repeats, as for keys
+constexpr double MAX_BUTTON_STEP_S = 0.5;  ///< limits repetition in one step: a hung frame must not move the view far
 
 std::filesystem::path free_trace_path(const std::filesystem::path& stem)
 {
@@ -113,7 +113,7 @@ void Hand::follow_grab()
     others_.look_from(camera_of_grab(*grab_, device.position_m, device.rotation, units_per_m));
 }
 
-/// No report means rest: the back end then gives no speed.
+/// Moves the view as the puck reports. Without a report the puck is at rest: the back end then reports no speed.
 void Hand::follow_puck()
 {
     const double now = options_.now_s();
@@ -123,7 +123,7 @@ void Hand::follow_puck()
     for (const Action& move : moves_of_puck(puck->device, seconds)) apply(move);
 }
 
-/// Buttons of a stylus are keys without modifiers: Stylus1 is the first.
+/// Treats a stylus's buttons as keys without modifiers: Stylus1 is the first button.
 void Hand::follow_buttons(uint32_t buttons)
 {
     const double now = options_.now_s(), elapsed = std::min(now - std::exchange(buttons_at_s_, now), MAX_BUTTON_STEP_S);
@@ -204,7 +204,7 @@ void Hand::act(const FollowStylus& action)
         });
 }
 
-/// Acts like a hand: while the first button is down it paints, or adds nodes in the trace tool.
+/// Acts as a hand would: while the first button is down, paints or, in the trace tool, adds nodes.
 void Hand::follow_points(const std::vector<StylusPoint>& points, double node_every)
 {
     constexpr double APART_VOXELS = 0.5;

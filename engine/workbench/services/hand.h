@@ -1,5 +1,5 @@
 #pragma once
-// The haptic device in use, the effect of its motion and buttons, and recordings of it.
+// The haptic device in use, the effects of its motion and buttons, and recordings of its motion.
 
 #include <set>
 
@@ -17,7 +17,7 @@ public:
         Call<void(const glm::dvec3& point, bool jumps)> move_probe;
         Call<void(const PaintOp&)> paint;
         Call<void(const TraceOp&)> trace;
-        Call<std::filesystem::path()> stem;  ///< base of names for files next to the session
+        Call<std::filesystem::path()> stem;  ///< base of the names of files next to the session
     };
     Hand(Desk& desk, PreferenceKeeper& keeper, Others others);
     void act(const LetGo& action);
@@ -30,7 +30,7 @@ public:
     void act(const FollowStylus& action);
 
     void advance() override;
-    /// From now on this device moves the probe, whatever is plugged in, and its button paints.
+    /// Makes this device move the probe from now on, whatever is plugged in; the device's button paints.
     void use_device(std::shared_ptr<HapticDevice> device, const std::string& name);
     TouchedModel model() const;
 
@@ -54,7 +54,7 @@ private:
     std::unique_ptr<DeviceWatch> watch_;    ///< null: no search for devices
     std::shared_ptr<HapticDevice> device_;  ///< null: none is open
     HandView hand_;
-    std::set<std::string> refused_;  ///< ids of devices that could not be opened, until they are requested again
+    std::set<std::string> refused_;  ///< ids of devices that could not be opened; removed when requested again
     bool is_given_device_ = false;   ///< the caller supplied the device
     double look_again_s_ = 0.0, puck_at_s_ = 0.0;
     std::optional<Grab> grab_;

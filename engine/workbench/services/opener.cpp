@@ -19,8 +19,8 @@ bool is_one_journal(const std::filesystem::path& a, const std::filesystem::path&
     return std::filesystem::absolute(a).lexically_normal() == std::filesystem::absolute(b).lexically_normal();
 }
 
-/// Returns the path to open for a picture: its project, or the bare volume. Empty if it is no picture, or one
-/// of bare voxels, which only its session describes.
+/// Returns the path to open for a picture: the picture's project, or its bare volume. Empty if the file is not a
+/// picture, or is a picture of a bare volume of raw voxels, which only the session describes.
 std::filesystem::path opened_for_picture(const std::filesystem::path& path, const OpenedSession& opened)
 {
     std::error_code ignored;
@@ -30,8 +30,8 @@ std::filesystem::path opened_for_picture(const std::filesystem::path& path, cons
     return has_file ? opened.session.volume_path : std::filesystem::path();
 }
 
-/// Returns the session saved next to a volume, if it belongs to this very file: reopening a scan uses it. Empty: there
-/// is none.
+/// Returns the session saved next to a volume if the session belongs to this very file: reopening a scan then uses it.
+/// Empty: there is none.
 std::filesystem::path session_saved_for(const std::filesystem::path& volume)
 {
     std::error_code ignored;
@@ -89,7 +89,7 @@ void Opener::open(const std::filesystem::path& path, const std::vector<std::stri
     if (*failure) std::rethrow_exception(*failure);
 }
 
-/// Starts reading on the worker. Called again if the open document has changed the journal since.
+/// Starts reading on the worker. Called again if the open document changed the journal since the last read began.
 void Opener::read_next()
 {
     Opening& opening = *opening_;
@@ -164,7 +164,7 @@ void Opener::advance()
     }
 }
 
-/// Returns whether the open document is saved, and its journal is as it was read.
+/// Returns whether the open document is saved, and its journal is unchanged since it was read.
 bool Opener::is_ready_to_load()
 {
     if (!document_) return true;
@@ -225,7 +225,7 @@ void Opener::finish()
     for (const std::filesystem::path& taken : opening->taken_into_it) others_.take_file(TakeFile{.path = taken});
 }
 
-/// Shows again the document that was put away.
+/// Shows the document again that was unloaded to make room.
 void Opener::show_again()
 {
     try {
@@ -240,7 +240,7 @@ void Opener::show_again()
     say(document_->session_path.string() + " is open again");
 }
 
-/// Resets the services' state of the previous document.
+/// Resets the state of the services that belongs to the previous document.
 void Opener::begin_document(const Opening& opening)
 {
     desk_.opened_s = opening.begun_s;
@@ -257,7 +257,7 @@ void Opener::take(Document::Read read)
     ++desk_.openings;
 }
 
-/// Reports the opening, and differences from the last save; the latter are shown until dismissed.
+/// Reports the opening, and differences from the last save; the differences are shown until dismissed.
 void Opener::welcome(const std::filesystem::path& path, const std::vector<std::string>& losses,
                      const std::vector<std::string>& removed)
 {
@@ -276,7 +276,7 @@ void Opener::welcome(const std::filesystem::path& path, const std::vector<std::s
     say(status, is_as_left ? Weight::done : Weight::warning);
 }
 
-/// Applies the look and the view of a picture as settings, which undo takes back.
+/// Applies a picture's look and view as settings, which can be undone.
 void Opener::show_picture(const Session& pictured)
 {
     Session wanted = pictured;

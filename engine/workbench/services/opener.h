@@ -6,8 +6,8 @@
 //   main        loads the volume onto the device in slices          -> Scene
 //   main        replaces the open document
 //
-// Until the last step the open document stays in use. If the device has no room for both, it is put away while the next
-// one is loaded, and restored if that fails or is cancelled.
+// Until the last step the open document stays in use. If the device has no room for both, the open document is unloaded
+// while the next one is loaded, and loaded again if that fails or is cancelled.
 
 #include <exception>
 #include <set>
@@ -21,7 +21,7 @@ enum class Leave;
 
 class Opener : public Service {
 public:
-    /// Seconds per step that may be spent on loading slices of a volume.
+    /// Maximum time per main-loop step for loading slices of a volume, in seconds.
     static constexpr double SLICE_S = 0.005;
 
     /// Functions of other services that it calls.
@@ -44,29 +44,29 @@ public:
 
     void advance() override;
     bool advances_without_document() const override { return true; }
-    /// Starts opening with settings as --set takes them. `taken_into_it`: annotation dropped together with it.
+    /// Starts opening with settings in the form of --set. `taken_into_it`: annotation dropped together with the path.
     void begin_open(const std::filesystem::path& path, const std::vector<std::string>& settings,
                     std::vector<std::filesystem::path> taken_into_it = {});
-    /// The session at this path may write outside its folder, whenever it is opened here.
+    /// Allows the session at this path to write outside its folder whenever it is opened in this process.
     void allow_outside(const std::filesystem::path& path) { allowed_outside_.insert(path); }
-    /// Opens and waits until it is done; saves nothing before. Fails if it cannot be opened.
+    /// Opens a path and waits until it is open; saves nothing first. Fails if it cannot be opened.
     void open(const std::filesystem::path& path, const std::vector<std::string>& settings, Work::Opening how);
-    /// Takes a document that the caller has opened; the renderer's scene is of its volume.
+    /// Takes a document that the caller has read; the renderer's scene already has its volume.
     void take(Document::Read read);
     bool is_opening() const { return opening_ != nullptr; }
     /// Returns the name of the file being opened; empty: none.
     std::string_view opening_name() const;
     void cancel();
-    /// Cancels the opening if it has this number. Returns whether it has.
+    /// Cancels the opening if `number` is its number. Returns whether it is.
     bool cancel(Jobs::Number number);
-    /// Handles the end of the reading job. Returns whether this job is the one.
+    /// Handles the end of the reading job. Returns whether `job` is that job.
     bool end_reading(const Jobs::Finished& job);
-    /// Adds states of the opening: while it loads or is restored, and while its ended job is missing from `states`.
+    /// Adds the opening's state while it loads or reloads a document, and while its ended job is missing from `states`.
     void add_loading(std::vector<Jobs::State>& states) const;
     void add_read(std::vector<Jobs::State>& states) const;
-    /// Puts the document away while the device has room for one only.
+    /// Unloads the open document, for a device that has room for only one document.
     void put_away();
-    /// Loads the document again that was put away.
+    /// Loads the unloaded document onto the device again.
     void bring_back();
     /// Shows everything again after the graphics device was lost (Workbench::restart_device).
     void restart_device(const std::function<void()>& make_anew);
@@ -92,8 +92,8 @@ private:
     const Others others_;
     std::shared_ptr<Opening> opening_;                     ///< null: nothing is being opened
     std::shared_ptr<std::exception_ptr> awaited_failure_;  ///< failure of the opening that `open` waits for
-    Jobs::Number next_return_ = Jobs::Number{1} << 48;     ///< number range of its own, apart from jobs
-    std::unique_ptr<Document> away_;  ///< the open document without a scene, while the device has room for one only
+    Jobs::Number next_return_ = Jobs::Number{1} << 48;     ///< numbers in a range of their own, distinct from jobs
+    std::unique_ptr<Document> away_;  ///< the open document without a scene, while the device has room for only one
     std::set<std::filesystem::path> allowed_outside_;
     std::vector<std::string> recovered_;
     std::string open_failure_;

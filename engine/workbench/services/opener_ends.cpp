@@ -19,7 +19,7 @@ void Opener::add_loading(std::vector<Jobs::State>& states) const
 
 void Opener::add_read(std::vector<Jobs::State>& states) const
 {
-    // The job has ended, but its result has not been taken yet.
+    // The reading job has ended, but its result has not been taken yet.
     if (opening_ && std::ranges::find(states, opening_->number, &Jobs::State::number) == states.end())
         states.push_back(state_of(*opening_));
 }
@@ -111,7 +111,7 @@ void Opener::put_away()
     away_->touch.use(nullptr);  // a device can have one servo only
 }
 
-/// Loads the document that was put away onto the device again.
+/// Loads the unloaded document onto the device again.
 void Opener::bring_back()
 {
     opening_ = std::make_shared<Opening>(Opening{.path = away_->session_path,
@@ -145,7 +145,7 @@ void Opener::restart_device(const std::function<void()>& make_anew)
         document_->screen.drop();
     }
     if (opening_) opening_->scene.reset();   // it is loaded again from its beginning
-    if (document_) others_.forget_reload();  // the document is loaded with its present settings
+    if (document_) others_.forget_reload();  // the document was loaded with its present settings
     make_anew();
     others_.look_again();
     if (document_) load_again();
@@ -156,7 +156,7 @@ void Opener::restart_device(const std::function<void()>& make_anew)
         Weight::warning);
 }
 
-/// Puts the document away, to be restored later, if the new device cannot hold it.
+/// Unloads the document, to be restored later, if the new device cannot hold it.
 void Opener::load_again()
 {
     try {

@@ -1,5 +1,5 @@
 #pragma once
-// State of an opening under way: for the opener's own sources.
+// State of an opening under way; only for the opener's own source files.
 
 #include "engine/workbench/services/opener.h"
 
@@ -15,11 +15,11 @@ struct Opener::Opening {
     bool comes_back = false;                             ///< restores the document that was put away
     std::vector<std::filesystem::path> taken_into_it{};  ///< annotation dropped together with it
 
-    Jobs::Number number = 0;                       ///< number of the reading job, afterwards of the opening
+    Jobs::Number number = 0;                       ///< number of the reading job, which then stays the opening's number
     std::shared_ptr<Document::Read> read{};        ///< null: still being read
     std::shared_ptr<std::exception_ptr> thrown{};  ///< exception from the job
-    uint64_t journal_bytes = 0;  ///< size of the open document's journal when reading began; used if `read` has it, too
-    std::optional<Session> pictured{};  ///< look of a picture, if a picture is opened
+    uint64_t journal_bytes = 0;  ///< open document's journal size when reading began; used if `read` has the journal
+    std::optional<Session> pictured{};  ///< look of a picture, if the opened file is one
     std::unique_ptr<Scene> scene{};     ///< scene being loaded
 };
 

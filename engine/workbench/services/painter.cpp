@@ -12,7 +12,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Maximum wait for the bricks of a stroke.
+/// Maximum wait for the bricks that a stroke needs.
 constexpr double PATIENCE_S = 20.0;
 
 /// Returns whether a stroke found hardly any voxels to paint within the brush's reach.
@@ -112,8 +112,8 @@ void Painter::advance_stroke()
     if (has_painted || before != stroke_uploads_) stroke_progress_s_ = options_.now_s();
 }
 
-/// Changes of annotation wait for strokes that have ended. That takes milliseconds unless bricks come from a slow disk;
-/// an action that is impossible even then fails with its reason.
+/// Waits for strokes that have ended, before annotation is changed. This takes milliseconds unless bricks come from a
+/// slow disk; an action that is impossible even afterwards fails with its reason.
 void Painter::await_strokes()
 {
     constexpr double MAX_WAIT_S = 2.0;
@@ -147,7 +147,7 @@ std::string Painter::finish_stroke()
     return unpainted;
 }
 
-/// Returns false while memory is too short. Other failures leave their reason in `unpainted`.
+/// Returns false while memory is insufficient. Other failures store their reason in `unpainted`.
 bool Painter::tries_stroke(std::string& unpainted)
 {
     try {
@@ -178,7 +178,7 @@ void Painter::stroke_ended()
     say(said, is_as_meant && !found_nothing ? Weight::done : Weight::warning);
 }
 
-/// If the voxel under the probe is below the paint threshold, describes it and names the key that sets the threshold.
+/// If the voxel under the probe is below the paint threshold, states its value and the key that sets the threshold.
 std::string Painter::how_to_reach_this() const
 {
     const Model now = desk_.model();
@@ -188,7 +188,7 @@ std::string Painter::how_to_reach_this() const
            keeper_.with_key(", and ", "threshold_here", " sets the threshold from it");
 }
 
-/// Requests the preview while it is shown and no stroke is running: a stroke shows its own effect.
+/// Requests the preview while it is shown and no stroke is running; a running stroke shows its effect itself.
 void Painter::follow_preview()
 {
     Document& document = *document_;
@@ -201,7 +201,7 @@ void Painter::follow_preview()
         const bool is_of_budget = dynamic_cast<const gpu::BudgetError*>(&error) != nullptr;
         if (dynamic_cast<const gpu::DeviceLost*>(&error) != nullptr) throw;
         if (dynamic_cast<const gpu::MemoryError*>(&error) != nullptr && !is_of_budget) throw;  // there may be some soon
-        // Other errors: the brush is too large, or a file cannot be read.
+        // Other possible errors: the brush is too large, or a file cannot be read.
         document.session.probe.preview = false;
         others_.note_edit();
         document.previewer.want(std::nullopt);

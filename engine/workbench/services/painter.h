@@ -1,5 +1,5 @@
 #pragma once
-// Strokes: how they begin, follow the probe and end; the preview of the brush; the state of the journal.
+// Strokes (their beginning, end, and motion with the probe), the preview of the brush, and the state of the journal.
 
 #include "engine/workbench/desk/preference_keeper.h"
 #include "engine/workbench/desk/service.h"
@@ -26,17 +26,17 @@ public:
     void begin_document() { journal_failure_.clear(); }
     /// Extends the open stroke to the probe's position.
     void extend_stroke();
-    /// Runs steps until the current stroke is painted. Returns why part of it was not; empty if all was.
+    /// Runs steps until the current stroke is painted. Returns why a part was not painted; empty if all was.
     std::string finish_stroke();
-    /// Waits for strokes that the hand has ended.
+    /// Waits until strokes that the hand has ended are painted.
     void await_strokes();
-    /// Starts the time limit for the stroke's bricks.
+    /// Restarts the time limit for the arrival of the stroke's bricks.
     void note_progress() { stroke_progress_s_ = options_.now_s(); }
-    /// Returns whether no brick has arrived for too long, so that the stroke is given up.
+    /// Returns whether no brick has arrived for so long that the stroke is abandoned.
     bool is_stuck() const;
-    /// Returns the message about a stroke that was given up.
+    /// Returns the message about an abandoned stroke.
     static std::string why_stuck();
-    /// Number of voxels in the preview when the last stroke began, if it had one.
+    /// Number of voxels in the preview when the last stroke began; null if there was no preview.
     std::optional<int64_t> previewed_at_stroke() const { return previewed_at_stroke_; }
     PaintModel model() const;
 

@@ -39,7 +39,7 @@ void Photographer::follow_screenshots()
 std::filesystem::path Photographer::stem() const
 {
     const std::filesystem::path stem = std::filesystem::path(document_->session_path).replace_extension();
-    // The example's session is in a hidden folder, which is no place for pictures.
+    // The example's session is in a hidden folder, which is unsuitable for pictures.
     const bool is_example = stem.parent_path() == options_.preferences.parent_path() / "example";
     const char* const home = std::getenv("HOME");
     return is_example && home && *home ? std::filesystem::path(home) / stem.filename() : stem;
@@ -79,7 +79,7 @@ void Photographer::act(const Screenshot& action)
                  " pixels is made in the background"));
 }
 
-/// Draws marks for a picture `scale` times as large as the window; empty where none are wanted.
+/// Returns the marks for a picture `scale` times as large as the window; empty if no marks are wanted.
 Figure Photographer::figure_of_picture(uint32_t scale) const
 {
     const Document& document = *document_;
@@ -89,7 +89,7 @@ Figure Photographer::figure_of_picture(uint32_t scale) const
     return figure_of(model(), panes, units_ * scale, options_.draw_texts);
 }
 
-/// The session in a picture states the picture's size; a picture larger than the window shows no probe.
+/// Returns texts whose session states the picture's size; a picture larger than the window shows no probe.
 Screenshots::Texts Photographer::texts_of_picture(const glm::uvec2& pixels, bool shows_probe) const
 {
     return [this, pixels, shows_probe](const std::filesystem::path& picture) {

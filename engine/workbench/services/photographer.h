@@ -1,5 +1,5 @@
 #pragma once
-// Screenshots: as shown, or larger, drawn in the background.
+// Screenshots of the view: as shown, or larger and rendered in the background.
 
 #include "engine/workbench/desk/service.h"
 #include "engine/workbench/document/screenshots.h"
@@ -19,17 +19,17 @@ public:
     bool has_large() const { return screenshots_.has_large(); }
     bool is_writing() const { return screenshots_.is_writing(); }
     void wait() const { screenshots_.wait(); }
-    /// Cancels the large screenshot, if there is one, and reports the cause.
+    /// Cancels the large screenshot, if there is one, and reports `by` as the cause.
     void drop_large(const char* by);
-    /// Cancels the large screenshot and reports it if it has this number among the jobs. Returns whether it has.
+    /// Cancels the large screenshot and reports that, if `number` is its job number. Returns whether it is.
     bool cancel(Jobs::Number number);
     /// Adds the state of the large screenshot, if there is one.
     void add_loading(std::vector<Jobs::State>& states) const;
     /// Returns the base of names for files next to the session: "scan" for scan-view-1.png.
     std::filesystem::path stem() const;
-    /// Sets the pixels per unit of the interface, for drawing over pictures.
+    /// Sets the pixels per unit of the interface, used to draw over pictures.
     void set_units(double units) { units_ = units; }
-    /// Sets whether the device is idle: then large screenshots may continue.
+    /// Sets whether the device is idle; large screenshots continue only then.
     void set_still(bool is_still) { is_still_ = is_still; }
 
 private:

@@ -17,7 +17,7 @@ void Reader::advance()
     for (const std::string& message : renderer_.scene().take_messages()) say(message, Weight::warning);
 }
 
-/// The position of the probe; over a slice that of the pointer.
+/// Returns the position of the probe; over a slice, of the pointer.
 glm::dvec3 Reader::voxel_to_read() const
 {
     const Document& document = *document_;
@@ -32,8 +32,8 @@ glm::dvec3 Reader::voxel_to_read() const
            document.volume().spacing;
 }
 
-/// Reads the voxel if it is a new one, and requests the relevant share of the probe's ball. If a file takes long to
-/// read, it is read less often, so that at most a tenth of the time goes into it.
+/// Reads the voxel if it has changed, and requests the relevant share of the probe's ball. If reading a file takes
+/// long, voxels are read less often, so that reading takes at most a tenth of the time.
 void Reader::follow_reading()
 {
     Document& document = *document_;
@@ -60,7 +60,7 @@ void Reader::follow_reading()
     reading_.relevant_share = document.meter.share();
 }
 
-/// False while the device paints, and for probes that are larger than a brush may be.
+/// Returns false while the device paints, and for probes larger than the maximum brush.
 bool Reader::probe_is_measured() const
 {
     const Document& document = *document_;
@@ -91,7 +91,7 @@ void Reader::read_at(const glm::dvec3& voxel)
         reading_.intensity =
             densities_in(*document.source, work.density, {at, at + int64_t{1}}).values[0] - reading_.offset;
     } catch (const Error&) {
-        // A voxel that cannot be read has no value here; the error is reported when it is drawn.
+        // A voxel that cannot be read has no value here; the error is reported when that voxel is drawn.
     }
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Readings under the probe and the pointer, measurements, and reports of the scene.
+// Values under the probe and the pointer, measurements, and reports of the scene.
 
 #include "engine/workbench/desk/preference_keeper.h"
 #include "engine/workbench/desk/service.h"
@@ -21,9 +21,9 @@ public:
     void act(const CopyMeasurements& action);
 
     void advance() override;
-    /// Reads the voxel again, since another document is open.
+    /// Discards the last read voxel, since another document is open.
     void begin_document() { read_voxel_.reset(); }
-    /// Returns text to copy since the last call; empty: none.
+    /// Returns the text to copy that was set since the last call; empty: none.
     std::string take_clipboard() { return std::exchange(clipboard_, {}); }
     ReadingModel model() const;
 
@@ -38,7 +38,7 @@ private:
     Reading reading_;
     std::optional<glm::dvec3> read_voxel_;  ///< integer coordinates of the voxel whose intensity is in `reading_`
     uint64_t read_revision_ = 0;            ///< revision of the paint
-    double read_again_s_ = 0.0;             ///< earliest time of the next read: reading may take long
+    double read_again_s_ = 0.0;             ///< earliest time of the next read; limits the share of time spent reading
     std::string clipboard_;
     Attempt reading_turn_;
 };

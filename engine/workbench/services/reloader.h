@@ -1,7 +1,7 @@
 #pragma once
-// Reloads the volume after changes of render.sampling or render.paging: in slices, next to the displayed scene,
-// which stays in use until the new one is complete. If the device has no room for both, the document is put away for
-// that time, as for opening.
+// Reloads the volume after changes of render.sampling or render.paging. The new scene is loaded in slices while the
+// displayed scene stays in use, until the new one is complete. If the device has no room for both, the document is
+// unloaded during that time, as for opening.
 
 #include "engine/workbench/desk/service.h"
 
@@ -13,7 +13,7 @@ public:
     struct Others {
         Call<bool()> is_opening;
         Call<std::string_view()> opening_name;
-        Call<void()> load_alone;  ///< puts the document away and loads it again
+        Call<void()> load_alone;  ///< unloads the document and loads it again
         Call<void(const char* by)> drop_screenshot;
         Call<void()> note_edit;
         Call<void()> look_again;
@@ -23,14 +23,14 @@ public:
 
     void advance() override;
     bool advances_without_document() const override { return true; }
-    /// Starts a reload. Reports at once if the session's settings cannot be loaded. `before`: the previous ones.
+    /// Starts a reload. Reports at once if the session's settings cannot be loaded. `before`: the previous settings.
     void want(const RenderSettings& before);
     bool is_wanted() const { return reload_ != nullptr; }
     /// Cancels the reload. Returns whether there was one.
     bool cancel();
-    /// Cancels the reload and reports it if it has this number among the jobs. Returns whether it has.
+    /// Cancels the reload and reports that, if `number` is its job number. Returns whether it is.
     bool cancel(Jobs::Number number);
-    /// Drops the reload: the volume was loaded with the current settings by other means.
+    /// Drops the reload, because the volume was already loaded with the current settings in another way.
     void forget() { reload_.reset(); }
     /// Adds the state of the reload, if there is one.
     void add_loading(std::vector<Jobs::State>& states) const;

@@ -34,7 +34,7 @@ void Saver::act(const SaveAs& action)
     save_to(action.path);
 }
 
-/// The save includes the whole stroke under way, so it may begin a little later.
+/// Starts a save, which includes the whole stroke under way and so may begin a little later.
 void Saver::save_to(const std::filesystem::path& path)
 {
     Annotator& annotator = document_->annotator;
@@ -51,7 +51,7 @@ void Saver::follow_save()
     if (!wanted_save_ || save_) return;
     Annotator& annotator = document_->annotator;
     if (annotator.stroke_is_running()) {
-        renderer_.scene().advance();                              // takes its bricks, also where no picture is drawn
+        renderer_.scene().advance();                              // the scene takes its bricks even without a picture
         if (annotator.stroke_is_open()) others_.note_progress();  // a hand may rest
         if (!others_.is_stuck()) return;
         annotator.drop_strokes();
@@ -100,7 +100,7 @@ void Saver::act(const WorkOnCopy&)
     start_copy({}, true);
 }
 
-/// Copies the present state, whatever is done while it is written.
+/// Starts copying the present state; changes made while the copy is written are not in it.
 void Saver::start_copy(const std::filesystem::path& path, bool opens_it)
 {
     if (!document_->only_looks()) others_.record_settings();
@@ -182,7 +182,7 @@ Leave Saver::leave(std::string& why)
         if (asks && !document_->has_settings_to_save()) return Leave::now;
         if (!asks && document_->is_saved() && !is_running) {
             if (!document_->has_view_to_keep() || std::exchange(has_tried_view_, true)) return Leave::now;
-            begin_save(false, Document::Parts::session);  // a camera position is not worth an error message
+            begin_save(false, Document::Parts::session);  // failing to save only the view is not worth an error message
             return Leave::later;
         }
         if (asks)
@@ -217,7 +217,7 @@ void Saver::act(const Quit& action)
 
 // ---- The spacing ----------------------------------------------------------------------------------------------------
 
-/// The session states the new spacing; reopening it converts the positions in the journal.
+/// Saves the new spacing in the session; reopening the session converts the positions in the journal.
 void Saver::act(const CorrectSpacing& action)
 {
     if (is_saving()) fail("the work is being saved; expected that to have ended");

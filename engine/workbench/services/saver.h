@@ -1,5 +1,5 @@
 #pragma once
-// Saving, in place or elsewhere, and leaving: the data is copied at once, and the files are written in the background.
+// Saving, in place or elsewhere, and leaving. The data is copied at once; the files are written in the background.
 
 #include <set>
 
@@ -11,8 +11,8 @@ namespace shvr::ui {
 /// Result of asking whether the open document may be closed (Workbench::leave).
 enum class Leave {
     now,
-    later,    ///< a save is under way; the program stays usable meanwhile
-    refused,  ///< it cannot be saved; `why` is set once
+    later,    ///< a save is under way; the program stays usable until it ends
+    refused,  ///< the document cannot be saved; `why` is set the first time
 };
 
 class Saver : public Service {
@@ -24,7 +24,7 @@ public:
         Call<std::string()> finish_stroke;
         Call<bool()> is_stuck;
         Call<void()> note_progress;
-        Call<bool()> is_writing;  ///< a file that the user requested is being written
+        Call<bool()> is_writing;  ///< whether a file that the user requested is being written
         Call<void()> record_settings;
         Call<void()> discard;
         Call<bool()> is_discarded;
@@ -44,10 +44,10 @@ public:
     void begin_document();
     bool is_saving() const { return save_ != nullptr || wanted_save_; }
     bool is_copying() const { return !copies_.empty(); }
-    /// Handles the end of a job of the worker that saves.
+    /// Handles the end of a job of the worker that writes saves.
     void end(const Jobs::Finished& job);
     Leave leave(std::string& why);
-    /// Waits for the save under way. Returns the written parts; fails with the reason if one could not be written.
+    /// Waits for the save under way. Returns the written parts; fails with the reason if a part could not be written.
     Work::Saved finish_save();
     /// Returns whether Quit was requested, and clears the request.
     bool take_quit() { return std::exchange(quits_, false); }
@@ -72,13 +72,13 @@ private:
         bool is_asked_for = true;  ///< false: success is not reported
     };
     std::unique_ptr<Save> save_;
-    /// A save to start once the stroke or the save under way has ended. Empty path: in place; else under that name.
+    /// A save to start once the current stroke or save has ended. Empty path: in place; else under that path.
     std::optional<std::filesystem::path> wanted_save_;
-    std::string unpainted_;          ///< why a part of the stroke before the save was not painted
+    std::string unpainted_;          ///< why part of the stroke before the save was not painted
     std::string save_failure_;       ///< why the last save failed; empty: it succeeded
     Work::Saved saved_;              ///< result of the last save
-    bool has_tried_view_ = false;    ///< the view alone was saved once; a failure does not prevent closing
-    bool is_leaving_ = false;        ///< leaving was requested; a failed save prevents it
+    bool has_tried_view_ = false;    ///< saving only the view was tried; its failure does not prevent closing
+    bool is_leaving_ = false;        ///< leaving was requested; if the save fails, leaving is refused
     std::set<Jobs::Number> copies_;  ///< copies that a saver is writing
     bool told_of_writers_ = false;
     bool reopens_when_saved_ = false;  ///< with the session's new spacing

@@ -1,6 +1,6 @@
 #pragma once
-// All services of the workbench, and who calls whom. They are destroyed in reverse order, before the desk that they
-// share.
+// All services of the workbench, and the calls between them. They are destroyed in reverse order, before the desk that
+// they share.
 
 #include <tuple>
 

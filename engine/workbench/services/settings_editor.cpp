@@ -12,10 +12,10 @@ namespace shvr::ui {
 
 namespace {
 
-/// Returns whether pictures of the volume stay the same: all other settings are drawn over them, or not at all.
+/// Returns whether pictures of the volume stay the same: the other settings are drawn over the picture, or not drawn.
 bool look_the_same(Session before, const Session& after)
 {
-    before.probe = after.probe;  // drawn separately, over the picture, as distances are
+    before.probe = after.probe;  // drawn separately over the picture, like distances
     before.measurements = after.measurements;
     if (!shows_occlusion(before.light) && !shows_occlusion(after.light)) before.light.occlusion = after.light.occlusion;
     return before == after;
@@ -109,7 +109,7 @@ void SettingsEditor::take_session(Session session)
     if (!look_the_same(std::move(before), after)) others_.look_again();
 }
 
-/// Updates the window's data about the trace; the annotator passes changes to the scene itself.
+/// Updates the window's data about the trace; the annotator itself passes changes to the scene.
 void SettingsEditor::show_changes(const Command& command)
 {
     Document& document = *document_;
@@ -142,7 +142,7 @@ void SettingsEditor::settings_changed(const Session& before)
     }
 }
 
-/// View, probe and the like go into the journal when the hand rests, and every few seconds while it does not.
+/// Requests that view, probe etc. go into the journal: once the hand rests, and every few seconds while it moves.
 void SettingsEditor::note_to_keep()
 {
     last_change_s_ = options_.now_s();
@@ -165,7 +165,7 @@ void SettingsEditor::note_edit()
     settings_to_record_ = was_set_in_this_turn_ = true;
 }
 
-/// Makes a history step of the changed settings once the hand has let go: one drag is one step.
+/// Makes a history step of the changed settings once the hand has let go, so that a drag is one step.
 void SettingsEditor::follow_settings()
 {
     const bool is_being_set = std::exchange(was_set_in_this_turn_, false) || is_hand_down_;
@@ -174,7 +174,7 @@ void SettingsEditor::follow_settings()
     record_settings();
 }
 
-/// Makes a step now, so that undo reverts these settings before later changes.
+/// Makes a step now, so that undo reverts these settings separately from later changes.
 void SettingsEditor::record_settings()
 {
     if (document_->annotator.stroke_is_running() || document_->annotator.work().is_saving_as()) return;
@@ -201,8 +201,8 @@ void SettingsEditor::step(int count, const char* done, const char* nothing, Way 
     say(steps == 1 ? sentence(done, ": ", last) : sentence(done, ": ", steps, " steps, the last: ", last));
 }
 
-/// Returns whether undo would revert a step before the user's last stroke, which changed nothing and so is no step.
-/// True once after such a stroke; never in scripts, which count steps.
+/// Returns whether undo would skip the user's last stroke, which changed nothing and so is no step, and revert the step
+/// before it. True once after such a stroke; never in scripts, which count steps.
 bool SettingsEditor::follows_empty_stroke()
 {
     record_settings();
@@ -255,7 +255,7 @@ void SettingsEditor::act(const ChooseBelief& action)
     say(said);
 }
 
-/// Files stay as they are. The journal keeps the later changes: undo restores them next time.
+/// Discards changes. Files stay unchanged. The journal keeps the changes: undo restores them next time.
 void SettingsEditor::discard()
 {
     if (!document_ || document_->only_looks() || !document_->annotator.work().disputes().empty()) return;

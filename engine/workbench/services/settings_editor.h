@@ -1,5 +1,5 @@
 #pragma once
-// Changes settings, applies the consequences, and decides which changes become steps of the history; undo and redo.
+// Changes settings, applies the effects, and decides which changes become history steps; also undo and redo.
 
 #include "engine/workbench/desk/service.h"
 
@@ -26,30 +26,30 @@ public:
     void act(const RevertOp& action);
     void act(const ChooseBelief& action);
 
-    /// Records pending changes as one step of the history, and keeps the view in the journal.
+    /// Records pending changes as one step of the history, and writes the view to the journal.
     void advance() override;
     /// Forgets state of the previous document.
     void begin_document();
     void take_session(Session session);
-    /// Updates the window's data about the trace; the annotator passes changes to the scene itself.
+    /// Updates the window's data about the trace; the annotator itself passes changes to the scene.
     void show_changes(const Command& command);
-    /// Call after a change of the session that is a step of the history.
+    /// Call after a change of the session that is to become a step of the history.
     void note_edit();
-    /// Call after a change of view, probe and the like: they go into the journal when the hand rests, and every few
-    /// seconds while it does not.
+    /// Call after a change of view, probe and similar settings: these are written to the journal when the hand rests,
+    /// and every few seconds while it moves.
     void note_to_keep();
-    /// Makes a step of pending changes, so that undo reverts them before later steps.
+    /// Makes a step of pending changes, so that undo reverts them separately from later steps.
     void record_settings();
     bool has_settings_to_record() const { return settings_to_record_; }
-    /// Returns whether the view, the probe or the like changed since the journal last received them.
+    /// Returns whether the view, the probe or similar settings changed since they were last written to the journal.
     bool has_view_to_keep() const { return to_keep_since_s_.has_value(); }
-    /// While the hand is changing a setting, no step of the history is made: one drag is one step.
+    /// While the hand is down, changes make no history step, so that a drag is one step.
     void set_hand_down(bool is_down) { is_hand_down_ = is_down; }
-    /// Records whether the stroke that just ended changed nothing: the next undo then takes back that stroke.
+    /// Records whether the stroke that just ended changed nothing; if so, the next undo only takes back that stroke.
     void note_stroke(bool is_empty);
-    /// Discards changes. Files stay as they are. The journal keeps the changes: undo restores them next time.
+    /// Discards changes. Files stay unchanged. The journal keeps the changes: undo restores them next time.
     void discard();
-    /// Returns whether nothing was done since the work was discarded: there is nothing to save.
+    /// Returns whether nothing was done since the work was discarded; saving is then unnecessary.
     bool is_discarded() const;
     HistoryModel model() const;
 
@@ -64,12 +64,12 @@ private:
     const Others others_;
     bool is_hand_down_ = false;
     bool settings_to_record_ = false, was_set_in_this_turn_ = false;
-    std::optional<double> to_keep_since_s_;       ///< time since when the journal lacks the current view
+    std::optional<double> to_keep_since_s_;       ///< when the view changed that the journal lacks; null: it lacks none
     double last_change_s_ = 0.0;                  ///< time of the last change to keep
-    std::optional<Session> session_before_hand_;  ///< session before the hand began to change settings
-    /// Number of undoable steps when the work was discarded: while it is unchanged, nothing is saved.
+    std::optional<Session> session_before_hand_;  ///< the session before the hand began to change settings
+    /// Number of undoable steps when the work was discarded; while the number stays the same, nothing is saved.
     std::optional<size_t> discarded_steps_;
-    /// Number of undoable steps when the last stroke ended without a change: undo takes back that stroke first.
+    /// Number of undoable steps when the last stroke ended without a change; undo then first takes back that stroke.
     std::optional<size_t> steps_at_empty_stroke_;
     Attempt recording_, keeping_;
 };

@@ -1,6 +1,6 @@
 #pragma once
-// Long work in the background: each job computes its result on a worker, and this service uses it. Names and
-// folders are also checked by the job, since that needs the disk.
+// Long work in the background: each job computes its result on a worker, and this service then uses the result. The job
+// also checks names and folders, since those checks need the disk.
 
 #include <set>
 

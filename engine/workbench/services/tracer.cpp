@@ -10,7 +10,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// The neighbours of the selected node, if there are two and no link between them: deleting the node cuts the trace.
+/// Returns the two neighbours of the selected node if it has two and no link joins them: deleting it cuts the trace.
 std::optional<std::pair<uint32_t, uint32_t>> ends_of_cut(const TraceGraph& trace)
 {
     const std::optional<uint32_t> node = trace.selection().node();
@@ -20,7 +20,7 @@ std::optional<std::pair<uint32_t, uint32_t>> ends_of_cut(const TraceGraph& trace
     return trace.internode_between(ends.first, ends.second) ? std::nullopt : std::optional(ends);
 }
 
-/// Returns whether the selected node lies outside the volume, though near enough to be allowed.
+/// Returns whether the selected node lies outside the volume, within the distance that is allowed.
 bool lies_outside(const TraceGraph& trace, const VolumeInfo& volume)
 {
     const std::optional<uint32_t> node = trace.selection().node();
@@ -42,7 +42,7 @@ Tracer::Tracer(Desk& desk, PreferenceKeeper& keeper, Others others)
     : Service(desk), keeper_(keeper), others_(std::move(others))
 {}
 
-/// Gives new nodes the radius of the structure around them, if requested and measurable.
+/// Gives a new node the radius of the structure around it, if this is requested and the radius can be measured.
 TraceOp Tracer::with_radius(TraceOp op) const
 {
     NodeOp* const node = std::get_if<NodeOp>(&op);
@@ -84,7 +84,7 @@ void Tracer::trace(const TraceOp& asked)
     say(said);
 }
 
-/// Stores the ends of a cut, and selects one of them to continue tracing there.
+/// Stores the ends of a cut and selects one of them, so that tracing continues there.
 void Tracer::note_cut(std::optional<std::pair<uint32_t, uint32_t>> ends)
 {
     document_->cut_ends = ends;
@@ -109,7 +109,7 @@ void Tracer::act(const MendCut&)
     document_->cut_ends.reset();
 }
 
-/// The nearest node, if it is within half a voxel's diagonal.
+/// Returns the nearest node, if its distance is at most half of a voxel's diagonal.
 std::optional<uint32_t> Tracer::node_in_voxel(const glm::dvec3& voxel) const
 {
     const glm::dvec3& spacing = document_->volume().spacing;
@@ -120,7 +120,7 @@ std::optional<uint32_t> Tracer::node_in_voxel(const glm::dvec3& voxel) const
     return is_there ? nearest : std::nullopt;
 }
 
-/// The place on the centre line that is drawn at a pixel, if lines attract tools; also on those of the selected node.
+/// Returns the point on the centre line drawn at a pixel, if lines attract tools; includes the selected node's lines.
 std::optional<ToolPlace> Tracer::line_at(const Pane& seen, const glm::dvec2& pixel) const
 {
     if (!document_->session.probe.touch.to_lines) return std::nullopt;
@@ -131,7 +131,7 @@ std::optional<ToolPlace> Tracer::line_at(const Pane& seen, const glm::dvec2& pix
     const glm::dvec3 there = unproject(seen.shot.camera, seen.pixels(), pixel, hit.depth);
     const glm::dvec3 way = glm::normalize(sight_through(seen.shot.camera, there));
     const glm::dvec3 a = trace.node(internode.a).position, b = trace.node(internode.b).position;
-    // The point of the line nearest to the line of sight.
+    // The point of the line that is nearest to the line of sight.
     const auto across = [&](const glm::dvec3& v) { return v - way * glm::dot(v, way); };
     const glm::dvec3 begin = across(a - there), along = across(b - a);
     const double square = glm::dot(along, along);
@@ -139,7 +139,7 @@ std::optional<ToolPlace> Tracer::line_at(const Pane& seen, const glm::dvec2& pix
     return ToolPlace{glm::mix(a, b, share), {}, hit.internode};
 }
 
-/// Returns whether part of the trace has attracted the tool to this place.
+/// Carries out the operation with the part of the trace that attracts the tool here. Returns whether there was one.
 bool Tracer::add_drawn_node(const ToolPlace& place)
 {
     const glm::dvec3& spacing = document_->volume().spacing;
@@ -152,8 +152,8 @@ bool Tracer::add_drawn_node(const ToolPlace& place)
     return true;
 }
 
-/// Adds the node at the visible point, or in the middle of the structure that the line of sight enters there if
-/// `centered_nodes` is set; in slices at the clicked point.
+/// Adds a node at the visible point or, if `centered_nodes` is set, in the middle of the structure that the line of
+/// sight enters there; in slices, at the clicked point.
 void Tracer::act(const NodeAt& action)
 {
     const Pane seen = others_.pane(action.pane);
@@ -216,7 +216,7 @@ void Tracer::act(const SelectAt& action)
     others_.set(edited(document.session, [&](Session& s) { s.probe.brush.group = group; }));
 }
 
-/// A node where segments meet, or that belongs to none, stays selected alone.
+/// Selects the segment of the selection. A node at which segments meet, or that belongs to no segment, stays selected.
 void Tracer::select_segment()
 {
     try {
@@ -226,7 +226,7 @@ void Tracer::select_segment()
     }
 }
 
-/// Hidden by the volume drawn in front of it; rods of the trace itself hide nothing.
+/// Returns whether the volume hides the hit part of the trace; the trace's own rods hide nothing.
 bool Tracer::is_hidden(const Pane& seen, const glm::dvec2& pixel, const TraceHit& hit) const
 {
     constexpr double OPAQUE_ENOUGH = 0.9, APART_VOXELS = 2.0;
@@ -285,7 +285,7 @@ void Tracer::act(const DragNode& action)
     if (document_->drags_node) this->trace(document_->drag_move());
 }
 
-/// If a node attracts the tool, it is linked and selected instead of adding a new one.
+/// Adds a node where tools act. If a node attracts the tools, links and selects that node instead.
 void Tracer::add_node_here()
 {
     add_node_at(node_or_link_at_probe(desk_.model()));

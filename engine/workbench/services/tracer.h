@@ -1,5 +1,5 @@
 #pragma once
-// The trace: the operations that scripts use, as commands of the one history; selecting and adding by pointing.
+// The trace: its operations, which scripts also use, as commands of the history; selecting and adding by pointing.
 
 #include "engine/workbench/desk/preference_keeper.h"
 #include "engine/workbench/desk/service.h"
@@ -36,7 +36,7 @@ public:
     void act(const MendCut& action);
 
     void trace(const TraceOp& op);
-    /// Adds a node where tools act. A node that attracts the tools is linked and selected instead.
+    /// Adds a node where tools act. If a node attracts the tools, links and selects that node instead.
     void add_node_here();
     TraceModel model() const;
 

@@ -12,14 +12,14 @@ namespace shvr::ui {
 
 namespace {
 
-/// The first unused name of "view 1", "view 2", ...
+/// Returns the first unused name among "view 1", "view 2", ...
 std::string free_camera_name(const Session& session)
 {
     for (int number = 1;; ++number)
         if (std::string name = sentence("view ", number); !session.cameras.contains(name)) return name;
 }
 
-/// The height of the view at the target's depth.
+/// Returns the height of the view at the target's depth.
 double height_of(const Camera& camera)
 {
     return pixel_size(camera, {1, 1}, glm::distance(camera.eye, camera.target));
@@ -86,7 +86,7 @@ void Viewer::act(const Zoom& action)
                               document_->probe_voxel()));
 }
 
-/// Shows the slices. Their position is kept like the camera, and is no change of the work.
+/// Shows the slices. Their position is saved like the camera, and does not count as a change of the work.
 void Viewer::show_slices(SliceSettings slices)
 {
     document_->session.view.slices = slices;
@@ -94,7 +94,7 @@ void Viewer::show_slices(SliceSettings slices)
     others_.note_to_keep();
 }
 
-/// Moves the slices along with a probe that has left their plane, whatever moved it.
+/// Moves the slices along with a probe that has left their plane, however the probe was moved.
 void Viewer::follow_slices()
 {
     constexpr double STIR_VOXELS = 0.05;  // a stylus is never quite at rest, and the user may have moved the slices
@@ -110,7 +110,7 @@ void Viewer::follow_slices()
     if (next == document.session.view.slices) return;
     const Set following = edited(document.session, [&](Session& s) { s.view.slices = next; });
     show_slices(next);
-    if (log_) log_(line_of(following));  // from now on, pixels of slices refer to the new position
+    if (log_) log_(line_of(following));  // pixels of slices in later lines refer to the new position
 }
 
 void Viewer::follow_look()
@@ -124,14 +124,14 @@ void Viewer::follow_look()
             document.screen.look_from(document.camera, document.probe_voxel());
         look_is_stale_ = camera_moved_ = false;
     }
-    // Not during a stroke or touch, which request their own bricks.
+    // Not during a stroke or while the servo runs: these request bricks themselves.
     if (!document.touch.servo() && !document.annotator.stroke_is_running())
         renderer_.volume().prefer(document.voxels_around_probe());
     document.screen.show_probe(document.probe_look());
     document.screen.advance();
 }
 
-/// Uses the current camera and probe; the screen follows them once a frame, and a frame may carry out several actions.
+/// Uses the current camera and probe: the screen follows them once a frame, but a frame may have several actions.
 Pane Viewer::pane(size_t index) const
 {
     const std::vector<Pane> panes = panes_of(document_->session.view, document_->camera, pixels_,
@@ -311,7 +311,7 @@ void Viewer::act(const FitView& action)
 void Viewer::act(const ResetView&)
 {
     const Session& session = document_->session;
-    // A session that was open before may name its last camera; then the side that shows most is meant.
+    // A session that was open before may name its last camera; then the side that shows most is used instead.
     const std::string name = session.camera_name == "window" ? std::string() : session.camera_name;
     look_from(camera_named(session, name, document_->volume()));
     say("The view is reset");

@@ -1,6 +1,6 @@
 #pragma once
-// Scale bar, axes, distances and pane titles, as they are drawn into picture files (marks.h). Pure; the main
-// thread makes one while the model lives, any thread draws it.
+// Scale bar, axes, distances and pane titles, as drawn into picture files (marks.h). Pure; the main thread builds a
+// figure while the model exists, and any thread may draw it.
 
 #include <functional>
 #include <span>
@@ -12,12 +12,12 @@
 
 namespace shvr::ui {
 
-/// A line of text as pixel coverage; its height is the line height.
+/// A line of text as the coverage of each pixel; the image's height is the line height.
 struct TextImage {
     glm::ivec2 pixels{0};
     std::vector<uint8_t> coverage;
 };
-/// Draws texts of one height in pixels. The main thread.
+/// Draws texts, all with the same height in pixels. The main thread.
 using TextDrawer = std::function<std::vector<TextImage>(std::span<const std::string> texts, double pixels)>;
 
 struct Figure {
@@ -29,8 +29,8 @@ struct Figure {
     std::vector<Part> parts;
 };
 
-/// Builds the figure. `units`: pixels per unit of the interface, times the picture's scale. Without a drawer there are
-/// no labels.
+/// Builds the figure. `units`: pixels per unit of the interface, times the picture's scale. Without a drawer of texts,
+/// the figure has no labels.
 Figure figure_of(const Model& model, std::span<const Pane> panes, double units, const TextDrawer& draw_texts);
 /// Draws the figure over `rows`, the part of the picture that starts at `first_row`.
 void draw(const Figure& figure, ImageF& rows, uint32_t first_row);

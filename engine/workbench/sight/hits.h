@@ -1,5 +1,5 @@
 #pragma once
-// Finds the part of a trace under a pixel. Pure; any thread, while the trace is lent.
+// Finds the part of a trace under a pixel. Pure; any thread, while the trace does not change.
 
 #include <optional>
 
@@ -13,9 +13,9 @@ struct TraceHit {
     double depth = 0.0;                       ///< physical units along the view
     double radius = 0.0;                      ///< radius in physical units
 };
-/// Returns a node within its ring, or within 6 pixels of its centre (of several, the one nearest to the viewer), else
-/// an internode within 4 pixels of its centre line. In a slice only parts that cross the plane or lie within half a
-/// voxel of it. Visits the whole trace.
+/// Returns a node within its ring or within 6 pixels of its centre (of several, the one nearest to the viewer). Without
+/// such a node, returns an internode within 4 pixels of its centre line. In a slice, considers only parts that cross
+/// its plane or lie within half a voxel of it. Visits the whole trace.
 TraceHit trace_hit(const TraceGraph& trace, const Pane& pane, const glm::dvec2& pixel, const VolumeInfo& volume);
 
 /// Returns how far a point lies behind the plane of a slice.

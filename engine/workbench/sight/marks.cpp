@@ -18,7 +18,7 @@ constexpr std::array<glm::dvec3, 3> AXES{glm::dvec3(0.95, 0.12, 0.08), glm::dvec
                                          glm::dvec3(0.15, 0.4, 1.0)};
 constexpr double DASH = 6.0, GAP = 5.0;
 
-/// Returns at most MOST characters of a name, counted and cut as UTF-8.
+/// Returns a name cut to at most MOST characters, counted as UTF-8 characters.
 std::string shortened_name(const std::string& name)
 {
     constexpr size_t MOST = 32;
@@ -107,7 +107,7 @@ private:
         marks_.labels.push_back({at, anchor, std::move(text), color});
     }
 
-    /// The cross-section of the brush's reach with this plane.
+    /// Draws the cross-section of the brush's reach with the pane's plane.
     void brush_ring()
     {
         const BrushSettings& brush = model_.brush();
@@ -125,7 +125,7 @@ private:
                color_);
     }
 
-    /// Draws the part of the trace that crosses the plane, or lies within a voxel of it.
+    /// Draws the part of the trace that crosses the slice's plane, or lies within a voxel of it.
     void trace_in_slice()
     {
         const Camera& camera = pane_.shot.camera;
@@ -173,7 +173,7 @@ private:
         ring(*at, 5.0 * units_, LINK, 2.0);
     }
 
-    /// The link that a node added now would get, labelled with its length.
+    /// Draws the link that a node added now would get, with its length as a label.
     void link()
     {
         const std::optional<uint32_t> selected = model_.trace.selection().node();
@@ -201,7 +201,7 @@ private:
         label(0.5 * (*from + *to), {0.5, 1.2},
               length_in_words(length_of(ends, model_.volume.spacing), model_.volume.unit), MEASURED);
     }
-    /// The measured line crosses the plane of the slice, or lies within a voxel of it.
+    /// Returns whether a measured line crosses the plane of the slice, or lies within a voxel of it.
     bool is_near_plane(const glm::dvec3& a, const glm::dvec3& b) const
     {
         const double from = behind_plane(pane_.shot.camera, a), to = behind_plane(pane_.shot.camera, b);
@@ -216,7 +216,7 @@ private:
         measurement(*model_.measuring_from, leads ? *model_.measuring_to : *model_.measuring_from, true);
     }
 
-    /// Draws a small cross at the pivot of turning, if the user picked one.
+    /// Draws a small cross at the pivot of rotation, if the user picked one.
     void pivot()
     {
         if (!is_main() || model_.session.interaction.pivot != Pivot::picked || !model_.picked_pivot) return;
@@ -227,7 +227,7 @@ private:
         line(*at - glm::dvec2(0.0, reach), *at + glm::dvec2(0.0, reach), LIGHT);
     }
 
-    /// Drawn in the lower left corner; an axis that points towards the viewer is short.
+    /// Draws the axes in the lower left corner; an axis that points towards the viewer appears short.
     void axes()
     {
         if (pane_.kind == Pane::Kind::map || pane_.shot.right_eye) return;
@@ -244,7 +244,7 @@ private:
         }
     }
 
-    /// Drawn in the lower right corner. In perspective, lengths differ with depth, so the label states the depth.
+    /// Draws the scale bar in the lower right corner. In perspective lengths differ with depth, so the label states it.
     void scale()
     {
         if (pane_.kind == Pane::Kind::map || pane_.shot.right_eye) return;
@@ -262,8 +262,8 @@ private:
         label(end - 1.5 * tick, {1.0, 1.0}, bar.text + (is_perspective ? " at the middle of the view" : ""));
     }
 
-    /// Lists names and colours of painted or traced groups in the upper right corner of the first pane. The colour
-    /// stands right of its name, so that names need not be measured.
+    /// Lists names and colours of painted or traced groups in the upper right corner of the first pane. Each colour
+    /// stands to the right of its name, so that the width of names need not be measured.
     void groups()
     {
         if (index_ != 0 || pane_.kind == Pane::Kind::map || pane_.shot.right_eye) return;
@@ -285,7 +285,7 @@ private:
         if (named < drawn.size()) label(at, {1.0, 0.5}, "and " + std::to_string(drawn.size() - named) + " more groups");
     }
 
-    /// Draws the pane's title in its upper left corner; for a slice also the reading under the pointer.
+    /// Draws the pane's title in its upper left corner; in a slice, also the values under the pointer.
     void title()
     {
         if (model_.panes.size() < 2) return;
@@ -312,14 +312,14 @@ private:
             text = std::to_string(std::lround(100.0 * *model_.reading.relevant_share)) + " % full, " + text;
             meter(at->pixel, reach + 4.0 * units_, *model_.reading.relevant_share);
         }
-        // If there is no room at the right, the text goes to the left; a character is at most this wide.
+        // Without room at the right, the text goes to the left; CHARACTER is an upper bound of a character's width.
         constexpr double CHARACTER = 8.0;
         const double beside = 0.75 * reach + 6.0 * units_;
         const bool has_room =
             at->pixel.x + beside + CHARACTER * units_ * double(text.size()) < double(pixels_.x) || at->pixel.x < beside;
         label(at->pixel + glm::dvec2(has_room ? beside : -beside, beside), {has_room ? 0.0 : 1.0, 0.0}, text);
     }
-    /// An arc around the probe, clockwise from the top: the relevant share of its ball.
+    /// Draws an arc around the probe, clockwise from the top, whose length is the relevant share of the probe's ball.
     void meter(const glm::dvec2& middle, double radius, double share)
     {
         constexpr int WHOLE = 60;

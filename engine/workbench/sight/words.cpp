@@ -18,7 +18,7 @@ std::string digits(double value)
     return text;
 }
 
-/// Integers with all of their digits.
+/// Formats an integer with all of its digits, and other values as `digits` does.
 std::string intensity_in_words(double value)
 {
     constexpr double MAX_EXACT = 9007199254740992.0;  // 2^53
@@ -39,7 +39,7 @@ std::string three(const glm::dvec3& values)
 /// Units, each a thousand times the previous one.
 constexpr const char* THOUSANDS[] = {"nm", "um", "mm", "m"};
 
-/// Uses the unit with the fewest zeros.
+/// Formats the length in the unit that needs the fewest zeros.
 std::string readable(double length, std::string unit)
 {
     auto at = std::ranges::find(THOUSANDS, unit);
@@ -87,7 +87,7 @@ std::string in_words(const Reading& reading, const VolumeInfo& volume, const std
 {
     std::string text = place_in_words(reading.voxel, volume) + ": " + value_in_words(reading);
     if (!reading.is_inside || reading.group == 0) return text;
-    const std::string group = sentence("group ", int(reading.group));  // the name of an unnamed group, too
+    const std::string group = sentence("group ", int(reading.group));  // an unnamed group is called this, too
     return text + ", " + (group_name == group ? group : group + " " + group_name);
 }
 
@@ -119,7 +119,7 @@ double depth_below_surface(const Camera& camera, const CutBox& cut, const Volume
     const glm::dvec3 lower = cut.lower * volume.spacing;
     const glm::dvec3 upper = glm::min(cut.upper, glm::dvec3(volume.size)) * volume.spacing;
     const glm::dvec3 forward = axes_of(camera).forward;
-    // Along the line through the point: a perspective eye sees along it, an orthographic one along its axis.
+    // In perspective, the view line through the point starts at the eye; otherwise it is parallel to the view's axis.
     const glm::dvec3 from = camera.projection == Camera::Projection::perspective
                                 ? camera.eye
                                 : point - forward * glm::dot(point - camera.eye, forward);

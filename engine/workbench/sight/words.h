@@ -11,17 +11,17 @@
 
 namespace shvr::ui {
 
-/// Returns "12.35 mm"; four digits. Micrometres are spelled with the Greek letter.
+/// Returns a text such as "12.35 mm", with four digits. Micrometres are spelled with the Greek letter.
 std::string length_in_words(double length, const std::string& unit);
 /// Returns the physical length of a measurement.
 double length_of(const Measurement& measurement, const glm::dvec3& spacing);
-/// Returns "voxel 120, 80, 33 (1.2, 0.8, 0.33 mm)"; voxels count from 0. Without a unit the voxel alone.
+/// Returns "voxel 120, 80, 33 (1.2, 0.8, 0.33 mm)"; voxels count from 0. Without a unit, names the voxel only.
 std::string place_in_words(const glm::dvec3& voxel, const VolumeInfo& volume);
 /// Returns "value 12345 + 30", "value ...", "outside"; integers with all digits, others with four.
 std::string value_in_words(const Reading& reading);
-/// Formats the whole reading in one line, for the status bar; `group_name`: its group's name.
+/// Formats the whole reading in one line, for the status bar. `group_name`: name of the reading's group.
 std::string in_words(const Reading& reading, const VolumeInfo& volume, const std::string& group_name);
-/// Returns "z 214 of 512, 1.284 mm": slices count from 1; their position is that of their middle.
+/// Returns "z 214 of 512, 1.284 mm": slices count from 1, and the position is that of the slice's middle.
 std::string slice_in_words(int axis, const glm::dvec3& voxel, const VolumeInfo& volume);
 /// Returns a table with a heading and tab-separated columns: number, length, unit, and both ends in voxels.
 std::string table_of(std::span<const Measurement> measurements, const VolumeInfo& volume);
@@ -29,7 +29,7 @@ std::string table_of(std::span<const Measurement> measurements, const VolumeInfo
 /// Returns the depth of a point along the view, from the start of the drawn volume; at least 0.
 double depth_below_surface(const Camera& camera, const CutBox& cut, const VolumeInfo& volume, const glm::dvec3& point);
 
-/// A length drawn as a bar: the longest of 1, 2 and 5 times a power of ten that is at most `longest_pixels`.
+/// A scale bar: its length is the longest of 1, 2 or 5 times a power of ten that takes at most `longest_pixels`.
 struct ScaleBar {
     double pixels = 0.0;
     std::string text;  ///< "200 µm"

@@ -30,7 +30,7 @@ void TapLink::begin_tick() noexcept
     Latest<ForceSettings>* const settings = settings_.load(std::memory_order_acquire);
     if (!settings || !orders_.take()) return;
     const TapOrder& order = orders_.value();
-    settings->publish(order.settings.force);  // the servo takes it next, on this thread
+    settings->publish(order.settings.force);  // the servo takes these settings next, on this thread
     has_new_settings_ = true;
     if (order.recording != recording_) {
         recording_ = order.recording;
@@ -47,11 +47,11 @@ void TapLink::note_now(uint64_t now_ns) noexcept
 
 void TapLink::note_read(ReadResult result, const DeviceState& state) noexcept
 {
-    // Result as the servo sees it: a device whose last write failed is lost unless it reports a new state.
+    // The result as the servo sees it: after a failed write, the device is lost unless it reports a new state.
     now_.tick.read = !was_written_ && result != ReadResult::fresh ? ReadResult::lost : result;
     now_.tick.state = state;
     if (const Latest<RelevancePatch>* const relevance = relevance_.load(std::memory_order_acquire)) {
-        now_.relevance = relevance->value().sequence;  // the servo has taken it in this tick, on this thread
+        now_.relevance = relevance->value().sequence;  // the servo took this relevance in this tick, on this thread
         now_.tick.relevance_time_ns = now_.relevance > 0 ? relevance->value().time_ns : 0;
     }
     if (result != ReadResult::fresh) return;
@@ -74,7 +74,7 @@ void TapLink::note_write(const glm::dvec3& asked_n, const glm::dvec3& force_n, b
     plot_.heat = most > 0.0 ? heat_.square / most : 0.0;
     add_to_plot(glm::length(force_n));
     if (recording_ != 0) put();
-    has_new_settings_ = recording_ == 0 && has_new_settings_;  // a recording begins with those in force
+    has_new_settings_ = recording_ == 0 && has_new_settings_;  // a recording begins with the settings in force
 }
 
 void TapLink::put() noexcept

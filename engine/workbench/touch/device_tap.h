@@ -5,9 +5,9 @@
 //   main thread --orders()--> TapPacing --> Servo::settings()        Servo <--> DeviceTap <--> device
 //   main thread <--take()---- ring of ticks <------ DeviceTap        main thread <--state()-- DeviceTap
 //
-// Settings go through the tap, so that a recording knows in which tick they took effect; for relevance it records per
-// tick which one the servo used. On the servo's thread nothing here locks, allocates, logs or throws; a recording
-// that is not fetched in time ends.
+// Settings go through the tap, so that a recording knows in which tick they took effect. For relevance, the tap records
+// per tick the sequence that the servo used. On the servo's thread nothing here locks, allocates, logs or throws; a
+// recording whose ticks are not fetched in time ends.
 
 #include <array>
 #include <atomic>
@@ -24,7 +24,7 @@ namespace shvr::ui {
 struct PlaneHold {
     bool is_on = false;
     glm::dvec3 normal{0.0, 0.0, 1.0}, point_m{0.0};
-    uint32_t count = 0;  ///< number of planes so far: after a change, a jump of the probe is no glitch
+    uint32_t count = 0;  ///< number of planes so far; when it changes, a jump of the probe is no glitch
     bool operator==(const PlaneHold&) const = default;
 };
 
@@ -39,7 +39,7 @@ struct TapOrder {
 struct TapState {
     static constexpr size_t BARS = 250;
     static constexpr uint32_t TICKS_A_BAR = 20;
-    std::array<float, BARS> force_n{};  ///< maximum force of each 20 ticks; `bars` % BARS is the oldest
+    std::array<float, BARS> force_n{};  ///< maximum force of every TICKS_A_BAR ticks; index `bars` % BARS is the oldest
     uint64_t bars = 0;
     double heat = 0.0;         ///< share of the motors' continuous limit, from the model in haptics/safety.h
     uint64_t lost_states = 0;  ///< gaps in the device's sequence numbers
@@ -64,7 +64,7 @@ public:
     // Main thread
     Latest<TapOrder>& orders() { return orders_; }
     Latest<TapState>& state() { return state_; }
-    /// Sets where settings go, and the relevance that the servo feels.
+    /// Sets the destination of settings, and the relevance that the servo uses.
     void connect(Latest<ForceSettings>& settings, const Latest<RelevancePatch>& relevance)
     {
         relevance_.store(&relevance, std::memory_order_release);
@@ -85,7 +85,7 @@ public:
     const PlaneHold& plane() const noexcept { return orders_.value().plane; }
 
 private:
-    static constexpr uint64_t RING = 4096;  ///< ticks: four seconds of a stalled window
+    static constexpr uint64_t RING = 4096;  ///< capacity in ticks: enough for a window that stalls for four seconds
     void put() noexcept;
     void add_to_plot(double force_n) noexcept;
 
@@ -152,11 +152,11 @@ private:
     DeviceState raw_;
 };
 
-/// A servo on a device, with its tap. Main thread.
+/// A servo, its device and the tap between them. Main thread.
 struct TappedServo {
     explicit TappedServo(std::shared_ptr<HapticDevice> with, std::unique_ptr<Pacing> pacing = real_pacing(),
                          uint32_t recording = 0);
-    /// The relevance for the servo: fill `writing`, then publish it. One thread, which need not be the main one.
+    /// Returns the relevance to fill before `publish_relevance()`. Both: on one thread, not necessarily the main one.
     RelevancePatch& relevance() { return servo.relevance().writing(); }
     void publish_relevance();
     std::shared_ptr<HapticDevice> device;

@@ -1,6 +1,6 @@
 #pragma once
 // Looks for haptic devices and opens them on a thread of its own, since both may wait for hardware or for a service.
-// Functions here are for the main thread, and never wait for that thread.
+// The functions here are for the main thread; only the destructor waits for the watch's thread.
 
 #include <condition_variable>
 #include <functional>
@@ -15,7 +15,7 @@
 
 namespace shvr::ui {
 
-/// Functions that list and open devices; tests have their own. Called on the watch's thread.
+/// Functions that list and open devices; tests provide their own. Called on the watch's thread.
 struct DeviceSource {
     std::function<std::vector<DeviceListing>()> list;
     /// Returns null for the mouse. Fails with a sentence.
@@ -27,7 +27,7 @@ DeviceSource devices_of_machine(bool allow_force);
 class DeviceWatch {
 public:
     explicit DeviceWatch(DeviceSource source);
-    /// Waits for the device being opened.
+    /// Waits until an opening in progress has ended.
     ~DeviceWatch();
     DeviceWatch(const DeviceWatch&) = delete;
 

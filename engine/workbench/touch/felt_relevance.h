@@ -11,13 +11,13 @@ namespace shvr::ui {
 void put_bits(const RelevancePlace& place, const RelevanceBits& bits, RelevancePatch& patch);
 void put_mirrored(const MirroredRelevance& mirrored, RelevancePatch& patch);
 
-/// Returns which voxels the session lets a hand feel: those in its groups and, unless it feels what is hidden, only
-/// those that its picture shows.
+/// Returns which voxels the session lets a hand feel: voxels in its felt groups and, unless hidden voxels are felt too,
+/// only those of them that the session's picture shows.
 FeltLimits felt_limits(const Session& session, const Camera& camera, const VolumeInfo& volume,
                        const IntensityWindow& window);
 
-/// Computes the relevance around a probe as the window mirrors it. `source` includes density offsets already; `mask`
-/// may be null if the limits do not need it, or nothing is painted.
+/// Computes the relevance around a probe as the window's mirror does. `source` includes density offsets already; `mask`
+/// may be null if the limits do not need it, or if nothing is painted.
 void host_relevance(const VolumeSource& source, const Mask* mask, const FeltLimits& limits, const RegionWish& wish,
                     double threshold, RelevancePatch& patch);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Relevance passed to a servo, for a recording: the mirror's thread records it, the main thread takes it. The
-// servo itself reports only the sequence in use, so it neither copies bits nor meets a lock.
+// Records the relevance passed to a servo: the mirror's thread adds entries, and the main thread takes them. The servo
+// itself reports only the sequence in use, so it neither copies bits nor meets a lock.
 
 #include <deque>
 #include <memory>
@@ -13,13 +13,13 @@ namespace shvr::ui {
 
 class RelevanceLog {
 public:
-    /// Maximum number of entries not yet taken; later ones are dropped. Eight seconds of new bits per mirror iteration.
+    /// Maximum number of waiting entries; later ones are dropped. Eight seconds if every mirror iteration adds one.
     static constexpr size_t MAX_ENTRIES = 1024;
 
     /// Main thread, before and after a recording
     void begin();
     void end();
-    /// Call before `patch` is published; the same sequence is recorded once. The publisher's thread.
+    /// Call before `patch` is published, on the publisher's thread. A sequence is recorded only once.
     void note(const RelevancePatch& patch);
     /// Returns the next entry that is no newer than `sequence`. Main thread.
     std::optional<TraceRelevance> take(uint64_t sequence);

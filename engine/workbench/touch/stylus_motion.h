@@ -17,7 +17,7 @@ namespace shvr::ui {
 /// Width of a haptic device's workspace, mapped to the height of the view.
 inline constexpr double WORKSPACE_M = 0.12;
 
-/// Returns a device's workspace in the view: right, up and towards the viewer, about the camera's target.
+/// Returns a device's workspace in the view: its axes are right, up and towards the viewer, its origin the target.
 Workspace workspace_in_view(const Camera& camera, double view_height, double scale);
 
 /// State when a stylus took hold of the volume: camera and stylus pose.
@@ -26,29 +26,29 @@ struct Grab {
     glm::dvec3 position_m{0.0};
     glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
 };
-/// Returns Eq. 4.9 of the thesis, M_volume = M_probe M_probe_start^-1 M_volume_start, as a camera: since the grab the
-/// volume has moved and turned in the view with the stylus, about the stylus. `units_per_m`: the workspace's. The
-/// probe then stays on its voxel.
+/// Returns a camera that realizes Eq. 4.9 of the thesis, M_volume = M_probe M_probe_start^-1 M_volume_start: since the
+/// grab, the volume has moved and turned in the view with the stylus, about the stylus. `units_per_m`: the scale of the
+/// workspace. The probe then stays on its voxel.
 Camera camera_of_grab(const Grab& grab, const glm::dvec3& position_m, const glm::dquat& rotation, double units_per_m);
 
-/// Returns the plane of voxels across an axis through a point, in the device's frame.
+/// Returns the voxel plane `plane` through a point, in the device's frame.
 PlaneHold plane_of(TouchPlane plane, const glm::dvec3& point, const Workspace& workspace, uint32_t count);
-/// Returns the point nearest to `point` on that plane through `on`.
+/// Returns the point nearest to `point` in the voxel plane `plane` through `on`.
 glm::dvec3 in_plane(TouchPlane plane, const glm::dvec3& on, const glm::dvec3& point);
 
-/// Returns the radius of a straight tube through the centre of a ball that fills that share of it; null without any.
+/// Returns the radius of the straight tube through a ball's centre that fills `share` of the ball; null if none does.
 ///   share = 1 - (1 - (tube / ball)^2)^(3/2)
 std::optional<double> radius_from_overlap(double share, double ball_radius);
 
 /// The place where tools act.
 struct ToolPlace {
     glm::dvec3 point{0.0};              ///< volume space
-    std::optional<uint32_t> node;       ///< the node that attracts them
-    std::optional<uint32_t> internode;  ///< likewise, the internode, between its ends
+    std::optional<uint32_t> node;       ///< the node that attracts tools
+    std::optional<uint32_t> internode;  ///< the internode that attracts tools between its ends
 };
-/// Returns the point, or the part of the trace within `reach` that attracts tools, as `feel` selects: the nearest
-/// node, or the nearest point of a centre line, except on internodes of `except_of`, from which the user continues.
-/// Parts of the trace in other than the `drawn` groups attract nothing.
+/// Returns the point, or the part of the trace within `reach` that attracts tools, as `feel` selects: the nearest node,
+/// or the nearest point of a centre line. Internodes of `except_of`, the node from which the user continues, attract
+/// nothing, nor do parts of the trace in groups that are not `drawn`.
 ToolPlace tool_place(const FeelSettings& feel, const TraceGraph& trace, const glm::dvec3& point, double reach,
                      std::optional<uint32_t> except_of, const std::bitset<256>& drawn = std::bitset<256>().set());
 

@@ -24,12 +24,12 @@ struct GuideSettings {
 GuideSettings guide_settings(const Session& session, double probe_radius, FeltLimits limits);
 
 struct StylusPoint {
-    glm::dvec3 probe{0.0}, middle{0.0};  ///< physical units; equal without contact or `at_proxy`
+    glm::dvec3 probe{0.0}, middle{0.0};  ///< physical units; equal if there is no contact or `at_proxy` is off
     bool in_contact = false;
     double relevant_share = 0.0;
     bool is_pressed = false;  ///< state of the first button
 };
-/// A recording of an older program feels what is hidden, too, as it did then. `by_hand`: a modelled hand and stylus are
+/// Recordings of older programs feel hidden voxels, too, as they did then. `by_hand`: a modelled hand and stylus are
 /// pulled along the recording; otherwise the probe follows it. `source` includes density offsets already.
 std::vector<StylusPoint> play_stylus(const Trace& trace, const GuideSettings& guide, bool by_hand,
                                      std::shared_ptr<const VolumeSource> source, const Mask& mask);

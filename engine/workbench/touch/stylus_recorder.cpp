@@ -43,7 +43,7 @@ void StylusRecorder::swap_device()
     relevance_ = 0;
 }
 
-/// Entries that the servo skipped are kept, too, since later ones refer to them.
+/// Also keeps entries that the servo skipped, since later entries refer to them.
 void StylusRecorder::add_relevance(RelevanceLog& log)
 {
     if (tick_.relevance == relevance_) return;

@@ -13,14 +13,14 @@ class StylusRecorder {
 public:
     /// `unit`: unit of the volume's lengths. `number`: number of the recording, above 0, as in orders to the tap.
     StylusRecorder(std::filesystem::path path, std::string unit, uint32_t number);
-    /// Continues with the tap of another device and servo; fetch from the former tap first.
+    /// Continues with the tap of another device and servo; fetch the remaining ticks of the former tap first.
     void swap_device();
     /// Fetches new ticks.
     void advance(TapLink& link);
     const std::filesystem::path& path() const { return path_; }
     uint32_t number() const { return number_; }
     double seconds() const { return double(trace_.ticks.size()) / trace_.rate_hz; }
-    /// Returns why the recording cannot continue; empty: it can.
+    /// Returns why the recording cannot continue; empty if it can.
     const std::string& end() const { return end_; }
     /// Returns the trace. Fails if there is no tick.
     Trace take();

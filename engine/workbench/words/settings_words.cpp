@@ -86,7 +86,7 @@ std::string sentence_about(const OcclusionSettings& was, const OcclusionSettings
                     " of the light arrives, ", percent(moved->seen), " is seen", off);
 }
 
-/// Empty if only numbers changed, which need no sentence of their own.
+/// Returns an empty text if only numbers changed, which need no sentence of their own.
 std::string sentence_about(const FeelSettings& was, const FeelSettings& is)
 {
     if (was.mode != is.mode) return words_of(is.mode).sentence;

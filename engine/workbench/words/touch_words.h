@@ -8,8 +8,8 @@ namespace shvr::ui {
 
 struct TouchWords {
     const char* name = "";      ///< on a button
-    const char* hint = "";      ///< what it does
-    const char* sentence = "";  ///< the status bar's message when it is chosen
+    const char* hint = "";      ///< what the choice does
+    const char* sentence = "";  ///< the status bar's message after the choice
 };
 TouchWords words_of(TouchMode mode);
 TouchWords words_of(ProxyLaw law);

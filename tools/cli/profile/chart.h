@@ -9,10 +9,10 @@
 namespace shvr::cli {
 
 /// A colour per pass, the same everywhere. Up to seven passes have seven colours, distinguishable with any colour
-/// vision (Okabe and Ito 2008); with more, passes that ran one after the other differ.
+/// vision (Okabe and Ito 2008); with more passes, at least those that ran one after the other differ.
 class PassColors {
 public:
-    /// The names in the order in which passes first ran, each once.
+    /// `names`: the names of passes, each once, in the order in which the passes first ran.
     explicit PassColors(std::vector<std::string> names) : names_(std::move(names)) {}
     std::string of(const std::string& name) const;
 
@@ -39,13 +39,13 @@ public:
     Chart(double left, double end_ms);
     /// Starts a row below all previous ones.
     void begin_row(const std::string& name);
-    /// Adds a bar to the last row; further lanes are below it. Its description is a tooltip and, if it fits, on the
-    /// bar.
+    /// Adds a bar to the last row; further lanes are below lane 0. `tooltip` describes the bar; `on_it` is written on
+    /// it if it fits.
     void bar(double begin_ms, double length_ms, const std::string& color, const std::string& tooltip,
              const std::string& on_it = {}, size_t lane = 0);
-    /// A line of values from 0 to the maximum, as steps: each value holds from its time on.
+    /// Adds a line of values from 0 to the maximum, drawn as steps: each value holds from its time on.
     void line(const std::string& name, const std::vector<std::pair<double, double>>& values, const std::string& most);
-    /// Adds an axis whose ticks are at least `least_tick` apart.
+    /// Returns the chart with an axis whose ticks are at least `least_tick` apart.
     std::string svg(const std::string& unit = "ms", double least_tick = 0.0) const;
 
 private:

@@ -28,7 +28,7 @@ const Json* find_pass(const Json& passes, const std::string& name)
     return nullptr;
 }
 
-/// Number of measurements; older profiles that do not state it have many.
+/// Returns the number of measurements; older profiles do not state it, but have many.
 size_t count_of(const Json& object, const char* key)
 {
     const auto count = object.find(key);
@@ -36,13 +36,13 @@ size_t count_of(const Json& object, const char* key)
                                                                 : std::numeric_limits<size_t>::max();
 }
 
-/// The times of a pass, on the device or, with the prefix "record_", of recording it.
+/// Returns the times that a pass takes on the device or, with the prefix "record_", the times to record it.
 std::optional<Timing> timing_of_pass(const Json* pass, const std::string& prefix, const std::string& file)
 {
     return pass ? timing_of(*pass, prefix, count_of(*pass, "count"), file) : std::nullopt;
 }
 
-/// Compares all passes of both, in the order of A's and then B's own.
+/// Compares all passes: first those of A, in A's order, then those that only B has.
 Json passes_compared(const Json& a, const std::string& a_name, const Json& b, const std::string& b_name,
                      const std::string& prefix)
 {

@@ -31,7 +31,7 @@ bool is_of_session(const Json& summary);
 Json session_difference_of(const Json& a, const std::string& a_name, const Json& b, const std::string& b_name);
 std::string session_difference_text(const Json& difference);
 
-/// Rows of tables: a comparison of times, of counts.
+/// Return rows of tables: of a comparison of times, and of one of counts.
 std::vector<std::string> time_row(const Json& row);
 std::vector<std::string> count_row(const Json& row);
 /// Explains "unknown", if one of these rows has it.

@@ -49,7 +49,7 @@ uint64_t most_at_once(const std::vector<Need>& needs)
     return most;
 }
 
-/// The size of one block that holds them all: the largest are placed first, each at the lowest free offset.
+/// Returns the size of one block that holds all resources: largest first, each at the lowest free offset.
 uint64_t packed_bytes(std::vector<Need> needs)
 {
     std::stable_sort(needs.begin(), needs.end(), [](const Need& a, const Need& b) { return a.bytes > b.bytes; });

@@ -37,7 +37,7 @@ PassColors colors_of(const Json& summary)
     return PassColors(names);
 }
 
-/// Adds some frames, from `begin_ms` of the frames' clock on.
+/// Adds the frames [first, end) to an axis that starts at `begin_ms` on the frames' clock.
 void add_frames(Chart& chart, const Profile& profile, const PassColors& colors, size_t first, size_t end,
                 double begin_ms)
 {

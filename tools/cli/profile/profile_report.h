@@ -12,7 +12,7 @@
 namespace shvr::cli {
 
 struct ProfiledFrame {
-    double begin_ms = 0.0, end_ms = 0.0;  ///< the call that rendered it, on the host's clock, from the first frame
+    double begin_ms = 0.0, end_ms = 0.0;  ///< render call on the host's clock; 0 is the first frame
     double wall_ms = 0.0;                 ///< from submission to completion
     uint64_t device_bytes = 0;
     std::vector<gpu::PassReport> passes;
@@ -64,8 +64,8 @@ void write_graph(const std::filesystem::path& path, const FrameGraph& graph);
 
 void write_text(const std::filesystem::path& path, const std::string& text);
 
-/// A timed pass at its position in a drawing. The clocks of host and device are independent, so passes end with their
-/// frame; overlapping ones have lanes of their own.
+/// A timed pass and its position in a drawing. The clocks of host and device are independent, so the passes of a frame
+/// are placed to end with the frame; overlapping passes get separate lanes.
 struct PlacedPass {
     size_t frame = 0, pass = 0;  ///< indices
     double begin_ms = 0.0;       ///< on the frames' clock
@@ -75,11 +75,11 @@ struct PlacedPass {
 /// In order of execution.
 std::vector<PlacedPass> placed_passes(const Profile& profile);
 
-/// When the host recorded the passes of a frame, and for how long: milliseconds on the frames' clock, one after the
-/// other, within the frame.
+/// Returns when the host recorded each pass of a frame, and for how long: milliseconds on the frames' clock, one pass
+/// after the other, within the frame.
 std::vector<std::pair<double, double>> recorded_in(const Profile& profile, const ProfiledFrame& frame);
 
-/// Two summaries side by side, of frames or of sessions: README.md lists the keys. Names are those of the files.
+/// Compares two summaries, of frames or of sessions: README.md lists the keys. `a_name`, `b_name`: names of the files.
 Json difference_of(const Json& a, const std::string& a_name, const Json& b, const std::string& b_name);
 std::string difference_text(const Json& difference);
 

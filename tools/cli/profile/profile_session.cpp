@@ -12,7 +12,7 @@ namespace shvr::cli {
 
 namespace {
 
-/// Counter values; an action's share is the difference of two.
+/// Values of counters; an action's share is the difference between two of these.
 struct SessionCounts {
     uint64_t submits = 0, allocations = 0, uploads = 0, evictions = 0;
     int64_t painted = 0;
@@ -77,11 +77,11 @@ public:
                  bench.document().outside.empty() ? "; expected it to be closed there first"
                                                   : "; --outside writes there");
     }
-    /// Runs until the picture is complete, which does not count for the first action.
+    /// Runs until the picture is complete, so that this work does not count for the first action.
     void set_up(const std::function<void()>& poll)
     {
         bench.set_pixels(bench.document().session.render.size);
-        bench.set_hand_down(true);  // the script states where a step of settings ends
+        bench.set_hand_down(true);  // no step of settings ends by itself: the script states where
         ProfiledAction opening;
         bench.advance();
         settle(

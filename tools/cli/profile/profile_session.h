@@ -11,10 +11,10 @@ struct ProfiledAction {
     std::string action;                   ///< its key "op"
     double begin_ms = 0.0, end_ms = 0.0;  ///< time on the host's clock, from the first action
     // From the beginning of the action; null if the event did not happen before the next action.
-    std::optional<double> paint_ms;       ///< time until the voxels that it changed are painted; null: their number is
-                                          ///< unchanged
-    std::optional<double> sketch_ms;      ///< time until every pane shows at least a sketch of it
-    std::optional<double> sharp_ms;       ///< until every pane shows it sharp
+    std::optional<double> paint_ms;       ///< time until the voxels that the action changed are painted; null: their
+                                          ///< number is unchanged
+    std::optional<double> sketch_ms;      ///< time until every pane shows at least a sketch of the result
+    std::optional<double> sharp_ms;       ///< time until every pane shows the result sharp
     uint64_t submits = 0;                 ///< submissions of the picture
     uint64_t allocations = 0;             ///< allocations of device memory
     uint64_t uploads = 0, evictions = 0;  ///< paged bricks only
@@ -26,7 +26,7 @@ using Replayed = std::vector<ProfiledAction>;  ///< the whole script, done once
 struct SessionProfile {
     std::string input, script, device, driver;
     glm::uvec2 size{0};
-    std::vector<Replayed> replays;  ///< at least one, all of the same actions; the last one is the input's own
+    std::vector<Replayed> replays;  ///< at least one; all have the same actions; the last one ran on the input itself
     Json bytes;
     uint64_t device_budget = 0, host_budget = 0;
 };

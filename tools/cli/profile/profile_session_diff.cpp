@@ -18,7 +18,7 @@ const Json& member(const Json& object, const char* key, const std::string& file)
     return *found;
 }
 
-/// The timing from {min, median, p95}, measured in `replays` replays; null if it is null.
+/// Returns the timing of {min, median, p95}, measured in `replays` replays; null if the profile has null there.
 std::optional<Timing> timing_in(const Json& spreads, const char* key, size_t replays, const std::string& file)
 {
     const Json& spread = member(spreads, key, file);
@@ -29,7 +29,7 @@ std::optional<Timing> timing_in(const Json& spreads, const char* key, size_t rep
     return timing_of(times, "", replays, file);
 }
 
-/// If only one of the two has a time, such as that of painting, this is reported as the change.
+/// Compares two times. If only one of the two exists, such as that of painting, this is reported as the change.
 Json compared(const char* words, const std::optional<Timing>& a, const std::optional<Timing>& b)
 {
     Json row = compared_times(words, a, b);

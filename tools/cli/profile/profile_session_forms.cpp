@@ -60,7 +60,7 @@ constexpr std::pair<const char*, std::optional<double> ProfiledAction::*> TIMES_
     {"sketch_ms", &ProfiledAction::sketch_ms},
     {"sharp_ms", &ProfiledAction::sharp_ms}};
 
-/// An action over all replays: the times that every replay has.
+/// Summarises an action over all replays: only the times that every replay has.
 Json over_replays(const SessionProfile& profile, size_t index)
 {
     Json spreads = Json::object();

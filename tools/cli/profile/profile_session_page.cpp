@@ -59,7 +59,7 @@ std::string whole_table(const Json& summary)
     return "<table>\n" + rows + "</table>\n";
 }
 
-/// The chart of the replay on the input itself.
+/// Draws the chart of the replay that ran on the input itself.
 std::string chart_of(const Replayed& replayed)
 {
     Chart chart(190.0, replayed.back().end_ms);

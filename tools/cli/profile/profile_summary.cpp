@@ -9,7 +9,7 @@ namespace shvr::cli {
 
 namespace {
 
-/// All reports of passes with one name, over the frames; none for a frame that did not run it.
+/// All reports of passes with one name, frame by frame; a frame that did not run such a pass has no report.
 struct PassHistory {
     std::vector<double> times, records;
     size_t count = 0;
@@ -57,7 +57,7 @@ Json pass_summary(const PassHistory& history)
             {"barrier", history.last.barrier}};
 }
 
-/// Per frame, the sum over its passes; frames without times have none.
+/// Returns each frame's sum over its passes; frames without times are left out.
 std::vector<double> sums_of(const std::vector<ProfiledFrame>& frames)
 {
     std::vector<double> sums;
@@ -70,7 +70,7 @@ std::vector<double> sums_of(const std::vector<ProfiledFrame>& frames)
     return sums;
 }
 
-/// By kernel pass; null if the device does not report it.
+/// Returns invocations by kernel pass; null if the device does not report them.
 Json invocations_of(const std::vector<gpu::PassReport>& passes)
 {
     Json invocations = Json::object();

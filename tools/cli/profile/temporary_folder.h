@@ -1,5 +1,5 @@
 #pragma once
-// A folder that is deleted with its owner.
+// A folder that is deleted when its owner is destroyed.
 
 #include <unistd.h>
 
@@ -15,7 +15,7 @@ namespace shvr::cli {
 struct TemporaryFolder {
     std::filesystem::path path;
 
-    /// Creates a folder among the system's temporary files, with that prefix. Fails if it cannot be created.
+    /// Creates a folder whose name begins with that prefix among the system's temporary files. Fails if it cannot.
     explicit TemporaryFolder(const std::string& begins_with)
     {
         std::string name = (std::filesystem::temp_directory_path() / (begins_with + "-XXXXXX")).string();

@@ -31,7 +31,7 @@ ImGuiID chooser_of = 0;
 
 constexpr float NAME_COLUMN = 9.0f, VALUE_WIDTH = 26.0f;  ///< in font sizes
 
-/// Draws the name at the left; the widget follows, whose own label is only an id.
+/// Draws the name at the left. Returns the label for the widget that follows, which is only an id.
 std::string begin_row(std::string_view name)
 {
     ImGui::AlignTextToFramePadding();
@@ -169,13 +169,13 @@ private:
         if (beside_.empty() || (ending.empty() && name != "project")) return beside_.parent_path();
         return beside_.string() + "-" + std::string(name) + ending;
     }
-    /// Describes a widget without text, at its right.
+    /// Writes a description to the right of a widget that has no text.
     static void words_beside(const About& about, float fonts)
     {
         ImGui::SameLine();
         ImGui::TextDisabled("%s", shortened(about.meaning, fonts * ImGui::GetFontSize()).c_str());
     }
-    /// Describes an empty field, as far as there is room.
+    /// Returns the description to show in an empty field, as far as there is room.
     static std::string words_for(const About& about, float width)
     {
         return shortened(about.meaning, width - 2.0f * ImGui::GetStyle().FramePadding.x);

@@ -1,6 +1,6 @@
 #pragma once
-// Widgets for the options of a task or any other object that visits its keys (engine/session/fields.h): each key by its
-// name, with its meaning as a tooltip. Between Window::begin_ui and Window::present, main thread.
+// Widgets for the options of a task, or of any other object that visits its keys (engine/session/fields.h): each key
+// with its name, and with its meaning as a tooltip. Between Window::begin_ui and Window::present, main thread.
 
 #include <filesystem>
 
@@ -8,10 +8,10 @@
 
 namespace shvr::ui {
 
-/// Draws the keys and changes the values, each with its name at the left. The path, without suffix, gives new files
-/// their names, "/scans/spike": a chooser begins with it; empty: none. Keys that need a form of
-/// their own (Fields::other, lists) are left out. Returns whether a chooser of one of them was in front, which Escape
-/// then closed.
+/// Draws the keys, each with its name at the left, and changes their values. The path, without suffix ("/scans/spike"),
+/// is where choosers begin and from which they form the names of new files; empty: none. Keys that need a form of their
+/// own (Fields::other, lists) are left out. Returns whether a chooser of one of the keys was in front: an Escape then
+/// closed that chooser.
 bool draw_fields(const Fields::Visit& visit, const std::filesystem::path& beside = {});
 
 }  // namespace shvr::ui

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Last frames in which a chooser was open, and in which one read a folder.
+/// The last frame in which any chooser was open, and the last frame in which one read a folder.
 int open_in_frame = -10, reading_in_frame = -10;
 
 bool is_recent(int frame)
@@ -41,7 +41,7 @@ std::string with_slash(const fs::path& folder)
     return text.ends_with('/') ? text : text + "/";
 }
 
-/// Tab completes the path in a field, if the completion is known soon.
+/// On Tab, completes the path in a field, if the completion is known soon.
 struct Completion {
     fs::path folder;
     bool has_answered = true;
@@ -142,7 +142,7 @@ void FileChooser::select(size_t row)
     ++field_number_;
 }
 
-/// Takes the path, enters it, or states why not, as soon as that is known.
+/// Accepts the path, enters it, or states why it is refused, as soon as the file system has answered.
 void FileChooser::accept(const std::string& typed, bool enters_folders)
 {
     forget_questions();
@@ -322,14 +322,14 @@ void FileChooser::path_field()
     if (entered) accept(text_, true);
 }
 
-/// Shows the folder of a whole path that is being typed, once its slash has been typed.
+/// While a whole path is typed, shows the folder of that path as soon as the folder's slash has been typed.
 void FileChooser::follow_typed()
 {
     if (!text_.ends_with('/') || !(text_.starts_with('/') || text_.starts_with('~'))) return;
     if (const fs::path folder = typed_path(text_, list_.folder()); folder != list_.folder()) follow(folder);
 }
 
-/// Up and Down go from the field into the list; there letters jump, Backspace goes up, and / or ~ begins a path.
+/// Up and Down lead from the field into the list, where letters jump, Backspace goes up, and / or ~ begins a path.
 void FileChooser::keys()
 {
     const auto step = [&](int64_t rows) {
@@ -377,7 +377,7 @@ void FileChooser::file_table(float height)
 {
     const ImGuiTableFlags flags =
         ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_Resizable | ImGuiTableFlags_BordersInnerV;
-    ImGui::PushID(list_.folder().c_str());  // each folder begins at its top
+    ImGui::PushID(list_.folder().c_str());  // each folder has its own scroll position, which begins at the top
     if (ImGui::BeginTable("files", 4, flags, {0.0f, height})) {
         const float font = ImGui::GetFontSize();
         ImGui::TableSetupScrollFreeze(0, 1);

@@ -26,7 +26,7 @@ public:
     explicit FileChooser(const Question& question) : question_(question), all_files_(question.wanted == Wanted::file) {}
     /// Shows the dialog from the next `draw` on. `begin`: a path to begin with; empty: the last one, or home.
     void ask(const std::filesystem::path& begin, std::vector<Place> places);
-    /// Shows it again, with the reason why the path was refused.
+    /// Shows the dialog again, with the reason why the path was refused.
     void ask_again(const std::filesystem::path& path, std::vector<Place> places, std::string failure);
     bool is_open() const { return is_open_ || is_asked_for_; }
     void close() { closes_ = true; }

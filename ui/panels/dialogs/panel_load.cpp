@@ -29,13 +29,13 @@ FileChooser choosing({.title = "Look at a file",
 struct LoadDialog {
     LoadForm form;
     std::string path;
-    std::vector<Choice> choices;  ///< that the file was found to offer
+    std::vector<Choice> choices;  ///< choices that the file was found to offer
     int levels = 0;               ///< number of levels that the file was found to have; 0: not known
     bool is_asked_for = false;
 };
 LoadDialog loading;
 
-/// Keeps the available choices known after one of them is chosen.
+/// Remembers the available choices, even after one of them is chosen.
 void follow_choices(const Candidate* candidate)
 {
     if (!candidate || candidate->path != loading.path) return;
@@ -45,7 +45,7 @@ void follow_choices(const Candidate* candidate)
     }
 }
 
-/// A list if the file offers several choices, otherwise a field to type in.
+/// Draws a list if the file offers several choices, otherwise a field to type in.
 bool choice_field(const char* label, const char* key, std::string& value)
 {
     const auto found = std::ranges::find(loading.choices, key, &Choice::key);

@@ -64,7 +64,7 @@ bool is_gone(const std::filesystem::path& path, const std::vector<std::filesyste
     return std::ranges::find(search->gone, path) != search->gone.end();
 }
 
-/// Lists recently opened paths: the name, its folder, and a cross that removes a missing one from the list.
+/// Lists recently opened paths: the name, its folder and, if the path is missing, a cross that removes the entry.
 void recent_list(const Model& model, Actions& actions)
 {
     const auto& recent = model.preferences.recent;
@@ -114,7 +114,7 @@ void open_dialog(const Model& model, Actions& actions)
 {
     static bool was_asked = false;
     if (model.asks_what_to_open && !std::exchange(was_asked, true)) {
-        // The first time, the dialog begins in the folder of the last opened file; later, in the folder used last.
+        // The first time, the dialog starts in the folder of the last opened file; after that, in the folder used last.
         static bool was_shown = false;
         const auto& recent = model.preferences.recent;
         const std::filesystem::path begin =
@@ -147,7 +147,7 @@ void ask_for_name(const Model& model)
 
 void ask_what_to_take(const Model& model)
 {
-    static bool was_shown = false;  // later it begins where it was left
+    static bool was_shown = false;  // later the dialog begins where it was left
     const std::filesystem::path beside =
         std::exchange(was_shown, true) ? std::filesystem::path() : model.session_path.parent_path() / "";
     taking.ask(beside, places_of(model));

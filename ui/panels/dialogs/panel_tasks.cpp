@@ -55,7 +55,7 @@ constexpr bool WRITES_FILES = !std::is_same_v<Task, EvaluateTask>;
 
 int waits_in_frame = -1;  ///< last frame in which a dialog waited for the disk
 
-/// A dialog with the options of a task, which are kept for the next time with the same scan.
+/// A dialog with the options of a task; the options are kept for the next time with the same scan.
 template <class Task>
 struct TaskDialog {
     Task task;
@@ -90,7 +90,7 @@ struct TaskDialog {
     }
 
 private:
-    /// Output files are named after the scan, next to its session or its file. Files to compare exist already.
+    /// Output files are named after the scan, next to its session or its file. Empty for comparisons: they write none.
     static std::filesystem::path beside(const Model& model)
     {
         if (!model.is_open || !WRITES_FILES<Task>) return {};
@@ -143,7 +143,7 @@ struct Dialogs {
 };
 Dialogs dialogs;
 
-/// Forgets the tasks of another scan, whose exported files this one's would replace.
+/// Forgets the tasks of another scan: otherwise this scan's exports would replace the files of that scan.
 void forget_another_scan(const Model& model)
 {
     static std::filesystem::path session;

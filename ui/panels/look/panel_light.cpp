@@ -41,7 +41,7 @@ void background(const Model& model, Actions& actions)
     shortcut("Black", 0.0);
 }
 
-/// Draws a ball with the highlight at the direction of the light; it follows the mouse. Returns whether it was dragged.
+/// Draws a ball whose highlight shows the light's direction and follows the mouse. Returns whether it was dragged.
 bool light_ball(glm::dvec3& direction, bool& is_reset, Actions& actions)
 {
     const float side = 5.0f * ImGui::GetFontSize(), radius = 0.46f * side;

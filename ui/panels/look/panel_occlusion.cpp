@@ -15,7 +15,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// The selected point, whose numbers are shown, and whether the mouse holds it.
+/// The selected point, whose values are shown as numbers, and whether the mouse is dragging it.
 size_t chosen_point = 0;
 bool drags_point = false;
 FineDrag held_point;

@@ -21,7 +21,7 @@ namespace {
 /// State of the name dialogs between frames.
 struct NameState {
     std::string name;     ///< typed
-    std::string renamed;  ///< preset to rename; empty: the name is for the present curve, to be kept
+    std::string renamed;  ///< preset to rename; empty: a new preset of the present curve is named
 };
 NameState asked;
 
@@ -33,7 +33,7 @@ void ask_for_preset_name(const std::string& renamed)
     asked = {renamed, renamed};
 }
 
-/// Menu of a right click on one of the user's presets.
+/// Draws the menu that a right click on one of the user's presets opens.
 bool own_menu(const TransferPreset& preset, Actions& actions)
 {
     bool asks = false;

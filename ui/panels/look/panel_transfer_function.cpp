@@ -47,7 +47,7 @@ struct WidgetState {
     double grabbed_at = 0.0;  ///< intensity under the mouse when it last moved all points
     FineDrag held;            ///< the centre of the grabbed item
     bool is_logarithmic = true;
-    VolumeStatistics bars_of;  ///< what the bars were made of
+    VolumeStatistics bars_of;  ///< the statistics from which `bars` were made
     HistogramBars bars;
 };
 
@@ -87,7 +87,7 @@ void draw_histogram(const CurveAxes& axes, const WidgetState& state, ImDrawList&
         const float left = axes.x_of(bar.lower), right = std::max(axes.x_of(bar.upper), left + 1.0f);
         list.AddRectFilled({left, axes.end.y - height}, {right, axes.end.y}, BARS);
     }
-    // Fill values lie far outside the axis: their bars stand at its ends.
+    // Fill values lie far outside the axis, so their bars stand at the ends of the axis.
     const float width = FILL_BAR * ImGui::GetFontSize();
     for (const HistogramBar& bar : state.bars.fill) {
         const auto height = float(height_of_bar(bar.voxels, most, state.is_logarithmic)) * (axes.end.y - axes.begin.y);
@@ -107,7 +107,7 @@ void draw_area(const CurveAxes& axes, const TransferFunction& function, ImDrawLi
     }
 }
 
-/// Segments are linear in opacity, and therefore curved on this axis.
+/// Draws the line's segments: linear in opacity, and therefore curved on this axis.
 void draw_line(const CurveAxes& axes, const Points& points, ImDrawList& list)
 {
     constexpr int PIECES = 16;
@@ -246,7 +246,7 @@ void drag(const CurveAxes& axes, TransferCurve& curve, const Model& model, const
 void use_wheel(TransferCurve& curve, const Model& model, const WidgetState& state, Actions& actions)
 {
     ImGuiIO& io = ImGui::GetIO();
-    const float notches = io.MouseWheel + io.MouseWheelH;  // Shift turns one into the other
+    const float notches = io.MouseWheel + io.MouseWheelH;  // Shift turns vertical scrolling into horizontal
     if (notches == 0.0f) return;
     const auto [lowest, highest] = model.statistics.range();
     const double shift = wheel_shift(double(notches), state.range, io.KeyShift, !is_float(model.volume.type));

@@ -68,7 +68,7 @@ void force_plot(const HandView& hand, const ServoState& servo)
                 double(*std::ranges::max_element(bars)));
     const ImVec2 size{ImGui::GetContentRegionAvail().x, 3.0f * ImGui::GetFontSize()};
     ImGui::PushStyleVar(ImGuiStyleVar_DisabledAlpha, 1.0f);
-    ImGui::BeginDisabled();  // suppresses its own tooltip, which would name bars by their numbers
+    ImGui::BeginDisabled();  // suppresses the plot's own tooltip, which would name bars by their numbers
     ImGui::PlotLines("##force", bars.data(), int(bars.size()), 0, nullptr, 0.0f, highest, size);
     ImGui::EndDisabled();
     ImGui::PopStyleVar();

@@ -10,17 +10,17 @@
 
 namespace shvr {
 
-/// The shape of an array or a chunk: 1 to 16 whole numbers above 0.
+/// Reads the shape of an array or a chunk: 1 to 16 whole numbers above 0.
 std::vector<int64_t> read_zarr_sides(const JsonNode& node);
-/// As `read_zarr_sides`, one for each axis of the array.
+/// Reads a shape like `read_zarr_sides`, but with exactly one number for each axis of the array.
 std::vector<int64_t> read_zarr_chunk(const JsonNode& node, size_t axes);
 
-/// Sets `fill` from "fill_value", for the type that is already set. Version 3 may give floats by their bits, as in
+/// Sets `fill` from "fill_value"; the voxel type must be set before. Version 3 may state floats as their bits, as in
 /// "0x7fc00000".
 void read_zarr_fill(const JsonNode& node, ZarrMetadata& metadata);
 nlohmann::json zarr_fill(const ZarrMetadata& metadata);
 
-/// Refuses `node`, the shape of a chunk, if it holds more than MAX_CHUNK_BYTES.
+/// Fails if a chunk with the shape in `node` has more than MAX_CHUNK_BYTES.
 void check_zarr_chunk(const JsonNode& node, const ZarrMetadata& metadata);
 
 }  // namespace shvr

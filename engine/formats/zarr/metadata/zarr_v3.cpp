@@ -19,10 +19,10 @@ using Json = nlohmann::json;
 using Kind = ZarrCompressor::Kind;
 
 constexpr size_t MAX_CODECS = 16;
-/// Limit of a shard's index, which is read as a whole: four million chunks.
+/// Maximum size of a shard's index, which is read as a whole; enough for four million chunks.
 constexpr int64_t MAX_INDEX_BYTES = int64_t{64} << 20;
 
-/// The names of numcodecs are those in zarr-python's numcodecs.zarr3, which stores the same bytes.
+/// Names that begin with "numcodecs." are those of zarr-python's numcodecs.zarr3, which stores the same bytes.
 constexpr Spelling<Kind> CODECS[] = {{Kind::blosc, "blosc"},         {Kind::zstd, "zstd"},
                                      {Kind::gzip, "gzip"},           {Kind::crc32c, "crc32c"},
                                      {Kind::zlib, "zlib"},           {Kind::blosc, "numcodecs.blosc"},
@@ -33,7 +33,7 @@ constexpr const char* KNOWN_CODECS =
 constexpr const char* CHAIN =
     "transpose as often as needed, then bytes or sharding_indexed, then at most one compressor and checksums";
 
-/// The name of an extension: an object with a name and perhaps a configuration, or a name alone.
+/// Returns the name of an extension, which is either an object with a name and perhaps a configuration, or only a name.
 std::string name_of_extension(const JsonNode& node, const char* expected)
 {
     if (!node.is_object() && !node.is_text()) node.refuse(expected);
@@ -88,7 +88,7 @@ bool read_is_big_endian(const JsonNode& codec, size_t voxel_bytes)
     return order.choice(orders) == 1;
 }
 
-/// The order of the axes after a further transposition of the order `before`.
+/// Returns the order of the axes after `codec` transposes axes that are in the order `before`.
 std::vector<size_t> transposed(const JsonNode& codec, const std::vector<size_t>& before)
 {
     const JsonNode node = codec["configuration"].required("order", "a list of axes");
@@ -103,11 +103,11 @@ std::vector<size_t> transposed(const JsonNode& codec, const std::vector<size_t>&
     return order;
 }
 
-/// A chain of codecs, split as the specification orders them.
+/// A chain of codecs, split into the kinds of codecs in the order that the specification demands.
 struct Chain {
-    std::vector<size_t> order{};           ///< after its transpositions
+    std::vector<size_t> order{};           ///< order of the axes after the transpositions
     std::optional<JsonNode> bytes{};       ///< the codec that converts an array to bytes
-    std::vector<ZarrCompressor> codecs{};  ///< those after it
+    std::vector<ZarrCompressor> codecs{};  ///< the codecs after `bytes`
     bool is_sharding = false;
     bool is_transposed = false;
 };
@@ -136,7 +136,7 @@ Chain read_chain(const JsonNode& node, const std::vector<size_t>& axes)
     return chain;
 }
 
-/// The order of the axes; empty if it is the array's own.
+/// Returns the order of the axes, but empty if it is the array's own order.
 std::vector<size_t> unless_plain(std::vector<size_t> order)
 {
     return std::ranges::is_sorted(order) ? std::vector<size_t>() : order;
@@ -157,7 +157,7 @@ void read_index(const JsonNode& configuration, ZarrSharding& sharding)
     sharding.is_index_first = place.exists() && place.choice(places) == 0;
 }
 
-/// With shards, `chunks` are those inside a shard, the unit of reads.
+/// Reads the metadata of shards. Then `chunks` are the chunks inside a shard, the unit of reads.
 void read_sharding(const Chain& outer, ZarrMetadata& metadata)
 {
     const JsonNode configuration = (*outer.bytes)["configuration"];
@@ -234,7 +234,7 @@ Json codec_of(const ZarrCompressor& codec, size_t voxel_bytes)
     return nullptr;
 }
 
-/// `codecs`: those of a chunk in a shard.
+/// Writes the sharding codec. `codecs`: the codecs of each chunk in a shard.
 Json sharding_of(const ZarrMetadata& metadata, const Json& codecs)
 {
     const ZarrSharding& sharding = *metadata.sharding;

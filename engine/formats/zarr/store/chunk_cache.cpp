@@ -5,7 +5,7 @@
 namespace shvr {
 namespace {
 
-/// The cost of an entry in addition to its voxels, so that chunks of fill value do not accumulate without limit.
+/// Cost of an entry in addition to its voxels, so that entries without voxels (only fill values) cannot pile up.
 constexpr int64_t OVERHEAD_BYTES = 256;
 
 int64_t cost_of(const Block& block)

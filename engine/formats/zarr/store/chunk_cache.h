@@ -1,6 +1,6 @@
 #pragma once
-// A cache of recently used decoded chunks, limited in bytes. Two threads that want the same chunk decode it once: the
-// second one waits for the first. Any thread may call it.
+// A cache of recently used decoded chunks, limited in bytes. If two threads want the same chunk, it is decoded once:
+// the second thread waits for the first. Any thread may call it.
 
 #include <condition_variable>
 #include <cstdint>
@@ -27,10 +27,10 @@ public:
     };
 
     /// Returns the cached block, or else the result of `make`. An exception from `make` is rethrown and not cached:
-    /// waiting threads then try themselves.
+    /// threads that wait for the block then call their own `make`.
     std::shared_ptr<const Block> get(const Key& key, const std::function<Block()>& make);
 
-    int64_t bytes() const;  ///< currently held; exceeds the budget only if the latest block alone does
+    int64_t bytes() const;  ///< of cached blocks; exceeds the budget only if the latest block alone does
 
 private:
     struct Entry {

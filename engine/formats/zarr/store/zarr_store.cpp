@@ -63,10 +63,10 @@ public:
     }
 
 private:
-    /// Maximum nesting: an array of many axes has a folder level for each, and a link may form a cycle.
+    /// Maximum nesting. An array of many axes has a folder level for each axis, and a link may form a cycle.
     static constexpr int MAX_FOLDERS = 20;
 
-    /// Hidden names are not keys: temporary files, or those of version 2.
+    /// Lists a folder's keys. Hidden names are skipped: temporary files, or metadata of version 2.
     static bool list_folder(const fs::path& folder, const std::string& before, int folders,
                             const std::function<bool(std::string_view)>& take)
     {
@@ -89,8 +89,8 @@ private:
     fs::path folder_;
 };
 
-/// Caches deflated entries that are read in parts, such as shards that the archive's writer compressed again: they are
-/// decoded as a whole, and the most recent ones are kept.
+/// Size of a cache for deflated entries that are read in parts, such as shards that the archive's writer compressed
+/// again: they are decoded as a whole, and the most recent ones are kept.
 constexpr int64_t KEPT_ENTRY_BYTES = int64_t{64} << 20;
 constexpr int64_t MAX_DEFLATED_SHARD_BYTES = int64_t{256} << 20;
 
@@ -160,7 +160,7 @@ struct PathIntoArchive {
     fs::path inside;  ///< empty: its root
 };
 
-/// Null if no archive is on the path.
+/// Splits a path into an archive's path and the path inside it; null if no archive is on the path.
 std::optional<PathIntoArchive> split(const fs::path& path)
 {
     PathIntoArchive found{path, {}};

@@ -3,7 +3,7 @@
 // archive (.ozx, or .zip). Any thread may call these.
 //
 // An .ozx is a zip whose root is the root of the hierarchy (https://ngff.openmicroscopy.org/rfc/9/). Its entries should
-// be stored, not deflated; both are read. A path may lead into an archive: "scan.ozx/0".
+// be stored; deflated entries are read too. A path may lead into an archive: "scan.ozx/0".
 
 #include <cstdint>
 #include <filesystem>
@@ -20,21 +20,21 @@ namespace shvr {
 class ZarrStore {
 public:
     virtual ~ZarrStore() = default;
-    /// For messages: the value's file, or the archive's path and the entry's name.
+    /// The value's place for messages: its file, or the archive's path and the entry's name.
     virtual std::filesystem::path path_of(const std::string& key) const = 0;
-    /// The size of a value in bytes; null if there is none. Fails if that cannot be determined.
+    /// The size of a value in bytes; null if the value does not exist. Fails if the size cannot be determined.
     virtual std::optional<int64_t> size_of(const std::string& key) const = 0;
-    /// A whole value; null if there is none. Fails if it cannot be read, or is larger than `max_bytes`.
+    /// Reads a whole value; null if it does not exist. Fails if it cannot be read, or is larger than `max_bytes`.
     virtual std::optional<std::vector<std::byte>> read(const std::string& key, int64_t max_bytes) const = 0;
-    /// The bytes of a value from `offset` on. Fails if the value has fewer.
+    /// Fills `part` with the bytes of a value from `offset` on. Fails if the value has fewer bytes.
     virtual void read_part(const std::string& key, int64_t offset, std::span<std::byte> part) const = 0;
 
-    /// Calls `take` with every key that begins with `prefix` (which is empty or ends with a slash), with the prefix
-    /// removed, in no particular order, until it returns false; then returns false. Fails if a folder cannot be listed;
-    /// a missing folder has no keys.
+    /// Calls `take` with every key that begins with `prefix` (empty, or ending with a slash), in no particular order
+    /// and with the prefix removed. If `take` returns false, stops and returns false too. Fails if a folder cannot be
+    /// listed; a missing folder has no keys.
     virtual bool list(const std::string& prefix, const std::function<bool(std::string_view key)>& take) const = 0;
 
-    /// Both return false if `size_of` fails.
+    /// Whether the value exists, or certainly does not. Both return false if `size_of` fails.
     bool has(const std::string& key) const;
     bool lacks(const std::string& key) const;
 };
@@ -44,16 +44,16 @@ struct ZarrPlace {
     std::shared_ptr<const ZarrStore> store;
     std::string prefix{};  ///< "", or ends with a slash
 
-    /// The path of its value `name` for messages; with "", its own path.
+    /// The path of the value `name`, for messages; for "", the path of the place itself.
     std::filesystem::path path_of(const std::string& name) const;
     std::string key(const std::string& name) const { return prefix + name; }
     bool has(const std::string& name) const { return store->has(key(name)); }
-    /// A group or an array inside; `path` is relative and contains no "..".
+    /// A group or an array inside this place; `path` is relative and contains no "..".
     ZarrPlace operator/(const std::filesystem::path& path) const;
 };
 
-/// The place of a folder or an archive, or of a path into an archive; null for other files. Fails if an archive is
-/// damaged. Its content need not be Zarr.
+/// Returns the place of a folder or an archive, or of a path into an archive; null for other files. Fails if an archive
+/// is damaged. The content need not be Zarr.
 std::optional<ZarrPlace> zarr_place(const std::filesystem::path& path);
 ZarrPlace zarr_folder(const std::filesystem::path& folder);
 
