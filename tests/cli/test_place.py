@@ -223,10 +223,11 @@ class PlaceTest(CliTest):
     def test_masks_that_lie_elsewhere_are_refused_with_both_named(self):
         source = files.write_nrrd(self.folder / "a.nrrd", LPS)
         self.check("import", source, self.folder / "project", "--quiet")
-        for name, place in (("turned", STRAIGHT), ("moved", Place(LPS.steps, (0, 0, 0)))):
+        for name, place, says in (("turned", STRAIGHT, ["lies at -1 0 0", "expected nothing painted outside"]),
+                                  ("moved", Place(LPS.steps, (0, 0, 0)), ["first voxel lies at", "expected"])):
             mask = files.write_nrrd(self.folder / f"{name}.nrrd", place)
             self.check_refused("export", self.folder / "project", "--set", f"annotation.mask={mask}", "--mask",
-                               self.folder / "b.mask", says=[f"{name}.nrrd", "-101.5 20.25 1030.125", "expected origin"])
+                               self.folder / "b.mask", says=[f"{name}.nrrd", *says])
         # The same place in words of another frame.
         mask = files.write_nrrd(self.folder / "ras.nrrd", LPS, "right-anterior-superior")
         self.check("export", self.folder / "project", "--set", f"annotation.mask={mask}", "--mask", self.folder / "b.mask")
