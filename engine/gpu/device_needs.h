@@ -12,7 +12,7 @@
 namespace shvr::gpu {
 
 /// The maximum number of resources that any one kernel binds, and the maximum sizes that any one kernel uses.
-inline constexpr uint32_t MAX_STORAGE_IMAGES = 13, MAX_STORAGE_BUFFERS = 7, MAX_SAMPLED_IMAGES = 4;
+inline constexpr uint32_t MAX_STORAGE_IMAGES = 13, MAX_STORAGE_BUFFERS = 6, MAX_SAMPLED_IMAGES = 4;
 inline constexpr uint32_t MAX_PUSH_BYTES = 128, MAX_GROUP_THREADS = 128, MAX_SHARED_BYTES = 10592;
 /// Size of the largest buffer independent of the volume's size: the parents of a region of 256^3 voxels (regions/).
 inline constexpr uint32_t MIN_BUFFER_BYTES = 64u << 20;

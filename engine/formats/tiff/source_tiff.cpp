@@ -329,6 +329,9 @@ private:
                  in_words(layout_of_page(shown_.front())), ", as the others of its image");
         }
         if (shown_.empty()) fail(name_, ": its OME-XML names no page of the file; expected one for each slice");
+        if (lacking / MAX_LACKING > shown_.size())
+            fail(name_, ": its OME-XML names ", lacking, " pages more than the ", directories_.pages.size(),
+                 " that the file holds; expected at most ", MAX_LACKING, " missing ones for each that is there");
         if (lacking > 0)
             volume_.info.warnings.push_back(sentence("its OME-XML names ", lacking, " pages more than the ",
                                                      directories_.pages.size(),
@@ -420,6 +423,7 @@ private:
     }
 
     static constexpr uint32_t LACKING_PAGE = TiffDescription::NO_PAGE - 1;
+    static constexpr uint32_t MAX_LACKING = 64;  ///< for each page that is there: bounds the memory by the file's size
 
     OpenOptions options_;
     std::unique_ptr<const TiffFile> file_;

@@ -219,7 +219,7 @@ private:
     {
         const auto planes = int64_t(result_.pages.size());
         std::map<std::string, uint32_t> files;  // by the name in the XML; number 0 is this file
-        std::vector<uint32_t> file_of_page(result_.pages.size());
+        std::vector<uint32_t> file_of_page;  // empty until a file is named
         int64_t stated = 0;
         bool is_stated = false;
         for_each_child(pixels, "TiffData", [&](const pugi::xml_node& data) {
@@ -241,9 +241,10 @@ private:
             if (stated > 2 * int64_t(MAX_TIFF_PAGES)) {
                 fail(subject_, " places ", stated, " planes; expected the ", planes, " there are");
             }
+            if (!files.empty()) file_of_page.resize(result_.pages.size());
             for (int64_t i = 0; i < std::min(count, planes - first); ++i) {
                 result_.pages[place_of(first + i)] = uint32_t(page + i);
-                file_of_page[place_of(first + i)] = number;
+                if (!files.empty()) file_of_page[place_of(first + i)] = number;
             }
         });
         name_files(files, std::move(file_of_page));
