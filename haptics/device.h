@@ -34,7 +34,7 @@ struct DeviceState {
 };
 
 struct DeviceCaps {
-    glm::dvec3 usable_lower_m{-0.08, -0.06, -0.035};  ///< the box in which its forces are accurate
+    glm::dvec3 usable_lower_m{-0.08, -0.06, -0.035};  ///< corner of the box in which the device's forces are accurate
     glm::dvec3 usable_upper_m{0.08, 0.06, 0.035};
     double peak_force_n = 3.3;
     double continuous_force_n = 0.88;
@@ -42,7 +42,7 @@ struct DeviceCaps {
     double latency_s = 0.002;
     bool senses_rotation = false;
     bool outputs_force = false;
-    bool tells_force_sequence = false;  ///< its states report which force is in effect; otherwise `latency_s` is used
+    bool tells_force_sequence = false;  ///< states report the force in effect; if not, `latency_s` determines it
     bool rate_control = false;          ///< the device reports speeds, not positions; silence means rest
     bool operator==(const DeviceCaps&) const = default;
 };

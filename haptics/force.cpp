@@ -12,7 +12,7 @@ namespace {
 constexpr double VELOCITY_CUTOFF_HZ = 100.0;
 /// Longest tick for fades: a longer pause of the servo counts as this long.
 constexpr uint64_t MAX_TICK_NS = 10'000'000;
-/// The thesis's damping has no time interval; with ticks of this length, it equals `damping`.
+/// The thesis damps per tick, not per second; with ticks of this length, its damping equals `damping`.
 constexpr double THESIS_TICK_S = 0.001;
 
 bool is_place(const DeviceState& state)
@@ -237,8 +237,8 @@ ForceStep feel(const ForceSettings& settings, const DeviceCaps& caps, const Rele
             .objects = growth.contacts};
 }
 
-/// Returns the maximum change of the force in a tick. It grows with the hand's speed, so that a steep law, as where a
-/// ball meets a thin sheet (1200 N/m for two voxels), causes no jolt if the hand is slow.
+/// Returns the maximum change of the force in a tick. It grows with the hand's speed, so a slow hand feels no jolt
+/// where the law is steep, such as 1200 N/m for two voxels where a ball meets a thin sheet.
 double slew_at(const glm::dvec3& velocity)
 {
     return std::clamp(GENTLE_SLEW_N * glm::length(velocity) / GENTLE_SPEED, GENTLE_SLEW_N, SLEW_N);

@@ -93,12 +93,12 @@ struct ForceStep {
     glm::dvec3 probe{0.0};     ///< physical
     glm::dvec3 velocity{0.0};  ///< velocity of the probe, physical units per second, smoothed
     glm::dvec3 proxy{0.0};     ///< physical position; equals the probe's if there is no contact
-    glm::dvec3 middle{0.0};    ///< physical: where tools act; equals the probe's without ForceSettings::finds_middle
+    glm::dvec3 middle{0.0};    ///< physical; where tools act: at the probe unless ForceSettings::finds_middle
     bool in_contact = false;
     double relevant_share = 0.0;
     uint32_t flags = 0;
     uint32_t sequence = 0;   ///< number to write with the force
-    double made_j = 0.0;     ///< energy generated according to the observer and not yet dissipated
+    double made_j = 0.0;     ///< generated energy that the observer found and that is not yet dissipated
     uint32_t objects = 0;    ///< number of objects touched so far, in object following
     double latency_s = 0.0;  ///< measured; 0 if the device does not report it
 };
@@ -121,7 +121,7 @@ inline constexpr double GENTLE_SLEW_N = 0.05;  ///< maximum change per tick for 
                                                ///< proportionally more above
 inline constexpr double GENTLE_SPEED = 0.05;   ///< m/s
 
-/// The stiffness at the hand, after scaling and clamping.
+/// Returns the stiffness at the hand, after scaling and clamping.
 double stiffness_at_hand(const ForceSettings& settings, const DeviceCaps& caps, const SentForces& sent);
 
 /// Runs one tick. `now_ns` is the servo's clock, `state` the device's latest state, and `result` the return value of

@@ -49,7 +49,7 @@ struct Growing {
         list.waits[at / 32] &= ~(1u << (at % 32));
         return at;
     }
-    /// Adds seeds to word `at` and queues it; returns true if a voxel was added. `word`: the word's index in its row.
+    /// Adds seeds to word `at` and queues the word; returns whether a voxel was added. `word`: its index in its row.
     bool seed(uint32_t at, int32_t word, uint32_t seeds)
     {
         const uint32_t allowed = mask.words[at] & valid_bits(mask, word);
@@ -233,7 +233,7 @@ const RelevancePatch& advance_object(const RelevancePatch& patch, const glm::dve
         RelevancePatch& next = memory.patches[1 - memory.current];
         memory.is_growing = seed_from_object(memory.object(), patch, centre, radius, next, memory.list) > 0;
         memory.is_new_contact = false;
-        if (!memory.is_growing) {  // no part of the object is left, or the hand jumped out of its region
+        if (!memory.is_growing) {  // no part of the object is left, or the hand jumped out of the object's region
             memory.has_object = false;
             memory.patches[memory.current].sequence = 0;
         }

@@ -26,7 +26,7 @@ struct GrowthList {
     uint32_t first = 0, count = 0;
 };
 
-/// Empties `grown` and gives it the position of `mask`.
+/// Empties `grown` and moves it to the position of `mask`.
 void begin_growth(const RelevancePatch& mask, RelevancePatch& grown, GrowthList& list) noexcept;
 /// Seeds `grown` with the voxels of `object` that are set in `mask`. If the patches differ in level, they share only
 /// voxels whose centres lie in the ball. Returns the number of words that contain seeds.

@@ -22,7 +22,7 @@ Pages pages_of(void* begin, size_t bytes)
     return {reinterpret_cast<std::byte*>(first), end - first};
 }
 
-/// Loads the pages with the advice `how`, and locks them. A lock also loads them, but not if the system refuses it.
+/// Loads the pages with the advice `how`, and locks them. Locking also loads them, unless the system refuses the lock.
 bool keep(const Pages& pages, int how) noexcept
 {
     static_cast<void>(::madvise(pages.begin, pages.bytes, how));

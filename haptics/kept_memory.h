@@ -1,7 +1,7 @@
 #pragma once
 // Locks memory that a thread with deadlines needs. A page fault costs a tick microseconds if the page is still
 // somewhere in memory, and milliseconds if it must be read from disk; and tens of gigabytes of a scan passing through
-// memory evict pages that were not used for a while, such as the code of a first touch.
+// memory evict pages that were not used for a while, such as the code that a first touch runs.
 //
 // Any thread; the calls take milliseconds at most, or the duration of disk reads if the program's file is not in
 // memory.

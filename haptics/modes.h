@@ -8,7 +8,7 @@ namespace shvr {
 
 struct SurfaceMemory {
     bool is_pinned = false;
-    bool is_armed = true;   ///< whether a surface can hold the probe: after a release, only once less of the ball has
+    bool is_armed = true;   ///< whether a surface can hold the probe; false after a release until less of the ball has
                             ///< been relevant
     glm::dvec3 pin{0.0};    ///< physical
     double farthest = 0.0;  ///< the smallest offset of the probe from the pin towards the camera since the pin was set;
@@ -35,7 +35,7 @@ struct ModePull {
 ModePull pull_of(const ForceSettings& settings, const RelevancePatch& patch, const glm::dvec3& probe, uint64_t now_ns,
                  SurfaceMemory& surface, GrowthMemory& growth) noexcept;
 
-/// If less of the ball is known, the force fades out, a surface neither holds nor lets go, and an object is not lost.
+/// Below this known share of the ball, the force fades out, a surface neither holds nor lets go, and no object is lost.
 inline constexpr double MIN_KNOWN_SHARE = 0.5;
 inline constexpr uint64_t RELEVANCE_FRESH_NS = 50'000'000;  ///< older relevance makes the force fade out
 

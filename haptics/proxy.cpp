@@ -84,7 +84,7 @@ bool is_empty(const uint32_t* words, int32_t count)
     return std::all_of(words, words + count, [](uint32_t word) { return word == 0; });
 }
 
-/// Maps three numbers of 0 ... 1 to a point in the ball of radius 1. Uniform numbers give uniform points.
+/// Maps three numbers in 0 ... 1 to a point in the ball of radius 1. Uniform numbers give uniform points.
 glm::dvec3 point_of(double of_volume, double of_height, double of_turn)
 {
     const double r = std::cbrt(of_volume), z = 2.0 * of_height - 1.0;
@@ -92,7 +92,7 @@ glm::dvec3 point_of(double of_volume, double of_height, double of_turn)
     return r * glm::dvec3(across * std::cos(phi), across * std::sin(phi), z);
 }
 
-/// `IS_CUT`: part of the ball lies beyond `reach`. Whole balls, which most are, take a tenth less time without it.
+/// `IS_CUT`: part of the ball lies beyond `reach`. Most balls are whole, and take a tenth less time when it is false.
 template <bool IS_CUT>
 BallIntegrals integrate_part(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
                              const glm::dvec3& reach) noexcept
@@ -124,7 +124,7 @@ BallIntegrals integrate_part(const RelevancePatch& patch, const glm::dvec3& cent
     const RowRange slices =
         rows_within(c.z, (IS_CUT ? std::min(radius, reach.z + spacing.z) : radius) / spacing.z, patch.size.z);
     for (int32_t z = slices.begin; z < slices.end; ++z) {
-        // The slice's largest disc lies where the slice is nearest to the centre.
+        // The ball's largest disc in the slice lies where the slice is nearest to the ball's centre.
         const double nearest = (std::clamp(c.z, double(z), double(z + 1)) - c.z) * spacing.z;
         const double disc = std::sqrt(std::max(radius * radius - nearest * nearest, 0.0));
         const RowRange rows =

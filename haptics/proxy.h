@@ -33,7 +33,7 @@ struct BallIntegrals {
     glm::dvec3 first{0.0};  ///< integral of a - p
     double second = 0.0;    ///< integral of |a - p|^2
 };
-/// Leaves out voxels farther than `reach` from the centre along any axis.
+/// Integrates over the ball, except voxels farther than `reach` from the centre along any axis.
 BallIntegrals integrate(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
                         const glm::dvec3& reach) noexcept;
 inline BallIntegrals integrate(const RelevancePatch& patch, const glm::dvec3& centre, double radius) noexcept
@@ -52,10 +52,10 @@ struct Proxy {
 inline constexpr double POTENTIAL_FLOOR = 0.05;  ///< eps above
 Proxy find_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius, ProxyLaw law) noexcept;
 
-/// Returns the middle of the structure that a ball with this proxy touches, where tools act, minus the ball's centre.
-/// It is the exact mean in a second ball, centred at the first ball's exact mean, since the first ball's rim cuts more
-/// off the far side of a thick tube. In balls of 1.5 times a tube's radius, the second mean is within 0.11 voxels of
-/// the axis (RMS, guided hand); the first mean is within 0.65.
+/// Returns the vector from the ball's centre to the middle of the structure that the ball touches; tools act there. The
+/// middle is the exact mean in a second ball, centred at the first ball's exact mean, since the first ball's rim cuts
+/// more off the far side of a thick tube. In balls of 1.5 times a tube's radius, the second mean is within 0.11 voxels
+/// of the axis (RMS, guided hand); the first mean is within 0.65.
 glm::dvec3 find_middle(const RelevancePatch& patch, const glm::dvec3& centre, double radius, ProxyLaw law,
                        const Proxy& proxy) noexcept;
 
@@ -67,7 +67,7 @@ std::vector<glm::dvec3> random_points(int count);
 /// Returns points in the ball with low discrepancy: an additive recurrence with the plastic number (Roberts 2018) over
 /// equal volumes.
 std::vector<glm::dvec3> even_points(int count);
-/// Returns the proxy at the mean of those of `points` that are relevant.
+/// Returns the proxy at the mean of the relevant ones among `points`.
 Proxy find_sampled_proxy(const RelevancePatch& patch, const glm::dvec3& centre, double radius,
                          std::span<const glm::dvec3> points) noexcept;
 

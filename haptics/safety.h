@@ -13,8 +13,8 @@ namespace shvr {
 
 // ---- Heat: no 10 s have a root mean square above the continuous force ----------------------------------------------
 
-/// The square of the force, smoothed with HEAT_S, stays at or below continuous^2 / (1 + HEAT_S / 10 s). The squares of
-/// 10 s add up to HEAT_S times its growth plus its own sum, so their mean is at most continuous^2.
+/// Keeps q, the force's square smoothed with HEAT_S, at or below continuous^2 / (1 + HEAT_S / 10 s). Over 10 s, the
+/// square's integral is HEAT_S times q's growth plus q's integral, so the mean square is at most continuous^2.
 inline constexpr double HEAT_S = 2.0;
 inline constexpr double HEAT_WINDOW_S = 10.0;
 struct HeatMemory {
@@ -80,7 +80,7 @@ glm::dvec3 take_energy(const glm::dvec3& velocity, double dt_s, EnergyMemory& en
 inline constexpr double BOX_MARGIN_M = 0.01;
 double share_in_box(const DeviceCaps& caps, const glm::dvec3& position_m);
 
-/// Sanitized limits: NaN and negative values become 0, and nothing exceeds the values of any such device.
+/// Returns sanitized limits: NaN and negative values become 0, and no value exceeds those of any real device.
 DeviceCaps sane(DeviceCaps caps);
 
 }  // namespace shvr

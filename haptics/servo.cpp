@@ -71,7 +71,7 @@ double TimeHistogram::quantile_us(double share) const noexcept
     for (size_t bin = 0; bin < BINS; ++bin) {
         sum += counts[bin];
         if (sum == 0 || double(sum) < wanted) continue;
-        // The upper end of the last bin is the worst value.
+        // The last bin has no upper end, so the worst value stands for it.
         return bin + 1 < BINS ? double(uint64_t{1} << bin) : double(worst_ns) * 1e-3;
     }
     return 0.0;

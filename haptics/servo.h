@@ -78,7 +78,7 @@ public:
     Latest<ForceSettings>& settings() { return settings_; }
     Latest<RelevancePatch>& relevance() { return relevance_; }
     Latest<ServoState>& state() { return state_; }
-    /// For one reading thread, which need not be the one that reads state().
+    /// Returns the probe's place, for one reading thread; another thread may read state().
     Latest<ProbePlace>& place() { return place_; }
     /// Returns whether the system granted SCHED_FIFO; if not, only the timer slack is reduced.
     bool is_realtime() const { return is_realtime_; }

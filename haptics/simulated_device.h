@@ -1,6 +1,6 @@
 #pragma once
 // A device without hardware: a hand that is drawn towards a target position (the wish) and yields to forces. The mouse
-// is one (the wish is where the mouse points, and the hand has no mass), and so is the modelled hand of the tests (100
+// is such a device (the wish is where it points, and the hand has no mass), as is the modelled hand of the tests (100
 // g, 150 N/m, 3 N s/m).
 //
 //   m x'' = k_hand (wish - x) - b_hand x' + F

@@ -2,9 +2,9 @@
 //
 // A brick holds 32^3 voxels. Paged bricks are in slots of the atlas, a 3-D texture, with an apron of one voxel on each
 // side, so that trilinear filtering, and central differences of +-0.5 voxel, never need a second brick. Bricks of a
-// Bricks of a resident volume are side by side, within a border of one voxel that repeats the outermost voxels. Along x
-// there is no border: readers repeat those voxels, so that rows keep the lengths that devices prefer. Slot 0 never
-// holds a brick and means "not on the device".
+// resident volume are side by side, within a border of one voxel that repeats the outermost voxels. Along x there is no
+// border: readers repeat those voxels, so that rows keep the lengths that devices prefer. Slot 0 never holds a brick
+// and means "not on the device".
 #ifndef SHVR_BRICKS_H
 #define SHVR_BRICKS_H
 #include "shared.h"

@@ -45,7 +45,7 @@ struct LeapBoundParams {
 
 SHARED_CONST uint SAMPLE_BITS_AHEAD = 24u;
 SHARED_CONST uint SAMPLE_BIT_PARTS = 32768u;
-/// Maximum voxels along z of volumes with sample bits: parts fit in 31 bits. Along y there may be four times as many.
+/// Maximum voxels along z with sample bits, so that positions in parts fit in 31 bits; along y, four times as many.
 SHARED_CONST uint SAMPLE_BITS_SIZE = 4095u;
 SHARED_CONST float SAMPLE_BITS_REACH = 4.0f;
 
@@ -54,9 +54,9 @@ SHARED_CONST float SAMPLE_BITS_REACH = 4.0f;
 /// along z each: bit x + 4 y + 16 z.
 ///
 /// Rays find the places of SAMPLE_BITS_AHEAD samples in fixed point: SAMPLE_BIT_PARTS parts of a voxel along x, four
-/// times as many along y and sixteen times along z. So a sample may be assigned to a neighbouring voxel, by the error
-/// of its own coordinates plus the rounding of the parts. The bits have a guard against that for rays whose ends are at
-/// most SAMPLE_BITS_REACH times the volume's longest side apart, along each axis; other rays do not use the bits.
+/// times as many along y and sixteen times along z. The rounding to parts, plus the error of a sample's own
+/// coordinates, may therefore assign it to a neighbouring voxel. The bits allow for that on rays whose ends are at most
+/// SAMPLE_BITS_REACH times the volume's longest side apart, along each axis; other rays do not use the bits.
 struct SampleBitsParams {
     uvec3 cell_begin;  ///< the cells to compute
     uvec3 cell_end;

@@ -5,8 +5,8 @@
 //   distance << 28 | level << 24 | payload
 // Distance D > 0: nothing visible in the cube of 2 D - 1 grid cells around this one. Otherwise, level PAGE_NODE: the
 // payload is the first of eight entries, x fastest, for the octants of this cell. Otherwise the payload is the slot
-// (pack_slot) of a brick of that level that contains the cell: the finest one loaded, perhaps coarser than wanted. Or,
-// level PAGE_MISSING: a ray that arrives here waits.
+// (pack_slot) of a brick of that level that contains the cell: the finest one loaded, perhaps coarser than wanted. With
+// level PAGE_MISSING, a ray that arrives here waits.
 //
 // Within a brick, `cell_leap` describes its 8^3 cells: distance << 1 | painted. The distance is the Chebyshev distance
 // to the nearest cell of the brick that may contain something visible, or to the brick's end; if painted is 0, no voxel

@@ -78,9 +78,9 @@ struct RaycastParams {
     float table_scale;    ///< table coordinate = (code - table_lower) * table_scale
     uint table_entries;
     uint table_depths;   ///< texel of the table where depths begin
-    uint opaque_map;     ///< texel of the table where the map begins; 0: none
-    float opaque_scale;  ///< texel of the map = (code - table_lower) * opaque_scale
-    uint first_step;     ///< the block: range of steps of every ray in this dispatch; 0: rays begin
+    uint opaque_map;     ///< texel of the table where the opaque map begins; 0: there is none
+    float opaque_scale;  ///< texel of the opaque map = (code - table_lower) * opaque_scale
+    uint first_step;     ///< first step of this dispatch's block, for every ray; 0: rays begin
     uint end_step;       ///< KEPT_ALL: only the number of steps matters
     uint is_last_block;
     vec4 background;  ///< linear light, straight alpha

@@ -1,4 +1,4 @@
-// Opaque surfaces: balls and rods that end rays, by exact intersection. Lengths and positions are in isotropic space:
+// Opaque surfaces: balls and rods that end rays; intersections are exact. Lengths and positions are in isotropic space:
 // physical positions divided by the reference length, a voxel's finest axis.
 #ifndef SHVR_SURFACES_H
 #define SHVR_SURFACES_H
@@ -39,9 +39,9 @@ SHARED_CONST uint SURFACES_IN_ROW = 1024u;
 SHARED_CONST uint SURFACE_TEXELS = 4u;
 SHARED_CONST uint SURFACE_NODE_TEXELS = 3u;
 
-/// The ray of a pixel passes through a point of the middle plane, in the direction from a point of the near plane to
-/// one of the far plane. Points are relative to the centre of the middle plane, which the user looks at, so that they
-/// stay accurate there even if the volume is large and the eye is far.
+/// The ray of a pixel passes through a point of the middle plane, in the direction from a point of the near plane to a
+/// point of the far plane. Points are relative to the centre of the middle plane, at which the user looks, so that
+/// points there stay accurate even if the volume is large and the eye is far.
 struct SurfaceParams {
     vec3 origin;  ///< origin of all other positions: origin + origin_rest
     vec3 origin_rest;
@@ -64,9 +64,9 @@ struct SurfaceParams {
     vec3 probe_color;  ///< linear light
 };
 
-/// Side of a tile in pixels; tiles start at the part's first pixel. A tile has a texel per pixel: the first holds the
-/// number of surfaces that its rays may meet, each other one a surface's index and, from bit SURFACE_BLOCK on, a bit
-/// for each of the tile's blocks of 4 x 2 pixels. If not all surfaces fit, rays search the boxes instead.
+/// Side of a tile in pixels; tiles start at the part's first pixel. A tile has a texel per pixel. The first texel holds
+/// the number of surfaces that its rays may meet; every other texel holds a surface's index and, from bit SURFACE_BLOCK
+/// on, a bit for each of the tile's blocks of 4 x 2 pixels. If not all surfaces fit, rays search the boxes instead.
 SHARED_CONST uint SURFACE_TILE = 8u;
 SHARED_CONST uint SURFACES_IN_TILE = SURFACE_TILE * SURFACE_TILE - 1u;
 SHARED_CONST uint SURFACE_BLOCK = 24u;  // no scene has 2^24 surfaces
@@ -76,14 +76,14 @@ SHARED_FUNCTION uvec2 surface_tiles_of(uvec2 pixels)
     return (pixels + SURFACE_TILE - 1u) / SURFACE_TILE;
 }
 
-/// The bit of the block of 4 x 2 pixels that holds a pixel: bits 0 and 1 are the blocks of the tile's first two rows,
-/// bits 2 and 3 those of the next two, and so on.
+/// Returns the bit of the block of 4 x 2 pixels that contains a pixel: bits 0 and 1 stand for the blocks in the tile's
+/// first two rows, bits 2 and 3 for the blocks in the next two, and so on.
 SHARED_FUNCTION uint surface_block(uvec2 in_part)
 {
     return SURFACE_BLOCK + in_part.x / 4u % 2u + 2u * (in_part.y / 2u % 4u);
 }
 
-/// The texel of a word of a tile's list: word 0 is the number of surfaces in the list.
+/// Returns the texel of a word in a tile's list; word 0 is the number of surfaces in the list.
 SHARED_FUNCTION uvec2 surface_tile_texel(uvec2 tile, uint word)
 {
     return SURFACE_TILE * tile + uvec2(word % SURFACE_TILE, word / SURFACE_TILE);

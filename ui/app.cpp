@@ -259,7 +259,7 @@ bool App::ui_has_mouse(const InputEvent& event) const
 }
 
 /// Returns whether the interface takes a key. Typed text goes to its field. While panels are used by keyboard, or a
-/// popup is open, the keys that navigate in them go to them, and all other keys act as usual.
+/// popup is open, the panels or the popup get the keys that navigate, and all other keys act as usual.
 bool App::ui_has_key(const KeyEvent& event) const
 {
     if (field_has_keys() || choosers_have_keys()) return true;

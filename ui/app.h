@@ -90,7 +90,7 @@ private:
     Actions actions_;
     std::vector<InputEvent> held_back_;  ///< input for the frame after held_back_in_frame_
     int held_back_in_frame_ = -1;
-    bool was_asked_to_close_ = false;  ///< closing was refused, since saving failed; no action has followed
+    bool was_asked_to_close_ = false;  ///< closing was refused because saving failed, and no action has followed since
     bool was_stopped_ = false;         ///< the program was asked to stop from outside (AppOptions::stop)
     std::string frame_failure_;
     std::optional<double> undrawn_since_s_;  ///< time since which every frame has failed
@@ -102,10 +102,10 @@ private:
     double next_frame_s_ = 0.0;
     std::optional<double> undrawable_since_s_;  ///< time since which no image is available, or the last one is lost
     double ui_until_s_ = 1.0;                   ///< the interface is drawn at least until this time
-    uint64_t ui_until_frame_ = 3;               ///< drawn at least until this many frames are presented
+    uint64_t ui_until_frame_ = 3;               ///< the interface is drawn at least until this frame is presented
     double last_keys_s_ = 0.0;
     uint64_t drawn_revision_ = ~uint64_t(0);
-    bool drew_complete_ = false;  ///< the interface indicates whether the picture is sharp
+    bool drew_complete_ = false;  ///< whether the interface, as last drawn, shows that the picture is sharp
     bool drew_cut_box_ = false;
     uint64_t drawn_messages_ = 0, drawn_openings_ = 0;
     glm::dvec3 drawn_probe_voxel_{0.0};

@@ -39,7 +39,7 @@ void give_keyboard_to(ImGuiWindow* window, ImGuiNavLayer layer)
 
 }  // namespace
 
-/// Follows preferences, the screen that the window is on, and names in other scripts. Between frames.
+/// Follows preferences, the screen that the window is on, and names in other scripts. Call between frames.
 void App::follow_appearance()
 {
     const Model now = bench_->model();

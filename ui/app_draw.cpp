@@ -48,7 +48,7 @@ bool App::draw_ui()
     // cost of the view excludes the interface.
     if (is_open && renderer_->device().traits().is_cpu) bench_->screen().wait();
     const double waited_s = window_.now_s() - begun;
-    follow_appearance();  // new fonts wait for the device, which must not have an image of the screen meanwhile
+    follow_appearance();  // renewing fonts waits for the device, so no image of the screen may be acquired yet
     if (!window_.is_ready()) return false;
     std::vector<View::Layer> layers;
     Layout layout{.begin = glm::uvec2(0), .end = window_.pixels()};
@@ -80,7 +80,7 @@ bool App::draw_ui()
                        .moves = moves,
                        .shows_picture = !layers.empty(),
                        .shows_sharp_picture = !layers.empty() && bench_->document().screen.complete()});
-    // On a software device a presented frame is done; reported later, its time would include the wait for events.
+    // On a software device, a presented frame is done. A later report would add the wait for events to its time.
     report_.done(window_.frames_done(), window_.now_s());
     return true;
 }

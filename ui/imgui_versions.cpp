@@ -77,7 +77,7 @@ bool is_alt(int key)
     return key == GLFW_KEY_LEFT_ALT || key == GLFW_KEY_RIGHT_ALT;
 }
 
-/// Returns the present pointer position. Not for frames with a click: no event may follow one at its own position.
+/// Returns the pointer position. Not for frames with a click: a click has its own position, which must come last.
 ImVec2 pointer_of(GLFWwindow* window)
 {
     const bool is_here = glfwGetWindowAttrib(window, GLFW_FOCUSED) || glfwGetWindowAttrib(window, GLFW_HOVERED);

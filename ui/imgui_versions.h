@@ -3,7 +3,7 @@
 // Ubuntu 24.04). Until 1.86 a program writes the state of keys and buttons before each frame; since 1.87 it passes
 // events, which Dear ImGui applies in NewFrame. Either way a frame here sees the state that it would see in 1.86.
 //
-// The main thread.
+// Main thread only.
 
 #include <vector>
 
@@ -25,7 +25,7 @@ void set_up_imgui_input();
 /// Reports a pressed or released key. `mods`: as in GLFW.
 void tell_imgui_key(GLFWwindow* window, int key, bool pressed, int mods);
 void tell_imgui_character(GLFWwindow* window, unsigned character);
-/// Reports the state of the buttons, and where one of them changed. Call after ImGui_ImplGlfw_NewFrame.
+/// Reports the state of the buttons, and the position of a change. Call after ImGui_ImplGlfw_NewFrame.
 void tell_imgui_buttons(GLFWwindow* window, const MouseFeed::Frame& frame);
 /// Calls ImGui::NewFrame with these keys down: they were pressed since the previous frame, and may be up again. `mods`:
 /// modifiers that are held now.

@@ -40,14 +40,14 @@ std::string name_of_key(int key)
     return {};
 }
 
-/// Name of the key at that place of an American keyboard: GLFW's codes of printable keys are ASCII.
+/// Returns the name of the key at that place of an American keyboard: GLFW's codes of printable keys are ASCII.
 std::string name_at_place(int key)
 {
     const std::string name = name_of_key(key);
     return !name.empty() ? name : key > GLFW_KEY_SPACE && key < 127 ? std::string(1, char(key)) : std::string();
 }
 
-/// Name of the key in the user's layout. Digits are taken by place, since on some keyboards they need Shift.
+/// Returns the key's name in the user's layout. Digits go by their place, since some keyboards need Shift for them.
 std::string name_in_layout(const KeyEvent& event)
 {
     const bool is_digit = event.key >= GLFW_KEY_0 && event.key <= GLFW_KEY_9;

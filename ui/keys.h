@@ -1,5 +1,5 @@
 #pragma once
-// Converts the keyboard to actions, by the keymap (engine/workbench/bindings/keymap.h). Letters and signs are taken
+// Converts key events to actions with the keymap (engine/workbench/bindings/keymap.h). Letters and symbols are taken
 // from the user's layout; keys that steer like a joystick have the same place on every keyboard. Main thread.
 
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-// Mouse buttons for Dear ImGui, which (1.86) polls their state once a frame: if a frame takes longer than a click, Dear
+// Mouse buttons for Dear ImGui. Version 1.86 polls their state once a frame: if a frame takes longer than a click, Dear
 // ImGui takes two clicks for one. Presses wait here, and each frame gets one of them, with its position and time. Any
 // thread, one at a time.
 

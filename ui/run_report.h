@@ -1,6 +1,6 @@
 #pragma once
 // Measures a run: duration of interface frames, latency of keys and first pictures, and the messages shown. Times are
-// seconds of the window's clock. The main thread.
+// seconds of the window's clock. Main thread only.
 
 #include <array>
 #include <optional>
@@ -17,9 +17,9 @@ namespace shvr::ui {
 struct AppReport {
     std::string gpu_name;
     uint64_t frames = 0;           ///< number of frames of the user interface
-    std::vector<double> frame_ms;  ///< times of interface frames: from first call to completion by the device
-    /// frame_ms without the wait for running work on a software device: `own_idle_ms` of frames during which nothing
-    /// refines, `own_busy_ms` of those during which a picture does.
+    std::vector<double> frame_ms;  ///< durations of interface frames, from the first call until the device has finished
+    /// frame_ms without the wait for running work on a software device: `own_idle_ms` has the frames during which
+    /// nothing refines, `own_busy_ms` the frames during which a picture refines.
     std::vector<double> own_idle_ms, own_busy_ms;
     std::vector<double> interval_ms;  ///< time between two frames while something was moving
     std::vector<double> input_ms;     ///< latencies from a key or button until the frame that shows its effect is
@@ -42,7 +42,7 @@ struct AppReport {
 
 class RunReport {
 public:
-    /// Number of times kept per kind: at least this many, at most twice as many.
+    /// Number of measured times kept per kind: at least this many, at most twice as many.
     static constexpr size_t KEPT = 50'000;
 
     /// Starts the measurement of first pictures: another scan was opened.

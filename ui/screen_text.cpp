@@ -88,7 +88,7 @@ public:
     {
         const ImFontGlyph* const glyph = glyphs_.at(quad.texels);
         if (!glyph) return;
-        // The quad that would be drawn if it were not cut.
+        // Computes the quad as it would be drawn if it were not cut.
         const glm::vec2 scale = (quad.place.end - quad.place.begin) / (quad.texels.end - quad.texels.begin);
         const glm::vec2 whole_begin = quad.place.begin - (quad.texels.begin - glm::vec2(glyph->U0, glyph->V0)) * scale;
         const glm::vec2 whole_end = quad.place.end + (glm::vec2(glyph->U1, glyph->V1) - quad.texels.end) * scale;
@@ -100,7 +100,7 @@ public:
 
         if (!continues(pen, top, size, is_seen)) begin_text(top);
         ScreenText* const text = has_text_ ? &texts_.back() : nullptr;
-        // Characters wholly beyond the edge are not drawn: a text cut between two characters is not recognised as cut.
+        // Characters wholly beyond the edge are not drawn, so a cut between two characters is not recognised.
         const bool is_cut = begin.x > whole_begin.x + CUT || end.x < whole_end.x - CUT;
         if (is_seen && !text) {
             texts_.push_back({.text = {}, .window = window_, .begin = begin, .end = end});

@@ -82,7 +82,7 @@ constexpr VkImageUsageFlags USAGE = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMA
 
 }  // namespace
 
-/// The swapchain follows with the next frame.
+/// Re-creates only the surface; the next frame re-creates the swapchain.
 void Swapchain::renew_surface()
 {
     device_.wait_idle();

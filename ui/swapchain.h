@@ -4,7 +4,7 @@
 //
 //   layers of the views -> copied into the swapchain's image -> the interface drawn over them -> presented
 //
-// The main thread.
+// Main thread only.
 
 #include <array>
 #include <deque>
@@ -40,8 +40,8 @@ public:
     /// is hidden, no image may be available for a long time. Never waits, except some milliseconds for a new swapchain.
     /// Fails as present() does.
     bool is_ready();
-    /// As Window::present, after ImGui::Render. A failed frame leaves no state behind that breaks later ones; a
-    /// lost surface is re-created, and the frame is not shown.
+    /// Does what Window::present describes; call after ImGui::Render. A failed frame leaves no state that breaks later
+    /// ones; a lost surface is re-created, and the frame is not shown.
     bool present(const std::vector<View::Layer>& layers, const glm::uvec2& origin, const Meanwhile& meanwhile);
 
     uint64_t frames_presented() const { return presented_; }

@@ -106,13 +106,13 @@ void Swapchain::record(const Frame& frame, const Target& target, const std::vect
                   TRANSFER, VK_ACCESS_2_TRANSFER_WRITE_BIT);
     const VkImageSubresourceRange whole{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
     vkCmdClearColorImage(commands, target.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &BACKDROP, 1, &whole);
-    // The writes of the view's frames and the clear come before the copy of the layers.
+    // Makes the copy of the layers wait for the clear and for the writes of the view's frames.
     memory_barrier(commands, WORK, WRITES, TRANSFER, VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
     draw_layers(commands, target.image, layers, origin);
-    // The view's next frames must wait for the copy before they write: their graphs do not know this reader. Making
-    // earlier writes visible as well costs nothing here and avoids false reports of validation (1.3.239): when an image
-    // is acquired, it again counts as in flight all that was in flight when the image was presented, and would report
-    // reads after writes of frames that had long been waited for.
+    // The view's next frames must wait for the copy before they write: their graphs do not know this reader. The
+    // barrier also makes earlier writes visible. This costs nothing here and avoids false reports of validation
+    // (1.3.239): when an image is acquired, validation again counts as in flight all work that was in flight when the
+    // image was presented, and would report reads after writes of frames that had long been waited for.
     memory_barrier(commands, WORK, WRITES, WORK, WRITES | VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_TRANSFER_READ_BIT);
     image_barrier(commands, target.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                   VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, TRANSFER, VK_ACCESS_2_TRANSFER_WRITE_BIT,
@@ -212,7 +212,7 @@ bool Swapchain::prepare(Frame& frame)
 /// Acquires an image if there is one. Afterwards the swapchain may have to be re-created.
 bool Swapchain::acquire(Frame& frame)
 {
-    constexpr uint64_t PATIENCE_NS = 10'000'000;  // some drivers have no image ready just after making them
+    constexpr uint64_t PATIENCE_NS = 10'000'000;  // some drivers have no image ready in a swapchain just made
     // Like vkGetFenceStatus, but also informs validation that the frame was waited for.
     const VkResult status = vkWaitForFences(device_.handle(), 1, &frame.done, VK_TRUE, 0);
     check(status, "vkWaitForFences");

@@ -66,7 +66,7 @@ glm::uvec2 Viewport::pane_pixels(const Model& model) const
     return pane_ < model.panes.size() ? glm::max(model.panes[pane_].pane.pixels(), glm::uvec2(1)) : glm::uvec2(1);
 }
 
-/// The mouse position in pixels of the pane under it.
+/// Returns the mouse position in pixels of the pane under the mouse.
 glm::dvec2 Viewport::in_pane(const glm::dvec2& at, const Model& model) const
 {
     const glm::uvec2 origin = pane_ < model.panes.size() ? model.panes[pane_].pane.box.begin : glm::uvec2(0);

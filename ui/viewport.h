@@ -2,24 +2,24 @@
 // Converts the mouse in the graphics window to actions. Its state is the layout of that window and the gesture in
 // progress. Main thread.
 //
-// What the left button does is the session's tool (engine/session/session.h):
+// The session's tool (engine/session/session.h) determines the effect of the left button:
 //
 //   turn      a drag turns, a click selects what is under the pointer, a double click puts the probe there
-//   paint     paints at what is seen under the pointer while held; erase likewise
-//   trace     a click on a node selects it, a drag moves it; a click elsewhere adds one; another drag turns
+//   paint     paints, while the button is held, at the visible point under the pointer; erase likewise
+//   trace     a click on a node selects it, a drag moves it; a click elsewhere adds a node; any other drag turns
 //   select    a click selects, a double click the whole segment; a drag turns
 //   measure   clicks set the ends of a distance; a drag turns
 //
-//   no button          the probe follows in its plane; with paint, erase, trace and measure, it follows what is seen
+//   no button          the probe follows in its plane; with paint, erase, trace and measure, it follows visible points
 //   right              turn tool: paint; otherwise turn           Shift + left     move
 //   middle             turn tool: move; otherwise turn, with Shift move           Alt + left       turn
 //   wheel              zoom; with Ctrl push the probe away, or pull it closer
 //
-// In a map, gestures that turn or move elsewhere move the camera, and the wheel moves it forward. In a slice the wheel
-// moves the slice; gestures that turn elsewhere drag the cross, which moves the other slices; Ctrl + left changes the
-// contrast, and so does the right button with all tools but turn.
+// In a map, the gestures for turning and moving both move the camera, and the wheel moves it forward. In a slice, the
+// wheel moves the slice; the gestures for turning drag the cross, which moves the other slices; Ctrl + left changes
+// the contrast, and so does the right button with all tools but turn.
 //
-// The brush is lifted by a motion that no hand makes (is_jump), and by the first one after the pointer was elsewhere.
+// A motion that no hand makes (is_jump) lifts the brush, and so does the first motion after the pointer was elsewhere.
 
 #include <optional>
 

@@ -34,7 +34,7 @@ bool start_glfw()
     return glfwInit() == GLFW_TRUE;
 }
 
-/// The screen that shows this point, or else the main one.
+/// Returns the screen that shows this point or, if there is none, the main screen.
 GLFWmonitor* monitor_of(const glm::ivec2& point)
 {
     int count = 0;
@@ -60,7 +60,7 @@ struct Window::Input {
     MouseFeed mouse;
     double asked_s = 0.0, answered_s = 0.0;  ///< when the last wait for events began, and when it ended
 
-    /// Earliest time of the current event, which GLFW does not report: events present at once came since the last wait.
+    /// Returns the earliest time of an event (GLFW reports none): events present at once came since the last wait.
     double earliest_s() const
     {
         constexpr double AT_ONCE_S = 0.005;

@@ -1,5 +1,5 @@
 #pragma once
-// The window, by GLFW: shows images of the view under the user interface (swapchain.h) and collects input.
+// The window, through GLFW: shows images of the view under the user interface (swapchain.h) and collects input.
 //
 //     Window window({...});                                  // before the device, which needs its requirements
 //     Renderer renderer({.device = window.device_needs()});
@@ -10,7 +10,7 @@
 //     }
 //     window.detach();                                       // before the device is destroyed
 //
-// The main thread.
+// Main thread only.
 
 #include <functional>
 #include <memory>
@@ -87,7 +87,7 @@ public:
 
     /// Waits for events, at most `timeout_s` (0: not at all), and returns them.
     std::vector<InputEvent> wait_events(double timeout_s);
-    /// Passes a key or a character to the interface in one of its next frames: in the order of events, so that it never
+    /// Passes a key or a character to the interface in one of its next frames. Events are passed in order, so that none
     /// overtakes an earlier event.
     void tell_ui(const InputEvent& event);
     /// Returns whether a key is held down.
@@ -104,14 +104,14 @@ public:
     void begin_ui();
     /// Uploads Dear ImGui's fonts again, before the next frame. Waits for the device; rare.
     void renew_fonts();
-    /// Draws the layers with their upper left corner at `origin`, the interface over them, and shows the frame. False
-    /// if there is nothing to draw on (minimised, hidden), or if the frame was lost and must be drawn again. After the
-    /// frame is submitted to the device, and before the call waits for the screen, `meanwhile` is called with the
-    /// expected wait, unless it is empty.
+    /// Draws the layers with their upper left corner at `origin`, then the interface over them, and shows the frame.
+    /// Returns false if there is nothing to draw on (minimised, hidden), or if the frame was lost and must be drawn
+    /// again. Calls `meanwhile`, unless that function is empty, with the expected wait for the screen: after the frame
+    /// is submitted to the device, and before the wait begins.
     bool present(const std::vector<View::Layer>& layers, const glm::uvec2& origin,
                  const std::function<void(double wait_ms)>& meanwhile);
 
-    /// Numbers of frames submitted to the device, and of those that it has finished, which are visible. Never wait.
+    /// Return the number of frames submitted to the device, and the number that it has finished and shown. Never wait.
     uint64_t frames_presented() const;
     uint64_t frames_done() const;
 

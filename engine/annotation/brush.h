@@ -42,7 +42,7 @@ constexpr const BrushRow& row_of(Brush brush)
     return BRUSHES.at(size_t(brush));
 }
 
-/// The spellings of all brushes (their keys), for readers and writers.
+/// The spellings (keys) of all brushes, used for reading and writing.
 inline constexpr auto BRUSH_SPELLINGS = [] {
     std::array<Spelling<Brush>, BRUSHES.size()> spellings{};
     for (size_t i = 0; i < BRUSHES.size(); ++i) spellings[i] = {BRUSHES[i].brush, BRUSHES[i].key};
@@ -73,7 +73,7 @@ struct BrushSettings {
     /// Density painting: the brush raises intensities, in addition to painting its group or instead of it.
     std::optional<DensityBrush> density{};
     bool paints_group = true;     ///< false, with `density` set: offsets only
-    bool only_unpainted = false;  ///< paints only unpainted voxels: takes none from another group
+    bool only_unpainted = false;  ///< paints only unpainted voxels, so no group loses voxels
     bool operator==(const BrushSettings&) const = default;
 };
 
@@ -82,7 +82,7 @@ struct PaintOp {
     Brush brush = Brush::flood;
     RegionShape region = RegionShape::ball;
     uint8_t group = 1;             ///< 0 erases
-    double threshold = 0.0;        ///< selects intensities at or above it, in units of the file
+    double threshold = 0.0;        ///< intensities at or above it are selected; in units of the file
     double radius_voxels = 6.0;    ///< along x
     int connectivity = 6;          ///< 6 or 26
     std::vector<glm::dvec3> path;  ///< voxel coordinates

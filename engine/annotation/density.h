@@ -17,7 +17,7 @@
 
 namespace shvr {
 
-/// Voxels that change from one offset (bits of offset_brick.h) to another, and the changes of one brick.
+/// A run of voxels whose offset (as bits, offset_brick.h) changes, and the runs of one brick.
 using DensityRun = BrickRun<uint32_t>;
 using DensityBrickChange = BrickChange<uint32_t>;
 
@@ -33,11 +33,11 @@ public:
     /// Number of voxels that have an offset.
     int64_t voxels() const { return voxels_; }
 
-    /// Reason why a record cannot be applied; empty if it can. Offsets must be finite and within offset_limit.
+    /// Returns why a record cannot be applied; empty if it can. Offsets must be finite and within offset_limit.
     std::string why_it_does_not_fit(const DensityBrickChange& change, Direction direction) const;
     /// Applies a record that fits (SHVR_CHECK).
     void apply(const DensityBrickChange& change, Direction direction);
-    /// Sets the offsets of a brick that has none (SHVR_CHECK); drops those outside the volume. For reading files.
+    /// Sets the offsets of a brick that has none yet (SHVR_CHECK); drops offsets outside the volume. For file readers.
     void put(int64_t index, const OffsetBrick& offsets) { voxels_ += SparseBricks::put(index, offsets); }
 
 private:

@@ -35,15 +35,15 @@ struct DensityBrush {
 /// threshold are visible already.
 double automatic_offset(double lowest_point, double paint_threshold);
 
-/// Applies the rule of density.h to bits of the type: returns the new offset of a voxel with offset `old`, for P =
-/// `most` and p(v) = `here`.
+/// Applies the rule of density.h to values stored as bits of the type: returns the new offset of a voxel whose offset
+/// is `old`, where P = `most` and p(v) = `here`.
 uint32_t painted_offset(VoxelType type, uint32_t old, uint32_t most, uint32_t here);
 
 class DensityStroke {
 public:
     /// Fails if the offset is not a finite number. Offsets beyond `offset_limit` are clamped to it.
     DensityStroke(Size3 size, const glm::dvec3& spacing, VoxelType type, double offset, Falloff falloff);
-    /// Adds the voxels of `region` whose bit is set (VoxelSelection::add); the region surrounds `centre_voxel`.
+    /// Adds the voxels of `region` whose bit is set (VoxelSelection::add). `region` surrounds `centre_voxel`.
     void add(const BrushRegion& region, std::span<const uint32_t> words, const glm::dvec3& centre_voxel,
              double radius_voxels);
     /// The records that paint everything added so far; voxels that keep their offset are left out.

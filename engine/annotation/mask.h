@@ -7,7 +7,7 @@
 namespace shvr {
 
 using MaskBrick = SparseBricks<uint8_t>::Brick;
-/// Voxels that change from one group to another, and the changes of one brick.
+/// A run of voxels that change from one group to another, and the runs of one brick.
 using MaskRun = BrickRun<uint8_t>;
 using MaskBrickChange = BrickChange<uint8_t>;
 
@@ -19,7 +19,7 @@ public:
     /// Voxels by group; [0] counts the unpainted ones.
     const std::array<int64_t, 256>& voxels_by_group() const { return voxels_by_group_; }
 
-    /// Reason why a record cannot be applied; empty if it can.
+    /// Returns why a record cannot be applied; empty if it can be.
     std::string why_it_does_not_fit(const MaskBrickChange& change, Direction direction) const;
     /// Applies a record that fits (SHVR_CHECK).
     void apply(const MaskBrickChange& change, Direction direction);

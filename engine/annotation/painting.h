@@ -28,7 +28,7 @@ struct PaintRule {
 };
 PaintRule rule_of(const PaintOp& op);
 
-/// The records that assign `rule.group` to those voxels of `selection` that the rule lets change.
+/// Returns the records that assign `rule.group` to the voxels of `selection` whose group the rule lets change.
 std::vector<MaskBrickChange> paint_changes(const Mask& mask, const VoxelSelection& selection, const PaintRule& rule);
 
 }  // namespace shvr

@@ -18,8 +18,8 @@ struct Range {
     int64_t begin, end;
 };
 
-/// The voxels of `within` from the first to the last that satisfies `holds`. The estimate, `reach` voxels on both sides
-/// of `centre`, only gives the start of the search; the test decides.
+/// Returns the voxels of `within` from the first to the last that satisfies `holds`. The estimate (`reach` voxels on
+/// both sides of `centre`) only gives the start of the search; the test `holds` decides.
 template <class Test>
 Range range_where(double centre, double reach, const Range& within, const Test& holds)
 {
@@ -34,7 +34,7 @@ Range range_where(double centre, double reach, const Range& within, const Test& 
     return range;
 }
 
-/// Bits `begin` ... `end` - 1 of a row, as far as they lie in its word `word`, at their positions in that word.
+/// Bits `begin` ... `end` - 1 of a row, limited to those in its word `word`, at their positions in that word.
 uint32_t span_bits(const gpu::RowSpan& span, int64_t word)
 {
     const int64_t begin = std::max<int64_t>(span.begin - 32 * word, 0);
@@ -143,8 +143,8 @@ std::vector<glm::dvec3> stroke_positions(std::span<const glm::dvec3> path)
 
 VoxelSelection::VoxelSelection(Size3 size) : size_(size), counts_(brick_grid(size)) {}
 
-// A brick's row along x is one word of the selection; a word of the region may overlap two such words. The bricks along
-// a row are looked up once for all rows through the same bricks.
+// A brick's row along x is one word of the selection; a word of the region may overlap two such words. Bricks are
+// looked up once for all of the region's rows that cross the same bricks.
 void VoxelSelection::add(const BrushRegion& region, std::span<const uint32_t> words)
 {
     const Size3 size = region.box.size();

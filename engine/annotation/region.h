@@ -32,14 +32,14 @@ struct BrushRegion {
 BrushRegion make_region(RegionShape shape, const glm::dvec3& centre_voxel, double radius_voxels,
                         const glm::dvec3& spacing, const Size3& volume_size);
 
-/// Fails if the region of such a brush would be too large at some position in a volume of that size.
+/// Fails if a brush of this radius would have too large a region at some position in a volume of that size.
 void check_radius(double radius_voxels, const glm::dvec3& spacing, const Size3& volume_size);
 
 /// The probe's positions along a stroke: the points of `path`, and between two of them as many equally spaced ones as
 /// are needed to keep neighbours at most one voxel apart along every axis. A path of one point is a dab. Fails if there
 /// are more than MAX_STROKE_POSITIONS.
 std::vector<glm::dvec3> stroke_positions(std::span<const glm::dvec3> path);
-/// Number of these positions, without computing them; infinite if coordinates are too far apart for a double.
+/// Number of `stroke_positions`, without computing them; infinite if coordinates are too far apart for a double.
 double stroke_position_count(std::span<const glm::dvec3> path);
 inline constexpr int64_t MAX_STROKE_POSITIONS = 1'000'000;
 

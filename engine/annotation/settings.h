@@ -15,7 +15,7 @@ namespace shvr {
 /// Texts by the names of their sections.
 using SettingValues = std::map<std::string, std::string>;
 
-/// The text of a section before and after the change. An empty text is not known yet.
+/// The text of a section before and after the change. An empty text means that the text is not known yet.
 struct SettingChange {
     std::string name;
     std::string before, after;

@@ -20,7 +20,7 @@ Size3 place_in_brick(int64_t index)
 bool run_is_inside(int64_t first, int64_t last, const Size3& extent)
 {
     const Size3 begin = place_in_brick(first), end = place_in_brick(last);
-    // A run is contiguous in the brick: one that spans rows (slices) contains all columns (rows) of the brick.
+    // A run is contiguous in the brick: if it spans rows, the brick has all columns; if it spans slices, all rows.
     const bool rows_are_full = extent.x == BRICK_SIDE || first / BRICK_SIDE == last / BRICK_SIDE;
     const bool slices_are_full = extent.y == BRICK_SIDE || begin.z == end.z;
     return rows_are_full && slices_are_full && glm::all(glm::lessThan(begin, extent)) &&

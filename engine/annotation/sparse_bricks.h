@@ -58,7 +58,7 @@ void append_run(std::vector<BrickRun<Value>>& runs, size_t first, size_t last, V
         runs.push_back({uint16_t(first), uint16_t(last), before, after});
 }
 
-/// Appends the runs that set the voxels of an empty brick, from voxel `first` on, to the values of `row`.
+/// Appends the runs that set the voxels of an empty brick to the values of `row`, beginning at voxel `first`.
 template <class Value>
 void append_painted_runs(std::vector<BrickRun<Value>>& runs, std::span<const std::type_identity_t<Value>> row,
                          size_t first)
@@ -105,10 +105,10 @@ protected:
 
     /// Function that names a value in error messages: "group 3".
     using Named = std::function<std::string(Value)>;
-    /// Function that returns whether voxels may be set to a value; empty: any value is allowed.
+    /// Function that returns whether voxels may be set to a value; if it is empty, any value is allowed.
     using Allowed = std::function<bool(Value)>;
-    /// Why a change cannot be applied: its runs must ascend inside the volume, and their voxels must have the record's
-    /// values before the change. Empty if it fits.
+    /// Returns why a change cannot be applied; empty if it fits. Its runs must ascend inside the volume, and their
+    /// voxels must have the values that the record states for the time before the change.
     std::string why_it_does_not_fit(const BrickChange<Value>& change, Direction direction, const Named& named,
                                     const Allowed& allowed = {}) const;
     /// Applies a change that fits; `replaced(from, to, voxels)` is called for each run. Frees bricks that return to 0.

@@ -50,7 +50,7 @@ std::string listed(const std::vector<std::string>& items)
     return list;
 }
 
-/// Lists the groups with most voxels first, each as `item(voxels, name)`; of over four, all but three are summed up.
+/// Lists groups, most voxels first, each as `item(voxels, name)`; if there are over four, sums up all but three.
 template <class Item>
 std::string listed(const StrokeResult::ByGroup& voxels, const GroupNames& name_of, const Item& item)
 {
@@ -107,7 +107,7 @@ std::string raised_in_words(const StrokeResult& result, bool is_first)
     return (is_first ? "Changed" : "changed") + sentence(voxels, " (", offset > 0.0 ? "+" : "", offset, ")");
 }
 
-/// Describes the selected voxels that did not change, and why; empty if there are none.
+/// Describes the selected voxels that did not change, with the reasons; returns an empty text if all changed.
 std::string kept_in_words(const StrokeResult& result, const GroupNames& name_of)
 {
     std::string words;

@@ -32,7 +32,7 @@ struct StrokeResult {
 class StrokeTally {
 public:
     explicit StrokeTally(const PaintOp& stroke);
-    /// Adds an answer: the selected voxels, the mask before the answer, and the records made from both.
+    /// Adds an answer of the device: the selected voxels, the mask before the answer, and the records made from both.
     void add(const Mask& before, const VoxelSelection& selection, std::span<const MaskBrickChange> groups,
              std::span<const DensityBrickChange> offsets);
     const StrokeResult& result() const { return result_; }
@@ -42,7 +42,7 @@ private:
 
     PaintRule rule_;
     StrokeResult result_;
-    /// Voxels already counted. Changes of group need no such mark, since a voxel changes its group once per stroke.
+    /// Voxels already counted. Regrouped voxels need no such set, since a voxel changes its group once per stroke.
     std::map<int64_t, VoxelSelection::Bits> kept_, raised_;
 };
 

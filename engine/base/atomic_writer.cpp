@@ -37,7 +37,7 @@ std::optional<mode_t> permissions_of_old_file(const fs::path& path)
     return status.st_mode & 07777;
 }
 
-/// Names of temporary files, for signal handlers. A writer that finds all slots taken is not listed.
+/// Names of temporary files, for signal handlers. If all slots are taken, a writer's file is not listed.
 std::array<std::atomic<const char*>, 64> temporary_names{};
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
@@ -52,7 +52,7 @@ std::atomic<const char*>* list(const char* name)
 
 constexpr std::string_view PREFIX = ".shvr-", SUFFIX = ".tmp";
 constexpr std::chrono::hours FOREIGN_AGE{24};
-/// An append of many bytes syncs after this many, so that the last sync, which nothing interrupts, is short.
+/// A long append syncs each time after this many bytes, so that the final sync, which cannot be interrupted, is short.
 constexpr uint64_t BYTES_PER_SYNC = uint64_t{64} << 20;
 
 /// The host's name as a part of a file name.
@@ -93,7 +93,7 @@ bool is_dead(pid_t process)
     return ::kill(process, 0) != 0 && errno == ESRCH;
 }
 
-/// Whether a file was left behind: its process is dead or, if that cannot be known here, the file is old.
+/// Whether a file was left behind: its process is dead or, if this host cannot determine that, the file is old.
 bool is_left(const Owner& owner, const fs::directory_entry& entry)
 {
     std::error_code error;

@@ -19,8 +19,8 @@ namespace shvr {
 /// Syncs the folder that contains `path`, so that a new or renamed file survives a power cut.
 void sync_folder(const std::filesystem::path& path);
 
-/// The file that a path leads to: symbolic links are followed, also dangling ones. Writers replace links; a path that a
-/// user names as an output is written where it leads.
+/// The file to which a path leads, following symbolic links, even dangling ones. Writers replace links, so a path that
+/// a user names as an output is resolved first and written where it leads.
 std::filesystem::path link_target(const std::filesystem::path& path);
 
 /// Removes files that killed writers have left in a folder: temporary files of dead processes of this host, and those
@@ -46,7 +46,7 @@ public:
     AtomicWriter& operator=(const AtomicWriter&) = delete;
 
     void append(std::span<const std::byte> content);
-    /// For formats that patch bytes already written. Not together with `append`.
+    /// Overwrites bytes already written, for formats that need it. Must not be combined with `append`.
     void write_at(int64_t offset, std::span<const std::byte> content);
     /// Fails if fewer bytes were written.
     void read_back(int64_t offset, std::span<std::byte> content) const;

@@ -19,13 +19,13 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// Wrong usage of the command line (exit status 2).
+/// The command line was used wrongly (exit status 2).
 class UsageError : public Error {
 public:
     using Error::Error;
 };
 
-/// A comparison or gate that failed (exit status 3).
+/// A comparison or gate has failed (exit status 3).
 class GateError : public Error {
 public:
     using Error::Error;

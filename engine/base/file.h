@@ -13,13 +13,13 @@ namespace shvr {
 /// The whole file. Fails if it is missing, not a regular file, unreadable, larger than `max_bytes`, or shrinks while it
 /// is read.
 std::vector<std::byte> read_file(const std::filesystem::path& path, int64_t max_bytes);
-/// The same bytes as text; encoding and line ends are unchanged.
+/// Like `read_file`, but returns the bytes as text. Encoding and line ends are unchanged.
 std::string read_text(const std::filesystem::path& path, int64_t max_bytes);
 
 /// Whether the path leads to a regular file; false if that cannot be determined.
 bool is_file(const std::filesystem::path& path);
 
-/// "No space left on device" for ENOSPC; unlike strerror, without shared state.
+/// The text of an error number, such as "No space left on device" for ENOSPC. Unlike strerror, shares no state.
 std::string reason_of(int error_number);
 
 /// Owns a POSIX file descriptor.

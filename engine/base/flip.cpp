@@ -86,7 +86,7 @@ constexpr Sensitivity ACHROMATIC{1.0, 0.0047, 0.0, 1e-5};
 constexpr Sensitivity RED_GREEN{1.0, 0.0053, 0.0, 1e-5};
 constexpr Sensitivity BLUE_YELLOW{34.1, 0.04, 13.5, 0.025};
 
-/// The sum is normalised so that its weights in the plane add up to 1; each of its Gaussians is separable.
+/// Normalises the sum of Gaussians so that its weights in the plane add up to 1. Each Gaussian is separable.
 Plane blurred_as_seen(const Plane& plane, const Sensitivity& sensitivity, double pixels_per_degree,
                       FilterProgress& progress)
 {
@@ -131,7 +131,7 @@ double color_distance(const glm::dvec3& a, const glm::dvec3& b)
     return std::pow(std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z), QC);
 }
 
-/// Maps 0..largest to 0..1; distances below PC * largest map to 0..PT.
+/// Maps 0..largest to 0..1: distances below PC * largest to 0..PT, the others to PT..1.
 double remapped(double distance, double largest)
 {
     constexpr double PC = 0.4, PT = 0.95;
@@ -200,7 +200,7 @@ std::vector<double> flip_map(const Image8& a, const Image8& b, double pixels_per
     SHVR_CHECK(pixels_per_degree > 0.0, pixels_per_degree);
     constexpr size_t PIXELS_TOLD = 1 << 16;
     const Planes ycxcz_a = ycxcz_planes(a), ycxcz_b = ycxcz_planes(b);
-    // Progress: eight filters per picture, and the rest takes about as long as these.
+    // Progress counts eight filters per picture; the rest of the work takes about as long as all filters.
     FilterProgress filters(part_of(progress, 0.0, 0.5), 16.0);
     const Planes seen_a = seen(ycxcz_a, pixels_per_degree, filters), seen_b = seen(ycxcz_b, pixels_per_degree, filters);
     const Features features_a = features_of(ycxcz_a[0], pixels_per_degree, filters);

@@ -23,13 +23,13 @@ struct ImageF {
     bool operator==(const ImageF&) const = default;
 };
 
-/// The exact piecewise curve of IEC 61966-2-1 from linear light to sRGB, both in 0..1; not clamped.
+/// The exact piecewise sRGB curve of IEC 61966-2-1: maps linear light in 0..1 to sRGB in 0..1, without clamping.
 double srgb_encode(double linear);
 /// The inverse of srgb_encode. The standard's rounded constants leave a gap of 3e-9 where the pieces meet.
 double srgb_decode(double encoded);
 
-/// Un-premultiplies, clamps to 0..1, encodes and rounds to nearest. Alpha is not encoded. A pixel whose alpha rounds to
-/// 0 becomes 0,0,0,0. NaN becomes 0; `count_not_finite` reports whether there is any.
+/// Un-premultiplies, clamps to 0..1, encodes as sRGB and rounds to nearest; does not encode alpha. A pixel whose alpha
+/// rounds to 0 becomes 0,0,0,0. NaN becomes 0; `count_not_finite` reports whether there is any.
 Image8 to_image8(const ImageF& image);
 /// Converts pixels like `to_image8`; both spans have the same number of pixels.
 void encode_pixels(std::span<const float> light, std::span<uint8_t> encoded);

@@ -23,7 +23,7 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
-// Maximum file size: the largest pictures have 1 GiB of pixels, which do not compress if they are noise.
+// Maximum file size: the largest pictures have 1 GiB of pixels, and noise does not compress.
 constexpr int64_t MAX_PNG_BYTES = int64_t{2} << 30;
 
 // The maximum expansion of a deflate stream.
@@ -56,7 +56,7 @@ std::optional<int64_t> bits_of_pixel(Bytes file)
 
 void check_size(int64_t width, int64_t height, std::string_view name)
 {
-    // Compared by division: the product of hostile sizes could overflow.
+    // Compares by division, since the product of hostile sizes could overflow.
     if (width < 1 || height < 1 || width > MAX_IMAGE_PIXELS / height) {
         fail(name, ": the picture is ", width, " x ", height, " pixels; expected 1 to ", MAX_IMAGE_PIXELS, " of them");
     }
@@ -93,7 +93,7 @@ void check_file(Bytes file, std::string_view name)
     check_chunks(file, name);
 }
 
-/// libpng's simplified interface, which reports errors by return value, so no longjmp skips our destructors.
+/// Uses libpng's simplified interface: it reports errors by return value, so no longjmp skips our destructors.
 struct PngImage {
     png_image image{};
 
@@ -103,7 +103,7 @@ struct PngImage {
     ~PngImage() { png_image_free(&image); }
 };
 
-/// Calls libpng, which reports errors by longjmp: no object with a destructor may live on the frames between.
+/// Calls libpng, which reports errors by longjmp: frames that it skips must hold no object with a destructor.
 template <class Call>
 bool succeeds(png_structp png, const Call& call)
 {
@@ -233,13 +233,13 @@ private:
     PngStream png_;
 };
 
-/// The format stores rows from the bottom up, so that the first row added is the file's last.
+/// The format stores the bottom row first, so the first row added becomes the last row of the file.
 class PfmWriter final : public ImageWriter {
 public:
     PfmWriter(const std::filesystem::path& path, int64_t width, int64_t height)
         : width_(width), rows_left_(height), file_(path)
     {
-        // The sign of the scale gives the byte order: negative is little-endian.
+        // The sign of the scale states the byte order; negative means little-endian.
         const char* scale = std::endian::native == std::endian::little ? "-1.0" : "1.0";
         const std::string header = sentence("PF\n", width, " ", height, "\n", scale, "\n");
         file_.write_at(0, std::as_bytes(std::span(header)));
@@ -281,7 +281,7 @@ Image8 decode_png(Bytes file, std::string_view name)
         fail(name, ": is not a valid PNG file: ", png.image.message);
     }
     png.image.format = PNG_FORMAT_RGBA;
-    // Without this flag, 16-bit files without a gAMA chunk count as linear, although hardly any of them are.
+    // Without this flag, libpng takes 16-bit files without a gAMA chunk as linear, although hardly any of them are.
     png.image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
     Image8 decoded{int(png.image.width), int(png.image.height), std::vector<uint8_t>(PNG_IMAGE_SIZE(png.image))};
     if (png_image_finish_read(&png.image, nullptr, decoded.rgba.data(), 0, nullptr) == 0) {
@@ -321,7 +321,7 @@ public:
         png_set_read_fn(handles_.read, this, hand_out);
         png_set_user_limits(handles_.read, png_uint_32(MAX_IMAGE_SIDE), png_uint_32(MAX_IMAGE_SIDE));
         png_set_chunk_malloc_max(handles_.read, MAX_PICTURE_TEXT + 4096);
-        // Damaged text is reported as an error instead of being skipped.
+        // Makes libpng report damaged text as an error instead of skipping it.
         png_set_benign_errors(handles_.read, 0);
         png_set_crc_action(handles_.read, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
         if (!succeeds(handles_.read, [&] { png_read_info(handles_.read, handles_.info); })) refuse();

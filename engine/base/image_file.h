@@ -17,7 +17,7 @@
 
 namespace shvr {
 
-/// Maximum number of pixels of a picture that is read, or written from memory.
+/// Maximum number of pixels of a picture that is read from a file or written from memory.
 inline constexpr int64_t MAX_IMAGE_PIXELS = int64_t{1} << 28;
 /// Maximum side in pixels of a picture that is written row by row.
 inline constexpr int64_t MAX_IMAGE_SIDE = 65536;
@@ -26,18 +26,18 @@ inline constexpr int64_t MAX_IMAGE_SIDE = 65536;
 /// otherwise (gAMA chunk); then libpng converts them, approximating the sRGB curve by a power of 2.2 (up to 9 levels
 /// off near black, 2 in the middle).
 Image8 read_png(const std::filesystem::path& path);
-/// Texts in a picture file, each with its keyword (1 to 79 Latin letters and single spaces), in UTF-8; written
-/// compressed (iTXt) before the pixels. At most MAX_PICTURE_TEXT bytes each.
+/// Texts in a picture file, in UTF-8, each with its keyword (1 to 79 Latin letters and single spaces). They are written
+/// compressed (iTXt), before the pixels. Each has at most MAX_PICTURE_TEXT bytes.
 using PictureTexts = std::vector<std::pair<std::string, std::string>>;
 inline constexpr size_t MAX_PICTURE_TEXT = size_t{16} << 20;
-/// The first text with `keyword` (iTXt, zTXt or tEXt) before the pixels; null if there is none, or the file is not a
-/// PNG file. Reads no pixels. Fails if the text is larger than MAX_PICTURE_TEXT, or damaged.
+/// Returns the first text with `keyword` (iTXt, zTXt or tEXt) before the pixels; null if there is none or the file is
+/// not a PNG file. Reads no pixels. Fails if the text is damaged or larger than MAX_PICTURE_TEXT.
 std::optional<std::string> read_png_text(const std::filesystem::path& path, std::string_view keyword);
 /// Replaces an existing file atomically; leaves it untouched on failure (atomic_file.h).
 void write_png(const std::filesystem::path& path, const Image8& image, const PictureTexts& texts = {});
 
-/// A picture file that is written row by row, with memory for a few rows. `commit` gives it its final name; without it,
-/// the old file stays as it was and nothing else is left (atomic_writer.h). One thread at a time.
+/// Writes a picture file row by row, with memory for only a few rows. `commit` gives the file its final name; without
+/// `commit` the old file stays as it was and nothing else is left (atomic_writer.h). One thread at a time.
 class ImageWriter {
 public:
     virtual ~ImageWriter() = default;
@@ -52,13 +52,13 @@ public:
 protected:
     ImageWriter() = default;
 };
-/// If the name ends in .pfm, writes as `write_pfm` does, without texts; otherwise writes as `write_png` does, with
-/// light converted as by `to_image8`.
+/// If the name ends in .pfm, writes as `write_pfm` does, without texts; otherwise writes as `write_png` does and
+/// converts light as `to_image8` does.
 std::unique_ptr<ImageWriter> image_writer(const std::filesystem::path& path, int64_t width, int64_t height,
                                           const PictureTexts& texts = {});
 
-/// Portable float map, "PF": the picture's RGB unchanged, in linear light premultiplied by alpha; alpha is left out.
-/// Replaces an existing file like `write_png`.
+/// Writes a portable float map, "PF": the picture's RGB unchanged, in linear light premultiplied by alpha, without the
+/// alpha. Replaces an existing file like `write_png`.
 void write_pfm(const std::filesystem::path& path, const ImageF& image);
 
 /// Like `read_png`, for a file in memory; `name` is used in messages.

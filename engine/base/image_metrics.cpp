@@ -35,7 +35,7 @@ Plane luma_of(const Image8& image)
     return luma;
 }
 
-/// The mean of the product of both planes over the window around each pixel.
+/// Returns, for each pixel, the mean of a * b over the weighted window around the pixel.
 Plane window_means(Plane a, const Plane& b, const std::vector<double>& window, FilterProgress& filters)
 {
     std::transform(a.values.begin(), a.values.end(), b.values.begin(), a.values.begin(), std::multiplies());

@@ -23,9 +23,9 @@ struct PixelDifference {
 };
 
 struct ImageDifference : PixelDifference {
-    /// Mean structural similarity of luma (0.2126, 0.7152, 0.0722 of encoded RGB), Wang et al. 2004: windows of 11 x 11
-    /// pixels, Gaussian of sigma 1.5, only windows inside the picture. If no window fits inside, windows centred on all
-    /// pixels are used, with the picture's border repeated. 1 if the pictures are equal.
+    /// Mean structural similarity (Wang et al. 2004) of luma: 0.2126, 0.7152, 0.0722 of encoded RGB. Windows have 11 x
+    /// 11 pixels with Gaussian weights of sigma 1.5, and lie inside the picture. If no window fits inside, windows
+    /// centred on all pixels are used, with the picture's border repeated. 1 if the pictures are equal.
     double ssim = 1.0;
     double flip_mean = 0.0;  ///< mean FLIP error (flip.h) at the default distance
     double flip_p99 = 0.0;   ///< 99th percentile of the FLIP error
@@ -44,7 +44,7 @@ struct Tolerance {
     double max_mean_error = 0.0;       ///< as PixelDifference::mean_error
 };
 inline constexpr Tolerance EXACT_TOLERANCE{};
-/// Limits for equal arithmetic on another driver or processor. max_mean_error detects a tiny bias of all pixels.
+/// Limits for the same arithmetic on another driver or processor. max_mean_error detects a tiny bias of all pixels.
 inline constexpr Tolerance TIGHT_TOLERANCE{.max_abs = 2.0, .max_fraction_over_1 = 0.0005, .max_mean_error = 1e-4};
 
 /// Lists every exceeded limit with the value found; null if no limit is exceeded.

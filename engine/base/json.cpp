@@ -107,7 +107,7 @@ std::string joined(const std::string& before, const std::string& name)
     return before.empty() ? name : before + "." + name;
 }
 
-/// Returns the full key of `wanted` if it is `value` (whose key is `key`) or lies below it; otherwise null.
+/// Searches `value` (its key is `key`) and everything below it. Returns the full key of `wanted`, or null.
 std::optional<std::string> key_below(const json& value, const json* wanted, const std::string& key)
 {
     if (&value == wanted) return key;

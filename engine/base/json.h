@@ -34,7 +34,7 @@ struct NumberRange {
 };
 /// All finite numbers.
 NumberRange any_number();
-/// From `lower`, which is above 0, to `upper`.
+/// The numbers from `lower`, which must be above 0, to `upper`.
 NumberRange above_zero(double lower, double upper);
 
 /// Limits on a text, checked before its values are read.
@@ -58,7 +58,7 @@ public:
     bool is(std::string_view text) const;  ///< whether the value is the string `text`
     size_t count() const;                  ///< elements of an array; 0 for anything else
 
-    /// "FILE: key KEY is VALUE; expected EXPECTED", or "... is missing; expected ..."
+    /// Returns the message "FILE: key KEY is VALUE; expected EXPECTED", or "... is missing; expected ...".
     std::string refusal(const std::string& expected) const;
     [[noreturn]] void refuse(const std::string& expected) const { throw Error(refusal(expected)); }
     [[noreturn]] void refuse_because(const std::string& reason) const;
@@ -92,7 +92,7 @@ public:
     glm::i64vec3 size(int64_t largest) const;  ///< each 1 ... `largest`
     /// The value's index in `names`.
     size_t choice(std::span<const std::string_view> names) const;
-    /// A value of an enumeration with `spellings_of`.
+    /// A value of an enumeration that has a function `spellings_of` (spelling.h).
     template <class Value>
     Value choice() const
     {

@@ -1,7 +1,7 @@
 #pragma once
 // Passes the latest value from one thread to another without a lock, in three slots: the writer owns one, the reader
 // owns one, and they exchange the third. Neither side ever waits or allocates; values that the reader did not take in
-// time are lost, by design. (The triple buffer; see also farbot's RealtimeObject.)
+// time are lost, by design. This is a triple buffer; see also farbot's RealtimeObject.
 //
 //     Latest<Pose> latest;
 //     latest.writing() = pose; latest.publish();      // writer: any number of fields, then publish

@@ -1,6 +1,6 @@
 #pragma once
-// One channel of a picture as doubles, and separable filters over it, for the metrics. Plain values; any thread may use
-// its own.
+// One channel of a picture as doubles, and separable filters over it, for the metrics. Planes are plain values; each
+// thread may use its own.
 
 #include <cstddef>
 #include <cstdint>

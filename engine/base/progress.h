@@ -9,7 +9,7 @@
 namespace shvr {
 
 /// Long-running work calls this at intervals, on its own thread, with the completed fraction (0 ... 1). An exception
-/// thrown by it ends the work, which leaves nothing half done. An empty function: progress is not reported.
+/// thrown by it ends the work, which leaves nothing half done. If the function is empty, progress is not reported.
 using Progress = std::function<void(double fraction)>;
 
 /// The work was stopped by the user.
@@ -30,7 +30,7 @@ inline Progress part_of(const Progress& progress, double lower, double upper)
     return [=](double fraction) { progress(lower + (upper - lower) * fraction); };
 }
 
-/// "5 s", "2 min 5 s", "3 h 20 min": rounded up.
+/// Formats a duration, rounded up: "5 s", "2 min 5 s", "3 h 20 min".
 std::string duration_text(double seconds);
 
 /// The progress line of a command. Prints nothing in the first second; then, on a terminal, one line that is rewritten,

@@ -25,7 +25,7 @@ std::vector<std::string_view> words_of(std::string_view text);
 bool has_controls(std::string_view text);
 /// The text with each control character replaced by a question mark.
 std::string printable(std::string_view text);
-/// For messages: in quotes, at most 60 characters, no control characters.
+/// Prepares a text for a message: in quotes, at most 60 characters, without control characters.
 std::string in_quotes(std::string_view text);
 /// Returns the text up to the next line end, and removes both from `rest`. "\r\n" counts as one line end.
 std::string_view take_line(std::string_view& rest);

@@ -39,7 +39,7 @@ Lanes load(const uint16_t* codes)
     return lanes;
 }
 
-/// Computes minimum and maximum code of each column over CELL_REACH rows, `pitch` apart. `length`: a multiple of LANES.
+/// Computes minimum and maximum code of each column over CELL_REACH rows, `pitch` apart. `length`: multiple of LANES.
 void reduce_rows(const uint16_t* low, const uint16_t* high, size_t pitch, size_t length, uint16_t* minimum,
                  uint16_t* maximum)
 {
@@ -81,7 +81,7 @@ void find_ranges(BrickTexels& brick)
         for (size_t y = 0; y < CELLS; ++y) {
             alignas(64) uint16_t minimum_y[ROW_PITCH];
             alignas(64) uint16_t maximum_y[ROW_PITCH];
-            // Reads ROW_PITCH texels, beyond TEXELS into the next row; the loop over x ignores the extra lanes.
+            // Reads ROW_PITCH texels, more than the TEXELS of the row; the loop over x ignores the extra ones.
             const size_t first = y * CELL_STEP * size_t(TEXELS);
             reduce_rows(minimum_z[z] + first, maximum_z[z] + first, TEXELS, ROW_PITCH, minimum_y, maximum_y);
             for (size_t x = 0; x < CELLS; ++x, ++cell) {
@@ -186,7 +186,7 @@ public:
 
     int64_t row_count() const { return rows_per_layer_ * counts_.z; }
 
-    /// The loop of a worker, until no task is left.
+    /// A worker's loop: runs tasks until none is left.
     void work()
     {
         try {
@@ -248,7 +248,7 @@ private:
 
     bool do_read(std::unique_lock<std::mutex>& lock, int64_t layer, int64_t read)
     {
-        // Copying the shared slices needs the whole previous layer, which must not be overwritten during the copy.
+        // The shared slices are copied from the previous layer: it must be complete and stay unchanged during the copy.
         changed_.wait(lock, [&] {
             const bool slab_is_free = layer < 2 || rows_done_[size_t(layer - 2)] == rows_per_layer_;
             const bool before_is_read = layer == 0 || reads_done_[size_t(layer - 1)] == read_count(layer - 1);

@@ -13,7 +13,7 @@ std::optional<uint32_t> BrickMap::find(const BrickKey& key) const
     return entry.key == NONE ? std::nullopt : std::optional(entry.number);
 }
 
-/// Index of the brick's entry or, if the brick is missing, of the entry where it would be inserted.
+/// Index of the brick's entry or, if the brick is missing, of the entry at which it would be inserted.
 size_t BrickMap::place_of(const BrickKey& key) const
 {
     const uint64_t word = word_of(key);

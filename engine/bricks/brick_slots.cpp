@@ -46,7 +46,7 @@ void BrickSlots::list_evictable(BrickNeed below)
 
 std::optional<uint32_t> BrickSlots::next_evictable(BrickNeed below)
 {
-    // The list may be outdated: a listed brick may since have become needed, or been used and thus be out of order.
+    // The list may be outdated: a listed brick may be needed by now, or may have been used and so be out of order.
     while (!evictable_is_stale_ && !evictable_.empty()) {
         const Slot& slot = slots_[evictable_.back().slot];
         const bool is_needed = slot.key && need_(*slot.key) != BrickNeed::none;

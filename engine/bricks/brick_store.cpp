@@ -31,7 +31,7 @@ BrickStore::BrickStore(const VolumeSource& source, const IntensityWindow& window
     : source_(source), window_(window), own_maker_(source, window)
 {
     const int loaders = std::max(1, threads);
-    // The minimum: one brick in progress per loader, and per loader one brick that waits to be taken.
+    // The minimum, two bricks per loader: one in progress, and one that waits to be taken.
     max_bricks_ = std::max<uint64_t>(budget_bytes / BRICK_BYTES, 2 * uint64_t(loaders));
     for (int i = 0; i < loaders; ++i) {
         loaders_.emplace_back([this](std::stop_token stop) {
@@ -142,7 +142,7 @@ std::optional<std::string> BrickStore::failure_of(const BrickKey& key) const
     return found == failed_.end() ? std::nullopt : std::optional(found->second);
 }
 
-/// The mutex is held. The next wanted brick that is neither kept nor being loaded.
+/// Returns the next wanted brick that is neither kept nor being loaded. The caller holds the mutex.
 std::optional<BrickKey> BrickStore::next()
 {
     while (next_wanted_ < wanted_.size()) {
@@ -158,8 +158,8 @@ std::optional<BrickKey> BrickStore::next()
     return std::nullopt;
 }
 
-/// The mutex is held. Evicts the least recently used bricks, except those waiting to be taken, until there is room for
-/// one more brick.
+/// Evicts the least recently used bricks, except those waiting to be taken, until there is room for one more brick. The
+/// caller holds the mutex.
 bool BrickStore::make_room()
 {
     const auto is_full = [&] { return kept_.size() + loading_.size() >= max_bricks_; };

@@ -41,14 +41,14 @@ public:
 
     /// Sets the wanted bricks, most wanted first. Replaces the previous list.
     void want(std::vector<BrickKey> keys);
-    /// Returns up to `most` of the wanted bricks that are ready; each is returned once per list. Does not wait.
+    /// Returns up to `most` of the wanted bricks that are ready, without waiting; each brick once per call of want().
     std::vector<Finished> take(size_t most);
     /// Waits until there is a brick to take; returns false if no more will arrive.
     bool wait();
     /// Returns one brick at once: if the store does not keep it, reads it on this thread. Null if it cannot be read.
     Texels get(const BrickKey& key);
-    /// Reports that the source's voxels of these bricks have changed: drops kept copies, and re-reads bricks that a
-    /// loader read earlier. Call it after the source has changed.
+    /// Reports that the source's voxels of these bricks have changed: drops kept copies, and repeats reads of these
+    /// bricks that are in progress. Call it after the source has changed.
     void renew(std::span<const BrickKey> keys);
     /// Why a brick cannot be read; null if it can be read, or if reading was not tried.
     std::optional<std::string> failure_of(const BrickKey& key) const;

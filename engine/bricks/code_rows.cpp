@@ -13,7 +13,7 @@ namespace {
 /// Compilers vectorise a loop of known length even at -O2.
 constexpr size_t BLOCK = 64;
 
-/// Runs `convert_block(const T* voxels, uint16_t* codes)` on blocks of BLOCK voxels; the last one is padded.
+/// Runs `convert_block(const T* voxels, uint16_t* codes)` on blocks of BLOCK voxels; the last block is padded.
 template <class T, class ConvertBlock>
 void for_each_block(std::span<const std::byte> voxels, std::span<uint16_t> codes, const ConvertBlock& convert_block)
 {

@@ -65,7 +65,7 @@ public:
         return camera_.far_distance <= 0.0 || least(forward_, box) - eye_depth_ <= camera_.far_distance;
     }
     double depth(const Box& box) const { return std::max(least(forward_, box) - eye_depth_, camera_.near_distance); }
-    /// Size of a pixel at that depth, physical units.
+    /// Size of a pixel at `depth`, in physical units.
     double pixel_at(double depth) const
     {
         return camera_.projection == Camera::Projection::perspective ? pixel_ * std::max(depth, 0.0) : pixel_;
@@ -95,7 +95,7 @@ public:
         reference_ = std::min({volume.spacing.x, volume.spacing.y, volume.spacing.z});
     }
 
-    /// Returns false if there are too many leaves.
+    /// Lists the leaves for `detail`. Returns false if there are too many.
     bool cut(double detail)
     {
         detail_ = detail;

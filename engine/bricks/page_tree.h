@@ -39,8 +39,8 @@ struct PageTree {
     int cell_shift = 5;        ///< log2 of the side of a cell of the directory's grid, in voxels
     glm::uvec3 counts{1};      ///< cells of the grid
     int depth = 0;             ///< levels of nodes below the grid
-    /// The directory of shaders/pages.h, as far as the view determines it: empty space, and the nodes. Where
-    /// `leaf_of_entry` names a leaf, the caller fills in the brick to draw for it.
+    /// The directory of shaders/pages.h, as far as the view determines it: empty space, and the nodes. For an entry
+    /// whose `leaf_of_entry` names a leaf, the caller fills in the brick to draw.
     std::vector<uint32_t> entries;
     std::vector<uint32_t> leaf_of_entry;
     /// The inverse mapping: leaf i is in `entries_of_leaves`[`begin_of_leaf`[i] ... `begin_of_leaf`[i + 1] - 1].
@@ -48,7 +48,7 @@ struct PageTree {
 };
 
 /// `levels`: as VolumeSource::levels. `shows`: whether a brick, or any of the finer bricks below it, may have visible
-/// voxels. If a view needs more than `max_leaves`, its detail is halved repeatedly.
+/// voxels. If a view needs more than `max_leaves` leaves, its detail is halved until they suffice.
 PageTree make_page_tree(const VolumeInfo& volume, int levels, const PageView& view,
                         const std::function<bool(const BrickKey&)>& shows, size_t max_leaves = size_t{1} << 17);
 

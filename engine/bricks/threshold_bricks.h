@@ -19,7 +19,7 @@ namespace shvr {
 
 class ThresholdBricks {
 public:
-    /// `source`: with offsets, if there are any.
+    /// `source` includes the density offsets, if there are any.
     explicit ThresholdBricks(std::shared_ptr<const VolumeSource> source);
     ~ThresholdBricks();
     ThresholdBricks(const ThresholdBricks&) = delete;

@@ -9,7 +9,7 @@
 namespace shvr {
 namespace {
 
-/// Voxel bytes to read at once: the size of a core's second-level cache. A larger row of blocks is read as a whole.
+/// Voxel bytes to read at once: the size of a core's second-level cache. Exceeded only if a single block takes more.
 constexpr int64_t STRIP_BYTES = int64_t{1} << 20;
 constexpr int64_t MAX_BIT_BYTES = int64_t{64} << 20;
 constexpr int64_t WORD = 64;
@@ -93,7 +93,7 @@ void BitSlab::read_strip(const BitLayout::Strip& strip, int64_t first_word)
     int64_t word_of_columns = first_word;
     for (const BitLayout::Columns& columns : strip.columns) {
         const int64_t width = columns.upper - columns.lower;
-        // Reads as many whole rows of blocks as fit at once, or else parts of them: whole blocks and whole words.
+        // Reads as many whole rows of blocks at once as fit. If not even one fits, reads parts: whole blocks and words.
         const int64_t least_bytes = voxel_bytes * block_.y * slices;
         int64_t step = width;
         if (width * least_bytes > STRIP_BYTES) {

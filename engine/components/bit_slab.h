@@ -27,7 +27,7 @@ public:
         int64_t words = 0;  ///< words of bits per slice
     };
 
-    /// Covers all voxels, as one layer, or only the blocks in `stored`.
+    /// Covers only the blocks in `stored` or, if that is null, all voxels as one layer.
     BitLayout(const Size3& size, const std::optional<StoredBlocks>& stored);
 
     /// The layer that contains slice z, or else the next layer; null if there is none.

@@ -62,7 +62,7 @@ protected:
     Counts counts_;
 };
 
-/// Fails if a slice is too large to be held as bits, if reading the source fails, if there are more than 2^32
+/// Fails if a slice is too large to be kept as bits, if reading the source fails, if there are more than 2^32
 /// provisional labels, or if the temporary file cannot be written. Call from one thread at a time.
 std::unique_ptr<Components> find_components(const VolumeSource& source, const ComponentOptions& options);
 

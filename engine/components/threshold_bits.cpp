@@ -27,8 +27,8 @@ std::optional<T> lowest_above(double threshold)
     }
 }
 
-/// Eight flags of one byte each (0 or 1), the first in the lowest bit. The product holds flag i in bit 56 + i, and no
-/// two of its terms fall on one bit.
+/// Packs eight flags, bytes of 0 or 1, into one byte, the first flag in the lowest bit. The product holds flag i in bit
+/// 56 + i, and no two of its terms fall on one bit.
 uint64_t gathered(const uint8_t* flags)
 {
     uint64_t eight;

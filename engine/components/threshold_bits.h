@@ -10,7 +10,7 @@
 
 namespace shvr {
 
-/// The number of 64-bit words for a row of that many voxels.
+/// The number of 64-bit words that hold the bits of a row of `voxels` voxels.
 inline int64_t words_of_row(int64_t voxels)
 {
     return (voxels + 63) / 64;
@@ -18,15 +18,15 @@ inline int64_t words_of_row(int64_t voxels)
 
 class ThresholdBits {
 public:
-    /// `threshold` in intensity units; +-infinity is allowed, NaN is not (SHVR_CHECK).
+    /// `threshold` is in intensity units; +-infinity is allowed, NaN is not (SHVR_CHECK).
     ThresholdBits(VoxelType type, double threshold);
 
     VoxelType type() const { return type_; }
     /// Whether a voxel with a value in the range can be at or above the threshold.
     bool reaches(const ValueRange& range) const { return range.lower <= range.upper && range.upper >= threshold_; }
 
-    /// Bit b of word w is 1 if voxel 64 w + b is at or above the threshold, which NaN never is. Bits beyond the row are
-    /// 0. `voxels` has native byte order and the alignment of its type.
+    /// Sets bit b of word w if voxel 64 w + b is at or above the threshold; NaN counts as below. Bits beyond the row
+    /// are 0. `voxels` has native byte order and the alignment of its type.
     void convert(std::span<const std::byte> voxels, std::span<uint64_t> words) const;
 
 private:

@@ -17,7 +17,7 @@ class BrickUploads {
 public:
     static constexpr size_t BATCH = 32;  ///< bricks per batch; each of the two buffers takes 2.5 MiB
 
-    /// `bricks`: upper bound on the size of a batch.
+    /// `bricks`: upper bound on the number of bricks in a batch.
     BrickUploads(gpu::Executor& executor, gpu::Memory& memory, uint64_t bricks, AtlasCodes codes);
 
     /// Destination of a brick: its codes, and the ranges of its cells. The images must outlive the copies.

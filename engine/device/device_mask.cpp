@@ -38,8 +38,8 @@ std::optional<ResourceDesc> DeviceMask::desc_for(uint64_t bricks) const
     return memory_.can_create(desc) ? std::optional(desc) : std::nullopt;
 }
 
-/// Allocates room for `bricks`, plus a reserve: half as many bricks if that leaves half of the memory, else a sixteenth
-/// as many, or none if the device's images hold no more.
+/// Allocates room for `bricks` and a reserve. The reserve is half of `bricks` if all of this takes at most half of the
+/// free memory, otherwise a sixteenth. There is no reserve if the device's images cannot hold it.
 void DeviceMask::grow(uint64_t bricks)
 {
     atlas_.reset();

@@ -36,7 +36,7 @@ struct StackedLayout {
 /// A layout of at least this many slots in as few images as the device's limits allow; null if it needs too many.
 std::optional<StackedLayout> stacked_layout(uint64_t slots, AtlasCodes codes, const gpu::DeviceTraits& traits);
 
-/// The packed address of the slot with that index, x fastest.
+/// The packed address of slot `index`; the indices run along x fastest.
 uint32_t slot_at(uint32_t index, const glm::uvec3& slots);
 
 /// The bricks of a level whose texels, aprons included, depend on level 0 voxels in `boxes`; each brick once.
@@ -83,8 +83,8 @@ public:
     /// The finest level that the view needs; the sample distance may be as large as a voxel of that level.
     virtual int finest_level() const = 0;
 
-    /// A graph with one short step of prepare()'s work that can be done in advance; null when none is left. The graph
-    /// must be submitted before the next call.
+    /// Returns a graph with one short step of prepare()'s work that can be done in advance; null if no such step is
+    /// left. The graph must be submitted before the next call.
     virtual std::optional<FrameGraph> next_preparation(const Visibility& visibility, const DeviceMask& mask) = 0;
     /// Returns a graph with one step of work that makes later pictures faster without changing them; null if no such
     /// work is left.
@@ -115,10 +115,10 @@ public:
     /// RaysInWaiting). If so, only the bricks that rays wait for count as visited, and earlier visits are dropped. In a
     /// resident volume no ray ever waits. `is_ready`: whether a brick on the device can be drawn; null: all can.
     virtual void let_rays_wait(bool wait, std::function<bool(const BrickKey&)> is_ready = {}) = 0;
-    /// Forgets the farthest visits until the remaining visited bricks fit together with the bricks within
-    /// `reach[level]` bricks of them. False if even a single visited brick does not fit with those around it.
+    /// Forgets the farthest visits until there is room for the remaining visited bricks and all bricks within
+    /// `reach[level]` bricks of them. Returns false if there is no room even for one visited brick and those around it.
     virtual bool limit_visits(const std::vector<int>& reach) = 0;
-    /// Whether any ray waits in the pictures drawn since forget_visits().
+    /// Whether any ray is waiting for a brick in the pictures drawn since forget_visits().
     virtual bool has_rays_waiting() const = 0;
     /// Takes loaded bricks. Returns the voxels that may look different now. `wait`: waits for all requested bricks, and
     /// reports the arrived fraction to `progress`.
@@ -145,11 +145,11 @@ public:
     virtual bool is_drawn(const BrickKey& key) const = 0;
     /// A number that changes whenever the results of is_drawn() or presence_of() may change, except through places().
     virtual uint64_t visits_revision() const = 0;
-    /// Also requests the bricks within `reach[level]` bricks of visited ones, because ambient light arrives from there.
-    /// An empty `reach` requests none.
+    /// Also requests the bricks within `reach[level]` bricks of visited bricks, since their ambient light comes from
+    /// there. An empty `reach` requests none.
     virtual void want_around(const std::vector<int>& reach) = 0;
-    /// Loads level 0 of `voxels` first, because the user is likely to touch or paint there next, unless it takes more
-    /// than a quarter of the slots. Valid until the next call of prefer() or region().
+    /// Loads level 0 of `voxels` first, because the user is likely to touch or paint there next; does nothing if these
+    /// bricks take more than a quarter of the slots. Valid until the next call of prefer() or region().
     virtual void prefer(const VoxelBox& voxels) = 0;
 
     // ---- Changes

@@ -16,11 +16,11 @@ public:
     /// Sets the look to build the grid for; its `changed` and `mask` are ignored.
     void want(const LeapGridInput& look, const glm::uvec3& cell_counts);
 
-    /// is_due(): work is left that must precede a picture. is_worth_refining(): work is left that may follow it.
+    /// is_due(): work is left that must precede a picture. is_worth_refining(): work is left that may follow a picture.
     bool is_due() const { return look_ && (!holds_ || !patch_.empty()); }
     bool is_worth_refining() const { return look_ && holds_ && stage_ < LEAP_STAGES; }
-    /// Each function adds one pass of its kind of work, and may only be called while such work is left. If the graph is
-    /// not submitted, the whole grid is rebuilt.
+    /// Each function adds one pass of its kind of work; call it only while such work is left. If the graph is not
+    /// submitted, the whole grid is rebuilt.
     void prepare(FrameGraph& graph, VolumeBinding& volume, LeapGridInput look);
     void refine(FrameGraph& graph, VolumeBinding& volume, LeapGridInput look);
 

@@ -13,7 +13,7 @@ namespace shvr {
 namespace {
 
 constexpr double LAST_CODE = 65535.0;
-/// Maximum opacity at the ends of a sloped segment for which a table of few entries suffices.
+/// If a sloped segment's opacity is below this at both ends, a table of few entries suffices.
 constexpr double MAX_SLOPED = 0.999;
 
 uint32_t whole_rows(uint32_t texels)
@@ -35,7 +35,7 @@ void append_depths(std::vector<glm::vec4>& texels, std::span<const float> depths
     }
 }
 
-/// One texel per entry, with the depths of its neighbours.
+/// Appends one texel per entry: the depths of the entry and of its next neighbours along front, back, and both.
 void append_depths_of_steps(std::vector<glm::vec4>& texels, std::span<const float> depths)
 {
     const uint32_t side = STEP_TABLE_SIDE;
@@ -70,13 +70,13 @@ bool has_smooth_lines(const TransferFunction& function)
         const ControlPoint &p = points[i], &q = points[i + 1];
         if (p == q) continue;
         if (p.intensity == q.intensity) return false;
-        // Where the function's opacity rises up to 1, the opacity of a step also rises too steeply.
+        // Where the function's opacity rises up to 1, the opacity of a step rises too steeply to be interpolated.
         if (std::max(p.opacity, q.opacity) >= MAX_SLOPED && p.opacity != q.opacity) return false;
     }
     return true;
 }
 
-/// A number of entries, small enough for fast memory, that puts every control point at an entry.
+/// A number of entries, small enough for fast memory, that puts every control point at an entry; null if none does.
 std::optional<uint32_t> entries_at_points(const TransferFunction& function, const IntensityWindow& window,
                                           const TableRange& range)
 {
@@ -151,7 +151,7 @@ TableRange table_range(const TransferFunction& function, const IntensityWindow& 
     const double first = window.code_of(function.lower()), last = window.code_of(function.upper());
     TableRange range{
         .lower = std::clamp(first, 0.0, LAST_CODE), .upper = std::clamp(last, 0.0, LAST_CODE), .samples = {}};
-    // If nothing is cut off, keeps the function's own bounds, since codes are rounded.
+    // If nothing is cut off, keeps the function's own bounds, which are more exact than bounds computed from codes.
     range.samples.lower = range.lower == first ? function.lower() : window.intensity_of(range.lower);
     range.samples.upper = range.upper == last ? function.upper() : window.intensity_of(range.upper);
     const auto codes = std::max(uint32_t(std::ceil(range.upper - range.lower)), 1u);

@@ -45,8 +45,8 @@ struct LookTable {
 
 LookTable make_look_table(const TransferFunction& function, const IntensityWindow& window, double step_voxels,
                           bool is_preintegrated, bool has_points = false);
-/// Looks of all 256 colour groups, in order of number: 256 texels of linear RGB and opacity per step (0 if hidden),
-/// then 256 texels with the optical depth.
+/// The looks of all 256 colour groups, in the order of their numbers. The first 256 texels hold linear RGB and the
+/// opacity per step (0 for hidden groups); the next 256 texels hold the optical depth.
 std::vector<glm::vec4> make_group_looks(const Groups& groups, double step_voxels);
 
 /// Sets the parameters shared by all kernels that look up a transfer function table.

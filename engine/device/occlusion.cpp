@@ -18,7 +18,7 @@ namespace {
 /// Reach of light beyond the radius: the lift of rays off surfaces, half the largest cell, and the voxel itself.
 constexpr double MARGIN_VOXELS = 8.0;
 
-/// Scratch memory for this many paged bricks, which take more than resident ones.
+/// Scratch memory for `bricks` paged bricks; resident bricks need less.
 uint64_t slice_bytes(uint32_t bricks)
 {
     uint64_t bytes = occlusion_near_desc(bricks, true).bytes;
@@ -26,8 +26,8 @@ uint64_t slice_bytes(uint32_t bricks)
     return bytes;
 }
 
-/// How many bricks are renewed at once: their scratch memory is at most a sixteenth of the budget. On a CPU, a few
-/// bricks suffice to keep it busy, and stay in its caches.
+/// Number of bricks to renew at once. Their scratch memory is at most a sixteenth of the budget. On a CPU, a few bricks
+/// are enough to keep it busy, and stay in its caches.
 uint32_t slice_for(const gpu::DeviceTraits& traits, uint64_t device_budget)
 {
     const uint64_t most = traits.is_cpu ? gpu::OCCLUSION_COLUMN : gpu::OCCLUSION_SLICE;
@@ -195,7 +195,7 @@ void Occlusion::changed(const VoxelBox& changed, int64_t apron)
         entry.needs_cells = entry.needs_cells || meet(brick, voxels);
         const auto reach = int64_t(std::ceil(look_->radius + std::ldexp(MARGIN_VOXELS, key.level)));
         entry.needs_values = entry.needs_values || meet(brick, {voxels.lower - reach, voxels.upper + reach});
-        // The change may affect whether bricks are seen: any coarse brick, and level 0 bricks near the change.
+        // Any coarse brick, and any level 0 brick near the change, may now be seen, or be seen no longer.
         const int64_t beside = int64_t{gpu::BRICK_SIZE} << key.level;
         if (key.level > 0 || meet(brick, {voxels.lower - beside, voxels.upper + beside})) entry.is_seen.reset();
     }
@@ -264,7 +264,7 @@ bool Occlusion::shows(const BrickKey& key, const Entry& entry) const
     return look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 0);
 }
 
-/// Whether each brick that the values of `key` need either is on the device or will never be.
+/// Whether no brick that the values of `key` need is missing: each is on the device, or will never be.
 bool Occlusion::has_all_around(const BrickKey& key) const
 {
     const glm::ivec3 counts = brick_counts(size_of_level(volume_->info().size, key.level));
@@ -307,7 +307,7 @@ bool Occlusion::is_seen(const BrickKey& key, Entry& entry)
     return *entry.is_seen;
 }
 
-/// Whether the brick is seen. Even an empty one may be, next to painted voxels or to the visible ends of a step.
+/// Whether the brick is seen. Even an empty brick may be, next to painted voxels or to the visible ends of a step.
 bool Occlusion::look_whether_seen(const BrickKey& key, const Entry& entry) const
 {
     if (look_->visibility.shows(entry.range.minimum, entry.range.maximum) || is_painted(key, 1)) return true;
@@ -333,7 +333,7 @@ bool Occlusion::is_due()
 /// Queues bricks of one level only: the level of the nearest brick.
 void Occlusion::fill_queue(const glm::dvec3& eye)
 {
-    /// Length of the queue: enough for the next slices, which then need no pass over all bricks.
+    /// Length of the queue: enough for the next slices, so that they need no pass over all bricks.
     constexpr size_t MOST = size_t{4} * gpu::OCCLUSION_SLICE;
     queued_ = cause();
     queued_eye_ = eye;
@@ -498,7 +498,7 @@ void Occlusion::add_values(FrameGraph& graph, const VolumeBinding& volume, Occlu
     input.params.table_entries = look_->visibility.params.table_entries;
     input.params.guard = look_->visibility.params.guard;
     input.params.rays = look_->rays;
-    // For radii below a voxel there are no near taps, but the tables still need a stretch.
+    // For radii below a voxel there are no near taps, but the tables still need a value for the stretch.
     const double near_stretch = input.taps.taps.empty() ? 1.0 : input.taps.near_stretch;
     input.near = cells_input(level, std::ldexp(near_stretch, level), mask);
     input.params.inverse_spacing = std::min({spacing.x, spacing.y, spacing.z}) / spacing;

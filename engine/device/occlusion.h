@@ -1,9 +1,9 @@
 #pragma once
-// Local ambient occlusion of the bricks on the device: tracks which are stale and renews them in slices, nearest to the
-// eye first. Its images use the slots of the density atlas, so they need no table of their own. Nothing is allocated on
-// the device until a look asks for it.
+// Local ambient occlusion of the bricks on the device: tracks which cells and values are stale, and renews them in
+// slices, nearest to the eye first. Its images use the slots of the density atlas, so they need no table of their own.
+// Allocates nothing on the device until a look asks for ambient occlusion.
 //
-//   bricks arrive, painted voxels, cut   -> cells of those bricks, and values as far as light comes from them
+//   new bricks, painted voxels, cut      -> cells of the changed bricks, and the values that their light reaches
 //   transfer function, radius            -> all cells, all values
 //   rays, hemisphere                     -> all values
 //
@@ -50,13 +50,13 @@ public:
     /// own level).
     void changed(const VoxelBox& voxels, int64_t apron = 0);
 
-    /// Device memory per slot of the atlas; device memory for scratch images under a budget of `device_budget`.
+    /// Device memory: slot_bytes() per slot of the atlas, scratch_bytes() for scratch images under `device_budget`.
     static uint64_t slot_bytes();
     static uint64_t scratch_bytes(const gpu::DeviceTraits& traits, uint64_t device_budget);
 
     bool exists_for(const DeviceVolume& volume) const { return volume_ == &volume; }
     bool has_memory() const { return bool(values_); }
-    /// For each level: how many bricks away from a brick its light may come from.
+    /// For each level: the largest distance, in bricks, from which light may reach a brick.
     std::vector<int> reach() const;
     /// Whether anything is stale.
     bool is_due();
@@ -130,7 +130,7 @@ private:
     uint64_t revision_ = 0;  ///< places_revision() of the volume
     Counts counts_;
 
-    /// Inputs that determine the due bricks, apart from completed work.
+    /// The inputs that determine which bricks are due, apart from completed work.
     struct Cause {
         uint64_t visits = 0;   ///< DeviceVolume::visits_revision
         uint64_t changes = 0;  ///< changes_

@@ -73,10 +73,10 @@ public:
     bool is_painted(const PageSight& sight, const BrickKey& key) const;
     /// Whether a brick, or any of the finer bricks below it, may show anything according to the file's densities.
     bool may_show(const PageSight& sight, const BrickKey& key) const;
-    /// Whether it was read and shows nothing.
+    /// Whether the brick has been read and shows nothing.
     bool is_empty(const PageSight& sight, const BrickKey& key) const;
-    /// The directory's entry for a leaf (shaders/pages.h): it shows
-    /// nothing, the leaf's brick, or the brick's finest ancestor on the device.
+    /// The directory's entry for a leaf (shaders/pages.h). The entry shows nothing, the leaf's brick, or the finest
+    /// ancestor of the brick on the device.
     uint32_t entry_of(const PageSight& sight, const BrickKey& leaf) const;
 
 private:
@@ -101,19 +101,19 @@ struct PageList {
 
 class PageLister {
 public:
-    /// `known`: initial state, without any brick. Its source must be readable by any thread.
+    /// `known` is the initial state, without any brick. Any thread must be able to read its source.
     explicit PageLister(KnownBricks known);
     ~PageLister();
     PageLister(const PageLister&) = delete;
 
     void note(const BrickEvent& change);
-    /// changes(): number of changes noted so far. changes_since(): those after `changes`; null if no longer in the log.
+    /// changes(): number of changes so far. changes_since(): those after the first `changes`; null if some are dropped.
     uint64_t changes() const { return first_ + log_.size(); }
     std::optional<std::span<const BrickEvent>> changes_since(uint64_t changes) const;
 
     /// Whether take() would return without waiting. If not, starts making the list, unless another is in progress.
     bool get_ready(const PageView& view, const Visibility& visibility);
-    /// Waits for the list and returns it. Fails as the source does.
+    /// Waits for the list and returns it. Fails if listing fails because of the source.
     std::shared_ptr<PageList> take(const PageView& view, const Visibility& visibility);
     /// Puts a taken list back into the cache.
     void keep(std::shared_ptr<PageList> list);

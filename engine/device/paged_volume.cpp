@@ -35,7 +35,7 @@ StackedLayout layout_for(const gpu::DeviceTraits& traits, const VolumeInfo& info
 {
     const uint64_t useful = useful_slots(info, levels), most = bytes / BrickAtlas::slot_bytes(codes);
     const uint64_t least = std::min(useful, PagedVolume::MIN_SLOTS);
-    // Layouts round up: a layout for fewer slots may have more slots, or exist where none for more slots does.
+    // Layouts round up, so that one for fewer slots may have more slots, or exist although none exists for more slots.
     for (uint64_t slots = std::min(useful, most); slots >= least; --slots)
         if (const std::optional<StackedLayout> layout = stacked_layout(slots, codes, traits))
             if (layout->count() <= most) return *layout;
@@ -99,7 +99,7 @@ void PagedVolume::pin_coarse_levels()
         for (int z = 0; z < counts.z; ++z)
             for (int y = 0; y < counts.y; ++y)
                 for (int x = 0; x < counts.x; ++x) {
-                    // At most a quarter of the slots, but always the whole coarsest level.
+                    // Pins at most a quarter of the slots, but always the whole coarsest level.
                     if (level < levels_ - 1 && coarse_.size() >= slots_.count() / 4) return;
                     coarse_.push_back({level, {x, y, z}});
                 }
@@ -161,7 +161,7 @@ int PagedVolume::look(const PageView& exact, const Visibility& visibility)
     return finest_level();
 }
 
-/// Makes a list current. Returns the previous list to the cache; it includes the changes applied to it so far.
+/// Makes a list current. Puts the previous list, including the changes applied to it so far, back into the cache.
 void PagedVolume::install(std::shared_ptr<PageList> list)
 {
     const std::shared_ptr<PageList> before = std::exchange(list_, std::move(list));
@@ -284,7 +284,7 @@ void PagedVolume::take_feedback(const Feedback& feedback, const gpu::FrameResult
     if (feedback.read_back_) note_reached(feedback.tree_, result.read_backs[*feedback.read_back_]);
 }
 
-/// `bits`: PageBinding::reached of a picture drawn with `drawn`.
+/// `bits`: the contents of PageBinding::reached after a picture drawn with the tree `drawn`.
 void PagedVolume::note_reached(const std::shared_ptr<const PageTree>& drawn, std::span<const std::byte> bits)
 {
     for (size_t word = 0; word < bits.size() / sizeof(uint32_t); ++word) {

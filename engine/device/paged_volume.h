@@ -80,9 +80,9 @@ public:
     void want_around(const std::vector<int>& reach) override;
     void prefer(const VoxelBox& voxels) override;
 
-    /// Reloads the bricks of all levels that depend on the voxels. Bricks on the device are reloaded at once; if there
-    /// are too many, only the coarse bricks that are always on the device are, and the rest are requested again like
-    /// missing bricks. Bricks that are not on the device are reloaded when needed.
+    /// Reloads the bricks of all levels that depend on the voxels. Bricks on the device are reloaded at once. If there
+    /// are too many, only the coarse bricks that are always on the device are reloaded at once, and the others are
+    /// requested again like missing bricks. Bricks that are not on the device are reloaded when needed.
     void renew(std::span<const VoxelBox> changed) override;
     void note_painted(const Mask& mask, std::span<const int64_t> bricks) override;
 
@@ -132,7 +132,7 @@ private:
     void fill_leaf(uint32_t leaf);
     void fill_directory();
     void note(const BrickEvent& change);
-    /// Notes another kind of change of a brick that affects what is drawn in the brick's place.
+    /// Notes any other change of a brick that affects what is drawn in the brick's place.
     void note_changed(const BrickKey& key) { note({.key = key}); }
     void note_all_changed();
     gpu::BrickLeapJob job_of(const BrickKey& key, uint32_t slot) const;
@@ -154,17 +154,17 @@ private:
 
     // Indexed by leaf.
     std::vector<bool> is_reached_;  ///< leaves visited by rays since the view last changed
-    /// Leaves visited earlier. They count as visited as long as there is room for both sets; without this limit,
-    /// turning the camera would keep bricks that are no longer visible.
+    /// Leaves visited earlier. They still count as visited while there is room for them and for the leaves visited now;
+    /// without this limit, turning the camera would keep bricks that are no longer visible.
     std::vector<bool> was_reached_;
     std::vector<uint32_t> visited_;  ///< leaves in either set
     std::set<uint32_t> awaited_;     ///< superset of the visited leaves whose bricks are missing; nearest first
     bool rays_wait_ = false;
     std::function<bool(const BrickKey&)> is_ready_;
-    /// Bricks that cannot be read and that rays have waited for; from then on, coarser bricks are drawn instead.
+    /// Bricks that cannot be read and that rays have waited for. Coarser bricks are now drawn instead of these bricks.
     std::unordered_set<BrickKey, BrickKeyHash> given_up_;
-    /// The directory is part of the list. This holds the indices of the entries that differ from those on the device;
-    /// it is not used while all_entries_changed_ is true.
+    /// Indices of the directory entries (of the current list) that differ from the entries on the device. Not used
+    /// while all_entries_changed_ is true.
     std::vector<uint32_t> changed_entries_;
     bool all_entries_changed_ = true;
     bool all_leaves_are_stale_ = true;

@@ -21,7 +21,7 @@ bool PagedVolume::leaf_is_reached(const BrickKey& key) const
     return leaf && is_visited(*leaf);
 }
 
-/// `is_before`: by rays of the previous view.
+/// `is_before`: whether the leaf was visited by rays of the previous view, not of the current one.
 void PagedVolume::visit(uint32_t leaf, bool is_before)
 {
     if (!is_visited(leaf)) {
@@ -188,7 +188,7 @@ void PagedVolume::renew(std::span<const VoxelBox> changed)
 }
 
 /// Rebuilds the tree after the source's data has changed; keeps the record of which bricks rays visited. Waits for the
-/// new list, as the caller also waits for the bricks on the device.
+/// new list, since the caller has to wait for the bricks on the device anyway.
 void PagedVolume::rebuild_tree()
 {
     lister_.forget();
@@ -200,7 +200,7 @@ void PagedVolume::rebuild_tree()
 /// Adds the bricks that the picture lacks, nearest first. Returns false if there are too few slots for all of them.
 bool PagedVolume::list_wants(std::vector<BrickKey>& keys)
 {
-    // Counts bricks that are on the device or will be. The exact number does not matter if there are slots for all.
+    // The sum also counts bricks that are on the device or arriving; that does not matter if there are slots for all.
     const bool is_roomy = keys.size() + awaited_.size() + around_.size() <= slots_.free_count();
     size_t room = is_roomy ? slots_.free_count() : slots_.room();
     room -= std::min(room, keys.size());
@@ -350,8 +350,8 @@ std::optional<RegionBricks> PagedVolume::region(const VoxelBox& voxels, bool wai
 }
 
 /// Records that a brick of any level has gained or lost paint of a level 0 brick below it. Updates the view's entries
-/// for the brick and for the neighbours that its paint reaches. Returns true if the view now needs other bricks;
-/// `asks`: whether to determine that.
+/// for the brick and for the neighbours that its paint reaches. If `asks` is set, determines and returns whether the
+/// view now needs other bricks; otherwise returns false.
 bool PagedVolume::note_painted_in(const BrickKey& key, bool is, bool asks)
 {
     std::vector<BrickKey> reached;

@@ -67,7 +67,7 @@ void PagedVolume::note(const BrickEvent& change)
     known_.apply(change);
     lister_.note(change);
     directory_is_stale_ = true;
-    // A ray that waits for a brick's light also waits for the brick's neighbours.
+    // Rays that wait for a brick's light also wait for its neighbours, so entries of other leaves may change, too.
     if (is_ready_) all_leaves_are_stale_ = true;
     const bool may_be_missing = change.kind == BrickEvent::Kind::gone || change.kind == BrickEvent::Kind::unread;
     if (const std::optional<uint32_t> leaf = may_be_missing ? leaf_of(change.key) : std::nullopt)

@@ -1,7 +1,7 @@
 #pragma once
-// A volume with all of its bricks on the device, side by side in one image; the value range of every cell; and the leap
-// grid, which is updated when visibility or paint changes. Bricks have slots for their ambient light, as paged bricks
-// do. A volume that does not fit the device budget is refused with a message before any brick is read.
+// A volume with all of its bricks on the device, side by side in one image, together with the value range of every cell
+// and the leap grid, which is updated when visibility or paint changes. Bricks have slots for their ambient light, as
+// paged bricks do. A volume that does not fit the device budget is refused with a message before any brick is read.
 //
 // One thread, the one that owns the executor.
 

@@ -15,26 +15,26 @@ namespace shvr {
 namespace {
 
 // Shares of the device memory that is free when a volume is loaded.
-/// Sixteenths of that memory that a resident volume leaves free for tables and for pictures drawn in parts.
+/// A resident volume leaves this many sixteenths of that memory free for tables and for pictures drawn in parts.
 constexpr uint64_t PICTURE_SIXTEENTHS = 1;
 /// Minimum reserved for pictures and tables: one or two megabytes of tables, the directory of bricks, and pictures in
 /// parts of 64 pixels a side.
 constexpr uint64_t MIN_PICTURE_BYTES = uint64_t{4} << 20;
-/// Share for paged bricks, three fifths: the rest is for pictures, mask and surfaces, which may grow.
+/// Fifths of that memory for paged bricks; the rest is for pictures, mask and surfaces, which may grow.
 constexpr uint64_t PAGED_FIFTHS = 3;
-/// Share for paged bricks if there is ambient occlusion, which takes half as much memory as the bricks.
+/// Fifths for paged bricks if there is ambient occlusion, which takes half as much memory as the bricks.
 constexpr uint64_t PAGED_FIFTHS_WITH_OCCLUSION = 2;
 /// Limit of the atlas on a CPU device, whose memory is shared with files and programs: 27 000 bricks, more than a view
 /// on a common screen needs.
 constexpr uint64_t MAX_ATLAS_BYTES_OF_CPU = uint64_t{2} << 30;
-/// A quarter of the host's budget is for paged bricks; half is for mapped memory, a quarter for coarser levels.
+/// Paged bricks get one of these shares of the host's budget, coarser levels one, and mapped memory two.
 constexpr uint64_t HOST_SHARES = 4;
-/// Maximum number of bricks: the maximum number of leaves of a view (page_tree.h).
+/// Up to this many bricks, a view can show the finest level everywhere: maximum number of its leaves (page_tree.h).
 constexpr int64_t MAX_FINEST_BRICKS = int64_t{1} << 17;
 
 /// How far, in voxels, an offset affects the picture through interpolation and gradients.
 constexpr int64_t RAISED_REACH = 2;
-/// Maximum number of boxes; any more are merged into one per cause, in case nothing collects them.
+/// Maximum number of stored boxes, in case nothing collects them; beyond it, boxes are merged into one per cause.
 constexpr size_t MAX_CHANGED = 4096;
 
 bool filters(const gpu::DeviceTraits& traits, Sampling sampling)
@@ -62,7 +62,7 @@ uint64_t scratch_bytes(const gpu::Memory& memory, const Scene::Options& options)
     return options.with_occlusion ? Occlusion::scratch_bytes(memory.traits(), memory.device_budget()) : 0;
 }
 
-/// Device memory for the ambient light of bricks; a quarter more, since layouts round up and devices align rows.
+/// Device memory for the ambient light of bricks, with a quarter in reserve: layouts round up, and devices align rows.
 uint64_t light_bytes(uint64_t bricks)
 {
     return bricks * (Occlusion::slot_bytes() / 4 * 5);
@@ -188,7 +188,7 @@ void Scene::load_paged(const IntensityWindow& window, AtlasCodes codes, uint64_t
     }
 }
 
-/// Returns false if memory is short (drivers report too much, other programs use it) and bricks can be paged.
+/// Returns false if memory is short (drivers report too much, other programs use some) and bricks can be paged.
 bool Scene::load_resident(const IntensityWindow& window)
 {
     const AtlasCodes codes = codes_of(memory_, *source_, options_);
@@ -249,7 +249,7 @@ AtlasCodes Scene::codes_for(const gpu::DeviceTraits& traits, VoxelType type, Sam
     return type == VoxelType::uint8 || type == VoxelType::int8 ? AtlasCodes::exact8 : AtlasCodes::exact16;
 }
 
-/// The atlas may take several images, but only one with ambient light, whose values are in one image half as large.
+/// The atlas may take several images; with ambient light only one, since its values are in one image half as large.
 uint64_t Scene::most_atlas_bytes(const gpu::DeviceTraits& traits, AtlasCodes codes, bool with_occlusion)
 {
     const uint64_t of_image = std::min(traits.max_volume_bytes / slot_code_bytes(codes),

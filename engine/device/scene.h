@@ -45,7 +45,7 @@ public:
     /// cannot be read, the budget is too small or the device does not support `options`.
     Scene(gpu::Executor& executor, gpu::Memory& memory, std::shared_ptr<const VolumeSource> source,
           const VolumeStatistics& statistics, const Options& options);
-    /// Continues loading for about `seconds`, without waiting for a disk. True: all is loaded.
+    /// Continues loading for about `seconds`, without waiting for a disk. Returns true once all is loaded.
     bool load_on(double seconds) { return volume_->load_on(seconds); }
     double loaded() const { return volume_->loaded(); }
     /// Upper bound of the device memory needed to show a document.

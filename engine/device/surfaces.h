@@ -26,7 +26,7 @@ public:
 
     /// Handles for a graph that must be submitted; uploads changes. Null if there are no surfaces.
     std::optional<SurfaceList> upload(FrameGraph& graph);
-    /// The parameters for `camera` and `volume`, except the probe's.
+    /// The parameters for drawing with `planes` in `volume`, except the probe's.
     gpu::SurfaceParams params(const RayPlanes& planes, const glm::uvec2& pixels, const VolumeInfo& volume) const;
 
 private:

@@ -1,5 +1,5 @@
 #pragma once
-// The available choices in a file that holds several volumes, if none was chosen, for callers that can ask the user.
+// The choices of a file that holds several volumes, for callers that can ask the user if none was chosen.
 
 #include <string>
 #include <utility>

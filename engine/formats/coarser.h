@@ -8,8 +8,8 @@
 
 namespace shvr {
 
-/// Returns level `level` of `source`, with voxels 2^level times as wide, and the coarser levels; `source` itself for
-/// level 0. Fails if `source` lacks that level. A warning states the level.
+/// Returns a volume whose finest level is level `level` of `source`, with voxels 2^level times as wide; returns
+/// `source` itself for level 0. Fails if `source` lacks that level. A warning states the level.
 std::unique_ptr<VolumeSource> coarser(std::unique_ptr<VolumeSource> source, const std::filesystem::path& path,
                                       int level);
 

@@ -12,8 +12,8 @@
 
 namespace shvr {
 
-/// Whether the value of a data file field is a list ("LIST" or "LIST 2"); and whether it is a pattern ("name%03d.raw 1
-/// 93 1", optionally with one more number at the end).
+/// is_list(): whether the value of a data file field is a list ("LIST" or "LIST 2"). is_pattern(): whether it is a
+/// pattern ("name%03d.raw 1 93 1", optionally with one more number at the end).
 bool is_list(std::string_view data_file);
 bool is_pattern(std::string_view data_file);
 

@@ -55,8 +55,8 @@ private:
 /// in the header's folder is used instead. `stated` may be a Windows path.
 std::filesystem::path file_stated(const std::filesystem::path& header, const std::string& stated);
 
-/// Sets spacing and unit of `info`; adds a warning for each of the two that the file does not state. A spacing without
-/// a unit is in `usual_unit`; but a spacing of 1 1 1 without a unit is in voxels.
+/// Sets spacing and unit of `info`, and adds a warning for each of them that the file does not state. A spacing without
+/// a unit is in `usual_unit`, except that a spacing of 1 1 1 without a unit is in voxels.
 void apply_spacing(VolumeInfo& info, const std::optional<glm::dvec3>& spacing, const std::optional<std::string>& unit,
                    const char* usual_unit);
 

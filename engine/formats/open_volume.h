@@ -21,8 +21,8 @@ struct RawLayout {
 /// Fails with a `UsageError` that shows the expected form.
 RawLayout parse_raw_layout(const std::string& text);
 
-/// Whether `path` is a URL rather than a file path, as in https://host/scan.zarr or s3://bucket/scan.zarr. Nothing is
-/// read over a network.
+/// Whether `path` is a URL rather than a file path, as in https://host/scan.zarr or s3://bucket/scan.zarr. Reads
+/// nothing over a network.
 bool is_address(std::string_view path);
 inline constexpr const char* NO_ADDRESS =
     "the path of a file or folder on this machine, since nothing is read over a network: copy it here, or mount it";
@@ -34,8 +34,8 @@ bool leads_into_archive(const std::filesystem::path& path);
 /// Reads the archive's directory.
 std::string archived_project(const std::filesystem::path& path);
 
-/// Name of the format implied by a file name, such as "NIfTI" for scan.nii.gz; empty: none. The file may still be of
-/// another format, or of a format without an extension of its own. Reads nothing.
+/// Name of the format that a file name implies, such as "NIfTI" for scan.nii.gz; empty if it implies none. The file may
+/// still be of another format, or of a format without an extension of its own. Reads nothing.
 std::string_view format_of_name(std::string_view name);
 inline bool is_volume_name(std::string_view name)
 {
@@ -44,7 +44,7 @@ inline bool is_volume_name(std::string_view name)
 
 /// Whether files of that name, gzipped or not, state the size of their volume (raw voxels do not). Reads nothing.
 bool name_states_size(std::string_view name);
-/// The formats whose files state it, for dialogs: "OME-Zarr, TIFF, ... and JPEG" (`conjunction`: "and").
+/// The formats whose files state the volume's size, for dialogs: "OME-Zarr, TIFF, ... and JPEG" (`conjunction`: "and").
 std::string format_names(std::string_view conjunction);
 
 /// Fails if no reader knows the file (the message lists the formats tried), or if a reader finds its file broken.

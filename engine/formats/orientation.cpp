@@ -92,7 +92,7 @@ public:
         mirrored.lower[axis_] = info().size[axis_] - box.upper[axis_];
         mirrored.upper[axis_] = info().size[axis_] - box.lower[axis_];
         source_->read(mirrored, voxels);
-        // Swaps consecutive runs of `run_bytes` along the axis, front with back.
+        // Reverses the order of the runs of `run_bytes` along the axis: swaps the first run with the last, and so on.
         const Size3 extent = box.size();
         auto run_bytes = int64_t(bytes_of(info().type));
         for (int axis = 0; axis < axis_; ++axis) run_bytes *= extent[axis];

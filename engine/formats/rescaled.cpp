@@ -11,7 +11,7 @@
 namespace shvr {
 namespace {
 
-/// Voxels are converted through doubles in blocks of this many.
+/// Number of voxels that are converted through doubles at a time.
 constexpr size_t BLOCK = 512;
 
 template <class T>

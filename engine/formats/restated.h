@@ -14,9 +14,9 @@ std::unique_ptr<VolumeSource> with_nodata(std::unique_ptr<VolumeSource> source, 
 
 /// Returns `source` with the fill value, the spacing and the unit of `options`; `source` itself if `options` state none
 /// of these. Drops warnings about missing values that the options supply; adds a warning with both values if the file
-/// states a different value. Converts an origin if the file and the options state units of length. Fails if the result
-/// would have a spacing without a unit, or a unit without a spacing. Voxels, levels and other known facts about them
-/// stay unchanged.
+/// states a different value. Converts the origin if both the file and the options state units of length. Fails if the
+/// result would have a spacing without a unit, or a unit without a spacing. Voxels, levels and other known facts about
+/// them stay unchanged.
 std::unique_ptr<VolumeSource> restated(std::unique_ptr<VolumeSource> source, const std::filesystem::path& path,
                                        const OpenOptions& options);
 

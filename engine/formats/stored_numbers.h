@@ -1,7 +1,7 @@
 #pragma once
-// Numbers in files that no voxel type holds: integers of 64 bits and floats of 16 bits. A reader reads their bits as a
-// type of the same size, and `widened` converts them to floats, failing for values that floats cannot hold. Any thread
-// may call these.
+// Numbers that files store but no voxel type holds: integers of 64 bits and floats of 16 bits. A reader reads their
+// bits as a type of the same size, and `widened` converts them to floats, failing for values that floats cannot hold.
+// Any thread may call these.
 
 #include <memory>
 #include <span>
@@ -14,7 +14,7 @@ namespace shvr {
 enum class StoredNumber { plain, int64, uint64, float16 };
 const char* name_of(StoredNumber number);
 
-/// The type as which a number's bits are read: float64 for integers of 64 bits, uint16 for float16. Not for `plain`.
+/// The voxel type used to read a number's bits: float64 for integers of 64 bits, uint16 for float16. Not for `plain`.
 VoxelType bits_type(StoredNumber number);
 
 float float_of_half(uint16_t half);
@@ -25,7 +25,7 @@ std::optional<uint16_t> half_of(double value);
 /// beyond 2^53, which doubles cannot represent.
 void widen_integers(StoredNumber number, std::span<std::byte> voxels, const std::string& file);
 
-/// Returns `source` for `plain`; otherwise its numbers as float64 (as float32 for float16), with a warning.
+/// Returns `source` for `plain`; otherwise a source of its numbers as float64 (float32 for float16), with a warning.
 std::unique_ptr<VolumeSource> widened(std::unique_ptr<VolumeSource> source, StoredNumber number,
                                       const std::string& file);
 

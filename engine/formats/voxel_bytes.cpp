@@ -55,7 +55,7 @@ private:
         std::shared_ptr<const VoxelBytes> bytes{};
     };
 
-    /// Maximum number of open files: enough for threads that read different parts, and far below a thousand slices.
+    /// Maximum number of open files: enough for threads that read different parts, but far fewer than a stack's slices.
     static constexpr size_t MAX_OPEN_FILES = 16;
 
     std::shared_ptr<const VoxelBytes> part(size_t number) const

@@ -36,8 +36,8 @@ InputFile open_input_file(const std::filesystem::path& path);
 /// is open causes an `Error`, not a signal.
 std::unique_ptr<VoxelBytes> bytes_of_file(InputFile file, int64_t offset);
 
-/// Joins `count` parts of `share_bytes` each, one after the other. `open(i)` opens part i when it is needed; a few
-/// parts are kept open.
+/// Concatenates `count` parts of `share_bytes` each. `open(i)` opens part i when it is needed; a few parts are kept
+/// open.
 std::unique_ptr<VoxelBytes> bytes_of_parts(size_t count, int64_t share_bytes,
                                            std::function<std::unique_ptr<VoxelBytes>(size_t)> open);
 

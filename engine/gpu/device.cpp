@@ -63,7 +63,7 @@ bool device_extension_is_present(VkPhysicalDevice physical, const char* name)
     });
 }
 
-/// A queue family that supports compute, and its other capabilities.
+/// A queue family that supports compute, with its further capabilities.
 struct Family {
     uint32_t index = 0;
     bool presents = false;
@@ -91,7 +91,7 @@ std::string why_it_cannot(VkPhysicalDevice physical)
     VkPhysicalDeviceVulkan12Features has12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
     VkPhysicalDeviceFeatures2 has{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &has12};
     vkGetPhysicalDeviceFeatures2(physical, &has);
-    // Scalar layout is optional in 1.3, but every desktop driver and lavapipe have it; the shared headers depend on it.
+    // The shared headers need scalar layout. It is optional in 1.3, but all desktop drivers and lavapipe support it.
     if (!has12.scalarBlockLayout)
         return "the Vulkan feature scalarBlockLayout is missing; expected a driver that has it";
     const auto features = [&](VkFormat format) {
@@ -459,7 +459,7 @@ std::vector<std::string> Device::take_validation_messages()
 VkBool32 Device::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                             const VkDebugUtilsMessengerCallbackDataEXT* data, void* self)
 {
-    // The loader also sends messages here, about layers that the environment adds.
+    // The loader also sends messages here; they concern layers that the environment adds.
     if (data->pMessageIdName && std::strcmp(data->pMessageIdName, "Loader Message") == 0) return VK_FALSE;
     Device& device = *static_cast<Device*>(self);
     const std::lock_guard lock(device.messages_mutex_);

@@ -19,7 +19,7 @@
 namespace shvr::gpu {
 
 /// The device stopped responding: its driver was reset, or the device was removed. All of its contents are lost, and
-/// every later call fails in the same way until the device is re-created.
+/// every later call fails likewise until the device is re-created.
 class DeviceLost : public Error {
 public:
     using Error::Error;
@@ -31,8 +31,8 @@ public:
     using Error::Error;
 };
 
-/// Throws if `result` is a failure: `DeviceLost` or `MemoryError` for results that mean those, otherwise `Error`. The
-/// message names the call and the result.
+/// Throws if `result` is a failure: `DeviceLost` if the device was lost, `MemoryError` if memory ran out, otherwise
+/// `Error`. The message names the call and the result.
 void check(VkResult result, const char* call);
 #define SHVR_VK(call) ::shvr::gpu::check(call, #call)
 
@@ -41,7 +41,7 @@ struct DeviceOptions {
     bool validation = false;   ///< Khronos layer with synchronisation validation; fails if it is not installed
     bool looks_ahead = false;  ///< on a GPU, compiles in advance the kernels that graphs expect (FrameGraph::expect)
     /// Makes out-of-bounds reads return 0 or data of the same buffer, and discards out-of-bounds writes. Robust access
-    /// hides such accesses from the validation layer.
+    /// hides out-of-bounds accesses from the validation layer.
     bool robust_buffers = true;
     std::vector<std::string> instance_extensions;  ///< instance extensions for a window's surface; if any are given,
                                                    ///< the device can present
@@ -74,7 +74,7 @@ struct DeviceTraits {
     bool has_memory_priority = false;  ///< VK_EXT_memory_priority
 };
 
-/// For Vulkan calls that are made twice, first for the count and then for the items. Returns the items.
+/// Returns the items of a Vulkan query that must be called twice: first for their count, then for the items.
 template <class T, class Call>
 std::vector<T> enumerate(Call call)
 {
@@ -101,8 +101,8 @@ public:
     const DeviceTraits& traits() const { return traits_; }
     bool looks_ahead() const { return looks_ahead_; }
     const VkPhysicalDeviceMemoryProperties& memory_properties() const { return memory_properties_; }
-    /// Free bytes of the heap counted in `device_bytes`: how much more the driver grants this program, given the use by
-    /// all other programs. Null if the driver does not report it.
+    /// Free bytes of the heap counted in `device_bytes`: the bytes that the driver still grants this program while
+    /// other programs use theirs. Null if the driver does not report it.
     std::optional<uint64_t> heap_bytes_left() const;
 
     /// Names an object for validation messages, captures and traces.
@@ -118,7 +118,7 @@ public:
     void wait_idle_or_lost() noexcept;
 
     // The queue completes submissions in submission order across all submitters. Each submitter takes a number right
-    // after submitting, and reports it when the fence is signalled, so that all users of the device know its
+    // after submitting, and reports that number when the fence is signalled, so that all users of the device know its
     // progress.
     uint64_t note_submission() { return ++submitted_; }
     void note_done(uint64_t number) { done_ = std::max(done_, number); }

@@ -14,7 +14,7 @@ namespace shvr::gpu {
 /// The maximum number of resources that any one kernel binds, and the maximum sizes that any one kernel uses.
 inline constexpr uint32_t MAX_STORAGE_IMAGES = 13, MAX_STORAGE_BUFFERS = 6, MAX_SAMPLED_IMAGES = 4;
 inline constexpr uint32_t MAX_PUSH_BYTES = 128, MAX_GROUP_THREADS = 128, MAX_SHARED_BYTES = 10592;
-/// Size of the largest buffer independent of the volume's size: the parents of a region of 256^3 voxels (regions/).
+/// Size of the largest buffer whose size does not depend on the volume: the parents of 256^3 voxels (regions/).
 inline constexpr uint32_t MIN_BUFFER_BYTES = 64u << 20;
 
 /// Capabilities that a device reports.
@@ -39,11 +39,11 @@ struct DeviceRow {
     bool has_1_3 = true;
     bool computes = true;
     bool presents = true;  ///< whether it can present to the window, if there is one
-    std::string lacks{};   ///< why it cannot run the kernels; empty if it can, or if that is unknown
+    std::string lacks{};   ///< why it cannot run the kernels; empty if it can, or if this is unknown
 };
 /// Returns the index of the device to use: among those that meet all requirements, hardware before software, discrete
 /// before integrated. `wanted`: part of a name, in upper or lower case, or an index; empty: any device. `wanted_by`:
-/// the option or variable that states it. On failure, lists the devices found, each with why it cannot be used.
+/// the option or variable that states it. The failure lists the devices found, and why each cannot be used.
 size_t best_device(const std::vector<DeviceRow>& rows, const std::string& wanted,
                    const std::string& wanted_by = "--device");
 

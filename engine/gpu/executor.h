@@ -5,10 +5,10 @@
 //     gpu::Submission frame = executor.submit(std::move(graph));      // returns at once
 //     if (frame.done()) use(frame.finish());                          // or finish(), which waits
 //
-// Frames run on the device in submission order, and each knows which accesses earlier frames left in flight. A frame is
-// one queue submission unless the past costs of its passes predict a long one (pass_costs.h). Then it is split into
-// several, between the tiles of passes and the parts of copies. Callers that must let other work run in between make
-// several small frames and keep few of them in flight. One thread at a time.
+// Frames run on the device in submission order, and each frame knows which accesses earlier frames left in flight. A
+// frame is one queue submission unless the past costs of its passes predict a long run (pass_costs.h). Then it is split
+// into several submissions, between the tiles of passes and the parts of copies. Callers that must let other work run
+// in between make several small frames and keep few of them in flight. One thread at a time.
 
 #include <chrono>
 #include <memory>
@@ -24,14 +24,14 @@ namespace shvr::gpu {
 
 /// Number of work counters per pass, which kernels increment (shaders/counters.h names them).
 inline constexpr size_t COUNTERS = 16;
-/// Number of counter rows of a pass that counts the work of every thread (a power of two). Kernels spread their groups
+/// Number of counter rows (a power of two) of a pass that counts the work of every thread. Kernels spread their groups
 /// over the rows to reduce contention; the report holds the sums of all rows.
 inline constexpr size_t COUNTER_ROWS = 64;
 
 struct PassReport {
     std::string name;
     std::string kernel;     ///< empty for copies and fills
-    double start_ms = 0.0;  ///< time from the start of the frame's first pass to the start of this one
+    double start_ms = 0.0;  ///< from the start of the frame's first pass to the start of this pass
     double gpu_ms = 0.0;    ///< 0 if the device has no timestamps, see `timed`
     bool timed = false;
     std::chrono::steady_clock::time_point recorded{};  ///< when the host began to record the pass
@@ -87,7 +87,7 @@ public:
     struct Options {
         bool timestamps = true;
         bool statistics = false;  ///< whether invocations are counted
-        bool serialize = false;   ///< puts a full barrier between passes, so that times belong to single passes
+        bool serialize = false;   ///< puts a full barrier between passes, so that each time covers a single pass
     };
 
     Executor(Device& device, Memory& memory);
@@ -95,8 +95,8 @@ public:
     Executor(const Executor&) = delete;
     Executor& operator=(const Executor&) = delete;
 
-    /// Compiles, records and submits the graph. Afterwards imported objects have the states that the frame will leave.
-    /// On failure the frame is discarded, and the graph's rollbacks still run when it is destroyed
+    /// Compiles, records and submits the graph. From then on, imported objects are in the states in which the frame
+    /// will leave them. On failure the frame is discarded, and the graph's rollbacks still run when it is destroyed
     /// (FrameGraph::unless_submitted).
     Submission submit(FrameGraph graph, const Options& options);
     Submission submit(FrameGraph graph) { return submit(std::move(graph), Options{}); }

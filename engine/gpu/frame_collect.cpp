@@ -62,7 +62,7 @@ void Submission::Frame::note_unknown_states() const
 bool Submission::Frame::done() const
 {
     if (number == 0 || number <= executor.device_.done()) return true;
-    // Returns what vkGetFenceStatus would, but also tells the validation layer that the frame was waited for.
+    // Returns the fence's status, like vkGetFenceStatus, but also shows the validation layer that the host waited.
     const VkFence fence = objects->fence();
     const VkResult result = vkWaitForFences(executor.device_.handle(), 1, &fence, VK_TRUE, 0);
     executor.device_.check(result, "vkWaitForFences");
@@ -139,7 +139,7 @@ FrameResult Submission::Frame::collect()
         for (size_t query = 0; query < counted_steps.size() && !prepared[i].is_counted_in_part; ++query)
             if (counted_steps[query] == i) report.invocations = report.invocations.value_or(0) + invocations[query];
         // On a device without timestamps, a pass takes at most the host time of all passes up to it. With timestamps,
-        // an untimed frame gives no estimate: it may have waited long, both in the queue and after completion.
+        // an untimed frame gives no estimate: its host time may include long waits in the queue and afterwards.
         if (prepared[i].kernel && (is_timed || traits.timestamp_bits == 0))
             executor.costs_.learn(data.kernel, threads_of(data, *prepared[i].kernel),
                                   is_timed ? report.gpu_ms : result.wall_ms);

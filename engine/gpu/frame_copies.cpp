@@ -9,7 +9,7 @@ namespace shvr::gpu {
 
 namespace {
 
-/// Estimates the time of a part: the time of the largest part, scaled by how much of the limits this part uses.
+/// Estimates a part's time: the time of the largest part, scaled by the share of the limits that this part uses.
 double copy_ms(const std::vector<BufferRegion>& part)
 {
     uint64_t bytes = 0;

@@ -48,7 +48,7 @@ struct Submission::Frame {
     uint64_t counter_bytes = 0;        // bytes per pass
     std::unique_ptr<FrameObjects> objects;
     bool is_timed = false;
-    std::vector<size_t> counted_steps;  // index of the step that each statistics query counts
+    std::vector<size_t> counted_steps;  // for each statistics query, the index of its step
     uint32_t statistics_room = 0;       // capacity in queries; 0: no query pool is created
     bool is_in_query = false;
     uint64_t number = 0;                  // number of the frame's last submission; 0: none

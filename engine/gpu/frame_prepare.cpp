@@ -10,7 +10,7 @@ namespace shvr::gpu {
 
 namespace {
 
-/// Returns where an upload goes. Only small ones go to host-writable device memory: it may be 256 MiB in total.
+/// Returns an upload's placement. Only small uploads use host-writable device memory, of which only 256 MiB may exist.
 Placement placement_of(uint64_t bytes)
 {
     constexpr uint64_t MOST = uint64_t{4} << 20;
@@ -19,7 +19,7 @@ Placement placement_of(uint64_t bytes)
 
 }  // namespace
 
-/// Whether any kernel counts the work of every thread, rather than rare events. If so, counters are in device memory,
+/// Whether any kernel counts the work of every thread, not just rare events. If so, the counters are in device memory,
 /// where atomic additions are faster; otherwise in host memory, where no pass has to clear or copy them.
 bool Submission::Frame::counts_work() const
 {

@@ -166,8 +166,8 @@ void Submission::Frame::record()
             record_barrier(chunks.back(), {STAGE_COMPUTE | STAGE_TRANSFER, STAGE_COMPUTE | STAGE_TRANSFER, true});
         else if (step.barrier)
             record_barrier(chunks.back(), *step.barrier);
-        // This timestamp is written once all earlier submissions have completed; otherwise their remaining work would
-        // count as time of this pass.
+        // This timestamp is written once all earlier submissions have completed; otherwise their remaining time would
+        // count as this pass's.
         if (is_timed)
             vkCmdWriteTimestamp2(chunks.back(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries, uint32_t(2 * i));
         record_pass(step, prepared[i]);
@@ -226,8 +226,8 @@ void Submission::Frame::record_dispatches(const PassData& data, Prepared& state)
                 const VkCommandBuffer commands = chunks.back();
                 executor.device_.begin_label(commands, data.name);
                 bind(data, state);
-                // Validation reports hazards for an image as a whole, though each dispatch writes texels of its own. It
-                // ignores dispatches with a base, so only the first tile is validated.
+                // The validation layer tracks an image as a whole, and reports hazards although each dispatch writes
+                // separate texels. It ignores dispatches with a base, so only the first tile is validated.
                 if (at == glm::uvec3(0))
                     vkCmdDispatch(commands, count.x, count.y, count.z);
                 else

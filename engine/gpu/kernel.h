@@ -85,11 +85,11 @@ public:
     Kernels(const Kernels&) = delete;
     Kernels& operator=(const Kernels&) = delete;
 
-    /// Returns a kernel, after the worker has finished with it. On failure, lists the known kernels or constants.
+    /// Returns a kernel; waits if the worker is compiling it. On failure, lists the known kernels or constants.
     const Kernel& get(const std::string& name, const std::vector<std::pair<std::string, uint32_t>>& constants);
     const KernelInterface& interface(const std::string& name);
-    /// Hints that these kernels are likely to be needed; the worker compiles them if the device looks ahead
-    /// (gpu::DeviceOptions).
+    /// Hints that these kernels are likely to be needed; the worker compiles them if the device option `looks_ahead` is
+    /// set (gpu::DeviceOptions).
     void expect(std::span<const KernelVariant> variants);
     /// Number of kernels that the worker still has to compile.
     size_t expected() const;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr uint8_t CONTEXT = 0, VULKAN = 2;  // numbers of device kinds in TracyQueue.hpp
 
-/// Allocates a source location that Tracy copies: a place in the source, and a name.
+/// Allocates a source location, a place in the source and a name, which Tracy copies.
 uint64_t place_of(std::string_view name)
 {
     constexpr std::string_view FILE = "engine", FUNCTION = "shvr";
@@ -38,7 +38,7 @@ struct Timeline {
     int64_t at(const DeviceClock& clock, uint64_t tick) const
     {
         const uint64_t ahead = (tick - last_tick) & clock.mask;
-        // An advance of more than half the range is actually a small step back.
+        // An apparent advance by more than half the range is actually a small step back.
         const bool is_behind = ahead > clock.mask / 2;
         const double ticks = is_behind ? -double((last_tick - tick) & clock.mask) : double(ahead);
         return last_ns + std::llround(ticks * clock.nanoseconds_per_tick);
@@ -87,7 +87,7 @@ void trace_passes(const DeviceClock& clock, std::span<const TracedPass> passes)
         timeline.has_begun = true;
         timeline.device = clock.device;
     }
-    // Passes that overlap on the device are reported one after the other, since a row's spans must not overlap.
+    // Passes that overlap on the device are reported one after the other, since spans in one row must not overlap.
     int64_t last = timeline.at(clock, passes.front().begin);
     for (const TracedPass& pass : passes) {
         const int64_t begin = std::max(last, timeline.at(clock, pass.begin));

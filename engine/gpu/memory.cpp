@@ -48,7 +48,7 @@ std::vector<uint32_t> memory_types(const VkPhysicalDeviceMemoryProperties& prope
     if (placement == Placement::upload) wish = must = mapped;
     if (placement == Placement::values) wish = mapped | VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, must = mapped;
     if (placement == Placement::download) wish = mapped | VK_MEMORY_PROPERTY_HOST_CACHED_BIT, must = mapped;
-    // Types with these properties are for special uses, and some of them may not be usable at all.
+    // Memory types with these properties are for special uses, and some of these types may not be usable at all.
     const VkMemoryPropertyFlags never = VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT | VK_MEMORY_PROPERTY_PROTECTED_BIT |
                                         VK_MEMORY_PROPERTY_DEVICE_COHERENT_BIT_AMD |
                                         VK_MEMORY_PROPERTY_DEVICE_UNCACHED_BIT_AMD;
@@ -304,7 +304,7 @@ void Memory::allocate(Object& object, const VkMemoryRequirements& needs, const c
     if (!on_device) object.mapped = map(object.memory);
 }
 
-/// Allocates from the driver. On an integrated device, where all heaps are the same memory, any other type serves too.
+/// Allocates from the driver. On an integrated device, where all heaps are the same memory, any type will do.
 VkResult Memory::allocate_from_driver(uint64_t bytes, uint32_t allowed, const Object& object, VkDeviceMemory* memory,
                                       uint32_t* type)
 {
@@ -391,7 +391,7 @@ void Memory::destroy(Object& object) noexcept
     if (!object.block) return free_to_driver(object.memory);
     object.block->give_back(object.offset);
     if (!object.block->is_empty()) return;
-    // Keeps one empty block of each kind, since the next small object would otherwise re-create it.
+    // Keeps one empty block of each kind, since the next small object would otherwise create such a block again.
     const auto is_spare = [&](const auto& other) {
         return other.get() != object.block && other->is_empty() && other->placement == object.block->placement &&
                other->holds_images == object.block->holds_images;

@@ -2,8 +2,8 @@
 // Device memory with accounting: every buffer and image has a name, its bytes are counted by name, and two budgets
 // (device, host) are hard limits. Every allocation is first checked against its budget; if the budget or the driver
 // lacks memory, idle memory is freed. Small buffers share allocations (memory_block.h), whose number drivers limit;
-// small images share others. Memory released while the device may still use it is freed after that use; callers wait
-// for it only if they need its bytes at once.
+// small images share others. Memory that is released while the device may still use it is freed once the device is
+// done; callers wait for that only if they need the bytes at once.
 //
 // One thread at a time.
 
@@ -62,12 +62,12 @@ public:
 
     explicit operator bool() const { return memory_ != nullptr; }
     const ResourceDesc& desc() const;
-    /// Returns the import for a frame graph; its state is the one left by the last submitted frame.
+    /// Returns the import for a frame graph, with the state in which the last submitted frame leaves the object.
     Import import() const;
     /// The mapped bytes of an upload or download buffer.
     std::span<std::byte> mapped() const;
     void reset();
-    /// Like reset(), for callers that know that no submission in flight uses this storage.
+    /// Like reset(). Callers must be sure that no submission in flight uses this storage.
     void reset_idle();
 
 private:
@@ -89,7 +89,7 @@ public:
                                        Placement placement = Placement::device) const;
     bool can_create(const ResourceDesc& desc) const { return !why_not("", desc); }
     /// Throws BudgetError if the budget is too small, MemoryError if the driver lacks memory, and Error if the device
-    /// can never hold the resource (`why_not`). `purpose`: the use of the memory, in the user's words.
+    /// can never hold the resource (`why_not`). `purpose`: the memory's use, as users would say it.
     Storage create(const std::string& name, const ResourceDesc& desc, Placement placement = Placement::device,
                    const char* purpose = "a step of the work");
     /// Sets a function that frees allocated but idle memory. It is called before an allocation is refused.

@@ -34,7 +34,7 @@ public:
 
     const VkDeviceMemory memory;
     const Placement placement;
-    const bool holds_images;  ///< true: only images, since next to buffers they would need a device-specific distance
+    const bool holds_images;  ///< true: only images; next to buffers they would need a device-specific distance
                               ///< (bufferImageGranularity)
     const uint32_t type;
     std::byte* const mapped;  ///< null: not mapped

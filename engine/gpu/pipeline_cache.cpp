@@ -35,7 +35,7 @@ void append_part(std::vector<std::byte>& bytes, std::span<const std::byte> part)
     append(bytes, part);
 }
 
-/// Splits off the sized part at the start of `bytes`; null if `bytes` end before it does.
+/// Splits a part, preceded by its size, off the start of `bytes`; null if `bytes` end before the part does.
 std::optional<std::span<const std::byte>> take_part(std::span<const std::byte>& bytes)
 {
     uint64_t size = 0;

@@ -1,6 +1,6 @@
 #pragma once
 // Keeps compiled pipelines in a file between runs of the program: the driver's own cache data, and the list of kernels
-// in use, since the next run is likely to need these again.
+// in use, which the next run is likely to need again.
 //
 // There is one file per device, in $XDG_CACHE_HOME/shvr or ~/.cache/shvr, written atomically. A file that is damaged,
 // belongs to another driver or has grown beyond MAX_BYTES is ignored and replaced. Nothing here ever fails: without a
@@ -52,8 +52,8 @@ public:
     uint64_t compiled() const { return compiled_; }
     uint64_t cached() const { return cached_; }
 
-    /// Writes the file if it would contain more than the file that was read: if something was compiled, or if `used`
-    /// has kernels that were not listed as likely.
+    /// Writes the file if it would contain more than the file read before: if something was compiled, or if `used` has
+    /// kernels that were not listed as likely.
     void save(const std::set<KernelVariant>& used) noexcept;
 
 private:

@@ -56,7 +56,7 @@ struct Reflector {
         return members;
     }
 
-    /// Returns the members of a block, or, for a block that is just one struct or array of structs, of that struct.
+    /// Returns a block's members. If a block only holds one struct or array of structs, returns that struct's members.
     std::vector<KernelInterface::Member> block_members(spvc_type_id id) const
     {
         spvc_type block = spvc_compiler_get_type_handle(compiler, id);

@@ -6,7 +6,7 @@
 
 namespace shvr {
 
-/// Limits of one part, which only a single slice of a region may exceed.
+/// Limits of one part. Only a part that is a single slice of a region may exceed them.
 inline constexpr size_t MAX_COPY_REGIONS = 256;
 inline constexpr uint64_t MAX_COPY_BYTES = uint64_t{64} << 20;
 

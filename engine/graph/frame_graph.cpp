@@ -309,7 +309,7 @@ std::optional<Barrier> barrier_before(const PassData& pass, const std::vector<Re
     return barrier;
 }
 
-/// Applies a barrier to the states. It is global, so it covers all resources in its stages, needed or not.
+/// Applies a barrier to the states. Barriers are global: they cover all resources in their stages.
 void settle(const Barrier& barrier, std::vector<ResourceState>& states)
 {
     for (ResourceState& state : states) {
@@ -327,14 +327,14 @@ void record_use(const PassData& pass, std::vector<ResourceState>& states)
             state = {.written_by = stages};
             continue;
         }
-        // Waiting for a read that follows all other reads waits for those as well.
+        // A barrier that waits for a read ordered after all other reads also waits for those other reads.
         const bool is_after_all = (stages & ~state.after_reads) == 0;
         state.read_by = is_after_all ? stages : Stages(state.read_by | stages);
         state.after_reads = 0;
     }
 }
 
-/// Memory of resources that no later pass needs. Equal resources whose first use comes later can take it over.
+/// Memory of resources that no later pass needs. Equal resources that are first used later can take this memory.
 class FreeMemory {
 public:
     FreeMemory(const FrameGraph& graph, const std::vector<bool>& alive)
@@ -344,7 +344,7 @@ public:
             if (alive[i])
                 for (const Binding& binding : graph.passes()[i].bindings) last_pass_[binding.resource] = i;
     }
-    /// Takes a resource whose memory `wanted` may reuse.
+    /// Removes and returns a resource whose memory `wanted` may reuse.
     std::optional<uint32_t> take(uint32_t wanted)
     {
         const auto found = std::find_if(free_.begin(), free_.end(), [&](uint32_t one) {
@@ -366,7 +366,7 @@ public:
     }
 
 private:
-    /// Whether memory may be shared: not by imports, nor by resources that the host fills before the first pass.
+    /// Whether others may reuse the memory: not of imports, nor of resources that the host fills before the first pass.
     bool is_shared(uint32_t resource) const
     {
         return !resources_[resource].imported && resources_[resource].contents.empty();
@@ -396,7 +396,7 @@ CompiledGraph FrameGraph::compile() const
         const std::optional<uint32_t> before = free_memory.take(resource);
         if (!before) return;
         compiled.memory_of[resource] = compiled.memory_of[*before];
-        states[resource] = states[*before];  // its first use, a write, waits for the last uses of the resource before
+        states[resource] = states[*before];  // the first use, a write, waits for the last uses of `before`
     };
 
     for (uint32_t i = 0; i < passes_.size(); ++i) {

@@ -2,11 +2,11 @@
 // The frame graph: the work of one frame, as plain data. It does not depend on Vulkan and is tested without a device.
 //
 // A frame is declared from scratch each time, in order, by ordinary code: a pass is a function from handles to handles,
-// a condition is an `if`. Writing a resource gives a new version of its handle and invalidates the old one, so that a
-// wrong order cannot be expressed: a stale handle is refused, and the message names the resource, both versions and the
-// line of the pass that invalidated it. `compile()` drops unused passes and derives the barriers; the result is a list
-// of steps, which an executor records, and which tests and `shvr profile --graph` print. A handle exists only after the
-// pass that made it, so the order of declaration is a valid order, and the steps keep that order.
+// a condition is an `if`. Writing a resource gives a new version of its handle and invalidates the old one, so passes
+// cannot be declared in a wrong order: a stale handle is refused, and the message names the resource, both versions and
+// the line of the pass that invalidated it. `compile()` drops unused passes and derives the barriers; the result is a
+// list of steps, which an executor records, and which tests and `shvr profile --graph` print. A handle exists only
+// after the pass that made it, so the order of declaration is a valid order, and the steps keep that order.
 //
 // Images stay in one layout (GENERAL), so global stage-to-stage memory barriers suffice, at most one per step.
 //
@@ -40,7 +40,7 @@ struct ResourceDesc {
     Kind kind = Kind::buffer;
     Format format = Format::r32_uint;  ///< images
     bool is_flat = false;              ///< images: 2-D, with larger size limits than 3-D images; z is 1
-    glm::uvec3 texels{1};              ///< images; even with z == 1 an image may be 3-D
+    glm::uvec3 texels{1};              ///< images; an image that is not flat is 3-D even if z is 1
     uint64_t bytes = 0;                ///< buffers: size; images: texels * bytes per texel
     bool operator==(const ResourceDesc&) const = default;
 };
@@ -171,8 +171,8 @@ struct CompiledGraph {
     std::vector<Step> steps;
     std::vector<ResourceState> final_states;  ///< per resource
     std::vector<bool> used;                   ///< for each resource, whether a kept pass uses it
-    /// For each resource, the index of the resource whose memory it uses: its own, or that of an equal resource of this
-    /// frame that no later step needs (in a chain of such resources, the first).
+    /// For each resource, the index of the resource whose memory it uses: itself, or an equal resource of this frame
+    /// that no later step needs (if several reuse one memory in turn, the first).
     std::vector<uint32_t> memory_of;
 };
 
@@ -193,7 +193,7 @@ public:
         return upload_bytes(name, std::as_bytes(values));
     }
 
-    /// Adds a compute pass, named after its kernel, or `name`, which is needed where a kernel runs more than once.
+    /// Adds a compute pass, named `name`, or else after its kernel; `name` is needed if a kernel runs more than once.
     Pass compute(const std::string& kernel, const std::string& name = {}, Location at = Location::current());
     /// Likewise for a kernel with variants (kernel_variants.h). `choices` gives a value for each macro in the kernel's
     /// line "// variants: ...", in any order. Fails if a macro is unknown, missing or named twice.
@@ -206,8 +206,8 @@ public:
                                          const std::string& name = "upload", Location at = Location::current());
     [[nodiscard]] Resource copy(Resource from, Resource to, std::vector<BufferRegion> regions,
                                 const std::string& name = "copy", Location at = Location::current());
-    /// Returns the whole resource to the host as bytes once the frame is done, and keeps the passes that wrote it. The
-    /// result is an index into `FrameResult::read_backs`.
+    /// Requests the bytes of the whole resource once the frame is done, and keeps the passes that wrote it. The result
+    /// is an index into `FrameResult::read_backs`.
     uint32_t read_back(Resource resource, const std::string& name = {}, Location at = Location::current());
     /// Hints that a later graph is likely to run `kernel`, so that an executor may compile it in the background.
     void expect(KernelVariant kernel) { expected_.push_back(std::move(kernel)); }
@@ -217,9 +217,9 @@ public:
 
     CompiledGraph compile() const;
 
-    /// Registers a rollback of state that already assumes that this graph will run. If the graph and all of its copies
-    /// are destroyed without being submitted, the rollbacks run in reverse order. `undo` must not fail, and everything
-    /// that it refers to must outlive the graph.
+    /// Registers a rollback of state that was changed on the assumption that this graph will run. If the graph and all
+    /// of its copies are destroyed without being submitted, the rollbacks run in reverse order. `undo` must not fail,
+    /// and everything that it refers to must outlive the graph.
     void unless_submitted(std::function<void()> undo);
     /// Marks the graph as submitted, so that no rollback runs. For executors.
     void note_submitted() const;

@@ -195,13 +195,13 @@ std::string to_graphviz(const FrameGraph& graph, const CompiledGraph& compiled)
         for (const Binding& binding : pass.bindings) {
             const std::string label = " [label=" + quoted({binding.name}) + look;
             if (binding.reads) text += sentence("    resource", binding.resource, " -> pass", i, label, "];\n");
-            // A later write's edge points back up; constraint=false keeps it from changing the layout.
+            // The edge of a later write points back up; constraint=false keeps the edge from changing the layout.
             const char* const ending = binding.reads || is_placed[binding.resource] ? ", constraint=false];\n" : "];\n";
             if (binding.writes) text += sentence("    pass", i, " -> resource", binding.resource, label, ending);
             is_placed[binding.resource] = true;
         }
     }
-    // Invisible edges make the order of execution read from the top.
+    // Invisible edges arrange the passes from top to bottom in order of execution.
     for (size_t step = 0; step + 1 < compiled.steps.size(); ++step)
         text += sentence("    pass", compiled.steps[step].pass, " -> pass", compiled.steps[step + 1].pass,
                          " [style=invis];\n");

@@ -30,7 +30,7 @@ struct KernelVariants {
 std::span<const KernelVariants> kernel_variants();
 
 /// Returns the name of a compiled kernel: "raycast" with PAGED and MASKED is "raycast_paged_masked". `choices` must
-/// name each macro of the kernel once, in any order; otherwise it fails, and the message lists the macros.
+/// name each macro of the kernel once, in any order; otherwise the function fails with a message that lists the macros.
 std::string variant_of(std::string_view kernel, std::initializer_list<VariantChoice> choices);
 /// The same, but with the table given by `known`.
 std::string variant_of(std::string_view kernel, std::initializer_list<VariantChoice> choices,

@@ -25,7 +25,7 @@ double estimate_left(double first_fraction, double fraction, double seconds)
     return first_fraction >= 0.0 && gone > 0.0 ? std::max(0.0, (1.0 - fraction) / gone * seconds) : -1.0;
 }
 
-/// Returns the message of the exception being handled. `what`: the job that threw it.
+/// Returns the message of the exception being handled. `what`: the title of the job that threw the exception.
 std::string failure_in_words(const std::string& what)
 {
     try {

@@ -10,9 +10,9 @@
 //   for (const Jobs::Finished& job : jobs.finish()) window.say(job);    // once per frame
 //
 // Everything but a job's function and `wake` is called on the main thread, and nothing here waits for the worker
-// except `wait` and the destructor. Functions and completions are destroyed on the main thread, so they may own
-// objects of that thread. The threads share the queues and each job's progress, all under one lock, and one atomic
-// flag per job.
+// except `wait` and the destructor. Functions and completions are destroyed on the main thread, so they may own objects
+// of that thread. The threads share the queues and each job's progress, both under one lock, and an atomic flag per
+// job.
 
 #include <condition_variable>
 #include <cstdint>
@@ -68,7 +68,7 @@ public:
     };
     /// The running job, then the waiting jobs in order. Jobs that have ended are not included.
     std::vector<State> states() const;
-    /// Whether no job is running, waiting, or ended with its completion still to run.
+    /// Whether all is done: no job is running or waiting, and no ended job's completion is still to run.
     bool is_idle() const;
 
     struct Finished {

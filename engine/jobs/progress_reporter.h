@@ -20,8 +20,8 @@ public:
     /// Starts a stage, as in "writing stem.swc", whose time left is estimated from scratch. Returns a function that
     /// reports the stage's progress. Both throw `Stopped` if the work is to stop; the function must not outlive this.
     virtual Progress begin(const std::string& what) = 0;
-    /// Reports progress as the function returned by begin() does, but with a detail, as in "120 MB/s", and a better
-    /// estimate of the time left.
+    /// Reports progress as the function returned by begin() does, but with a detail, as in "120 MB/s", and with the
+    /// caller's better estimate of the time left.
     virtual void show(double fraction, const std::string& detail, double seconds_left) = 0;
     /// The flag that asks the work to stop, for functions that poll it themselves. It outlives the work.
     virtual const std::atomic<bool>& stop_requested() const = 0;

@@ -200,8 +200,8 @@ void Annotator::extend_stroke(const glm::dvec3& voxel)
     Stroke& stroke = strokes_.back();
     const glm::dvec3 from = stroke.last.value_or(voxel);
     const std::vector<glm::dvec3> more = stroke_positions(std::array{from, voxel});
-    // A segment starts where the previous one ended. A dab is a segment from a point to itself: it has two positions,
-    // of which the second is kept.
+    // A segment starts where the previous one ended. A dab is a segment from a point to itself: of its two equal
+    // positions, the second is kept.
     stroke.positions.insert(stroke.positions.end(), more.begin() + 1, more.end());
     stroke.last = voxel;
 }
@@ -272,7 +272,7 @@ std::optional<VoxelBox> Annotator::advance_stroke()
         if (frame.regions.empty())
             stroke.next = frame.end;
         else if (stroke.query.ask(stroke.brush, std::move(frame.regions), RegionQuery::Wait::no))
-            stroke.asked_to = frame.end;  // otherwise the query was not submitted: its bricks are being loaded
+            stroke.asked_to = frame.end;  // if false, nothing was submitted: the bricks are being loaded
     } else if (stroke.has_ended) {
         last_stroke_ = stroke.result;
         ++strokes_done_;
@@ -315,7 +315,7 @@ void Annotator::show(const Touched& touched, const std::optional<VoxelBox>& with
     try_to_show([&] { renderer_.scene().show(document(), touched, within); });
 }
 
-/// Shows a change that has already been made, whether or not it can be shown.
+/// Shows a change that has already been made; the change stands even if showing it fails.
 template <class Update>
 void Annotator::try_to_show(const Update& update)
 {

@@ -31,15 +31,15 @@ WorkFiles work_files(const Session& session, const VolumeInfo& volume);
 /// Likewise, with the lasting settings of an `OpenedSession`, except settings that `overridden` ("key=value") sets for
 /// this run only.
 WorkFiles work_files(const Session& session, const VolumeInfo& volume, const std::vector<std::string>& overridden);
-/// Adds the kept settings; for callers that apply Work::kept_settings() and report changes to Work::keep_settings.
+/// Adds the kept settings, for callers that apply Work::kept_settings() and pass changes on to Work::keep_settings.
 WorkFiles with_kept_settings(WorkFiles files, const Session& session, const std::vector<std::string>& overridden);
 
 class Annotator {
 public:
-    /// Number of attempts after memory ran out: about 5 s, given the pauses of a user's window.
+    /// Number of retries after memory ran out; with the pauses of a user's window, they take about 5 s.
     static constexpr int MAX_TRIES = 20;
 
-    /// The volume must be loaded. Nothing is painted at first.
+    /// Starts new work, without any paint. The volume must be loaded.
     explicit Annotator(Renderer& renderer);
     /// Continues open work; another thread may have used it before. The caller must make the scene show it.
     Annotator(Renderer& renderer, std::unique_ptr<Work> work);
@@ -53,7 +53,7 @@ public:
     const Document& document() const { return work_->document(); }
     const History& history() const { return work_->history(); }
     Renderer& renderer() const { return renderer_; }
-    /// Incremented by changes of painted groups and offsets.
+    /// Revision number, incremented by every change of painted groups or offsets.
     uint64_t revision() const { return revision_; }
 
     /// Like Work::open and Work::choose, but these also update the device.
@@ -65,7 +65,7 @@ public:
     /// Returns the exact preview: the voxels that paint(op) would change now. Paints nothing, but waits for the device;
     /// Previewer (engine/live/previewer.h) does not wait.
     PaintPreview preview(const PaintOp& op);
-    /// Likewise, but made from the device's answers for all regions of `op`.
+    /// Likewise, but computed from `answers`, the device's answers for all regions of `op`.
     PaintPreview preview(const PaintOp& op, std::span<const RegionAnswer> answers) const;
     /// Paints `op` as one command. Returns how many voxels changed their group plus how many changed their offset;
     /// `last_stroke` has details. All regions of a stroke see the volume as it was before the stroke.
@@ -84,16 +84,16 @@ public:
     void end_stroke();
     /// Whether a stroke is open, or any part of a stroke has not been painted yet.
     bool stroke_is_running() const { return !strokes_.empty(); }
-    /// Whether a stroke has begun that has not ended.
+    /// Whether an interactive stroke has begun but not ended.
     bool stroke_is_open() const { return !strokes_.empty() && !strokes_.back().has_ended; }
     /// Ends all strokes at once: painted parts stay, unpainted parts are dropped.
     void drop_strokes();
     /// Drops the queries in flight, after the device was restarted; `advance` submits them again.
     void drop_queries();
-    /// Shows changes that too little memory kept from being shown, paints a finished answer of the first stroke and
+    /// Shows changes that could not be shown for lack of memory, paints a finished answer of the first stroke and
     /// submits the next query. Returns the voxels that may look different. If the driver is out of memory, throws
     /// MemoryError; the next calls retry, up to MAX_TRIES. If a stroke cannot continue (retries exhausted, a brush that
-    /// is too large, failure of bricks or the journal), drops the rest of the stroke and throws another error whose
+    /// is too large, failure of bricks or of the journal), drops the rest of the stroke and throws another error whose
     /// message says so.
     std::optional<VoxelBox> advance();
     /// Whether the picture lags behind the annotation because an update failed; `advance` retries the update.
@@ -138,7 +138,7 @@ private:
         bool is_recorded = false;  ///< whether the history's last command is this stroke's
         StrokeTally tally{brush};
         StrokeResult result = tally.result();  ///< the painted part so far
-        int failed_tries = 0;                  ///< in a row
+        int failed_tries = 0;                  ///< consecutive
     };
     /// The records that an answer leads to.
     struct Records {

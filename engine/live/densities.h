@@ -1,6 +1,6 @@
 #pragma once
-// Intensities of single voxels on the host, including the offsets of density painting, for a probe. Any thread, as long
-// as nothing changes the offsets.
+// Intensities of single voxels on the host, with the offsets of density painting added, for a probe. Any thread, as
+// long as nothing changes the offsets.
 
 #include "engine/annotation/density.h"
 #include "engine/annotation/trace/local_radius.h"

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double INF = std::numeric_limits<double>::infinity();
 
-/// Adds an interval; joins it to the last one if they touch, that is, if no floating-point number lies between them.
+/// Adds an interval; joins it to the last interval if no floating-point number lies between the two.
 void append(double lower, double upper, IntensityIntervals& intervals)
 {
     if (!intervals.empty() && lower <= std::nextafter(intervals.back().second, INF))

@@ -24,7 +24,7 @@ struct RelevanceBits;
 using IntensityIntervals = std::vector<std::pair<double, double>>;
 bool contains(const IntensityIntervals& intervals, double intensity);
 
-/// The part of space between two planes perpendicular to a view's direction, in physical units.
+/// The space between two planes that are perpendicular to a view's direction, in physical units.
 struct DepthLimits {
     glm::dvec3 eye{0.0}, forward{0.0, 0.0, 1.0};
     double nearest = 0.0, farthest = 0.0;  ///< along `forward`; the farthest may be infinite
@@ -45,16 +45,16 @@ std::bitset<256> drawn_groups(const Groups& groups, bool opaque);
 
 /// Returns limits that allow only `groups` to be felt; an empty list allows everything.
 FeltLimits limits_of_groups(const std::vector<uint8_t>& groups);
-/// Limits touch further, to what a picture shows. Intensities outside the window are shown like the nearer end of the
-/// window; intensities below the threshold do not matter.
+/// Narrows `limits` to the voxels that a picture shows. Intensities outside the window are shown like the nearer end of
+/// the window; intensities below the threshold do not matter.
 void limit_to_seen(const Look& look, const Camera& camera, const VolumeInfo& volume, const IntensityWindow& window,
                    double threshold, FeltLimits& limits);
 
 /// Returns the intensities of opacity above 0. Those outside the window are shown like the nearer end of the window.
 IntensityIntervals shown_intensities(const TransferFunction& function, const IntensityWindow& window);
 
-/// Clears the bits of voxels that are not felt, except where intensity decides (relevance_on_host). `spacing`: voxel
-/// spacing of level 0. `mask`: may be null if it is not needed, or if nothing is painted.
+/// Clears the bits of voxels that are not felt, except of voxels excluded by intensity alone (relevance_on_host clears
+/// those). `spacing`: voxel spacing of level 0. `mask`: may be null if it is not needed, or if nothing is painted.
 void apply_limits(const FeltLimits& limits, const glm::dvec3& spacing, const Mask* mask, RelevanceBits& bits);
 
 }  // namespace shvr

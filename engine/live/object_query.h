@@ -1,6 +1,6 @@
 #pragma once
 // Grows the touched object on the device: in a cube of any level, the set bits that are joined through faces to the
-// seeds, which are the bits of the previous object inside the same cube. The result equals the object that the servo
+// seeds. Seeds are the bits of the previous object inside the same cube. The result equals the object that the servo
 // grows in its tick (haptics/growth.h). The device needs the same few passes however convoluted an object is; the servo
 // spreads noisy cubes over several ticks.
 //

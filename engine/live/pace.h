@@ -3,7 +3,7 @@
 //
 // Some pixels cost twenty times more than others, and a graph that is too short does less harm than one that is too
 // long. So the estimate rises at once: it is the maximum of the last eight graphs. After eight graphs, slow
-// measurements, as during a clock's ramp-up, and wrong ones are forgotten. One thread.
+// measurements (as during a clock's ramp-up) and wrong measurements are forgotten. One thread.
 
 #include <algorithm>
 #include <array>

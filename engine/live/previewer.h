@@ -11,7 +11,7 @@
 namespace shvr {
 
 /// Returns the brush of a session's probe, for one dab at the probe's position. Unset settings get the volume's
-/// defaults; only an automatic offset is left to `in_session`, which resolves it when it applies the locks.
+/// defaults; only an automatic offset is left unresolved: `in_session` replaces it when it adds the locked groups.
 PaintOp dab_of(const Session& session, const VolumeInfo& volume, const VolumeStatistics& statistics);
 /// Sets the probe's thresholds to the volume's defaults if they are unset. Saved sessions always contain thresholds, so
 /// every function that saves a session calls this.

@@ -1,6 +1,6 @@
 #pragma once
-// Measures which share of the probe's ball is relevant: the fraction of its voxels at or above a threshold, offsets
-// included. The device counts the voxels, as it does for a filling brush. One query is in flight at a time and nothing
+// Measures the relevant share of the probe's ball: the fraction of its voxels at or above a threshold, after offsets
+// are added. The device counts the voxels, as it does for a filling brush. One query is in flight at a time and nothing
 // waits; nothing is submitted while the ball and the densities stay the same. One thread, the annotator's.
 
 #include <optional>

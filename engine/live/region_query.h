@@ -3,8 +3,8 @@
 //
 //   positions -> frame_of_regions (CPU) -> RegionQuery::ask -> passes of the brush (device) -> RegionQuery::answer
 //
-// Voxels at or above the threshold are those whose exact value is. Where several values share a code, the host decides
-// this (Scene::threshold_bricks); then the device only connects voxels, and a filling brush does not need it.
+// A voxel's exact value is compared with the threshold. Where several values share a code, the host compares them
+// (Scene::threshold_bricks); then the device only connects voxels, and a filling brush does not need the device.
 //
 // One query in flight per object. One thread, the renderer's.
 
@@ -46,8 +46,8 @@ public:
     explicit RegionQuery(Renderer& renderer, const char* name = "") : renderer_(renderer), name_(name) {}
 
     /// Asks which voxels of `regions` (at least one) `op` selects, given its brush, threshold and connectivity. Drops
-    /// an earlier query. If bricks of the regions are not loaded yet, either reads them, or submits nothing and returns
-    /// false, depending on `wait`.
+    /// an earlier query. If bricks of the regions are not loaded yet, then depending on `wait` it reads them, or
+    /// submits nothing and returns false.
     bool ask(const PaintOp& op, std::vector<RegionAt> regions, Wait wait);
     bool is_asking() const { return frame_ || !known_.empty(); }
     /// Whether `answer` would return without waiting.

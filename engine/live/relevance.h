@@ -21,13 +21,13 @@ struct RelevanceBits {
     int level = 0;                ///< level of the voxels
 };
 
-/// A cube of voxels around a ball, at a level that suits the ball. Its side is 64 voxels; 96 or 128 if the ball would
-/// otherwise leave the cube before the next one arrives; 128 if the radius exceeds 24 voxels. Radii above 48 voxels,
-/// and radii above 24 voxels in fast motion, use coarser levels.
+/// A cube of voxels around a ball, at a level that suits the ball. The cube's side is 64 voxels, 96 or 128 if the ball
+/// would leave a smaller cube before the next arrives, and 128 if the ball's radius exceeds 24 voxels. Radii above 48
+/// voxels, and radii above 24 voxels in fast motion, use coarser levels.
 struct RelevancePlace {
     /// Maximum radius of a ball, in voxels of the cube's level; larger balls use a coarser level if there is one.
     static constexpr double MAX_BALL_RADIUS = 48.0;
-    /// Fast motion selects a coarser level only if the ball's radius has at least that many voxels there.
+    /// Fast motion selects a coarser level only if the ball's radius is at least this many voxels of that level.
     static constexpr double MIN_COARSE_RADIUS = 12.0;
     int level = 0;
     Size3 level_size{0};      ///< number of voxels of the level along each axis
@@ -47,7 +47,7 @@ public:
     /// Queries the cube around a point (in voxels), clipped to the volume. Drops an answer that was not taken yet.
     /// Submits nothing while bricks of the cube are being loaded. Fails if the point is not finite.
     void ask(const glm::dvec3& voxel, double threshold, uint64_t now_ns);
-    /// Likewise for a box of level 0. Fails if the device has no room for the box's bricks.
+    /// Likewise, queries a box of level 0. Fails if the device has no room for the box's bricks.
     void ask(const VoxelBox& box, double threshold, uint64_t now_ns);
     bool is_asking() const { return query_.is_asking(); }
     void drop() { query_.drop(); }

@@ -33,7 +33,7 @@ bool RelevancePlace::covers(const glm::dvec3& centre, double radius) const
 
 namespace {
 
-constexpr double ROUNDING = 1.0;  ///< in voxels, because a cube's corner is rounded to a voxel's
+constexpr double ROUNDING = 1.0;  ///< in voxels, because a cube's corner is rounded to a whole voxel
 
 /// Returns the side of the cube, in voxels, for a ball that will move by `travel` before the cube arrives.
 int64_t side_for(double radius, double travel)

@@ -21,8 +21,8 @@ RelevancePlace relevance_place(const VolumeSource& source, const RegionWish& wis
 
 /// Finds voxels at or above the threshold in a box of a level. `source` must already include density offsets.
 RelevanceBits relevance_on_host(const VolumeSource& source, int level, const VoxelBox& box, double threshold);
-/// Likewise, but excludes unpainted voxels whose intensities are not felt; apply_limits does the rest. A voxel of a
-/// coarser level is painted if at least half of the voxels in it are. `mask`: null if nothing is painted.
+/// Likewise, but excludes unpainted voxels whose intensities are not felt; apply_limits applies all other limits. A
+/// voxel of a coarser level is painted if at least half of the voxels in it are. `mask`: null if nothing is painted.
 RelevanceBits relevance_on_host(const VolumeSource& source, int level, const VoxelBox& box, double threshold,
                                 const FeltLimits& limits, const Mask* mask);
 

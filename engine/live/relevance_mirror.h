@@ -3,16 +3,16 @@
 // when the main thread hangs. The engine does not depend on the servo; `Ends` connect this class to a servo.
 //
 //   main thread: choose() ----------+                       +-> Ends::publish
-//   device (a frame or so later):   +-> bits of one cube ---+   again each iteration, with the time up to which
-//     wanted() -> Relevance -> offer()   or the host's own      they are known to be true
+//   device (a frame or so later):   +-> bits of one cube ---+   each iteration, with the time up to which the bits
+//     wanted() -> Relevance -> offer()   or the host's own      are known to be true
 //
 // Bits stay valid until the user changes threshold or voxels, so the thread renews their time stamp in each iteration.
-// Limits of what is felt (felt_limits.h) are applied to a copy of the bits, again as soon as they change: moving a cut
-// needs no new answer. Where intensities decide, the host makes the bits. When the ball comes near the cube's border,
-// will be beyond it before an answer arrives (region_wish.h), or something changed, wanted() names a new cube for the
-// device's compute pass. The latency of answers is measured.
-// If no answer came within DEVICE_NS (four times that while the held bits still suffice), if the cube is of a coarser
-// level, or if the device declined, the thread reads the voxels itself, which gives the same bits (relevance_host.h).
+// Limits of what is felt (felt_limits.h) are applied to a copy of the bits, and applied again when the limits change:
+// moving a cut needs no new answer. Limits by intensity need bits made by the host. When the ball comes near the cube's
+// border, will cross it before an answer arrives (region_wish.h), or something changed, wanted() names a new cube for
+// the device's compute pass. The latency of answers is measured. If no answer came within DEVICE_NS (four times that
+// while the held bits still suffice), if the cube is of a coarser level, or if the device declined, the thread reads
+// the voxels itself, which gives the same bits (relevance_host.h).
 //
 // Any thread may call choose(), wanted(), offer(), decline() and trouble(). Only this object's thread calls `Ends`.
 
@@ -29,7 +29,7 @@
 
 namespace shvr {
 
-/// The user's choice of what to feel. Objects that it shares must not change any more.
+/// The user's choice of what to feel. The shared objects must no longer change.
 struct RelevanceChoice {
     std::shared_ptr<const VolumeSource> source;     ///< without offsets; null: nothing is mirrored
     std::shared_ptr<const DensityField> offsets{};  ///< null: none
@@ -51,7 +51,7 @@ struct ProbeMotion {
 struct MirroredRelevance {
     RelevancePlace place;
     RelevanceBits bits;
-    uint64_t sequence = 0;  ///< number of the published bits, from 1 on; the same if only `true_at_ns` is new
+    uint64_t sequence = 0;  ///< number of the published bits, from 1 on; unchanged if only `true_at_ns` is new
     uint64_t true_at_ns = 0;
     uint32_t settings = 0;
     uint64_t voxels = 0;
@@ -65,8 +65,8 @@ public:
     static constexpr uint64_t TURN_NS = 8'000'000;
     static constexpr uint64_t DEVICE_NS = 25'000'000;      ///< how long the host waits for the device
     static constexpr double MAX_LATENCY_S = 0.1;           ///< the force has faded out after this time
-    static constexpr uint64_t TROUBLE_NS = 1'000'000'000;  ///< pause before it retries voxels that could not be
-                                                           ///< read
+    static constexpr uint64_t TROUBLE_NS = 1'000'000'000;  ///< pause before the thread retries a failed read of
+                                                           ///< voxels
 
     struct Ends {
         std::function<std::optional<ProbeMotion>()> probe;  ///< null: not known yet
@@ -75,7 +75,7 @@ public:
         std::function<void(uint64_t until_ns)> wait{};  ///< for tests; may return early
     };
     explicit RelevanceMirror(Ends ends);
-    /// Stops the thread and waits for it, including for a read of voxels that it may have begun.
+    /// Stops the thread and waits for its end, and thus for any read of voxels that it has begun.
     ~RelevanceMirror();
     RelevanceMirror(const RelevanceMirror&) = delete;
     RelevanceMirror& operator=(const RelevanceMirror&) = delete;
@@ -134,7 +134,7 @@ private:
     FeltLimits limits_;                  ///< the limits that were applied to `held_`
     std::optional<Wanted> waiting_for_;  ///< requested from the device
     uint64_t waiting_since_ns_ = 0, failed_ns_ = 0;
-    double latency_s_ = WINDOW_LATENCY_S;  ///< smoothed measurement of the time from wanting a cube until it is held
+    double latency_s_ = WINDOW_LATENCY_S;  ///< smoothed time from requesting a cube until its bits are held
     std::shared_ptr<const VolumeSource> with_offsets_;
     std::shared_ptr<const DensityField> offsets_of_it_;
 

@@ -67,8 +67,8 @@ void Screen::drop()
 
 void Screen::show_probe(const ProbeLook& probe)
 {
-    // In slices, the probe affects only the brush's preview. A twentieth of a voxel is less than a pixel of any slice
-    // that shows the whole volume.
+    // In slices, the probe affects only the brush's preview. Its motions below a twentieth of a voxel are ignored: less
+    // than a pixel in any slice that shows the whole volume.
     constexpr double STIR_VOXELS = 0.05;
     const glm::dvec3 voxel = probe.center / renderer_.scene().info().spacing;
     const bool follows = view_.arrangement == Arrangement::slices && !parts_.empty();
@@ -107,7 +107,7 @@ bool Screen::is_loading() const
     return renderer_.volume().state() == DeviceVolume::State::loading;
 }
 
-/// Lets another pane load bricks; the volume loads one pane's at a time. Interrupted panes are redrawn in their turn.
+/// Lets another pane load bricks; the volume loads bricks for one pane at a time. Interrupted panes are redrawn later.
 void Screen::give_turn(size_t part)
 {
     if (part == turn_) return;

@@ -19,18 +19,18 @@ public:
 
     /// Sets the displayed content and redraws everything. To be called only if something changed.
     void look(const Session& session, const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& probe_voxel);
-    /// Moves the camera or the probe in the same session; panes that do not change are not redrawn.
+    /// Moves the camera or the probe in the same session; panes that this does not change are not redrawn.
     void look_from(const Camera& camera, const glm::dvec3& probe_voxel);
     /// Sets the probe; slices follow it.
     void show_probe(const ProbeLook& probe);
     void update_occlusion();
 
     void advance();
-    /// Submits `ahead_ms` more of the due work, because the thread will wait that long for something else and the
-    /// device should not be idle meanwhile.
+    /// Submits due work for `ahead_ms` more of device time, so that the device is not idle while this thread waits that
+    /// long for something else.
     void submit_ahead(double ahead_ms);
-    /// While held, up-to-date panes are not made sharper: they would request their bricks instead of those that another
-    /// picture requested and waits for. The hold ends when a pane has to follow the user.
+    /// While held, up-to-date panes are not made sharper: they would request bricks of their own, in place of the
+    /// bricks that another picture has requested and waits for. The hold ends when a pane has to follow the user.
     void hold(bool is_held) { is_held_ = is_held; }
     bool is_held() const { return is_held_; }
     void wait();
@@ -52,7 +52,7 @@ public:
     /// Whether the first pane has something to show.
     bool shows_anything() const { return !parts_.empty() && parts_[0].view->shown_camera() != nullptr; }
 
-    /// Returns the picture as shown, including the lines over maps and slices, but not the probe's lines. Waits for the
+    /// Returns the picture as shown, with the lines over maps and slices, but without the probe's lines. Waits for the
     /// device.
     Image8 read_back();
 

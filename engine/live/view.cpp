@@ -66,7 +66,7 @@ void View::light_changed(const VoxelBox& voxels)
     if (shown_sight_) mark_voxels(voxels);
 }
 
-/// Returns the pixels in which the camera, or either of two cameras, may show the voxels.
+/// Returns the pixels that may show the voxels, as seen by the camera or by either camera of an anaglyph.
 PixelBox View::pixels_of(const Sight& sight, const VoxelBox& voxels) const
 {
     // The paint of a voxel fills only the voxel's own cube, so nothing beyond the cube changes.
@@ -121,7 +121,7 @@ void View::reserve(gpu::Storage& image, const std::string& name, Format format, 
     }
 }
 
-/// Resets the view: nothing is shown or in progress, and it uses no memory; the next picture starts from scratch.
+/// Resets the view: it shows nothing, has no work in progress and uses no memory; the next picture starts from scratch.
 void View::forget()
 {
     for (const Running& running : running_) running.submission.wait();
@@ -188,7 +188,7 @@ bool View::is_listed(const Sight& sight)
                      {.pixels = sight.pixels, .always_shown = voxels_of_shell(probe_, scene().info())});
 }
 
-/// Returns the requested sight, or one requested recently, as soon as its bricks are listed; null until then.
+/// Returns the requested sight, or a recently requested sight, once its bricks are listed; null until then.
 View::SightRef View::listed_sight()
 {
     if (!coming_sight_) coming_sight_ = sight_;
@@ -197,7 +197,7 @@ View::SightRef View::listed_sight()
     return is_listed(*sight_) ? sight_ : listed;
 }
 
-/// Lists the bricks of the next sketch while the current one is being drawn.
+/// Lists the bricks of the next sketch while the current sketch is being drawn.
 void View::list_ahead()
 {
     if (sight_ == shown_sight_ || (base_.job && base_.job->sight == sight_)) return;
@@ -243,7 +243,7 @@ bool View::submit_next(bool sketches_alone)
     if (std::ranges::any_of(tiles_, [this](const Tile& tile) { return may_draw(tile); }))
         return false;  // the bricks of these tiles are being listed
     if (running_.empty() && patch_.shown.share < 1.0 && !patch_.shown.part.empty()) {
-        start(patch_, sight_, probe_, std::numeric_limits<double>::infinity());  // nothing moves, so it is drawn sharp
+        start(patch_, sight_, probe_, std::numeric_limits<double>::infinity());  // nothing moves: draws the patch sharp
         return submit_next(sketches_alone);
     }
     return running_.empty() && submit_refinement();
@@ -294,7 +294,7 @@ bool View::occlusion_is_due() const
            scene().occlusion().is_due();
 }
 
-/// Submits a slice of ambient occlusion. Bricks overlap on screen, so sharp tiles wait for the last slice.
+/// Submits a slice of ambient occlusion. Bricks overlap on screen, so sharp tiles wait for the last slice of occlusion.
 bool View::submit_occlusion()
 {
     constexpr double LEAST = 2.0, MOST = 256.0;
@@ -312,7 +312,7 @@ bool View::submit_occlusion()
         occlusion_was_renewed_ = false;
         return false;
     }
-    const Occlusion::Counts& after = scene().occlusion().counts();  // the difference may be less than requested
+    const Occlusion::Counts& after = scene().occlusion().counts();  // fewer may be done than requested
     const double units = double(after.values - before.values) + double(after.cells - before.cells) / CELL_BRICKS;
     submit(std::move(*slice), {.purpose = Purpose::preparation, .pace = &occlusion_, .units = units});
     return true;
@@ -326,7 +326,7 @@ void View::choose_batch(const glm::dvec2& focus)
     const uint32_t across = tile_counts().x;
     std::vector<std::pair<double, uint32_t>> left;  // by distance
     for (uint32_t index = 0; index < tiles_.size(); ++index) {
-        if (tiles_[index].is_in_batch && !tiles_[index].is_drawn) return;  // there already is one
+        if (tiles_[index].is_in_batch && !tiles_[index].is_drawn) return;  // there is a batch already
         if (tiles_[index].is_shown || !tiles_[index].is_due) continue;
         const glm::dvec2 apart = (glm::dvec2(index % across, index / across) + 0.5) * double(TILE) - focus;
         left.emplace_back(glm::dot(apart, apart), index);
@@ -352,13 +352,13 @@ void View::show_batch()
 bool View::may_draw(const Tile& tile) const
 {
     constexpr double AGAIN_S = 0.25;
-    if (!tile.is_shown && !tile.is_urgent && !tile.is_in_batch) return false;  // its batch comes later
+    if (!tile.is_shown && !tile.is_urgent && !tile.is_in_batch) return false;  // tiles of later batches wait
     if (!tile.is_due || tile.drawn_s == 0.0 || tile.is_urgent) return tile.is_due;
     const bool more_comes = scene().volume().state() == DeviceVolume::State::loading;
     return !more_comes || now_s() - tile.drawn_s > AGAIN_S;
 }
 
-/// Returns whether memory suffices for sharp tiles. If it does not, this is reported once per view.
+/// Returns whether memory suffices for sharp tiles. Reports a lack of memory once per view.
 bool View::has_room_for_tiles()
 {
     if (unsharp_sight_ == shown_sight_) return false;
@@ -387,7 +387,7 @@ bool View::submit_sketch_instead()
     return submit_sketch(base_, Purpose::base);
 }
 
-/// Returns as many tiles around a due tile as fit in one step: first neighbours in its row, then adjacent rows.
+/// Returns a box of tiles around a due tile, as large as one step affords. It grows along the row first, then by rows.
 PixelBox View::strip_of_tiles(const glm::uvec2& nearest) const
 {
     constexpr uint32_t MAX_TILES = (1u << 20) / (TILE * TILE);  // 16 MiB of light
@@ -455,7 +455,7 @@ bool View::submit_tiles()
         }
     if (!nearest) return false;
     if (!has_room_for_tiles()) return submit_sketch_instead();
-    if (!is_listed(*shown_sight_)) return false;  // paint or the probe's shell has reached a brick that is not listed
+    if (!is_listed(*shown_sight_)) return false;  // paint or the probe's shell has reached an unlisted brick
     if (submit_preparation(*shown_sight_)) return true;
 
     const PixelBox strip = strip_of_tiles(*nearest);
@@ -467,7 +467,7 @@ bool View::submit_tiles()
     const glm::uvec2 size = part.end - part.begin;
     FrameGraph graph;
     const Import light_of_strip = strip_light(size);
-    // These graphs also import the other tiles' light, so that their barriers cover earlier graphs' accesses to it.
+    // Also importing the light of the other tiles makes the barriers cover accesses to it by earlier graphs.
     for (const gpu::Storage& other : strips_)
         if (other && other.import().id != light_of_strip.id)
             static_cast<void>(graph.import("light of other tiles", other.import()));
@@ -520,7 +520,7 @@ void View::account(const gpu::FrameResult& result, const Running& done)
         for (const gpu::PassReport& pass : result.passes) note(pass.name, pass.gpu_ms, waits(pass));
     // Passes may overlap, so the sum of their times can exceed the total time.
     const double ms = host_tells_time() ? host_ms : result.gpu_ms;
-    // If only the host can measure time, the most expensive pass is charged with all of it.
+    // If only the host can measure time, the whole time is charged to the most expensive pass.
     if (host_tells_time() && !result.passes.empty()) {
         const auto rays = std::ranges::find(result.passes, "raycast", &gpu::PassReport::name);
         const bool has_rays = rays != result.passes.end();

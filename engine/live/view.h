@@ -1,11 +1,11 @@
 #pragma once
 // An interactive picture: coarse at once, then sharp, tile by tile, nearest to the probe first.
 //
-//   look changed      the view's bricks are listed in the background; if the camera moves faster than they are listed,
-//                     the picture follows at the pace of the lists;
+//   look changed      the view's bricks are listed in the background; if the camera is faster than this listing,
+//                     the picture follows at the pace of the listing;
 //                     then a sketch of the whole picture, at a scale that takes about `motion_ms` and is at most the
-//                     session's `interaction.resolution`                                     -> shown when all is done
-//   probe moved       sketch of the pixels its ball may cover, drawn over everything else    -> shown when done
+//                     session's `interaction.resolution`                                     -> shown when complete
+//   probe moved       a sketch of the pixels that its ball may cover, over everything else   -> shown when complete
 //   nothing moves     a finer sketch of the whole picture, if it is a small part of the work;
 //                     then sharp tiles, until the picture equals that of `Renderer::render` bit for bit. They are shown
 //                     in batches that cover a large part of the picture, so that no seam runs through it
@@ -13,7 +13,7 @@
 //   occlusion due     ambient occlusion, nearest bricks first, before the sharp tiles that show it
 //
 // Everything is drawn in small graphs of about `step_ms` each, with about `in_flight_ms` of them in flight at most, so
-// that a user interface, a brush or a relevance pass on the same queue waits no longer than that. Nothing is submitted
+// that a user interface, a brush or a relevance pass on the same queue waits at most that long. Nothing is submitted
 // while nothing changes. One thread, the renderer's; only the calls whose comments say so wait for the device.
 
 #include <array>
@@ -37,7 +37,7 @@ public:
         double in_flight_ms = 3.5;   ///< total device time of the graphs in flight
         double motion_ms = 40.0;     ///< device time of a sketch of the whole picture
         double probe_ms = 20.0;      ///< device time of a sketch of the pixels that the probe may cover
-        double moment_ms = 300.0;    ///< sharp tiles that take less than this are shown all at once
+        double moment_ms = 300.0;    ///< if the sharp tiles take less than this, all are shown at once
         bool swap_red_blue = false;  ///< swaps red and blue in the shown images
     };
     View(Renderer& renderer, const Options& options) : renderer_(renderer), options_(options) {}
@@ -63,9 +63,9 @@ public:
 
     /// Collects finished submissions and loaded bricks, and submits the next work.
     void advance();
-    // advance() in steps, for owners of several views, who take the scene's changes and report them to each view.
+    // The steps of advance(), for owners of several views. Owners take the scene's changes and report them to views.
     void collect() { reap(); }
-    // `ahead_ms`: device time that may be in flight beyond `in_flight_ms`, as the caller will not poll for that long.
+    // `ahead_ms`: device time allowed in flight beyond `in_flight_ms`, because the caller will not poll for that long.
     void submit_sketches(double ahead_ms = 0.0);  ///< submits only the work that is_sketched() waits for
     void submit_due(double ahead_ms = 0.0);
     /// Whether the whole picture is shown for the requested sight, even if coarsely.
@@ -138,7 +138,7 @@ private:
     };
     struct Tile {
         bool is_shown = false;
-        bool is_drawn = false;  ///< whether it is drawn; it is shown once its whole batch is drawn
+        bool is_drawn = false;  ///< whether it is drawn; it is shown once all tiles of its batch are drawn
         bool is_in_batch = false;
         bool is_due = false;
         bool is_urgent = false;  ///< changed by painting, so it is drawn first
@@ -149,8 +149,8 @@ private:
         gpu::Submission submission;
         Purpose purpose = Purpose::preparation;
         double estimate_ms = 0.0;
-        Pace* pace = nullptr;         ///< the estimate that learns from the graph's time, if any
-        double units = 0.0;           ///< work in units of that estimate
+        Pace* pace = nullptr;         ///< the estimate, if any, that the graph's measured time updates
+        double units = 0.0;           ///< number of units of work, as counted by that estimate
         uint64_t pixels = 0;          ///< number of pixels ray-cast
         std::vector<uint32_t> tiles;  ///< indices
         SightRef sight;
@@ -201,7 +201,7 @@ private:
     void reserve(gpu::Storage& image, const std::string& name, Format format, const glm::uvec2& pixels);
     bool patch_is_due() const;
     double cost_ms(uint64_t pixels) const { return double(pixels) * rays_.ms(); }
-    /// Whether to use the host's clock: it is on lavapipe, whose timestamps are wrong during a window's render passes.
+    /// Whether to use the host's clock, as on lavapipe, whose timestamps are wrong during a window's render passes.
     bool host_tells_time() const
     {
         const gpu::DeviceTraits& traits = renderer_.device().traits();
@@ -214,12 +214,12 @@ private:
     SightRef sight_;                  ///< the requested state
     SightRef shown_sight_;            ///< the state shown by base, tiles and patch
     SightRef coming_sight_;           ///< a requested state whose bricks are being listed
-    SightRef cut_short_sight_;        ///< the last sight for which some rays stopped before their end
+    SightRef cut_short_sight_;        ///< the last sight for which some rays were cut short
     std::optional<ProbeLook> probe_;  ///< the requested probe
     Sketch base_, patch_;
     bool patch_is_dirty_ = false;  ///< paint under the probe has changed
     gpu::Storage work_;            ///< linear light of the sketch being drawn
-    /// Linear light of sharp tiles: an image for each graph in flight and for the next one, so that none waits.
+    /// Linear light of sharp tiles: one image per graph in flight, and one for the next graph, so that no graph waits.
     std::array<gpu::Storage, 3> strips_;
     size_t next_strip_ = 0;
     bool has_no_strips_ = false;  ///< set when out of memory: tiles are drawn in `work_`

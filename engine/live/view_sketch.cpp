@@ -13,8 +13,8 @@ namespace {
 
 constexpr double MAX_SCALE = 8.0;
 
-/// Returns the pixels of a sketch per screen pixel, along each axis, with which it takes `target_ms`: at most `most`,
-/// and no coarser than is useful. `ms`: its time with one pixel per screen pixel.
+/// Returns the share (sketch pixels per screen pixel, along each axis) at which a sketch takes `target_ms`: at most
+/// `most`, and no coarser than is useful. `ms`: the sketch's time at a share of 1.
 double share_for(double ms, double target_ms, double most)
 {
     return std::clamp(std::sqrt(target_ms / std::max(ms, 1e-9)), std::min(1.0 / MAX_SCALE, most), most);
@@ -62,11 +62,11 @@ void View::start(Sketch& sketch, Sketch::Content content, PixelBox part)
     sketch.job = std::move(content);
 }
 
-/// Draws a finer sketch before the sharp tiles, so that their edges stand out less. Does so once per sight, and only if
+/// Draws a finer sketch before the sharp tiles, so that the tiles' edges stand out less: once per sight, and only if
 /// the sketch adds little to the picture's total time.
 bool View::submit_finer_sketch()
 {
-    constexpr double SHARE = 0.18;  // of the pixels along each axis; 3 % of all pixels
+    constexpr double SHARE = 0.18;  // share along each axis; 3 % of all pixels
     if (finer_sight_ == shown_sight_ || !(base_.shown.share < 0.8 * SHARE)) return false;
     finer_sight_ = shown_sight_;
     start(base_, {.sight = shown_sight_, .probe = {}, .share = SHARE}, {glm::uvec2(0), shown_sight_->pixels});
@@ -80,7 +80,7 @@ void View::drop_finer_sketch()
     if (unsharp_sight_ == shown_sight_) mark_due({glm::uvec2(0), shown_sight_->pixels}, false);
 }
 
-/// Submits the next graph of a sketch. Returns false if all are in flight, or if bricks are still being listed.
+/// Submits the next graph of a sketch. Returns false if no graph is left, or if bricks are still being listed.
 bool View::submit_sketch(Sketch& sketch, Purpose purpose)
 {
     if (!sketch.job) return false;
@@ -110,8 +110,8 @@ void View::submit_rows(Sketch& sketch, Purpose purpose)
     Running running{.purpose = purpose, .pixels = uint64_t(width) * rows, .sight = job.sight};
     const Resource light = draw(graph, part, work_.import(), running);
     const uint32_t end = sketch.next_row + rows;
-    const bool encodes = job.share == 1.0;  // otherwise rows are enlarged with their neighbours, once all
-                                            // are drawn
+    const bool encodes = job.share == 1.0;  // otherwise rows are enlarged with their neighbours, after
+                                            // all rows are drawn
     if (encodes) encode_rows(graph, light, sketch, sketch.next_encoded, end);
     submit(std::move(graph), std::move(running));
     sketch.next_row = end;

@@ -63,14 +63,14 @@ struct RayPlanes {
         false;  ///< near plane behind far plane, or volume outside the clip range: nothing of the volume is visible
     // Positions along a ray: 0 on the near plane, 1 on the far plane. They may lie outside the volume.
     double begin = 0.0;   ///< start of the camera's clip range; at most 0 unless `empty`
-    double middle = 0.5;  ///< the camera's target, or the plane closer to it if it lies outside them
+    double middle = 0.5;  ///< the camera's target, or the nearer plane if the target lies outside the planes
     double end = 1.0;     ///< end of the clip range; infinite without a far clip plane
 };
 
 /// Returns planes perpendicular to the view direction. They touch the volume's bounding sphere, or lie at the clip
 /// distances if those are tighter. For a perspective eye in or at the sphere, the near plane is 1e-6 of the finest
-/// spacing in front of the eye. If the volume is outside the clip range, the planes lie in that range, as far apart as
-/// the sphere is wide. Fails like `check_camera`.
+/// spacing in front of the eye. If the volume is outside the clip range, the planes lie inside that range, one diameter
+/// of the sphere apart. Fails like `check_camera`.
 RayPlanes ray_planes(const Camera& camera, const glm::uvec2& pixels, const VolumeInfo& volume);
 
 /// Returns the plane p of normalized depth: for a voxel position, dot(p.xyz, voxel) + p.w is 0 where the box `lower`

@@ -91,7 +91,7 @@ Camera zoomed(const Camera& camera, const glm::uvec2& pixels, const glm::dvec2& 
 
 namespace {
 
-/// Moves the clip distances of `is` so that the planes stay in place although the eye moved. Both look along `forward`.
+/// Adapts the clip distances of `is` to its moved eye: the planes stay in place. Both cameras look along `forward`.
 void keep_clip_planes(const Camera& was, Camera& is, const glm::dvec3& forward)
 {
     const double way = glm::dot(was.eye - is.eye, forward);

@@ -15,13 +15,13 @@ struct CameraAxes {
 /// Fails as check_camera does.
 CameraAxes axes_of(const Camera& camera);
 
-/// Orbits the eye about `pivot`, to the right and up as seen from the camera; the target moves along.
+/// Orbits the eye about `pivot`, to the right and up as seen from the camera; the target orbits with the eye.
 Camera orbited(const Camera& camera, const glm::dvec3& pivot, double right_degrees, double up_degrees);
 /// Rolls the view about its own axis, clockwise for the viewer.
 Camera rolled(const Camera& camera, double degrees);
 /// Moves eye and target along the camera's right, up and forward.
 Camera moved(const Camera& camera, const glm::dvec3& right_up_forward);
-/// Scales the view by `factor` (above 1: closer) about the point seen at `pixel` and at the target's depth.
+/// Scales the view by `factor` (above 1: closer) about the point that `pixel` shows at the target's depth.
 Camera zoomed(const Camera& camera, const glm::uvec2& pixels, const glm::dvec2& pixel, double factor);
 
 /// Returns a camera with the same direction that is aimed at the centre of a box (volume space) and shows all of the
@@ -29,8 +29,8 @@ Camera zoomed(const Camera& camera, const glm::uvec2& pixels, const glm::dvec2& 
 Camera fitted(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& lower, const glm::dvec3& upper);
 /// Returns a camera with the same direction and distance that is aimed at another point. Clip planes stay unchanged.
 Camera looking_at(const Camera& camera, const glm::dvec3& target);
-/// Returns the camera that sees the same voxels when the volume's spacing is `ratio` times the old one. This is exact
-/// along the view and upwards, and also to the right if the ratio is equal along all axes.
+/// Returns the camera that sees the same voxels when the volume's spacing is `ratio` times the old one. The match is
+/// exact along the view and upwards; to the right, it is exact if the ratio is equal along all axes.
 Camera respaced(const Camera& camera, const glm::dvec3& ratio);
 
 /// The projection of a point: its pixel coordinates, and its distance from the eye along the view. For a perspective

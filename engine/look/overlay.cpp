@@ -120,7 +120,7 @@ void add_frustum(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, c
             edge(plane + size_t(a), plane + size_t(b));
 }
 
-/// Draws the lines of the other two slices in this one, in the colours of their axes, with a gap around the probe.
+/// Draws the lines in which the other two slices cut this slice, in the colours of their axes, with a gap at the probe.
 void add_cross(Strokes& strokes, const Pane& pane, const glm::uvec2& pixels, const OverlayScene& scene)
 {
     constexpr double OPEN = 12.0;  ///< pixels
@@ -248,7 +248,7 @@ void add_box(Strokes& strokes, const Camera& camera, const glm::uvec2& pixels, c
         }
 }
 
-/// Calls `paint` for the pixels of `pane` that a stroke covers, with its coverage. `origin`: of its coordinates.
+/// Calls `paint` for each pixel of `pane` that a stroke covers, with the coverage. `origin`: of stroke coordinates.
 template <class Paint>
 void for_each_covered(const Stroke& stroke, const glm::uvec2& origin, const PixelBox& pane, const Paint& paint)
 {
@@ -258,7 +258,7 @@ void for_each_covered(const Stroke& stroke, const glm::uvec2& origin, const Pixe
     const glm::dvec2 upper = glm::min(glm::ceil(glm::max(from, to) + reach), glm::dvec2(pane.end));
     const glm::dvec2 way = to - from;
     const double square = glm::dot(way, way);
-    // A row meets only a short piece of a long stroke; the rest of the row is skipped.
+    // A long stroke covers only a short piece of each row; the rest of the row is skipped.
     const auto x_at = [&](double y) {
         return way.y == 0.0 ? 0.0 : from.x + std::clamp((y - from.y) / way.y, 0.0, 1.0) * way.x;
     };

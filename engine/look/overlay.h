@@ -55,12 +55,12 @@ OverlayScene::Box box_of(const CutBox& cut, const VolumeInfo& volume);
 std::vector<Stroke> strokes_of(const Pane& pane, const OverlayScene& scene, const VolumeInfo& volume);
 
 /// Returns the silhouette of a ball as a closed line: the circle in which lines from the eye touch the ball. Empty if
-/// the eye is inside the ball, or if a part of the ball is level with the eye or behind it.
+/// the eye is inside the ball, or if a part of the ball is level with the eye or behind the eye.
 std::vector<glm::dvec2> silhouette_of(const Camera& camera, const glm::uvec2& pixels, const glm::dvec3& center,
                                       double radius);
 
 /// Draws anti-aliased strokes over premultiplied light. `pane`: the pixels of the picture that stroke coordinates refer
-/// to; nothing is drawn outside of it. `image` holds all rows of the picture, or some, beginning with `first_row`.
+/// to; nothing is drawn outside of it. `image` holds all rows of the picture or some, from `first_row` on.
 void draw_strokes(ImageF& image, std::span<const Stroke> strokes, const PixelBox& pane, uint32_t first_row = 0);
 /// Likewise, over the opaque pixels of a screen.
 void draw_strokes(Image8& image, std::span<const Stroke> strokes, const PixelBox& pane);

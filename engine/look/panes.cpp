@@ -66,8 +66,8 @@ Pane slice_pane(int axis, const PixelBox& box, const VolumeInfo& volume, const g
     Camera& camera = pane.shot.camera;
     const glm::dvec3 forward = glm::normalize(camera.target - camera.eye);
     const glm::dvec3 size(volume.size);
-    // Slightly below the volume's end, even after rounding to a kernel's floats: a plane exactly at the end has no
-    // inside, and would be drawn without an edge.
+    // The limit lies slightly below the volume's end, even after rounding to a kernel's floats: a plane exactly at the
+    // end has no inside, and would be drawn without an edge.
     constexpr double LAST = 1.0 - 1e-6;
     const double voxel = std::clamp(probe_voxel[axis], 0.0, LAST * size[axis]);
     if (slices.center || slices.zoom > 1.0) {

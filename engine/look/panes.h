@@ -68,7 +68,7 @@ struct ViewSettings {
 struct Shot {
     Shot(const Camera& seen_from) : camera(seen_from) {}  // implicit, because a camera alone is a complete shot
     Camera camera;
-    std::optional<Camera> right_eye;  ///< for an anaglyph: `camera` gives red, this camera green and blue
+    std::optional<Camera> right_eye;  ///< for an anaglyph: `camera` gives red, `right_eye` green and blue
     bool is_slice = false;            ///< draws voxels half-way between the camera's clip planes, unshaded and in grey
     bool operator==(const Shot&) const = default;
 };
@@ -79,12 +79,12 @@ struct Pane {
     Shot shot;
     PixelBox box;      ///< pixels of the picture that the pane covers
     std::string name;  ///< "top", "slice across z", ...
-    int axis = -1;     ///< the axis perpendicular to the slice; -1 if the pane is no slice
+    int axis = -1;     ///< the axis perpendicular to the slice; -1 for other panes
     glm::uvec2 pixels() const { return box.end - box.begin; }
 };
 
-/// Returns the panes of a picture; the first is the view of `main`. They cover all but a row or column of pixels if the
-/// picture does not divide evenly. `probe_voxel`: a point on all slices. A picture too small to divide has one pane.
+/// Returns the panes of a picture; the first is the view of `main`. If the picture does not divide evenly, a row or
+/// column of pixels stays uncovered. `probe_voxel`: a point on all slices. A picture too small to divide has one pane.
 std::vector<Pane> panes_of(const ViewSettings& settings, const Camera& main, const glm::uvec2& pixels,
                            const VolumeInfo& volume, const glm::dvec3& probe_voxel);
 
@@ -95,14 +95,14 @@ SliceSettings slices_zoomed(const SliceSettings& slices, const Pane& slice, cons
 /// Moves slices so that the given one follows a mouse motion of `way` pixels.
 SliceSettings slices_moved(const SliceSettings& slices, const Pane& slice, const glm::dvec2& way,
                            const VolumeInfo& volume, const glm::dvec3& probe_voxel);
-/// Moves slices along those axes along which the probe is outside the visible part of one of them. `held`: index of the
-/// pane under the mouse, which does not move as long as the probe is visible in it.
+/// If the probe is outside the visible part of a slice along an axis, moves the slices along that axis. `held`: index
+/// of the pane under the mouse; its slice does not move as long as the probe is visible in it.
 SliceSettings slices_following(const SliceSettings& slices, const std::vector<Pane>& panes, std::optional<size_t> held,
                                const VolumeInfo& volume, const glm::dvec3& probe_voxel);
 
 /// Returns the cameras of two eyes, left and right. With off-axis cameras, both eyes see a point at the target's depth
-/// at the same pixel, and there is no vertical parallax. With `toe_in`, and for orthographic cameras, which would
-/// otherwise have no parallax, the eyes rotate about the target instead.
+/// at the same pixel, and there is no vertical parallax. With `toe_in`, and for orthographic cameras (without rotation
+/// they have no parallax), the eyes rotate about the target instead.
 std::pair<Camera, Camera> eyes_of(const Camera& camera, const StereoSettings& settings);
 
 }  // namespace shvr

@@ -10,8 +10,8 @@ namespace shvr {
 
 namespace {
 
-/// Extinction at which the opacity of a reference length rounds to 1: even the smallest part of the shortest step is
-/// opaque, yet differences of the extinction's integrals are still exact to 1e-8.
+/// Upper limit of extinction per reference length, used for opacity 1. With it, even the smallest part of the shortest
+/// step is opaque, yet differences of the extinction's integrals are still exact to 1e-8.
 constexpr double OPAQUE = 1e6;
 constexpr uint32_t MAX_PARTS = 16;
 
@@ -30,7 +30,7 @@ double between(double from, double to, double share)
 double mean_extinction(double from, double to)
 {
     const double a = 1.0 - from, b = 1.0 - to;
-    // Where the closed form cancels, uses Simpson's rule, whose error there is below 1e-13 of the value.
+    // For nearly equal opacities, the closed form cancels; Simpson's rule then errs by less than 1e-13 of the value.
     if (std::abs(a - b) <= 1e-3 * std::max(a, b))
         return (extinction_of(from) + 4.0 * extinction_of(0.5 * (from + to)) + extinction_of(to)) / 6.0;
     const auto integral = [](double u) { return u > 0.0 ? u - u * std::log(u) : 0.0; };

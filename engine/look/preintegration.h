@@ -14,13 +14,13 @@
 
 namespace shvr {
 
-/// Entry [back * entries + front], with each end at one of the samples: linear RGB times opacity, the opacity, and the
-/// optical depth of a step of `step_voxels` reference lengths. Excludes densities at which rays end (opaque_intervals):
+/// Entry [back * entries + front] is for a step from sample `front` to sample `back`, `step_voxels` reference lengths
+/// long: linear RGB times opacity, opacity, and optical depth. Excludes densities at which rays end (opaque_intervals):
 /// otherwise, steps that only come near them would be opaque too. Takes about 20 ms for 256 samples on one core.
 BakedTable preintegrated_table(const TransferFunction& function, double step_voxels, const Samples& samples);
 
-/// Like `visible_intervals` of transfer_function.h, for a pre-integrated table: whether a step from one end of an
-/// interval to the other is visible, or meets an opaque density.
+/// Like `visible_intervals` of transfer_function.h, for a pre-integrated table: an interval counts if a step from one
+/// of its ends to the other is visible or meets an opaque density.
 std::vector<uint32_t> visible_intervals_of_steps(std::span<const glm::vec4> table, const Samples& samples,
                                                  std::span<const OpaqueInterval> opaque);
 

@@ -15,19 +15,19 @@ namespace shvr {
 /// The largest OcclusionSettings::radius. The bricks gathered around a brick limit it (engine/passes/occlusion.h).
 inline constexpr double MAX_OCCLUSION_RADIUS = 60.0;
 
-/// A point of the curve that maps arriving light to visible light; the curve is constant outside, linear in between.
+/// A point of the curve from arriving to visible light: linear between points, constant beyond the outermost points.
 struct OcclusionPoint {
     double arrives = 0.0, seen = 0.0;  ///< shares
     bool operator==(const OcclusionPoint&) const = default;
 };
 inline constexpr size_t MAX_OCCLUSION_POINTS = 16;
 
-/// How much of the ambient light reaches a point (shaders/occlusion/occlusion.h).
+/// Settings of ambient occlusion: how much of the ambient light reaches a point (shaders/occlusion/occlusion.h).
 struct OcclusionSettings {
     double strength = 0.0;                  ///< 0: off; 1: fully blocked places get no ambient light
     double radius = 16.0;                   ///< distance from which light arrives, in reference lengths
     uint32_t rays = 32;                     ///< per voxel
-    bool full_sphere = false;               ///< also rays from behind surfaces
+    bool full_sphere = false;               ///< also traces rays from behind surfaces
     double curve = 1.0;                     ///< exponent applied to the arriving light; above 1 is darker
     bool automatic = true;                  ///< false: the window updates occlusion only on request
     std::vector<OcclusionPoint> mapping{};  ///< replaces `curve`; sorted by `arrives`; empty: no mapping
@@ -44,7 +44,7 @@ struct Light {
     double specular = 0.2;
     double shininess = 32.0;
     glm::dvec3 direction{
-        0.0};  ///< towards the light, camera axes (right, up, back); 0,0,0 = (0.3, 0.5, 1), over the viewer's shoulder
+        0.0};  ///< direction to the light in camera axes (right, up, back); 0,0,0: (0.3, 0.5, 1), over the shoulder
     double gradient_fade =
         0.03;  ///< gradients well below this share of `intensity_range` per voxel count as "no surface"
     OcclusionSettings occlusion;
@@ -95,8 +95,8 @@ struct RenderSettings {
     double detail = 1.0;  ///< minimum voxels per pixel, if the volume has several levels; 0: always the finest level
     bool skip_empty_space = true;
     bool preintegration = false;  ///< classifies steps by both of their ends (preintegration.h); for steps of at most 1
-    /// Integrates light between borders of voxels and points of the transfer function, instead of sampling steps
-    /// (shaders/rays/integral.comp). For steps of at most 1 and exact sampling; overrides preintegration.
+    /// Integrates light between voxel borders and points of the transfer function, instead of sampling at steps
+    /// (shaders/rays/integral.comp). Requires steps of at most 1 and exact sampling; overrides preintegration.
     bool exact_integral = false;
     /// Smooth borders of painted groups: between voxels, a sample takes the label with the largest weight among its
     /// eight neighbouring voxels, not the nearest voxel's label. Slices and occlusion use the nearest voxel.

@@ -38,7 +38,7 @@ public:
     size_t max_nodes() const { return base_nodes_ + (may_grow() ? 2 * MAX_SURFACES_ADDED : 0); }
     size_t max_surfaces() const { return base_list_ + (may_grow() ? MAX_SURFACES_ADDED : 0); }
 
-    /// Indices into `nodes` and `list` that `replace` wrote since the last call; may contain duplicates.
+    /// Indices into `nodes` and `list` that were written since the last `take_written`; may contain duplicates.
     struct Written {
         std::vector<uint32_t> nodes, list;
     };

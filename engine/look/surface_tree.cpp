@@ -15,7 +15,7 @@ namespace shvr {
 namespace {
 
 constexpr double NEAREST = -double(MAX_SIDE), FARTHEST = 2.0 * double(MAX_SIDE), MAX_RADIUS = double(MAX_SIDE);
-/// If one ball of a rod contains the other, within this share of their difference, only the larger ball is drawn.
+/// A rod is drawn as its larger ball if that ball contains the other, within this share of the radii's difference.
 constexpr double CONTAINED = 1e-5;
 
 struct Box {

@@ -37,7 +37,7 @@ struct KeyedSurface {
 /// Uses each surface's index as its key.
 std::vector<KeyedSurface> keyed(std::span<const SurfaceLook> surfaces);
 
-/// A surface takes 60 bytes, and its nodes at most as many: below the smallest buffer limit of any device, 128 MiB.
+/// A surface takes 60 bytes, and its nodes at most 60 more. So buffers fit any device: the smallest limit is 128 MiB.
 inline constexpr size_t MAX_SURFACES = 1'000'000;
 
 struct SurfaceTree {
@@ -46,15 +46,15 @@ struct SurfaceTree {
     std::vector<uint64_t> keys;      ///< keys of `list`
 };
 
-/// Fails if there are more than MAX_SURFACES, or if a surface, which the message names, is not finite, has no size, or
-/// is farther than 2^20 reference lengths from any place the volume may be. `max_in_leaf` is for tests.
+/// Fails if there are more than MAX_SURFACES surfaces, or if one is not finite, has no size, or is farther than 2^20
+/// reference lengths from any place the volume may be; the message names it. `max_in_leaf` is for tests.
 SurfaceTree surface_tree(std::span<const KeyedSurface> surfaces, const VolumeInfo& volume,
                          size_t max_in_leaf = gpu::SURFACES_IN_LEAF);
 
 /// Encodes one surface as in the tree's list. Fails under the same conditions as `surface_tree`.
 gpu::Surface surface_on_device(const KeyedSurface& surface, const VolumeInfo& volume);
 
-/// Fits the boxes of `nodes`, made of whole trees, to the surfaces in their leaves. Returns the nodes that changed.
+/// Fits the boxes of `nodes`, one or more whole trees, to the surfaces in their leaves. Returns the changed nodes.
 std::vector<uint32_t> refit(std::span<gpu::SurfaceNode> nodes, std::span<const gpu::Surface> list);
 
 }  // namespace shvr

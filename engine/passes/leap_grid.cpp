@@ -57,8 +57,8 @@ float guard_of_sample_bits(const glm::uvec3& cell_counts)
     constexpr double CODES = 65535.0, EPSILON = 0x1p-24;
     const glm::uvec3 size = gpu::CELL_SIZE * cell_counts;
     const double side = std::max({size.x, size.y, size.z}), reach = gpu::SAMPLE_BITS_REACH;
-    // Rounding of floats: of a length along the ray, its product, and its sum with the ray's start; for both of the
-    // samples between which a distance is measured.
+    // Rounding errors of a length along the ray, of its product, and of its sum with the ray's start; all of them count
+    // twice, once for each of the two samples between which a distance is measured.
     const double of_floats = 2.0 * EPSILON * side * (3.0 * reach + (1.0 + reach));
     const double of_parts = (0.5 * gpu::SAMPLE_BITS_AHEAD + 1.0) / gpu::SAMPLE_BIT_PARTS;
     return float(1.0 + CODES * (3.0 * of_floats + of_parts * (1.0 + 1.0 / 4.0 + 1.0 / 16.0)));
@@ -99,7 +99,7 @@ void leap_grid_stage(FrameGraph& graph, VolumeBinding& volume, const LeapGridInp
 
 void leap_grid_patch(FrameGraph& graph, VolumeBinding& volume, const LeapGridInput& input)
 {
-    // As in the last stage: the cells whose distance the changed cells may limit.
+    // The same cells as in the last stage: those whose distance the changed cells may limit.
     const CellBox cells = cells_of_stage(input.changed, volume.cell_counts, LEAP_STAGES - 1);
     Pass pass = graph.compute("leap_bound");
     pass.push(gpu::LeapBoundParams{cells.begin, cells.end, input.changed.begin, input.changed.end});

@@ -14,8 +14,8 @@ namespace {
 /// Maximum distance between a voxel and the start of its rays.
 constexpr double MAX_OFFSET = double(gpu::OCCLUSION_FURTHEST) + double(gpu::OCCLUSION_LIFT);
 
-/// Stretches in voxels of the level, for a radius of 16: of taps in voxels, in cells of two voxels and in cells of four
-/// voxels. The stretches of taps in cells grow with the radius. Smaller radii have fewer taps.
+/// Stretches (ray lengths that taps cover) for a radius of 16, in voxels of the level: for taps in voxels, in cells of
+/// two voxels, and in cells of four voxels. The last two grow with the radius. Smaller radii have fewer taps.
 constexpr double NEAR_STRETCH = 1.035;
 constexpr double NEAR_STRETCHES[] = {NEAR_STRETCH, NEAR_STRETCH, 2.0 * NEAR_STRETCH};
 constexpr double NEAR_TOTAL = 4.0 * NEAR_STRETCH;
@@ -35,7 +35,7 @@ const double TURN = std::numbers::pi * (3.0 - std::sqrt(5.0));
 
 namespace {
 
-/// The extent of an image for this many jobs, gpu::scratch_place.
+/// The extent, in places of gpu::scratch_place, of an image for this many jobs.
 glm::uvec3 scratch_places(uint32_t jobs)
 {
     const uint32_t columns = (jobs + gpu::OCCLUSION_COLUMN - 1) / gpu::OCCLUSION_COLUMN;

@@ -31,7 +31,7 @@ struct OcclusionTaps {
     double radius = 0.0;
     double first = 0.0;                   ///< length at the start of a ray that never blocks light
     std::vector<gpu::OcclusionTap> taps;  ///< from near to far; their stretches and `first` add up to the radius
-    std::array<uint32_t, gpu::OCCLUSION_SIZES + 1> end{};          ///< end of the near taps, then one per cell size
+    std::array<uint32_t, gpu::OCCLUSION_SIZES + 1> end{};          ///< end of the near taps, then of each cell size's
     double near_stretch = 0.0;                                     ///< ray length covered by the first near tap
     std::array<double, gpu::OCCLUSION_SIZES> stretches{1.0, 1.0};  ///< ray length covered by one tap, per cell size
     std::array<uint32_t, gpu::OCCLUSION_SIZES> aprons{};           ///< cells around a brick, as far as taps may reach
@@ -41,7 +41,7 @@ inline constexpr double OCCLUSION_MAX_RADIUS = gpu::OCCLUSION_REACH * gpu::BRICK
 /// Radii below 1 have no taps: light reaches every voxel. `is_paged`: rays may also begin in a brick's apron.
 OcclusionTaps occlusion_taps(double radius, bool is_paged = false);
 
-/// Distance in bricks, on each side of a brick, from which its light may arrive.
+/// Distance in bricks, on each side of a brick, from which light may arrive at the brick.
 uint32_t occlusion_reach(double radius);
 
 /// Sets `slots` to fully lit.
@@ -66,7 +66,7 @@ struct OcclusionInput {
     std::array<float, gpu::OCCLUSION_SIZES * gpu::OCCLUSION_LEVELS> exponents{};  ///< as in OcclusionGatherParams
     OcclusionCellsInput near;  ///< opacities for the length covered by the first near tap
 };
-/// All jobs must be in one level; there may be at most OCCLUSION_SLICE. `around`: for each job, the bricks around its
+/// All jobs, at most OCCLUSION_SLICE of them, must be in one level. `around`: for each job, the bricks around the job's
 /// brick, see OcclusionJob.
 void occlusion_bake(FrameGraph& graph, const VolumeBinding& volume, OcclusionBinding& occlusion,
                     OcclusionScratch& scratch, const OcclusionInput& input, std::span<const gpu::OcclusionJob> jobs,

@@ -1,7 +1,7 @@
 #pragma once
-// Brushes on a region of the volume: select voxels by density. The result is one bit per voxel of the region, and is
-// the same for preview, painting and tests; engine/annotation/painting.h decides, next to the mask, which of the
-// selected voxels may change group. The number of passes is fixed, whatever the region contains.
+// Brushes on a region of the volume: select voxels by density. The result is one bit per voxel of the region, the same
+// for preview, painting and tests. engine/annotation/painting.h, which works on the mask, decides which of the selected
+// voxels may change group. The number of passes is fixed, whatever the region contains.
 
 #include <span>
 
@@ -23,8 +23,8 @@ Resource select_flood(FrameGraph& graph, const VolumeBinding& volume, const Regi
 /// Selects the connected components that have no voxel on the region's boundary.
 Resource select_speckles(FrameGraph& graph, const VolumeBinding& volume, const RegionInput& input);
 
-/// The same brushes, flood and speckles, for a region whose bits within its rows are already known (engine/bricks/
-/// threshold_bricks.h).
+/// The flood and speckles brushes for a region whose bits within its rows are already known
+/// (engine/bricks/threshold_bricks.h).
 Resource select_flood_in(FrameGraph& graph, const gpu::RegionParams& params, std::span<const uint32_t> bits);
 Resource select_speckles_in(FrameGraph& graph, const gpu::RegionParams& params, std::span<const gpu::RowSpan> rows,
                             std::span<const uint32_t> bits);

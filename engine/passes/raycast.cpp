@@ -16,11 +16,11 @@ uint32_t shininess_squarings(float shininess)
 
 namespace {
 
-/// Number of threads that run in lockstep on devices that abort long loops (MAX_TURNS). Each of these threads may make
-/// all of them take an iteration. Even with sixteen, the total stays below 65535.
+/// Number of threads that run in lockstep on devices that abort long loops (MAX_TURNS). An iteration that one thread
+/// needs may cost all of them an iteration. Even with sixteen threads, the total stays below 65535 iterations.
 constexpr uint64_t LANES = 8;
 constexpr uint64_t MAX_BLOCKS = 4096;
-/// Margin around the pixels of an iso-surface, for rounding of rays; alignment, for thread groups as wide as possible.
+/// Margin around an iso-surface's pixels, for rounding of rays, and their alignment, for the widest thread groups.
 constexpr double SHELL_MARGIN = 1.0, SHELL_ALIGNED = 16.0;  // pixels
 
 constexpr double MAX_PIECES = 64.0;  ///< maximum pieces of a stretch when only its light is integrated: 2^HALVINGS
@@ -37,8 +37,8 @@ double turns_of_integral(const gpu::RaycastParams& params, uint64_t levels)
 /// Number of steps of a ray that one dispatch may take.
 uint64_t steps_of_block(const VolumeBinding& volume, const RaycastInput& input, bool is_shelled)
 {
-    // Maximum number of iterations to find a place. This is a loop of its own: in paged bricks it takes one iteration
-    // per level of the directory. Unrolled loops, of fixed length, do not count (mask.glsl, groups.glsl, search.glsl).
+    // Maximum number of iterations to find a place, in a separate loop; in paged bricks, this loop takes one iteration
+    // per level of the directory. Unrolled loops of fixed length do not count (mask.glsl, groups.glsl, search.glsl).
     const uint64_t levels = volume.pages ? volume.pages->depth : 0;
     const uint64_t to_leap = 1 + levels;
     const uint64_t to_search = to_leap + 1 + gpu::SEARCH_AHEAD * levels;  // each but the last advances by as many steps
@@ -189,8 +189,8 @@ KernelVariant kernel_of(const Choice& choice, const RaycastInput& input)
     return kernel;
 }
 
-/// Hints at likely next actions: painting, an iso-surface or an opaque surface entering the picture, or a click.
-/// `kept_of_shell`: the KEPT constant of pictures with an iso-surface.
+/// Hints at the kernels likely to be needed next: for painting, for an iso-surface or an opaque surface that enters the
+/// picture, or for a click. `kept_of_shell`: the KEPT constant of pictures with an iso-surface.
 void expect_next(FrameGraph& graph, const Choice& now, const RaycastInput& input, uint32_t kept_of_shell)
 {
     const auto expect = [&](const auto& change) {

@@ -35,7 +35,7 @@ struct RaycastInput {
     gpu::RaycastParams params;
     Resource table;  ///< rgba32f image in the layout of shaders/raycast.h
     std::optional<MaskBinding> mask;
-    Resource groups;  ///< with a mask: rgba32f, 256 x 2; rows: linear RGB and opacity of a full step, its optical depth
+    Resource groups;  ///< 256 x 2 rgba32f, with a mask: row 0 linear RGB, full step's opacity; row 1 its optical depth
     std::optional<RaycastOcclusion> occlusion;
     std::optional<Resource> surfaces;  ///< surfaces for the same pixels (engine/passes/surfaces.h)
     bool shaded = true;

@@ -17,8 +17,8 @@ struct SurfaceList {
 };
 
 /// Maximum number of nodes that one dispatch may visit: some devices abort a thread's loops after 65535 iterations in
-/// total. Each node costs one iteration. If lanes run in lockstep, it also costs one per surface of any leaf that a
-/// lane visits; lists add a few hundred. A lower limit would cost more dispatches, and a dispatch that finds nothing
+/// total. Each node costs one iteration; if lanes run in lockstep, so does each surface of any leaf that a lane visits.
+/// Lists add a few hundred iterations. A lower limit would cost more dispatches, and a dispatch that finds nothing
 /// still sets up every ray.
 inline constexpr uint32_t NODES_IN_DISPATCH = 60'000 / (2 + gpu::SURFACES_IN_LEAF);
 

@@ -55,8 +55,8 @@ inline std::vector<std::pair<std::string, uint32_t>> constants_of_codes(const Vo
     return constants;
 }
 
-/// Binds the atlas to a kernel that supports stacked images. Bindings without an image of their own get the first
-/// image, and are never read.
+/// Binds the atlas to a kernel that supports stacked images. Bindings for which there is no further image get the first
+/// image; kernels never read it through them.
 inline void bind_stacked_atlas(Pass& pass, const VolumeBinding& volume)
 {
     pass.read("atlas", volume.atlas);

@@ -14,8 +14,8 @@
 //   colours    [saturation]
 //   anaglyph   [surfaces to colours once per eye, then anaglyph]
 //
-// Not part of a picture: next_preparation and next_refinement (the leap grid's stages, one at a time), next_occlusion
-// (occlusion_cells, occlusion_gather, occlusion_bake). One thread, the one that owns the device.
+// Passes that are not part of a picture come from next_preparation and next_refinement (stages of the leap grid, one at
+// a time) and next_occlusion (occlusion_cells, occlusion_gather, occlusion_bake). Only on the device's thread.
 
 #include <optional>
 #include <string>

@@ -139,7 +139,7 @@ void PictureJob::begin_band()
     band_begin_ = band_end_;
     band_end_ = std::min(band_begin_ + band_rows_, size_.y);
     const size_t values = size_t(size_.x) * (band_end_ - band_begin_) * 4;
-    // While the next band is drawn, the receiver of the rows may still hold one; a part's pixels are copied once more.
+    // While a band is drawn, the receiver may still hold the previous band; a part's pixels are copied once more.
     constexpr uint64_t BANDS = 2;
     renderer_.note_picture_bytes(BANDS * values * sizeof(float) +
                                  PIXEL_BYTES * options_.part_pixels * std::min(options_.part_pixels, band_rows_));
@@ -149,7 +149,7 @@ void PictureJob::begin_band()
     if (parts_.empty()) end_band();  // when no pane covers these rows
 }
 
-/// Lists the parts of the current pane within the band; if there are none, the parts of the next pane with any.
+/// Lists the parts of the current pane within the band; if it has none there, those of the next pane that has any.
 void PictureJob::begin_parts()
 {
     for (; pane_ < panes_.size(); ++pane_) {
@@ -167,7 +167,7 @@ void PictureJob::begin_parts()
     }
 }
 
-/// Returns the largest side such that memory holds two parts: parts at borders have images of their own.
+/// Returns the largest side with which memory holds two parts, because parts at borders have images of their own.
 uint32_t PictureJob::part_side()
 {
     gpu::Memory& memory = renderer_.memory();
@@ -209,7 +209,7 @@ bool PictureJob::load(const Progress& progress, bool waits)
     return waits || scene().volume().state() != DeviceVolume::State::loading;
 }
 
-/// Loads the bricks from which light arrives, as far as there are slots.
+/// Loads the bricks from which light arrives, as many as there are slots for.
 bool PictureJob::load_around(const Progress& progress, bool waits)
 {
     if (pane().shot.is_slice || !scene().has_occlusion(look_)) return true;
@@ -274,7 +274,7 @@ void PictureJob::step(bool waits)
     if (parts_.empty()) end_band();
 }
 
-/// Called if memory is short. Frees ambient light, or else splits the part. Returns false if neither is possible.
+/// Called if memory is short: frees ambient light, or else splits the part. Returns false if it can do neither.
 bool PictureJob::has_given_way(const PicturePart& part, const std::string& why)
 {
     if (scene().give_way(why)) {
@@ -323,8 +323,8 @@ std::vector<gpu::PassReport> PictureJob::draw(const PicturePart& part, WaitingRa
     return take(begin(part, waiting));
 }
 
-/// Completes a part with one drawing; copies the previous part once the device has received this part. Waits for the
-/// first part, because its time determines how the others are divided.
+/// Draws a part that is complete after one drawing, and copies the previous part once the device has received this one.
+/// Waits for the first part to finish, because its time determines how the others are divided.
 void PictureJob::draw_ahead(const PicturePart& part)
 {
     look_at(scene(), look_, pane().shot, part);

@@ -93,7 +93,7 @@ private:
         int round = 0;          ///< each round renews the part's light, draws the part, and loads its bricks
         bool is_drawn = false;  ///< whether the part is drawn in this round
         std::vector<gpu::PassReport> passes{};
-        /// The state of rays that wait for bricks, or also for their light.
+        /// The state of rays that wait for bricks or, if `waits_for_light`, also for the light of bricks.
         std::optional<WaitingRays> rays{};
         bool waits_for_light = false;
     };

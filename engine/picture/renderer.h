@@ -69,9 +69,9 @@ public:
     /// if both scenes fit in memory together; otherwise the previous scene was destroyed first, and there is none.
     void load(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
               const RenderSettings& settings = {}, bool with_occlusion = false, const Progress& progress = {});
-    /// Starts loading in time slices, for a loop that keeps running: a second scene, if fits_beside() returns true, or
-    /// the only scene after take_scene(). When load_on() of the scene is done, show() it. `document`: the annotation
-    /// that it will show. The source should already have its levels (with_levels), or they are made here.
+    /// Starts loading a scene in time slices, for a loop that keeps running: a second scene if fits_beside() returns
+    /// true, or the only one after take_scene(). Once its load_on() is done, call show(). `document`: the annotation
+    /// that the scene will show. The source should already have its levels (with_levels), or they are made here.
     std::unique_ptr<Scene> begin_loading(std::shared_ptr<const VolumeSource> source, const VolumeStatistics& statistics,
                                          const RenderSettings& settings, bool with_occlusion, const Document& document);
     bool fits_beside(const VolumeSource& source, const RenderSettings& settings, bool with_occlusion);

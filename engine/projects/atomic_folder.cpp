@@ -194,7 +194,7 @@ void AtomicFolder::exchange(const fs::path& with)
     sync_folder(target_);
 }
 
-/// Replacing the entry file decides: readers never read content that the entry file does not name.
+/// Replaces the entry file, which makes the new content valid: readers never read content that it does not name.
 void AtomicFolder::enter(const std::string& entry)
 {
     const std::vector<std::byte> content = read_file(path_ / entry, MAX_ENTRY_BYTES);

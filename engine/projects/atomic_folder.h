@@ -9,8 +9,8 @@
 // The hidden folder `.NAME.shvr-part` has no content of its own that readers of Zarr would list. It is locked while a
 // process works on it. If a process is killed, the next one clears the remains.
 //
-// Some network file systems cannot exchange names. There an existing folder keeps its place: new content goes into a
-// folder inside it, under a free name (`inner`), and becomes valid at the moment the entry file, which names that
+// Some network file systems cannot exchange names. There, an existing folder keeps its place: new content goes into a
+// folder inside it with a free name (`inner`). The content becomes valid when the entry file, which names the inner
 // folder, is replaced. Old content to be kept is copied first.
 //
 // Symbolic links are followed, not replaced. Every failure is a sentence with the target's path and the system's text.

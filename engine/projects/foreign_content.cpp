@@ -78,7 +78,7 @@ bool is_version_folder(const std::string& name)
     return name.starts_with("v") && is_number(std::string_view(name).substr(1));
 }
 
-/// Whether a process that died while writing has left the file (engine/base/atomic_writer.h).
+/// Whether the file is a temporary one, left by a process that died while writing (engine/base/atomic_writer.h).
 bool is_temporary(const std::string& name)
 {
     return name.starts_with(".shvr-");
@@ -121,7 +121,7 @@ public:
         if (expected) at_values(attributes, merged_attributes(SortedJson::parse(*expected), is_3_), "", name);
     }
 
-    /// `inner`: "" or the folder of a version, which has its own image's levels.
+    /// `inner`: "" or the folder of a version, which contains the levels of that version.
     void at_folder(const fs::path& inner)
     {
         const fs::path folder = image_ / inner;
@@ -196,7 +196,7 @@ private:
         }
     }
 
-    /// Ignores what changes with every save: the journal's position, and the levels' folder without name exchange.
+    /// Ignores values that every save changes: the journal's position and, without name exchange, the levels' folder.
     void at_values(const SortedJson& old, const SortedJson& now, const std::string& key, const std::string& file)
     {
         if (key == "shvr") return;

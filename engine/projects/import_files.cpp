@@ -103,7 +103,7 @@ std::string text_of(const Json& document, int indent)
     return document.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-/// Signatures of the file and those next to it with its stem (headers refer to other files), or of a folder's files.
+/// Signatures of the file and of files next to it with the same stem (headers refer to them), or of a folder's files.
 Json signatures_of(const fs::path& origin)
 {
     std::error_code ignored;

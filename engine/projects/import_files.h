@@ -39,8 +39,8 @@ OmeZarrVersion label_image_version(const std::filesystem::path& target, std::opt
 /// Adds the label image to the list in IMAGE/labels; creates that group if it is missing.
 void list_label_image(const std::filesystem::path& target, OmeZarrVersion version);
 
-/// Returns a text that is equal for imports with equal results: covers the source (including its files' names, sizes
-/// and times) and the processing applied to it. `way`: how the pass visits the voxels, on which the state depends.
+/// Returns a text that is equal for imports with equal results. It covers the source (with its files' names, sizes and
+/// times), the processing applied to it, and `way`: how the pass visits the voxels, on which the state depends.
 std::string import_identity(const VolumeSource& source, const std::filesystem::path& origin,
                             const ImportOptions& options, const char* way);
 

@@ -13,7 +13,7 @@
 namespace shvr {
 namespace {
 
-/// Memory for voxels as read from the source, and (PLANE_BYTES) for slices waiting for the blur along z.
+/// Memory for voxels as read from the source (READ_BYTES), and for slices waiting to be blurred along z (PLANE_BYTES).
 constexpr int64_t READ_BYTES = int64_t{32} << 20;
 constexpr int64_t PLANE_BYTES = int64_t{96} << 20;
 constexpr int64_t TASK_ROWS = 8;

@@ -47,7 +47,7 @@ Kept kept_of(const VolumeInfo& info)
     return kept;
 }
 
-/// Memory for measuring, at the end and in pieces, types with too many values to count; also for hashing slices.
+/// Memory to measure types with too many values to count, in pieces at the end, and to hash slices.
 double measuring_bytes(const VolumeInfo& info)
 {
     const double all = voxels_in(info.size) * double(bytes_of(info.type));

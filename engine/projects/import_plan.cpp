@@ -17,8 +17,8 @@
 namespace shvr {
 namespace {
 
-/// If a larger share of all chunks is stored, visiting all voxels takes no longer. The kind of the hash changes at the
-/// same share (content_hash.h).
+/// If more than this share of all chunks is stored, visiting all voxels takes no longer. The kind of the hash changes
+/// at the same share (content_hash.h).
 constexpr double MAX_SHARE_STORED = 0.125;
 /// Memory per block while chunks are listed.
 constexpr int64_t LISTED_BYTES = 256;

@@ -19,7 +19,7 @@ struct ImportPlan {
 /// only preparation. Fails if the import would take more memory than its budget, or make tables that are too large.
 ImportPlan plan_import(const VolumeSource& source, const std::filesystem::path& project, const ImportOptions& options);
 
-/// Fails if a pass over all voxels would make too large tables of brick ranges or chunk checksums.
+/// Fails if a pass over all voxels would make tables of brick ranges or chunk checksums that are too large.
 void check_all_tables(const std::filesystem::path& project, const VolumeInfo& info);
 
 int import_threads(int wanted);

@@ -10,8 +10,8 @@
 // are float for types of 8 and 16 bits and double for all others; integers are rounded to nearest, ties to even. NaN
 // and infinite voxels stay as they are and do not spread: their neighbours are weighted means of finite voxels only.
 //
-// A voxel of a volume downscaled by N is the mean of N^3 voxels; at the volume's end, of those that exist, so the size
-// is rounded up. Rounding and NaN are handled as in the blur.
+// A voxel of a volume downscaled by N is the mean of N^3 voxels. The size is rounded up: at the volume's end, a voxel
+// is the mean of those of the N^3 voxels that exist. Rounding and NaN are handled as in the blur.
 
 #include <memory>
 #include <optional>

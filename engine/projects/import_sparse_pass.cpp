@@ -1,5 +1,5 @@
-// Visits only the chunks in which the source stores something, so that chunks below the same chunk of a coarser level
-// are adjacent. All workers make level 0; coarser levels follow in order, each with one unfinished chunk in memory.
+// Visits only chunks in which the source stores something; chunks below one chunk of a coarser level are visited in a
+// row. All workers make level 0; coarser levels follow in order, each with one unfinished chunk in memory.
 
 #include <algorithm>
 #include <array>

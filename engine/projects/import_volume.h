@@ -1,10 +1,10 @@
 #pragma once
 // Makes a project from a volume: an OME-Zarr image, 0.4 or 0.5, with all its levels, and the files listed in project.h.
 //
-// The source is read once, slab by slab; memory depends on the size of a slice, not on their number. Chunks have 64^3
-// voxels, are compressed with blosc (zstd, bytes shuffled), and are not written if all their voxels are 0. The project
-// appears only when complete: until then it is PROJECT.part, with a state from which the same call resumes if it was
-// stopped, killed, or the disk was full. Equal input gives equal bytes, whether in one run or in several.
+// The source is read once, slab by slab; memory depends on the size of a slice, not on the number of slices. Chunks
+// have 64^3 voxels, are compressed with blosc (zstd, bytes shuffled), and are not written if all their voxels are 0.
+// The project appears only when complete: until then it is PROJECT.part, with a state from which the same call resumes
+// after it was stopped or killed, or after the disk was full. Equal input gives equal bytes, in one run or several.
 
 #include <array>
 #include <atomic>
@@ -61,7 +61,7 @@ struct LabelImage {
 
 struct ImportOptions {
     PreparationOptions preparation{};
-    Halving halving = Halving::mean;  ///< how coarser levels are made; keeps labels whole numbers
+    Halving halving = Halving::mean;  ///< how coarser levels are made; Halving::label keeps labels whole numbers
     std::string choice{};  ///< how the file was read: channel, frame, layout; only compared with an earlier run
     bool overwrites = false;
     std::optional<LabelImage> label_image{};  ///< with Halving::label; see export_label_image

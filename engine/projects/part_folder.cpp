@@ -63,7 +63,7 @@ bool is_zarr(const fs::path& folder)
     return std::ranges::any_of(METADATA, [&](const char* name) { return is_there(folder / name); });
 }
 
-/// Whether a project or another Zarr folder may directly contain it: metadata, arrays, groups, chunks, our shvr.
+/// Whether the path may lie directly in a project or another Zarr folder: metadata, arrays, groups, chunks, or shvr.
 bool belongs_to_zarr(const fs::path& path)
 {
     const std::string name = path.filename().string();
@@ -72,7 +72,7 @@ bool belongs_to_zarr(const fs::path& path)
            name == "OME" || is_zarr(path);
 }
 
-/// Whether a process that died while writing has left the file (engine/base/atomic_writer.h).
+/// Whether the file is a temporary one, left by a process that died while writing (engine/base/atomic_writer.h).
 bool is_temporary(const fs::path& path)
 {
     return path.filename().string().starts_with(".shvr-");
@@ -111,7 +111,7 @@ PartFolder::PartFolder(const fs::path& target, bool overwrites)
     refuse_target();
     if (!is_there(part_)) make_folder(part_);
     lock_.emplace(locked(part_));
-    // A folder that merely has this name must not be cleared. Our folder contains the state, or little else yet.
+    // A folder that merely has this name must not be cleared. An import's folder has a state, or hardly any content.
     if (is_there(state())) return;
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(part_, error)) {

@@ -30,7 +30,7 @@ public:
     void clear() const;
     /// Deletes temporary files left by a process that died while writing.
     void clear_temporary() const;
-    /// Returns once everything written so far is on the disk (and any other pending writes to this file system).
+    /// Returns once everything written so far, and every other pending write to this file system, is on the disk.
     void sync() const;
     /// Moves the folder to the target's place, replacing an existing folder, and deletes the state. After this call,
     /// the folder is at the target's path.

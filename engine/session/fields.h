@@ -1,7 +1,7 @@
 #pragma once
-// Keys of JSON objects, each defined once: its name, the value it stands for, its range, unit and meaning. A function
-// `fields(Fields&, Value&)` visits keys in the order in which they are written; reading, writing and the tables of
-// documentation are visitors:
+// Keys of JSON objects. Each key is defined once, with its name, the value it stands for, its range, unit and meaning.
+// A function `fields(Fields&, Value&)` visits keys in the order in which they are written; reading, writing and the
+// tables of documentation are visitors:
 //
 //   void fields(Fields& f, Light& light)
 //   {
@@ -110,7 +110,7 @@ public:
     virtual void entries(std::string_view name, std::vector<std::string> keys, std::string_view placeholder,
                          const VisitEntry& visit, const About& about) = 0;
 
-    /// Whether a key is present: in the file, when reading; if `is_set`, when writing.
+    /// Whether a key is present. When reading: whether the file has the key; when writing: `is_set`.
     virtual bool has(std::string_view name, bool is_set) = 0;
     /// Mentions a key that is valid in this object, but is not visited this time.
     virtual void mention(std::string_view name, const About& about) = 0;

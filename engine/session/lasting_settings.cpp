@@ -51,7 +51,7 @@ SettingValues without_overridden(SettingValues values, const std::vector<std::st
         const bool is_of_picture = std::ranges::any_of(
             PICTURE_KEYS, [&](std::string_view each) { return key == "render." + std::string(each); });
         if (is_of_picture || key == "render") values.erase("picture");
-        if (!is_of_picture) values.erase(name == "camera" ? "cameras" : name);  // has both (kept_settings.h)
+        if (!is_of_picture) values.erase(name == "camera" ? "cameras" : name);  // "cameras" covers both keys
     }
     return values;
 }

@@ -42,8 +42,8 @@ JsonDocument document_for_volume(const fs::path& path)
     return document;
 }
 
-/// Makes a project's session as at the import, if its session file is missing: finds the annotation, and sets looks to
-/// the program's defaults.
+/// Recreates the session of a project whose session file is missing, as an import makes it: finds the annotation, and
+/// sets looks to the program's defaults.
 JsonDocument document_for_project(const fs::path& session_file, std::vector<std::string>& losses)
 {
     losses.push_back(sentence(session_file.string(),
@@ -127,7 +127,7 @@ void expect_volume_of_picture(const fs::path& picture, const Session& session)
          "with --set volume.path=...");
 }
 
-/// Reads each setting that a later one replaces, with the settings before it; otherwise it would not be checked.
+/// Checks settings that later ones replace, which would otherwise never be read: reads each with those before it.
 void check_replaced_settings(const JsonDocument& document, const std::vector<std::string>& settings,
                              const fs::path& folder)
 {

@@ -163,7 +163,7 @@ struct Session {
     ProbeSettings probe;
     std::vector<SurfaceLook> surfaces;  ///< opaque balls and rods; at most MAX_SESSION_SURFACES in a file
     std::filesystem::path mask_path;    ///< absolute path of the mask, which need not exist yet; empty: none
-    /// Path of the trace, in a form that `load_trace` reads; default: next to the mask. The file need not exist yet.
+    /// Path of the trace, in a format that `load_trace` reads; default: next to the mask. The file need not exist yet.
     std::filesystem::path trace_path;
     std::filesystem::path density_path;  ///< path of the density offsets, likewise
     /// The journal next to the session file (engine/annotation/work/work.h); empty if a bare volume was opened.
@@ -177,7 +177,7 @@ struct Session {
 };
 
 /// `path`: a session file (.json), a project folder (its shvr/session.json is opened), or a volume file. For a volume
-/// file a session is made, with its path and a transfer function from its statistics, as `warnings` reports.
+/// file, makes a session with its path and a transfer function from the volume's statistics, and says so in `warnings`.
 /// `settings`: "key=value" with dotted keys ("render.step_voxels=0.25"), applied to the JSON before it is read.
 /// Relative paths in the file are relative to the file. A session file without a transfer function gets the same
 /// automatic function as a volume file. Session files have at most 16 MiB. A picture made by this program contains the
@@ -229,8 +229,8 @@ struct TissueRange {
 };
 TissueRange tissue_range(const VolumeStatistics& statistics);
 
-/// A ramp from grey to warm that excludes the darker of two classes of voxels (split by Otsu's threshold, but at least
-/// half of all voxels), so that the air around a scanned object is invisible. Equal statistics give equal functions.
+/// A ramp from grey to warm that leaves out the darker of two classes of voxels, at least half of all voxels
+/// (tissue_range), so that the air around a scanned object is invisible. Equal statistics give equal functions.
 TransferFunction automatic_transfer_function(const VolumeStatistics& statistics);
 
 /// The brush's default threshold: half-way between a transfer function's lowest point and its opacity-weighted mean
@@ -240,8 +240,8 @@ double automatic_threshold(const TransferFunction& function, const VolumeStatist
 /// The default radius of new nodes in voxels along x: 1/500 of the volume's diagonal, but at least a voxel.
 double automatic_node_radius(const VolumeInfo& info);
 
-/// Default intensities drawn black and white in slices. Between them lie all but the darkest 0.5 % and the brightest
-/// 0.35 % of the voxels, to the precision of a histogram bin. Without a histogram: the whole range.
+/// The default intensities that slices draw in black and in white. All but the darkest 0.5 % and the brightest 0.35 %
+/// of the voxels lie between them, to the precision of a histogram bin. Without a histogram: the whole range.
 ValueRange automatic_contrast(const VolumeStatistics& statistics);
 
 /// Returns the camera of that name: a camera of the session, a side of `camera_looking`, or a JSON object. For an empty

@@ -36,7 +36,7 @@ void fields(Fields& f, OcclusionPoint& point);
 void fields(Fields& f, OcclusionSettings& occlusion);
 void fields(Fields& f, DistanceBlend& blend);
 void fields(Fields& f, RenderSettings& render);
-/// Fields of `render`: settings of how the picture is computed, and settings of its look that do not depend on those.
+/// Fields of `render`: how the picture is computed, and settings of its look that are independent of this.
 void rendering_fields(Fields& f, RenderSettings& render);
 void picture_fields(Fields& f, RenderSettings& render);
 inline constexpr std::string_view PICTURE_KEYS[]{"background", "smooth_borders", "saturation"};
@@ -63,7 +63,7 @@ std::vector<SessionKey> session_keys();
 std::vector<SessionKey> keys_of(const Fields::Visit& visit);
 
 inline const NumberRange SHARE{0.0, 1.0};
-/// Wide enough for any volume in any unit; squares of coordinates do not overflow.
+/// The range of coordinates: wide enough for any volume in any unit; squares of coordinates do not overflow.
 inline const NumberRange COORDINATE{-1e15, 1e15};
 /// The range of voxel values.
 inline const NumberRange INTENSITY{-3.4e38, 3.4e38};

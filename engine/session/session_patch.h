@@ -14,7 +14,7 @@ namespace shvr {
 std::string patch_between(const Session& before, const Session& after);
 /// Returns the patch for a setting in the form of --set, "light.ambient=0.4".
 std::string patch_of(const std::string& setting);
-/// Applies a merge patch to any JSON object. Fails if one of them is no object; `origin` names the patch in messages.
+/// Applies a merge patch to any JSON object. Fails if either is not an object; `origin` names the patch in messages.
 std::string merged(std::string_view object, std::string_view patch, const std::string& origin);
 /// Returns the session with the patch applied. Fails on unknown keys and on values out of range; the message has the
 /// key, the value and the expected values. Leaves a transfer preset for `transfer_function_of`.

@@ -17,7 +17,7 @@ std::string in_code(std::string_view text)
 
 std::string range_text(double lower, double upper)
 {
-    // prints 0.0001, not 1e-04, the shortest form
+    // Prints 0.0001 instead of the shortest form, 1e-04.
     const auto digits = [](double value) { return value == std::floor(value) ? digits_of(value) : sentence(value); };
     return digits(lower) + " ... " + digits(upper);
 }

@@ -131,7 +131,7 @@ std::string laid_out(const OrderedJson& value, const std::string& indent, bool m
     return value.is_array() ? "[" + text + "]" : "{" + text + "}";
 }
 
-/// Returns a value in human-readable form. States only the number of points and similar items.
+/// Returns a value in human-readable form. For points and similar items, states only their number.
 std::string in_words(const OrderedJson& value)
 {
     if (value.is_number_float()) return sentence(value.get<double>());

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Maps each group of a file to the group as which it is read.
+/// Maps each group in a file to the group that its voxels count as.
 struct GroupMap : std::array<uint8_t, 256> {
     GroupMap() { std::iota(begin(), end(), uint8_t{0}); }
 };

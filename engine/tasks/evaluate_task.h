@@ -1,5 +1,5 @@
 #pragma once
-// Measures how well an annotation agrees with the truth, for `shvr evaluate`. Any thread.
+// Measures how well an annotation agrees with the ground truth, for `shvr evaluate`. Any thread.
 
 #include "engine/annotation/measures/trace_score.h"
 #include "engine/annotation/trace/trace_space.h"
@@ -11,7 +11,7 @@ struct EvaluateTask {
     static constexpr const char* TITLE = "Compare with a reference";
 
     std::filesystem::path truth_mask, mask, truth_trace, trace;
-    std::filesystem::path volume;           ///< gives all inputs size, spacing and unit, if no file states them
+    std::filesystem::path volume;           ///< gives all inputs their size, spacing and unit, if no file states these
     std::vector<std::string> truth_groups;  ///< "FROM=TO"
     std::optional<double> slack;            ///< slack in the unit of the volume; null: the longest side of a voxel
     bool allows_incomplete = false;         ///< counts voxels of masks that cannot be read as unpainted

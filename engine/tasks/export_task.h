@@ -3,7 +3,7 @@
 //
 // The annotation is passed by reference. To export in the background while the user goes on painting, take an
 // `AnnotationSnapshot` on the main thread and export it on another. A snapshot shares the bricks of mask and offsets,
-// which are immutable (sparse_bricks.h), so it costs the tables of bricks and a copy of the trace (MEASURED.md).
+// which are immutable (sparse_bricks.h), and copies only the tables of bricks and the trace (MEASURED.md).
 
 #include <functional>
 #include <map>

@@ -36,7 +36,7 @@ struct ImportResult {
 
 /// Refuses options that contradict each other; reads nothing.
 void check(const ImportTask& task);
-/// A project that is replaced stays until the new project is complete. Fails if another process is writing it.
+/// Keeps a project that is replaced until the new one is complete. Fails if another process is writing that project.
 ImportResult run(const ImportTask& task, ProgressReporter& reporter);
 
 }  // namespace shvr

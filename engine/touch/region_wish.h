@@ -1,6 +1,6 @@
 #pragma once
 // The region around a moving probe in which relevance should be known. The window's mirror and simulations
-// (haptics/replay) request regions by the same rule, and neither folder includes the other.
+// (haptics/replay) request regions by the same rule; neither folder includes the other, so the rule is here.
 
 #include <algorithm>
 #include <cmath>

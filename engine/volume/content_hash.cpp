@@ -96,7 +96,7 @@ HashKind kind_for(const VolumeInfo& info, int64_t varied_chunks)
 
 namespace {
 
-/// Hashes slices in pieces of rows of one or more slices, so that a piece is small however long the rows are.
+/// Hashes slices in pieces: rows, or parts of rows, of one or more slices. So pieces stay small for rows of any length.
 void hash_slab(const VolumeSource& source, int64_t lower, int64_t upper, std::vector<SliceHash>& hashes)
 {
     const Size3 size = source.info().size;

@@ -6,7 +6,7 @@
 //   then XXH3-128 of those hashes in order, each in its canonical form.
 // - "xxh3-128-chunks:" and 32 hexadecimal digits, cheap where chunks are uniform: XXH3-128 of the size (x, y, z as
 //   int64), the number of the type, and runs of equal chunks of 64^3 voxels, x fastest. A run: its length, whether its
-//   voxels differ (both uint64), and 16 bytes: the one voxel and zeros, or XXH3-128 of the voxels inside the volume.
+//   voxels differ (both uint64), and 16 bytes: the single value and zeros, or XXH3-128 of the voxels inside the volume.
 
 #include <array>
 #include <memory>

@@ -54,7 +54,7 @@ void Gaps::add(const VoxelBox& block, const std::string& reason)
 {
     const std::scoped_lock lock(mutex_);
     if (voxels_.empty()) first_reason_ = reason;
-    // This number differs for all voxels of volumes of up to 2^20 voxels a side.
+    // This number is unique for each voxel of a volume of up to 2^20 voxels a side.
     const int64_t first = (block.lower.z << 40) + (block.lower.y << 20) + block.lower.x;
     if (voxels_.try_emplace(first, count_of(block)).second) sum_ += count_of(block);
 }

@@ -39,8 +39,8 @@ private:
 };
 
 /// Reads a box of level 0 into `voxels`, and passes on every readable part: the whole box, or else blocks of the file,
-/// or slices if it has no blocks. Adds unreadable parts to `gaps`; without `gaps`, throws the first failure. Always
-/// throws `Stopped`.
+/// or slices if the file has no blocks. Adds unreadable parts to `gaps`; without `gaps`, throws the first failure.
+/// Always throws `Stopped`.
 using TakePart = std::function<void(const VoxelBox& part, std::span<const std::byte> voxels)>;
 void read_parts(const VolumeSource& source, const VoxelBox& box, std::span<std::byte> voxels, Gaps* gaps,
                 const TakePart& take);

@@ -17,8 +17,8 @@ namespace shvr {
 
 using OffsetBrick = std::array<uint32_t, size_t{gpu::BRICK_SIZE} * gpu::BRICK_SIZE * gpu::BRICK_SIZE>;  ///< x fastest
 
-/// The largest magnitude of an offset. It suffices to turn any value of the type into any other, except for 32-bit
-/// types (half of the type's span) and float64 (the largest float).
+/// The largest magnitude of an offset: enough to turn any value of the type into any other. Exceptions: 32-bit types,
+/// where it is half of the type's span, and float64, where it is the largest float.
 double offset_limit(VoxelType type);
 
 inline double offset_of(VoxelType type, uint32_t bits)

@@ -37,7 +37,7 @@ T raised(T voxel, OffsetOf<T> offset)
     }
 }
 
-/// Returns a finite value of the type; for integers, the result is a bound that need not be a value of the type.
+/// Returns value + offset, clamped to the range of `type`; for integer types, the result may be fractional (a bound).
 double raised_value(VoxelType type, double value, double offset)
 {
     return with_voxel_type(type, [&]<class T>(T) {
@@ -128,7 +128,7 @@ const OffsetSource::Entry* OffsetSource::find(const Entries& changed, const Bric
     return found == entries_.end() ? nullptr : &found->second;
 }
 
-/// Recomputes the parent's offsets from its child bricks, of which there are at most eight.
+/// Recomputes the parent's offsets from those of its at most eight child bricks on the next finer level.
 OffsetSource::Entry OffsetSource::parent(const Entries& changed, const BrickKey& key) const
 {
     auto offsets = std::make_shared<OffsetBrick>(OffsetBrick{});

@@ -27,7 +27,7 @@ public:
         glm::ivec3 brick{0};
         std::shared_ptr<const OffsetBrick> offsets;
     };
-    /// Replaces the offsets of these bricks and updates coarser levels; each costs an eighth of the next finer level.
+    /// Replaces the offsets of these bricks and updates coarser levels; each costs an eighth of the one below it.
     void set(std::span<const Brick> bricks);
     /// Whether no voxel has an offset.
     bool empty() const { return !any_.load(std::memory_order_acquire); }

@@ -9,12 +9,12 @@
 namespace shvr {
 namespace {
 
-/// With fewer voxels than this (a cube of three), no value is common enough to call the others outliers.
+/// In a volume of fewer voxels than this (a cube of three), no value is common enough to make others outliers.
 constexpr int64_t MIN_VOXELS = 27;
 
-/// Outliers at one end are at most a fraction of all voxels, or at most `few`, and lie beyond a gap of `gap` times the
-/// range of the other values. Rare bright structures in a scan, such as metal or one vessel, have more voxels than
-/// this, or blend into the rest through partial-volume voxels, so they leave no gap.
+/// Outliers at one end number at most a fraction of all voxels, or at most `few`, and lie beyond a gap of `gap` times
+/// the range of the other values. Rare bright structures in a scan, such as metal or one vessel, have more voxels than
+/// that, or blend into the rest through partial-volume voxels and so leave no gap.
 struct Rule {
     double share;
     int64_t few;
@@ -27,21 +27,21 @@ struct Rule {
         return std::clamp(int64_t(share * double(voxels)), some, MAX_OUTLIERS);
     }
 };
-/// Rule for fill values and broken voxels: with them, the other values would share fewer than 66 of the 65536 codes.
+/// Rule for fill values and broken voxels: if kept, they would leave the others fewer than 66 of the 65536 codes.
 constexpr Rule FAR{1e-4, 8, 1000.0};
 /// Hot pixels.
 constexpr Rule NEAR{1e-5, 1, 4.0};
 
-/// Hot and dead pixels at any distance are equally few, but are recognised by the spacing of the values next to them.
-/// In the tail of a distribution the gap between the k-th and the next value is about unit / k; a first gap of ten
-/// units occurs by chance in one of 20,000 scans. The gap must also exceed the distances between the outermost values,
-/// or labels, and be large enough to matter.
+/// Hot and dead pixels are few, however far they lie from the rest, and are recognised by the spacing of the values
+/// next to them. In the tail of a distribution, the gap between the k-th and the next value is about unit / k; a first
+/// gap of ten units occurs by chance in one of 20,000 scans. The gap must also be large enough to matter, and exceed
+/// the distances between the outermost values, which may be labels.
 constexpr int64_t TAIL = 32;  ///< values that tell the unit
 constexpr int64_t MIN_VOXELS_OF_TAIL = 4 * TAIL;
 constexpr double MIN_UNITS = 10.0, MIN_STEPS = 2.0, MIN_SHARE = 0.01;
 constexpr int STEPS = 8;
 
-/// With fewer distinct values than this, the values are labels or a few materials, and none of them is an outlier.
+/// If there are fewer distinct values than this, they are labels or a few materials, and none of them is an outlier.
 constexpr size_t MIN_VALUES_AT_END = 12;
 
 /// Fill values lie behind a gap of this many times the range of all other values. For the smallest and largest values
@@ -54,13 +54,13 @@ constexpr size_t MAX_FILL_VALUES = 3;  ///< at one end
 constexpr int64_t MIN_VOXELS_OF_FILL = 2;
 constexpr double FLOAT_EXTREME = 1e30;  ///< floats this large are markers
 
-/// Returns half of a - b, which is finite for all finite a and b.
+/// Returns half of a - b; the half is finite for all finite a and b, even where a - b is infinite.
 double half_distance(double a, double b)
 {
     return 0.5 * a - 0.5 * b;
 }
 
-/// Returns whether the value is the smallest or largest of a type so wide that no scanner reaches it by chance.
+/// Returns whether the value is the smallest or largest of the type; false for types whose ends a scanner may reach.
 bool is_extreme(VoxelType type, double value)
 {
     switch (type) {
@@ -78,12 +78,12 @@ bool is_extreme(VoxelType type, double value)
 
 }  // namespace
 
-/// One end of the values. Values of the lower end are negated, so that both ends descend.
+/// One end of the values. At the lower end, values are negated, so that both ends are in descending order.
 class OutlierFinder::End {
 public:
     explicit End(const Largest& values) : values_(values.sorted()) {}
 
-    /// Returns the value of the voxel at that index, counted from the outermost voxel that is not excluded.
+    /// Returns the value of voxel number `place`, counted inwards from the outermost voxel that is not excluded.
     double at(int64_t place) const
     {
         size_t i = first_;
@@ -108,7 +108,7 @@ public:
         return first_ + k < values_.size() ? values_[first_ + k].value : -std::numeric_limits<double>::infinity();
     }
 
-    /// Walks outwards, and excludes everything beyond the first gap.
+    /// Walks from the inside outwards, and excludes everything beyond the first gap that satisfies the rule.
     void exclude(const Rule& rule, int64_t limit, double other_end)
     {
         exclude_beyond(limit, [&](size_t last, int64_t) {
@@ -129,7 +129,7 @@ public:
         });
     }
 
-    /// Excludes the outermost values (at most MAX_FILL_VALUES) if `are_fill`(value, gap in units of the range) for all.
+    /// Excludes up to MAX_FILL_VALUES outermost values if all satisfy `are_fill`(value, gap in units of the range).
     template <class AreFill>
     bool exclude_fill(double other_end, const AreFill& are_fill)
     {
@@ -151,7 +151,7 @@ public:
     }
 
 private:
-    /// Excludes values up to the innermost one with `is_last(index, voxels up to it)`, at most `limit` voxels.
+    /// Excludes the innermost value with `is_last(index, voxels up to it)` and all outer ones; at most `limit` voxels.
     template <class IsLast>
     void exclude_beyond(int64_t limit, const IsLast& is_last)
     {
@@ -166,7 +166,7 @@ private:
         }
     }
 
-    /// Returns the largest distance between neighbours among the next distinct values.
+    /// Returns the largest distance between neighbours among the STEPS distinct values that start at index `from`.
     double largest_step(size_t from) const
     {
         double largest = 0.0;

@@ -1,5 +1,5 @@
 #pragma once
-// Finds the few values of a volume so far from all others that a range that includes them would show nothing else.
+// Finds the few values of a volume that lie far from all others: a range that included them would show nothing else.
 
 #include <cstdint>
 #include <limits>
@@ -10,7 +10,7 @@
 
 namespace shvr {
 
-/// Collects the largest and the smallest values, and finds among them
+/// Collects the largest and the smallest values, and finds two kinds of values among them:
 /// - fill values: single values, however frequent, at an end of the range, behind a gap that is wide for all others;
 /// - outliers: few values beyond a gap that is wide compared with the range of all others, or with the spacing of the
 ///   values next to the gap.
@@ -65,7 +65,7 @@ public:
         size_t kept_;
         double least_ = -std::numeric_limits<double>::infinity();  ///< smaller ones are dropped
         ValueCount most_{-std::numeric_limits<double>::infinity(), 0};
-        std::vector<ValueCount> others_;  ///< candidates: up to twice the number that is kept, in any order
+        std::vector<ValueCount> others_;  ///< up to twice as many candidates as are kept, in any order
     };
 
 private:

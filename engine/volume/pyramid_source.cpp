@@ -14,7 +14,7 @@ namespace shvr {
 
 namespace {
 
-/// A file's coarsest level may have at most this many bricks (512^3 voxels) before coarser levels are computed.
+/// Coarser levels are computed if a file's coarsest level has more bricks than this (512^3 voxels).
 constexpr int64_t MAX_COARSEST = 4096;
 
 /// A level with the memory layout of a file.
@@ -91,7 +91,7 @@ public:
     std::optional<ValueRange> brick_range(int level, const Size3& brick) const override
     {
         if (level < base_->levels()) return base_->brick_range(level, brick);
-        // Means lie within the range of their voxels, but only the source knows the range of those voxels.
+        // Means lie within the range of the voxels they average, but only the source knows that range.
         if (!sparse_ || !sparse_->is_gap(level, brick)) return std::nullopt;
         return sparse_->fills();
     }

@@ -1,7 +1,7 @@
 #pragma once
-// Keeps coarser levels in memory for a volume whose file has none, or none coarse enough to start with. They take a
-// seventh of the bytes of the file's coarsest level, or of its stored part (sparse_levels.h). The file's own levels are
-// still read from the file.
+// Keeps coarser levels in memory for a volume whose file has none, or none that is coarse enough to start with. The
+// computed levels take a seventh of the bytes of the file's coarsest level, or of the stored part of that level
+// (sparse_levels.h). The file's own levels are still read from the file.
 
 #include <memory>
 
@@ -9,11 +9,11 @@
 
 namespace shvr {
 
-/// Divisor of the host budget: the levels may use budget / 4; the rest is for bricks and transfers.
+/// Divisor of the host budget: levels may use budget / 4; the other three quarters are for bricks and transfers.
 inline constexpr uint64_t LEVELS_SHARE_OF_HOST = 4;
 
 /// Returns the source itself if it has coarse levels or is no larger than a brick. Reads the volume once. Fails before
-/// reading if the levels, plus two slices while they are made, need more than a quarter of `host_budget_bytes`.
+/// reading if the levels, and the two slices needed to make them, exceed a quarter of `host_budget_bytes`.
 std::shared_ptr<const VolumeSource> with_levels(std::shared_ptr<const VolumeSource> source, uint64_t host_budget_bytes,
                                                 const Progress& progress = {});
 /// Number of levels that with_levels() would provide, computed from sizes alone. Fails if with_levels() would fail.

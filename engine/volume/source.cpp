@@ -26,8 +26,8 @@ struct Measured {
     Gaps* gaps;
 };
 
-/// Calls `take(span<const T>, times)` for every box of the walk, or for its readable parts: each voxel of the span
-/// occurs `times` times in the volume.
+/// Calls `take(span<const T>, count)` for every box of the walk, or for its readable parts; `count` states how many
+/// times each voxel of the span occurs in the volume.
 template <class T, class Take>
 void for_each_slab(const Measured& measured, double lower, double upper, const Take& take)
 {
@@ -86,7 +86,7 @@ VolumeStatistics measure_integers(const Measured& measured)
 
 // ---- Types with too many values to count each -----------------------------------------------------------------------
 
-/// Calls `take(double, times)` for every finite voxel; returns the number of voxels that are not finite.
+/// Calls `take(value, count)` for all finite voxels (`count` voxels have `value`); returns the number of other voxels.
 template <class T, class Take>
 int64_t for_each_finite(const Measured& measured, double lower, double upper, const Take& take)
 {
@@ -230,7 +230,7 @@ double voxels_of_level(const VolumeSource& source, int level)
     return double(size.x) * double(size.y) * double(size.z);
 }
 
-/// Returns the stored blocks of a level of a large volume; null if over `most_voxels`, or if all of it is read anyway.
+/// Returns the stored blocks of a level; null if over `most_voxels`, or if the level is small enough to read whole.
 std::optional<StoredBlocks> stored_in(const VolumeSource& source, int level, int64_t most_voxels)
 {
     if (voxels_of_level(source, level) <= double(MAX_VOXELS_MEASURED)) return std::nullopt;
@@ -323,7 +323,7 @@ VolumeStatistics measure(const VolumeSource& source, const MeasureOptions& optio
 
 namespace {
 
-/// Returns whether outliers are clamped to the nearer end's code (window_for). Whole extremes imply integers.
+/// Returns whether outliers are clamped to the nearer end's code (window_for). Whole-number extremes imply integers.
 bool are_clamped(const VolumeStatistics& statistics)
 {
     const auto [lower, upper] = statistics.range();

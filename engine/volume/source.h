@@ -22,7 +22,7 @@ namespace shvr {
 /// than work on its stored blocks.
 struct StoredBlocks {
     Size3 block{1};                    ///< voxels of a block; block i covers [i * block, (i + 1) * block)
-    double fill = 0.0;                 ///< value of every voxel outside all blocks; may be infinite or NaN
+    double fill = 0.0;                 ///< value of all voxels outside the blocks; may be infinite or NaN
     std::vector<glm::ivec3> blocks{};  ///< listed once each, sorted by z, then y, then x
 };
 
@@ -31,11 +31,11 @@ struct StoredBlocks {
 struct OpenOptions {
     std::string channel{};  ///< "red", "green", "blue", "alpha", a channel's name in the file, or its number from 1
     std::string frame{};    ///< number of the time point, from 1, if there are several
-    int level = 0;          ///< level to open from a file with several, 0 the finest; it becomes level 0 (coarser.h)
+    int level = 0;          ///< level to open if the file has several; 0: the finest. It becomes level 0 (coarser.h)
     /// Replaces the spacing that the file states, or provides a missing one (engine/formats/restated.h).
     std::optional<glm::dvec3> spacing{};
     std::string unit{};  ///< empty: the file's
-    /// Value of voxels without data; infinite: no value; null: found by its gap (outliers.h).
+    /// Value of voxels without data; infinite: there is none; null: it is found by its gap (outliers.h).
     std::optional<double> nodata{};
     bool operator==(const OpenOptions&) const = default;
 };
@@ -60,9 +60,9 @@ public:
     virtual int levels() const { return 1; }
     /// Like `read`, for any level.
     virtual void read_level(int level, const VoxelBox& box, std::span<std::byte> voxels) const;
-    /// Returns the range of the values of level 0 and of all levels up to `level`, without reading voxels, within brick
-    /// `brick` of `level` (gpu::BRICK_SIZE voxels a side, counted from voxel 0) and one voxel of `level` around it.
-    /// Null if the source does not know it.
+    /// Returns the range of values around brick `brick` of `level` (gpu::BRICK_SIZE voxels a side, counted from voxel
+    /// 0), including one voxel of `level` on every side, without reading voxels. The range covers levels 0 to `level`.
+    /// Null if the source does not know the range.
     virtual std::optional<ValueRange> brick_range(int level, const Size3& brick) const;
     /// Returns the stored blocks of the level, without reading voxels. Null if the source does not know them, or if
     /// more than `most` blocks are stored.
@@ -87,14 +87,14 @@ struct MeasureOptions {
 /// a finite voxel has minimum = maximum = mean = 0. Statistics that the source knows are not measured.
 ///
 /// Large volumes: if a source knows its stored blocks, only those are read, and all other voxels count as fill values.
-/// The measured level (VolumeStatistics::measured_level) is the finest level that has, or stores, at most
-/// MAX_VOXELS_MEASURED voxels. Without such a level it is the coarsest, or the stored part of level 0, up to
-/// MAX_VOXELS_EXACT; beyond that, everything is estimated from a sample (VolumeStatistics::sampled_voxels): 256 pieces
-/// of about 2^18 voxels, or as many voxels of the stored blocks, evenly spread and always at the same places.
+/// The measured level (VolumeStatistics::measured_level) is the finest that has, or stores, at most MAX_VOXELS_MEASURED
+/// voxels. If there is none, it is the coarsest level, or level 0 if that stores at most MAX_VOXELS_EXACT; beyond that,
+/// everything is estimated from a sample (VolumeStatistics::sampled_voxels): 256 pieces of about 2^18 voxels, or as
+/// many voxels of stored blocks, evenly spread and always at the same places.
 VolumeStatistics measure(const VolumeSource& source, const MeasureOptions& options = {});
 inline constexpr int64_t MAX_VOXELS_MEASURED = int64_t{1} << 27;
 inline constexpr int64_t MAX_VOXELS_EXACT = int64_t{1} << 30;
-/// Maximum number of stored blocks in practice: 2^42 voxels in blocks of 64^3; the list takes 192 MiB.
+/// Practical maximum of stored blocks: those of 2^42 voxels in blocks of 64^3; a list of that many takes 192 MiB.
 inline constexpr int64_t MAX_STORED_BLOCKS = int64_t{1} << 24;
 
 /// Measures one level like an exact `measure`, always by reading the level's voxels.
@@ -103,7 +103,7 @@ VolumeStatistics measure_level(const VolumeSource& source, int level, const Meas
 VolumeStatistics statistics_of(std::span<const int64_t> counts, int lowest, std::optional<double> nodata = {});
 
 /// Returns warnings about the voxels for the user, one sentence each: about NaN, infinities, fill values and outliers,
-/// and if only a coarser level or a sample was measured.
+/// and about statistics measured only on a coarser level or a sample.
 std::vector<std::string> warnings_of(const VolumeStatistics& statistics);
 
 /// ceil(size / 2^level).

@@ -16,7 +16,7 @@ namespace shvr {
 namespace {
 
 constexpr int64_t TILE = 8, TILE_VOXELS = TILE * TILE * TILE;
-/// Memory per tile for the tables of positions and indices, in addition to its voxels.
+/// Memory of a tile's entries in the tables of positions and indices, in addition to the tile's voxels.
 constexpr uint64_t TABLE_BYTES = 80;
 /// If more than this fraction of a volume is stored, dense levels are smaller and faster than sparse ones.
 constexpr double MAX_SHARE = 0.25;
@@ -26,7 +26,7 @@ uint64_t key_of(const Size3& tile)
     return uint64_t(tile.x) | uint64_t(tile.y) << 21 | uint64_t(tile.z) << 42;
 }
 
-/// Returns the smallest box that is `levels` levels coarser and covers `box`.
+/// Returns the smallest box that covers `box` on the level `levels` levels coarser.
 VoxelBox coarser(const VoxelBox& box, int levels)
 {
     const int64_t side = int64_t{1} << levels;
@@ -69,7 +69,7 @@ std::optional<SparseLevels> SparseLevels::plan(const VolumeSource& source, int l
         const Size3 size = size_of_level(planned.size_, level);
         if (double(voxels_stored(*stored, size)) > MAX_SHARE * double(size.x) * double(size.y) * double(size.z))
             return std::nullopt;
-        planned.fill_ = stored->fill;  // fill value of the coarsest source level; computed levels are made from it
+        planned.fill_ = stored->fill;  // fill value of the source's coarsest level, and so of the computed levels
         if (std::isfinite(stored->fill))
             planned.fills_ = {std::min(planned.fills_.lower, stored->fill),
                               std::max(planned.fills_.upper, stored->fill)};

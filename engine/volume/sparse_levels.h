@@ -23,9 +23,9 @@ public:
     /// Reads the stored part of the source's coarsest level; pass the source that was passed to `plan`.
     void build(const VolumeSource& source, const Progress& progress);
 
-    /// Reads from a computed level, which is not one of the source's own.
+    /// Reads voxels of a computed level; `level` must not be one of the source's own.
     void read(int level, const VoxelBox& box, std::span<std::byte> voxels) const;
-    /// Returns whether nothing is stored in a brick and one voxel around it, or below it in any finer level.
+    /// Returns whether a brick, one voxel around it, and the finer levels below contain nothing stored.
     bool is_gap(int level, const Size3& brick) const;
     /// Returns the range of voxels in a gap and of the voxels below them; lower > upper if none is finite.
     ValueRange fills() const { return fills_; }

@@ -1,5 +1,5 @@
 #pragma once
-// The cubes of 64^3 voxels, aligned with a box of a volume, in which something is stored. They do not depend on the
+// The cubes of 64^3 voxels, aligned with a box of a volume, that contain stored voxels. The cubes do not depend on the
 // size of the file's blocks. Any thread may call these functions.
 
 #include <array>
@@ -13,7 +13,7 @@ namespace shvr {
 /// Voxels along each axis of a cube: the size of the chunks of projects.
 inline constexpr int64_t STORED_CHUNK = 64;
 
-/// Returns the bits of x, y and z interleaved (Morton 1966): keys of the chunks below one coarser chunk are adjacent.
+/// Returns the bits of x, y and z interleaved (Morton 1966): all chunks in one coarser chunk have adjacent keys.
 uint64_t interleaved(const Size3& chunk);
 Size3 uninterleaved(uint64_t key);
 
@@ -31,7 +31,7 @@ struct StoredChunks {
 /// there are more than `most` chunks.
 std::optional<std::vector<uint64_t>> chunk_keys(const StoredBlocks& stored, const Size3& size, const VoxelBox& box,
                                                 int64_t most);
-/// Returns null if the source does not know its stored blocks, stores something in every chunk, or in more than `most`.
+/// Returns null if the source does not know its stored blocks, or if all chunks, or more than `most`, store something.
 std::optional<StoredChunks> chunks_in(const VolumeSource& source, const VoxelBox& box, int64_t most);
 
 }  // namespace shvr

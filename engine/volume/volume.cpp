@@ -175,7 +175,7 @@ IntensityWindow window_for(VoxelType type, double minimum, double maximum)
         const bool is_exact = range <= MAX_CODE || type == VoxelType::uint16 || type == VoxelType::int16;
         if (is_exact) return {lower, std::floor(MAX_CODE / std::clamp(range, 1.0, MAX_CODE))};
     }
-    // Doubles may be so far apart that their difference is infinite, or so close that the inverse of it is infinite.
+    // Two doubles may be so far apart that their difference is infinite, or so close that its inverse is infinite.
     const double lower = std::clamp(minimum, -MAX_END, MAX_END);
     const double range = std::clamp(maximum, -MAX_END, MAX_END) - lower;
     return {lower, range > 0.0 ? std::min(MAX_CODE / range, MAX_END) : MAX_CODE};

@@ -97,8 +97,8 @@ struct VolumeStatistics {
     int64_t not_finite = 0;
     /// 256 bins over range(); values outside the range count in the first or last bin, fill values in none.
     std::vector<int64_t> histogram{};
-    /// The extremes without fill values and a few outliers: broken, dead and hot voxels (outliers.h). Null if there are
-    /// neither.
+    /// The extremes of the values other than fill values and a few outliers: broken, dead and hot voxels (outliers.h).
+    /// Null if there are neither fill values nor outliers.
     std::optional<ValueRange> bulk{};
     int64_t beyond_bulk = 0;         ///< number of outliers that are not fill values
     std::vector<ValueCount> fill{};  ///< values that stand for "no data", however frequent
@@ -125,8 +125,8 @@ struct IntensityWindow {
     bool operator==(const IntensityWindow&) const = default;
 };
 
-/// Returns the window over all values; or over range(), if outliers left the others less than a fifth of the codes and
-/// not every integer has one. 16-bit integers measured in part: over the type, since other voxels may exceed the range.
+/// Returns the window over all values; or over range() if outliers leave the others less than a fifth of the codes and
+/// not every integer has its own. For 16-bit integers measured in part, the type's: other voxels may exceed the range.
 IntensityWindow window_for(VoxelType type, const VolumeStatistics& statistics);
 IntensityWindow window_for(VoxelType type, double minimum, double maximum);
 /// Returns whether every voxel value of such a volume has its own code in its window, so that comparing codes gives the

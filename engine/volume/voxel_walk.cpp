@@ -9,7 +9,7 @@ namespace {
 
 constexpr int64_t SLAB_BYTES = int64_t{32} << 20;
 constexpr int64_t PIECES = 256, PIECE_VOXELS = int64_t{1} << 18;
-/// Maximum number of blocks to list: listing more would take longer than a sample should.
+/// Maximum number of blocks to list: listing more would take longer than reading a sample should.
 constexpr int64_t MAX_BLOCKS_SAMPLED = int64_t{1} << 20;
 
 int64_t count_of(const Size3& extent)
@@ -104,7 +104,7 @@ VoxelWalk VoxelWalk::sample(const VolumeSource& source)
     Size3 piece(0, block.y, block.z);
     piece.x = whole_blocks(PIECE_VOXELS / (block.y * block.z), block.x, size.x);
     piece.y = whole_blocks(PIECE_VOXELS / (piece.x * block.z), block.y, size.y);
-    // Even along z; along y and x at fractions of Roberts' sequence R2, which leaves no gaps for any count.
+    // Pieces are evenly spaced along z; along y and x, they follow Roberts' sequence R2: no gaps for any count.
     const Size3 places = (size - piece) / block + int64_t{1};
     walk.boxes_.emplace();
     for (int64_t i = 0; i < PIECES; ++i) {
@@ -115,7 +115,7 @@ VoxelWalk VoxelWalk::sample(const VolumeSource& source)
         walk.boxes_->push_back({lower, glm::min(lower + piece, size)});
         walk.voxels_ += count_of(walk.boxes_->back().size());
     }
-    // Sorted, so that reads advance through the file even if a slice has several pieces.
+    // Boxes are sorted, so that reads advance through the file even if a slice has several pieces.
     std::ranges::sort(*walk.boxes_, {}, [](const VoxelBox& box) {
         return std::array{box.lower.z, box.lower.y, box.lower.x};
     });

@@ -55,22 +55,22 @@ public:
     {
         services_.hand.use_device(std::move(device), name);
     }
-    /// Sets a function that gets each action carried out, as a line that replays the action (actions/action_rows.h).
+    /// Sets a function that is called with each action carried out, as a line that replays it (actions/action_rows.h).
     void log_to(std::function<void(const std::string& line)> log) { desk_.log = std::move(log); }
 
     // ---- Steps of the main loop
 
     /// Sets the size of the picture; 0, 0: no picture is drawn.
     void set_pixels(const glm::uvec2& pixels);
-    /// Sets the position of the mouse, where values are read from then on; null: not over the picture.
+    /// Sets the mouse position, at which values are read; null: the mouse is not over the picture.
     void set_pointer(const std::optional<Pointer>& pointer) { services_.viewer.set_pointer(pointer); }
-    /// Returns text to copy since the last call; empty: none.
+    /// Returns the text copied since the last call, for the clipboard; empty: none.
     std::string take_clipboard() { return services_.reader.take_clipboard(); }
-    /// While the hand is changing a setting, no step of the history is made: one drag is one step.
+    /// Sets whether the hand is changing a setting: until it stops, no history step is made, so one drag is one step.
     void set_hand_down(bool is_down) { services_.settings.set_hand_down(is_down); }
     /// Sets the pixels per unit of the interface, for drawing over pictures.
     void set_units(double units) { services_.photographer.set_units(units); }
-    /// Sets whether the device is idle; large screenshots may continue while it is.
+    /// Sets whether the device is idle; while it is idle, large screenshots may continue.
     void set_still(bool is_still) { services_.photographer.set_still(is_still); }
     /// Runs one step of all background work. A failure becomes a message, and the failed part is retried a little
     /// later; the other parts continue, and no work is lost. Throws DeviceLost.
@@ -88,8 +88,8 @@ public:
     /// Returns whether a picture exists that does not yet show the last changes.
     bool is_stirring() const { return services_.viewer.is_stirring(); }
     /// Returns whether the open document may be closed: call it once a frame. Saves all work as Save does; if the user
-    /// only looked around, saves the view silently. Does not save read-only work, as a message has said. While the user
-    /// has not yet decided which files to believe, annotation stays as in the journal.
+    /// only looked around, saves the view silently. Does not save read-only work; a message has already told the user
+    /// so. While the user has not yet decided which files to believe, annotation stays as in the journal.
     using Leave = ui::Leave;
     Leave leave(std::string& why) { return services_.saver.leave(why); }
     bool is_saving() const { return services_.saver.is_saving(); }

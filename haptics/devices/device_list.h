@@ -40,7 +40,7 @@ std::vector<DeviceListing> list_devices(const DeviceOptions& options);
 /// Returns the row of a HID device. `can_open`: whether the system lets this user read and write it.
 DeviceListing listing_of(const HidListing& device, const HidProfile& profile, bool can_open);
 
-/// Opens the device with a listing's id; returns null for the mouse. Fails with a sentence if it is gone or unusable.
+/// Opens the device with a listing's id; returns null for the mouse. Fails with a reason if it is gone or unusable.
 std::unique_ptr<HapticDevice> open_device(const DeviceOptions& options, const std::string& id);
 
 /// Opens the first usable device of HID, Inverse3 and OpenHaptics; returns null if none is present. Fails with the

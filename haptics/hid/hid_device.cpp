@@ -99,8 +99,8 @@ Opened open_port(const std::string& path)
     return {nullptr, printable(hid_error(nullptr))};
 }
 
-/// Returns the device's report descriptor as exposed by the system; empty if the system does not expose it (hidapi 0.13
-/// cannot query it).
+/// Returns the device's report descriptor as the system exposes it, since hidapi 0.13 cannot query it; empty if the
+/// system does not expose it.
 std::vector<uint8_t> descriptor_of(const std::string& path)
 {
     const std::filesystem::path file =
@@ -195,7 +195,7 @@ std::unique_ptr<HapticDevice> open_hid_device(const std::vector<HidProfile>& pro
         };
         return make_hid_link(profile, std::move(opened.port), reopen, {.allow_force = allow_force, .realtime = true});
     }
-    // Profiles that only recognise a device come last: another profile may know its layout.
+    // Checks profiles that only recognise a device last, since another profile may know the device's layout.
     for (const HidProfile& profile : profiles) {
         if (const auto device = device_of(profile); device != devices.end())
             fail(described(*device), ": is recognised as ", profile.name,

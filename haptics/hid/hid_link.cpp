@@ -28,7 +28,7 @@ constexpr milliseconds REOPEN_EVERY{15};
 constexpr milliseconds LOOK_EVERY{5};         ///< interval of checks whether the link should end
 constexpr int MAX_REPORTS_A_DRAIN = 256;      ///< a device that floods us must not delay the newest report
 constexpr uint64_t MAX_STEP_NS = 20'000'000;  ///< longest step of rate control, so that it does not leap after a pause
-// A device that reports speeds yields to a force as the mouse does: 75 N/m, settled within some 10 ms.
+// A device that reports speeds yields to forces like the mouse: with 75 N/m, settling within about 10 ms.
 constexpr double GIVE_WAY = 75.0;
 constexpr double SETTLE_S = 0.01;
 constexpr int LINK_PRIORITY = 81;  ///< higher than the servo's, since both threads run briefly and then wait
@@ -209,7 +209,7 @@ private:
         wake_.notify_one();
     }
 
-    /// Reads the limits of the device on that port, which may be another device than before.
+    /// Reads the limits of the device on the port; it may be a different device than before.
     DeviceCaps ask_limits(HidPort& port) const
     {
         DeviceCaps caps = profile_.limits;

@@ -4,8 +4,8 @@
 //
 //   port -> reader thread --Latest--> read()      write() --Latest--> writer thread -> port
 //
-// For a device that reports speeds, the link integrates the position: each call of read() advances it while the device
-// is present, and a force moves it as it moves a mouse's position. Silence means rest.
+// For a device that reports speeds, the link integrates the position: each call of read() advances the position while
+// the device is present, and a force moves it like a mouse's position. Silence means rest.
 //
 // The reader drains the queue (kernels keep the OLDEST reports after a stall) and keeps the newest report. When the
 // port is gone, read() returns `lost`; the reader tries to reopen the port every 15 ms, and once it is open reads the

@@ -186,7 +186,7 @@ std::vector<HidMatch> read_matches(const JsonNode& node)
     return matches;
 }
 
-/// Reads a signed permutation by rows: others could change lengths, and forces would no longer oppose motion.
+/// Reads a signed permutation matrix by rows. With other matrices, lengths could change and forces not oppose motion.
 glm::dmat3 read_axes(const JsonNode& node)
 {
     const std::vector<JsonNode> rows = node.elements(3, 3);

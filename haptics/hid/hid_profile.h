@@ -87,7 +87,7 @@ struct HidRate {
     double turn_speed = 1.5;  ///< rad/s at full deflection
     double gamma = 1.5;       ///< above 1: finer near the centre
     double dead_zone = 0.05;  ///< fraction of the deflection that counts as none
-    uint32_t rest_ms = 200;   ///< a device that was silent for that long is at rest, even if it never reported so
+    uint32_t rest_ms = 200;   ///< a device silent for this long counts as at rest, even if it did not report rest
 };
 
 struct HidProfile {
@@ -112,7 +112,7 @@ inline constexpr uint32_t MAX_REPORT_BYTES = 64;
 /// `origin` names the text in error messages.
 HidProfile parse_hid_profile(const std::string& text, const std::string& origin);
 HidProfile load_hid_profile(const std::filesystem::path& file);
-/// All *.json of a folder, sorted by name.
+/// Loads all *.json files of a folder, sorted by name.
 std::vector<HidProfile> load_hid_profiles(const std::filesystem::path& folder);
 
 }  // namespace shvr

@@ -26,7 +26,7 @@ struct HidInput {
 };
 /// Returns null if the report is not one of the profile's input reports: its id or length differs.
 std::optional<HidInput> decode(const HidProfile& profile, std::span<const uint8_t> report);
-/// Returns whether the profile says to ignore such a report.
+/// Returns whether the profile says to ignore this kind of report.
 bool is_ignored(const HidProfile& profile, std::span<const uint8_t> report);
 /// Converts a deflection to a fraction of full speed; finite, length at most 1.
 glm::dvec3 shaped(const HidRate& rate, const glm::dvec3& deflection);

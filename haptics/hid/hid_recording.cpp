@@ -62,7 +62,7 @@ uint16_t read_id(const JsonNode& node)
     return node.parsed(parse, "four hexadecimal digits, as in \"0x2988\"");
 }
 
-/// Names of devices are printable ASCII by now; JSON requires escapes for two of its characters.
+/// Device names are already printable ASCII here; JSON requires escapes for only two of these characters.
 std::string quoted(const std::string& text)
 {
     std::string result = "\"";

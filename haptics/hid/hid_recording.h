@@ -1,7 +1,7 @@
 #pragma once
 // Raw reports with their arrival times, so that the owner of a device whose layout is not public can contribute a
-// recording. Nothing is written to the device. The file is lines of JSON, the first about the device, then one for each
-// report:
+// recording. Nothing is written to the device. Each line of the file is JSON: the first describes the device, and each
+// other line is a report:
 //
 //     {"format":"shvr_hid_reports","version":1,"vendor":"0x2988","product":"0x0304","name":"Touch","descriptor":"06"}
 //     {"t_us":1042,"bytes":"01a3ff"}
@@ -39,9 +39,9 @@ inline constexpr size_t MAX_RECORDED_REPORTS = 1'000'000;  ///< maximum number o
 /// `goes_on` is called every 20 ms, with the number of reports so far. Returns false if the device was removed.
 bool record_reports(HidPort& port, double most_s, const std::function<bool(size_t)>& goes_on, HidRecording& recording);
 
-/// Records a device into `file`, which must not exist: the first one with the ids `device` ("2988:0304"), or the one at
-/// the path `device` ("/dev/hidraw3"). Returns the number of reports. Fails with a sentence if there is no such device,
-/// it cannot be opened, or it sent nothing.
+/// Records a device into `file`, which must not exist. `device`: USB ids ("2988:0304"; the first device with them) or a
+/// path ("/dev/hidraw3"). Returns the number of reports. Fails with a sentence if there is no such device, it cannot be
+/// opened, or it sent nothing.
 size_t record_hid_device(const std::string& device, const std::filesystem::path& file, double most_s,
                          const std::function<bool(size_t)>& goes_on);
 

@@ -31,7 +31,7 @@ constexpr milliseconds GIVE_UP{1000};  ///< time without an answer after which t
 constexpr int LINK_PRIORITY = 81;      ///< higher than the servo's, since the thread runs briefly and then waits
 constexpr double PEAK_FORCE_N = 3.3;   ///< set by this program, not by the maker: untested on the device
 constexpr double CONTINUOUS_FORCE_N = 0.88;
-constexpr double STIFFNESS_LIMIT = 250.0;  ///< N/m: an arm of low friction, two ticks of delay
+constexpr double STIFFNESS_LIMIT = 250.0;  ///< N/m, for an arm of low friction and two ticks of delay
 
 struct Reading {
     uint64_t connection = 0;
@@ -88,7 +88,7 @@ Channels connect(const Inverse3Options& options)
     return channels;
 }
 
-/// Returns a copy of the text that is never freed; there is one for each kind of failure.
+/// Returns a copy of the text that is never freed. Equal texts share a copy, so there is one per kind of failure.
 const char* kept(const std::string& text)
 {
     static std::mutex mutex;
@@ -106,7 +106,7 @@ public:
           wake_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC))
     {
         if (wake_ < 0) fail("the Inverse3's thread cannot be woken; expected fewer open files");
-        options_.device_id = device_id_;  // after a loss, the same device is searched for
+        options_.device_id = device_id_;  // after a loss, looks for the same device
         begin();
         thread_ = std::thread(&Link::run, this);
         ::pthread_setname_np(thread_.native_handle(), "inverse3");
@@ -126,7 +126,7 @@ public:
 
     DeviceCaps caps() const noexcept override
     {
-        // The box surrounds the workspace's centre with the service's default mount; this program limits the forces.
+        // The box is centred on the workspace in the service's default mount; this program sets the force limits.
         const glm::dvec3 middle = from_inverse3({0.0, -0.12, 0.15});
         return {.usable_lower_m = middle - 0.08,
                 .usable_upper_m = middle + 0.08,

@@ -19,7 +19,7 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr int MAX_RECEIVES = 4;  ///< receives of 16 KiB in a row: a flood of messages must not prevent sending
+constexpr int MAX_RECEIVES = 4;  ///< receives in a row, of 16 KiB each: a flood of messages must not block sending
 
 /// Returns false once the time is up, even if data are ready: bytes that keep coming must not extend a deadline.
 bool wait_for(int descriptor, short what, SteadyClock::time_point until)
@@ -142,7 +142,7 @@ WebSocketReader::Event WebSocketClient::next()
     std::optional<std::string> ping;
     WebSocketReader::Event event = reader_.next();
     for (; event == WebSocketReader::Event::ping; event = reader_.next()) ping = reader_.payload();
-    // An answer that was cut off would garble all later frames.
+    // A pong that was cut off would garble all later frames.
     if (ping && !send_frame(WebSocketOpcode::pong, *ping)) return WebSocketReader::Event::close;
     return event;
 }

@@ -1,6 +1,6 @@
 #pragma once
-// A WebSocket to a port of the local machine. Connecting waits, at most as long as specified; afterwards only `wait`
-// does: a poll on `descriptor()` shows when there is something to receive. One thread at a time.
+// A WebSocket to a port of the local machine. Connecting blocks, at most as long as specified; afterwards only `wait`
+// blocks. A poll on `descriptor()` shows when there is something to receive. One thread at a time.
 
 #include <chrono>
 #include <cstdint>

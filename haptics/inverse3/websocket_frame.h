@@ -24,7 +24,7 @@ std::string websocket_request(uint16_t port, std::string_view key);
 struct WebSocketAnswer {
     bool is_complete = false;       ///< the header has ended
     size_t size = 0;                ///< size of the header in bytes; frames follow it
-    const char* trouble = nullptr;  ///< reason why it is not a WebSocket; null: it is one
+    const char* trouble = nullptr;  ///< reason why the other side is not a WebSocket; null: it is one
 };
 WebSocketAnswer check_websocket_answer(std::string_view received, std::string_view key);
 

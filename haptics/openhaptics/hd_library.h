@@ -28,7 +28,7 @@ inline constexpr uint32_t USABLE_WORKSPACE = 0x2551;       ///< mm: lower x, y, 
 inline constexpr uint32_t NOMINAL_MAX_STIFFNESS = 0x2602;  ///< 0 ... 1
 inline constexpr uint32_t NOMINAL_MAX_FORCE = 0x2603;      ///< N
 inline constexpr uint32_t NOMINAL_MAX_CONTINUOUS_FORCE = 0x2604;
-inline constexpr uint32_t MOTOR_TEMPERATURE = 0x2605;  ///< a fraction per motor; 1 is too hot
+inline constexpr uint32_t MOTOR_TEMPERATURE = 0x2605;  ///< one fraction per motor; 1 is too hot
 inline constexpr uint32_t CURRENT_FORCE = 0x2700;      ///< N
 inline constexpr uint32_t FORCE_OUTPUT = 0x4000;
 

@@ -36,7 +36,7 @@ struct Claim {
     Claim& operator=(const Claim&) = delete;
 };
 
-/// A user-readable message for an error of the driver.
+/// Returns a user-readable message for a driver error.
 std::string in_words(const HdLibrary& hd, const HdError& error)
 {
     switch (error.code) {

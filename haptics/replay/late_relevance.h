@@ -1,6 +1,6 @@
 #pragma once
-// Relevance computed without a window, with the delay that it would have in a window: it is requested by the mirror's
-// rule (engine/touch/region_wish.h) and felt once the answer would have arrived. For replays and tests. One thread.
+// Relevance computed without a window, with the delay that it would have in a window: requested when the mirror would
+// (engine/touch/region_wish.h) and felt once the answer would have arrived. For replays and tests. One thread.
 
 #include <functional>
 #include <memory>
@@ -31,7 +31,7 @@ private:
     MakeRelevance make_;
     double latency_s_ = 0.0;
     uint32_t every_ = 0, ticks_ = 0;
-    std::unique_ptr<RelevancePatch> patch_, next_;  ///< the patch felt; the patch on its way (sequence 0: none)
+    std::unique_ptr<RelevancePatch> patch_, next_;  ///< the patch felt now; the patch not yet felt (sequence 0: none)
     uint64_t felt_ns_ = 0;                          ///< time when `next_` is felt
     uint64_t made_ = 0;
     double threshold_ = 0.0;

@@ -120,7 +120,7 @@ class Tally {
 public:
     explicit Tally(ReplayResult& result) : result_(result) { result_.hash = FNV_BASIS; }
 
-    /// Begins another device: its first force does not follow an earlier one.
+    /// Switches to another device, whose first force does not follow an earlier one.
     void swap()
     {
         ++result_.swaps;
@@ -151,7 +151,7 @@ public:
         result_.objects = step.objects;
     }
 
-    /// Root mean square of the distances between proxy and probe in contact.
+    /// Returns the root mean square of the distances between proxy and probe in contact.
     double proxy_rms() const
     {
         return result_.contact_ticks > 0 ? std::sqrt(squares_ / double(result_.contact_ticks)) : 0.0;

@@ -14,7 +14,7 @@ struct ReplayOptions {
     std::optional<TouchMode> mode;  ///< replaces the trace's
     std::optional<ProxyLaw> law;
     std::optional<double> stiffness, damping;
-    /// A modelled hand moves this device along the trace; without it, the device's answers are those of the trace.
+    /// Device model that a modelled hand moves along the trace; null: the device's answers are those of the trace.
     std::optional<TouchModel> touch;
     bool relevance_anew = false;  ///< recomputes relevance even if the trace contains it
     /// Computed relevance is requested as in the window (engine/touch/region_wish.h) and felt after this delay.
@@ -33,11 +33,11 @@ struct ReplayResult {
     uint32_t objects = 0, swaps = 0;    ///< number of objects touched on the last device; number of device changes
     bool is_recorded = false;           ///< the relevance was read from the trace; false: it was computed
     uint64_t hash = 0;                  ///< FNV-1a of all forces' bits
-    uint64_t told = 0, told_equal = 0;  ///< ticks whose force the trace contains; number of these with equal bits
+    uint64_t told = 0, told_equal = 0;  ///< ticks whose force is in the trace; of these, ticks replayed to equal bits
     std::vector<uint64_t> tick_ns;      ///< time that each step() took on the real clock
     std::vector<ForceStep> steps;       ///< if requested
 };
-/// Whether the trace's relevance is used: not with a modelled hand, whose path differs and has no known relevance.
+/// Whether the trace's relevance is used. A modelled hand cannot use it: its path differs, so its relevance is unknown.
 bool replays_relevance(const Trace& trace, const ReplayOptions& options);
 /// If the trace's relevance is not used, calls `make_relevance` instead, also when the threshold changes; fails if
 /// `make_relevance` is empty.

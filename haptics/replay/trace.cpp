@@ -278,7 +278,7 @@ Trace parse_trace(const std::string& whole, const std::string& origin)
             continue;
         }
         reader.read_first(document.root());
-        // Checked before the lines, so that a damaged file is not reported as a mistake in one of its lines.
+        // The hash is checked before the lines, so that a damaged file is not reported as a mistake in a line.
         if (reader.has_end()) text = without_trace_end(text, origin);
     }
     if (!has_head) fail(origin, " is empty; expected a line {\"shvr_stylus_trace\":1}");

@@ -43,16 +43,16 @@ struct Trace {
     uint32_t rate_hz = 1000;
     DeviceCaps caps;
     std::vector<TraceCaps> later_caps;  ///< sorted by tick
-    /// Ticks from which another device, or the same one reopened, answers a restarted servo. That servo has no force
-    /// and no object, and feels nothing before the next relevance.
+    /// Ticks at which a restarted servo begins with another device, or with the same one reopened. The restarted servo
+    /// has no force and no object, and feels nothing before the next relevance.
     std::vector<size_t> swaps;
     std::vector<TraceSettings> settings;  ///< sorted by tick; the first one applies from the start
     /// Whether the trace contains the relevance that the servo used: `relevance`, sorted by tick; before its first
     /// entry, there was none. If false, the replaying code computes relevance.
     bool holds_relevance = false;
     std::vector<TraceRelevance> relevance;
-    /// Whether computed relevance is limited to the voxels that the session shows, as its settings say. False in traces
-    /// of older programs, which felt everything.
+    /// Whether computed relevance is limited to the voxels that the session's settings show. False in traces of older
+    /// versions, which felt all voxels.
     bool feels_seen = false;
     std::vector<TraceTick> ticks;
 };
@@ -61,7 +61,7 @@ inline constexpr std::string_view TRACE_READS[] = {"fresh", "stale", "lost", "ma
 inline constexpr int64_t MAX_TRACE_BYTES = int64_t{1} << 30;
 inline constexpr size_t MAX_TRACE_TICKS = 4'000'000;  ///< more than an hour
 
-/// `origin` names the text in error messages: one sentence with line, key, value and what was expected.
+/// `origin` names the text in error messages; each is a sentence with line, key, value and the expectation.
 Trace parse_trace(const std::string& text, const std::string& origin);
 Trace read_trace(const std::filesystem::path& file);
 std::string text_of(const Trace& trace);

@@ -56,7 +56,7 @@ bool take_length(std::string_view& runs, uint32_t& length)
 
 bool has_place(const RelevancePatch& patch)
 {
-    // Far enough from the limits that sums of positions do not overflow.
+    // Positions must stay far enough from the limits of int32_t that their sums do not overflow.
     const auto fits = [](int32_t n) { return n >= 0 && n <= (1 << 30); };
     bool is_right = patch.sequence > 0 && patch.is_well_formed() && patch.level >= 0 && patch.level < 31;
     for (int axis = 0; axis < 3; ++axis)

@@ -1,6 +1,6 @@
 // One cell per thread: sets its distance to 0 if anything in it is visible, otherwise to `empty_distance`.
-// MASKED: a cell is also occupied if one of its voxels, or of those next to it, is in a visible group; also records
-// whether it is painted.
+// MASKED: a cell is also occupied if a voxel in it or next to it is in a visible group; also records whether the cell
+// is painted.
 // variants: MASKED
 #version 460
 #extension GL_GOOGLE_include_directive : require

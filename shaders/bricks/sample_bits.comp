@@ -16,8 +16,8 @@ layout(binding = 2, r32ui) uniform writeonly uimage3D sample_bits;
 #include "../library/atlas.glsl"
 
 const uint ALL = 0xffffffffu;
-// Returns bits for five codes: of the voxel before `x`, and of the four from `x` on, where a word begins. Bits 0 to 4:
-// not below the visible range; bits 8 to 12: not above it. The volume's first voxel repeats before itself.
+// Returns bits for five codes: the one before `x`, and the four from `x` on. A word begins at `x`. Bits 0 to 4: not
+// below the visible range; bits 8 to 12: not above it. Before the volume's first voxel, that voxel repeats.
 uint sides_of_row(int x, int y, int z)
 {
     const int before = max(x - 1, 0), first_word = x >> WORD_SHIFT;

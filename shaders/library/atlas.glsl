@@ -1,6 +1,6 @@
-// Reads texels of the density atlas. Needs bricks.h and `atlas`: r32ui, or FILTERED, a sampler3D of R16_UNORM codes.
-// Codes have 16 bits. A texel of r32ui contains two codes along x, the first one in its low half. In volumes of bytes
-// (CODE_BYTES is 1), codes are multiples of 257 and a texel contains four.
+// Reads texels of the density atlas. Needs bricks.h and `atlas`, an r32ui image or, if FILTERED, a sampler3D of
+// R16_UNORM codes. Codes have 16 bits. A texel of r32ui contains two codes along x, the first one in its low half. In
+// volumes of bytes (CODE_BYTES is 1), codes are multiples of 257 and a texel contains four.
 //
 // Paged bricks lie in slots; bricks of a resident volume lie side by side (bricks.h).
 //

@@ -98,7 +98,7 @@ float central(float low, float high, float beyond, float f)
     return inner + (outer - inner) * abs(f - 0.5);
 }
 
-// Pairs of codes along x beyond the corners, on the nearer side along y and along z.
+// Pairs of codes along x, one code beyond the corners on the nearer side along y or z.
 struct Beyond {
     vec2 y0, y1, z0, z1;
 };
@@ -127,8 +127,8 @@ vec3 gradient_between(const Density d, const Beyond there)
     return vec3(along_x, along_y, along_z);
 }
 
-/// Codes per voxel along each axis. The six taps of a central difference share all but twelve codes with the eight
-/// corners.
+/// The gradient, in codes per voxel along each axis. The six taps of a central difference share all but twelve codes
+/// with the eight corners.
 vec3 gradient_of(const Density d)
 {
     return gradient_between(d, beyond(d));

@@ -7,7 +7,7 @@ const float MAX_STEPS = 2147483648.0;
 struct Lattice {
     float begin, end;    // lengths along the ray
     uint whole;          // number of whole steps, and index of the rest
-    float part;          // the rest, in whole steps; 0: there is none
+    float part;          // length of the rest as a fraction of a whole step; 0: there is none
     float rest_middle;   // length along the ray
 };
 

@@ -1,5 +1,5 @@
-// Finds painted bricks: 32^3 voxels without an apron. NO_SLOT means that nothing is painted there. The table is bound
-// at MASK_TABLE_BINDING. A volume of a thousand bricks a side has no room for a table of all bricks, so
+// Finds painted bricks: 32^3 voxels without an apron. NO_SLOT means that nothing is painted in a brick. The table is
+// bound at MASK_TABLE_BINDING. A volume of a thousand bricks a side has no room for a table of all bricks, so
 // MASK_TABLE_HASHED selects a hash table that has each brick at one of two places (engine/bricks/painted_table.h).
 
 #ifdef MASK_TABLE_HASHED

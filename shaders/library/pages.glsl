@@ -57,8 +57,8 @@ Place place_at(const RaycastParams params, vec3 position)
     return place;
 }
 
-// Reports to the host that a ray visited this place; visits decide which bricks are loaded. Most rays only read, since
-// others have visited before them: writes to one word are serialized.
+// Reports to the host that a ray visited this place; visits decide which bricks are loaded. Rays write only the first
+// visit and otherwise just read, since writes to one word are serialized.
 void note_reached(const Place place)
 {
     const uint bit = 1u << (place.entry & 31u);

@@ -2,8 +2,8 @@
 // is 8, 16 or 32: a group's 64 threads cover GROUP_WIDTH x 64 / GROUP_WIDTH pixels. Layers of groups take rows of
 // groups in turn (engine/passes/pixel_groups.h).
 
-// The pixel relative to the first pixel of the drawn part. Every eight threads, which are one vector on CPUs, cover 4 x
-// 2 pixels: neighbouring rays are more similar.
+// The pixel relative to the first pixel of the drawn part. Each eight threads, one vector on CPUs, cover 4 x 2 pixels,
+// since neighbouring rays are similar.
 uvec2 thread_in_part()
 {
     const uvec2 group_size = uvec2(GROUP_WIDTH, 64u / GROUP_WIDTH);

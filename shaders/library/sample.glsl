@@ -20,7 +20,7 @@ vec4 painted(uint group, vec4 look)
 }
 #endif
 
-// The density at a point in the brick whose first voxel is at `first`, or at most half a voxel outside the brick.
+// The density at a point in the brick whose first voxel is at `first`; the point may be half a voxel outside the brick.
 float value_near(vec3 in_brick, ivec3 first)
 {
     const vec3 held = clamp(in_brick, -1.0, float(BRICK_SIZE));   // including its aprons

@@ -3,7 +3,7 @@
 // Place, Work and texels_at.
 //
 // Lanes that leave a loop early wait for the others, and lavapipe does not keep values that a lane has set in a loop
-// that it left: only the step and counts, which are added to, are carried out of these loops. The sample found is read
+// that it left. Therefore only the step and counts, which are added to, survive these loops; the sample found is read
 // again.
 
 // Maximum iterations; lanes that have found nothing by then take a sample like the others.

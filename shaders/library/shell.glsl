@@ -9,8 +9,8 @@
 // since lanes that leave the loop early lose all other variables.
 #include "voxel_code.glsl"
 
-// A length in reference lengths. A piece of the ray shorter than this counts as part of the neighbouring cell; a shell
-// thinner than this is ignored. Far along a ray it is at least two ulps, so that every search advances.
+// A tolerance in reference lengths. A piece of the ray shorter than this counts as part of the neighbouring cell; a
+// shell thinner than this is ignored. Far along a ray it is at least two ulps, so that every search advances.
 float hair_at(float s)
 {
     const float HAIR = 1e-3, TWO_ULPS = 2.384185791015625e-7;
@@ -228,7 +228,7 @@ vec2 shell_range(const RaycastParams params, const Ray ray)
     const vec3 direction = ray.direction * params.spacing;  // of length 1
     const vec3 from_center = (ray.origin - params.shell_center) * params.spacing;
     const float middle = -dot(from_center, direction);
-    // From the ray's nearest point, not from the origin: b^2 - c would cancel (Haines and others, Ray Tracing Gems, 7).
+    // Uses the ray's nearest point: from the origin, b^2 - c would cancel (Haines and others, Ray Tracing Gems, 7).
     const vec3 nearest = from_center + middle * direction;
     const float reach = params.shell_reach.x * params.spacing.x;
     const float half_chord = sqrt(max(reach * reach - dot(nearest, nearest), 0.0));

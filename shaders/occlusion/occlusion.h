@@ -45,15 +45,15 @@ SHARED_BEGIN
 SHARED_CONST uint OCCLUSION_SIZES = 2u;  // cell sizes: 2 << size voxels a side
 /// Number of bricks whose values can be computed at once: enough to keep a GPU busy.
 SHARED_CONST uint OCCLUSION_SLICE = 256u;
-/// The scratch images hold these bricks in columns along z; the columns are in rows along x.
+/// The scratch images hold the bricks of a slice in columns along z; the columns are in rows along x.
 SHARED_CONST uint OCCLUSION_COLUMN = 16u;
 SHARED_CONST uint OCCLUSION_COLUMNS_A_ROW = 4u;
 SHARED_CONST uint OCCLUSION_NEAR_APRON = 4u;  // voxels
 SHARED_CONST uint OCCLUSION_NEAR_SIDE = 40u;  // BRICK_SIZE + 2 OCCLUSION_NEAR_APRON
-/// The same margin for paged bricks, whose rays also begin in the bricks' aprons.
+/// OCCLUSION_NEAR_APRON for paged bricks, whose rays also begin in the bricks' aprons.
 SHARED_CONST uint OCCLUSION_NEAR_APRON_PAGED = 8u;
 SHARED_CONST uint OCCLUSION_NEAR_SIDE_PAGED = 48u;
-/// Maximum number of bricks away, on each side of a brick, from which light arrives; sets the largest radius.
+/// Maximum distance, in bricks on each side of a brick, from which light arrives; it limits the radius.
 SHARED_CONST uint OCCLUSION_REACH = 2u;
 SHARED_CONST uint OCCLUSION_AROUND = 125u;  // (2 OCCLUSION_REACH + 1)^3
 /// Workgroups per brick: several keep a GPU busy even with few bricks.
@@ -105,7 +105,7 @@ struct OcclusionGatherParams {
     uvec3 cell_counts;  ///< size of the leap grid
     uint reach;
     uint aprons[OCCLUSION_SIZES];  ///< in cells of each size
-    /// Converts the cells of a coarser level to the stretches of this level's taps.
+    /// Exponents that convert the cells of coarser levels to the stretches of this level's taps.
     float exponents[OCCLUSION_SIZES * OCCLUSION_LEVELS];
 };
 

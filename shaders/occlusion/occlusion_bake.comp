@@ -1,7 +1,7 @@
 // Computes how much light reaches every potentially visible voxel of a brick, by the definition in occlusion.h. A ray
 // takes three samples in ramps of voxels, three in ramps of cells of two voxels and two in cells of four. PAGED: cells
-// are those of paged bricks. STRETCHED: 0: voxels are cubes; 1, 2: they are not; 2: all samples in cells use cells of
-// two voxels, since cells of four are longer than the distances to resolve.
+// are those of paged bricks. STRETCHED: 0 if voxels are cubes, otherwise 1 or 2; at 2, all samples in cells use cells
+// of two voxels, since cells of four are longer than the distances to resolve.
 // variants: PAGED FILTERED
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -65,7 +65,7 @@ const float STEEPEST_OF_VOXELS = 3.3, STEEPEST_OF_CELLS = 2.6;   // occlusion_ra
 #include "occlusion_listed.glsl"
 
 // Positions are relative to the block of 4^3 voxels that contains the voxel. These numbers of voxels are added, so that
-// they are positive when truncated: the arithmetic is the same wherever a brick, or its apron, begins.
+// positions are above 0 when truncated: the arithmetic is the same wherever a brick, or its apron, begins.
 const int NEAR_AHEAD = 4, CELLS_AHEAD = 64;
 
 // Converts positions in that block to texels of the scratch images, which hold jobs stacked along z, and to the cells
@@ -94,7 +94,7 @@ Block block_of(const OcclusionJob of, ivec3 voxel)
                  share * params.voxels.lower - begin, share * params.voxels.upper - begin);
 }
 
-// Densities on one side of a voxel, along their fastest fall: a cubic as far as the neighbours, constant beyond.
+// Densities on one side of a voxel, in the direction of steepest fall: a cubic up to the neighbours, constant beyond.
 struct Course {
     vec4 factors;
     float least, most;
@@ -146,7 +146,7 @@ struct Surface {
     float strength;
     vec3 place;     // start of rays, in voxels from the block's corner
     vec3 heights;   // direction in which densities fall fastest, in voxels
-    vec3 scale;     // the part of a cell's columns along each axis that is behind it: base - scale * height in cells
+    vec3 scale;     // part of a cell's columns along each axis behind the surface: base - scale * height in cells
     vec3 base;
     float height;   // distance of the surface, as dot(heights, position) in cells
     float wall;     // opacity of the half-space behind the surface over the stretch of a tap
@@ -232,7 +232,7 @@ vec2 after_cell(vec2 light, float stretch, float stopped)
     return vec2(light.x * (1.0 - stopped), light.y + light.x * stretch * (1.0 - stopped * (0.5 + BEND_4 * stopped)));
 }
 
-// A ramp that is as steep as ramps can be stands for a sharper edge, which is as wide as in cubes of the shortest side.
+// A ramp of maximum steepness stands for a sharper edge, drawn as wide as in cubes of the voxel's shortest side.
 float sharpened_for(vec3 slope, float softened, float steepest)
 {
     if (STRETCHED == 0u) return softened;
@@ -367,7 +367,7 @@ void main()
         const vec3 n = surface.normal;
         const float up = n.z < 0.0 ? -1.0 : 1.0, a = -1.0 / (up + n.z), b = n.x * n.y * a;
         const vec3 one = vec3(1.0 + up * n.x * n.x * a, up * b, -up * n.x), other = vec3(b, up + n.y * n.y * a, -n.y);
-        // Rays go behind the surface down to the height -open; those of lower heights come from the front instead.
+        // Rays go behind the surface down to height -open; lower ones are replaced by their mirror images in front.
         const float open = params.full_sphere != 0u ? 1.0 : 1.0 - surface.strength;
 
         float sum = 0.0;

@@ -15,7 +15,7 @@ SHARED_CONST uint OCCLUSION_EDGE_TAPS = 6u;
 SHARED_CONST float OCCLUSION_EDGE_REACH = 1.5f;
 /// Distance in front of the edge at which rays begin: it minimizes the error of so few samples.
 SHARED_CONST float OCCLUSION_LIFT = 0.13f;
-/// Maximum distance of the edge from the voxel: the reach of rays is bounded.
+/// Maximum distance of the edge from the voxel, so that the reach of rays is bounded.
 SHARED_CONST float OCCLUSION_FURTHEST = 1.2f;
 /// A sample along a ray: one cell's opacity, applied to `stretch` units of the ray.
 struct OcclusionTap {

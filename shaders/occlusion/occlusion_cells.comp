@@ -24,7 +24,7 @@ layout(binding = 5, r32ui) uniform writeonly uimage3D cells_4;
 #include "../library/voxel_code.glsl"
 #include "occlusion_ramp.glsl"
 
-// x: density; y: its fixed opacity, negative if there is none.
+// x: the voxel's density; y: the voxel's fixed opacity, negative if there is none.
 vec2 voxel_at(const OcclusionCellsParams params, const OcclusionCellsJob job, uvec3 voxel)
 {
 #ifdef PAGED

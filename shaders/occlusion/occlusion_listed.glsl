@@ -11,7 +11,7 @@ const uint APRONS_OF_ONE = 0u;
 #endif
 shared uint cells[CELLS_OF_ONE];
 shared uint cell_count;
-// Two per entry: cell << 6 | voxel of the cell, or IN_APRON + number of the apron's voxel.
+// Two voxels per entry, each as cell << 6 | voxel of the cell, or IN_APRON + number of the apron's voxel.
 shared uint voxels[(CELLS_OF_ONE * VOXELS_OF_CELL + APRONS_OF_ONE + 1u) / 2u];
 shared uint voxel_count;
 const uint IN_APRON = 1u << 15u;
@@ -59,8 +59,8 @@ ivec3 texel_of(const OcclusionJob job, ivec3 voxel)
 #endif
 }
 
-// Whether visible samples may read the values of four voxels in a row, as bits. They may if the transfer function shows
-// something between a voxel's density and those around it. Ignores other reasons for which a voxel may be visible.
+// Returns a bit for each of four voxels in a row: whether visible samples may read its value because the transfer
+// function shows something between its density and those around it. Ignores other reasons for visibility.
 uint shows_nearby(ivec3 texel)
 {
     vec4 lower = vec4(65535.0), upper = vec4(0.0);

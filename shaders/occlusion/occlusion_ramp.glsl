@@ -22,7 +22,7 @@ uint packed_ramp(float top, float level, float squares, vec3 direction, float st
 // The ramp of a cube with a density at its centre, a slope across it, and densities between `least` and `most`.
 uint ramp_of(const OcclusionCellsParams params, float middle, vec3 slope, float least, float most, float steepest)
 {
-    // Densities are assumed uniform along the slope, within the cube's range of densities: exact along an axis.
+    // Assumes densities uniformly spread along the slope, within the cube's range of densities: exact along an axis.
     const float steep = length(slope), half_width = max(0.5 * steep, 0.5 / params.table_scale);
     const float lower = middle - half_width, upper = middle + half_width;
     const float from = clamp(lower, least, most), to = clamp(upper, least, most);

@@ -9,7 +9,7 @@
 //
 // Needs what march.glsl needs, and a table with points (raycast.h). Defines take_samples().
 
-// Part of a ray in half a cell, and in one step.
+// The part of a ray that lies in half a cell and in one step.
 struct Stretch {
     float begin, extent;   // lengths along the ray
     Density density;       // of its middle
@@ -33,9 +33,9 @@ const mat3 GAUSS_UP_TO =
     mat3(vec3(5.0 / 36.0, 2.0 / 9.0 - SQRT_15 / 15.0, 5.0 / 36.0 - SQRT_15 / 30.0),
          vec3(5.0 / 36.0 + SQRT_15 / 24.0, 2.0 / 9.0, 5.0 / 36.0 - SQRT_15 / 24.0),
          vec3(5.0 / 36.0 + SQRT_15 / 30.0, 2.0 / 9.0 + SQRT_15 / 15.0, 5.0 / 36.0));
-const float MIN_THROUGH = 6e-8;   // 1 - opacity, of densities just below an opaque one
+const float MIN_THROUGH = 6e-8;   // 1 - opacity for densities just below an opaque one
 const float MIN_PIECE = 0.002;    // reference lengths
-// A piece along which the normal turns by more than this, or light or highlight begins or ends, is halved.
+// A piece is halved if the normal turns by more than this along it, or if light or highlight begins or ends in it.
 const float MIN_COSINE = 0.98;
 const uint HALVINGS = 6u;
 
@@ -137,7 +137,7 @@ vec3 slope_at(const RaycastParams params, const Stretch stretch, float x)
     return gradient_between(there, stretch.there) * params.inverse_spacing;
 }
 
-// Whether light changes too much from one slope to another for one piece.
+// Whether light changes too much between two slopes for a single piece.
 bool turns_much(const RaycastParams params, const Ray ray, vec3 a, vec3 b)
 {
     const float both = dot(a, b);

@@ -24,7 +24,7 @@ layout(constant_id = 17) const uint COMPENSATED = 0u;
 // Linear RGB (PREINTEGRATED: times opacity) and opacity of a full step; then optical depths (raycast.h).
 layout(binding = 3, rgba32f) uniform readonly image2D table;
 
-// Maximum number of steps of a leap: even from the last step (library/lattice.glsl) it ends at a 32-bit index.
+// Maximum number of steps of a leap: even a leap from the last step (library/lattice.glsl) ends at a 32-bit index.
 const float MAX_LEAP = 2147483648.0;
 const float NO_SHELL = 1e30;   // a length along a ray
 // Number of consecutive invisible samples after which a lane searches for the next visible one: LITTLE_PATIENCE if the
@@ -48,8 +48,8 @@ Work no_work()
 #include "../library/sample.glsl"
 #include "../library/lattice.glsl"
 
-// Counts a sample if it is taken. The slot is carried, not set in a branch: if a lane leaves a loop before the others,
-// SwiftShader loses the values that this lane has set in a branch of the loop.
+// Counts a sample if it is taken. The last slot is assigned without a branch: if a lane leaves a loop before the
+// others, SwiftShader loses the values that this lane has set in a branch of the loop.
 void note_sample(bool is_taken, const Place place, inout Work work)
 {
     work.samples += uint(is_taken);
@@ -119,7 +119,7 @@ void accumulate_compensated(inout vec4 sum, inout vec4 above, vec4 look)
 
 // A ray's accumulated state, and its position.
 struct March {
-    uint i;        // index of the next step: whole steps, then the remaining part of a step, then no more
+    uint i;        // index of the next step: first the whole steps, then the shorter last step, then none
     vec4 sum;
     vec4 above;    // accumulate_compensated(), since the dispatch began
 #ifdef PICKS
@@ -128,7 +128,7 @@ struct March {
     uint unseen;   // consecutive samples that showed nothing
     bool waits;    // for a brick
     bool has_rest;
-    Sample rest;   // the sample of the ray's rest, not added yet
+    Sample rest;   // sample of the shorter last step, not added yet
 };
 
 // Starts a march at `step`, with the sum that earlier dispatches have gathered.
@@ -161,7 +161,7 @@ void add(vec4 look, float middle, inout March march)
 #ifdef INTEGRATED
 #include "integral.glsl"
 #else
-// The density at the beginning of a step.
+// Returns the density at the beginning of a step.
 float value_at_begin(const RaycastParams params, const Ray ray, const Lattice lattice, uint step)
 {
     const vec3 position = position_at(params, ray, middle_of(params, lattice, step));
@@ -192,9 +192,9 @@ void take_sample(const RaycastParams params, const Ray ray, const Lattice lattic
     ++march.i;
 }
 
-// Adds samples from step `march.i` on, up to the length `until` along the ray, or up to `end_step`. The rest of the ray
-// after its whole steps counts as a step: its sample is found here but added by the caller (add_rest), because its
-// opacity takes loads that no whole step needs.
+// Adds samples from step `march.i` on, up to the length `until` along the ray, or up to `end_step`. The ray's
+// shorter last step is sampled here, too, but the caller adds that sample (add_rest), because its opacity requires
+// loads that no whole step needs.
 //
 // SIMD devices run both sides of a branch for all their lanes, so the cheap part, the search for a visible sample, and
 // the costly part are separate loops, in which lanes stay together as long as it pays.
@@ -247,7 +247,7 @@ void take_samples(const RaycastParams params, const Ray ray, const Lattice latti
 
 #endif
 
-// Adds the sample of the ray's rest, which take_samples() has found.
+// Adds the sample of the ray's shorter last step, which take_samples() has found.
 void add_rest(const RaycastParams params, const Lattice lattice, inout March march)
 {
     if (march.has_rest) {
@@ -270,7 +270,7 @@ Block block_of(const RaycastParams params, const Lattice lattice)
     return block;
 }
 
-// Whether the device has cut the march short by aborting the loop. The last block may end before the ray does.
+// Returns whether the device has cut the march short by aborting the loop. The last block may end before the ray does.
 bool is_cut_short(const RaycastParams params, const Lattice lattice, const Block block, const March march)
 {
     return march.i < (block.is_last ? step_count(lattice) : block.end) && march.sum.a < params.opacity_limit &&

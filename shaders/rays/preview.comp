@@ -1,6 +1,6 @@
 // Finds the first voxel on each pixel's ray that a brush would change, as a solid cube; stores its lit colour and the
-// length along the ray. The ray caster ends there if the voxel lies in front of other surfaces (surfaces.comp); `seen`
-// marks these pixels. In slices the voxel half-way along the ray is stored, unlit. One thread per pixel.
+// length along the ray. If the voxel lies in front of other surfaces (surfaces.comp), the ray ends there, and `seen`
+// marks the pixel. In slices, stores the voxel half-way along the ray, unlit. One thread per pixel.
 //   SURFACED   there are other surfaces
 // variants: SURFACED
 //
@@ -83,8 +83,8 @@ struct Hit {
     float at;     // length along the line
 };
 
-// Finds the first set voxel. Every variable that outlives an iteration is carried through the loop, because devices may
-// run the loop until the last lane is done.
+// Finds the first set voxel. Every variable that outlives an iteration is assigned in every iteration, without a
+// branch, because devices may run the loop until the last lane is done.
 Hit first_hit(const PreviewParams preview, const Line line)
 {
     const ivec3 towards = ivec3(mix(vec3(-1.0), vec3(1.0), greaterThanEqual(line.safe, vec3(0.0))));

@@ -1,4 +1,4 @@
-// A pixel's ray, and its part in the drawn box. Lengths along a ray are in reference lengths (raycast.h).
+// A pixel's ray, and the section of it inside the drawn box. Lengths along a ray are in reference lengths (raycast.h).
 #include "../library/rays.glsl"
 
 struct Ray {

@@ -59,7 +59,7 @@ layout(binding = 12, rgba32f) uniform readonly image2D surfaces;   // linear RGB
 // iso-surface. Smaller magnitudes than this count as 0, whose sign devices may lose.
 const float MIN_ALPHA = 1e-30;
 
-// Returns the state of a ray that earlier dispatches have left.
+// Returns the state that earlier dispatches have stored for a ray.
 Kept resume(const RaycastParams params, uvec2 in_part, ivec2 texel)
 {
     Kept kept = Kept(vec4(0.0), vec2(NO_SHELL, -1.0), 0u, false, false);
@@ -75,7 +75,7 @@ Kept resume(const RaycastParams params, uvec2 in_part, ivec2 texel)
     return kept;
 }
 
-// The range of steps that a dispatch takes of a ray. A ray that has waited continues at its own next step.
+// Returns the range of a ray's steps that this dispatch takes. A ray that has waited continues at its own next step.
 Block block_of(const RaycastParams params, const Lattice lattice, const Kept kept)
 {
     if (KEPT != KEPT_ALL) return block_of(params, lattice);
@@ -86,14 +86,14 @@ Block block_of(const RaycastParams params, const Lattice lattice, const Kept kep
     return block;
 }
 
-// The length along the ray where a block ends.
+// Returns the length along the ray at which a block ends.
 float end_of_block(const RaycastParams params, const Lattice lattice, const Block block)
 {
     return block.is_last ? lattice.end : step_begin(params, lattice.begin, block.end);
 }
 
 #ifdef SHELLED
-// Draws crossings of the iso-surface outside the loops that search and take samples, since crossings are few.
+// Draws crossings of the iso-surface. They are few, so this code is outside the loops that search and take samples.
 void take_between_shells(const RaycastParams params, const Ray ray, const Lattice lattice, uint end_step,
                          inout Shell shell, inout March march, inout Work work)
 {

@@ -20,8 +20,8 @@ const uint GROUP_WIDTH = 8u;   // tiles
 #include "../library/rays.glsl"
 #include "../library/surface_list.glsl"
 
-// Factor on the slack of boxes: normals are off by a few ulps, over distances that the slack allows for; and tiles
-// extend half a pixel beyond their rays.
+// Factor on the slack of boxes. It allows for normals that are off by a few ulps, over distances that the slack covers,
+// and for tiles that extend half a pixel beyond their rays.
 const float SLACKS = 8.0;
 
 struct Side {
@@ -122,6 +122,6 @@ void main()
         node = is_met ? node + 1u : box.skip;
         goes_on = node < scene.end_node && count <= SURFACES_IN_TILE;
     } while (goes_on);
-    // If the device has aborted the loop, the list also counts as too long: rays then search the boxes.
+    // If the device has aborted the loop, marks the list as too long, so that rays search the boxes instead.
     imageStore(surface_tiles, counted, uvec4(node < scene.end_node ? SURFACES_IN_TILE + 1u : count));
 }

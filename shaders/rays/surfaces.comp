@@ -51,8 +51,8 @@ vec4 packed_hit(const Hit hit)
     return vec4(hit.at, float(hit.index / INDEX_PART), float(hit.index % INDEX_PART), float(hit.is_inside));
 }
 
-// The surface whose range begins first wins; at equal lengths, the surface with the lower number wins, so that the
-// search order does not matter.
+// Replaces the hit by this surface if its range begins earlier or, at equal lengths, if its number is lower, so that
+// the search order does not matter.
 void consider(vec2 range, float begin, uint number, uint index, inout Hit hit)
 {
     const float at = max(range.x, begin);
@@ -65,7 +65,7 @@ void consider(vec2 range, float begin, uint number, uint index, inout Hit hit)
 }
 
 #ifdef LISTED
-// Two differences that must not be mixed: that of the whole parts is exact near the origin, that of the rests is small.
+// Subtracts whole parts and rests separately: the first difference is exact near the origin, the second is small.
 vec3 from_origin(const SurfaceParams scene, const Surface surface)
 {
     precise vec3 whole = surface.from - scene.origin;
@@ -128,7 +128,7 @@ Hit unpacked_hit(const vec4 packed)
 #endif
 
 #ifdef LISTED
-// Meets the surfaces of a tile's list.
+// Tests the line against the surfaces of a tile's list.
 void meet_listed(const SurfaceParams scene, const Line line, float begin, uvec2 in_part, uint end_of_tile,
                  inout Hit hit)
 {
@@ -142,7 +142,7 @@ void meet_listed(const SurfaceParams scene, const Line line, float begin, uvec2 
 }
 #endif
 
-// The lit colour of the surface that a line meets.
+// Returns the lit colour of the surface that a line meets.
 vec3 look_of(const RaycastParams params, const SurfaceParams scene, const Line line, const Hit hit)
 {
     const vec3 at = line.origin + hit.at * line.direction;

@@ -43,7 +43,7 @@ uint density_reads = 0u;
 #ifdef PAGED
 #include "../library/pages.glsl"
 #else
-// The region that contains a position: an empty one, with nothing visible (distance > 0), or a brick.
+// The region that contains a position: a brick, or an empty region with nothing visible (distance > 0).
 struct Place {
     uint distance;   // in cells
     uint slot;

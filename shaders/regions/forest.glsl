@@ -1,6 +1,6 @@
 // The forest of runs. Needs `bits` (words) and `parents` (one uint per bit, valid at first bits of runs).
 
-// First bit of the run that holds `bit` of `word`.
+// Returns the first bit of the run in `word` that contains `bit`.
 uint run_start(uint word, uint bit)
 {
     const uint gaps = ~word & ((1u << bit) - 1u);   // clear bits below

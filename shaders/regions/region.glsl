@@ -1,4 +1,4 @@
-// Shared by the region kernels: one thread per word. Needs `params` (RegionParams).
+// Code that the region kernels share: one thread per word. Needs `params` (RegionParams).
 
 uint word_index(uvec3 word)
 {
@@ -10,7 +10,7 @@ bool outside_region(uvec3 word)
     return word.x >= params.words_per_row || word.y >= params.size.y || word.z >= params.size.z;
 }
 
-// Bits [begin, end) of a word whose first bit is `first`.
+// Returns the mask of bits [begin, end) in a word whose first bit has the index `first`.
 uint span_bits(int begin, int end, int first)
 {
     const int low = clamp(begin - first, 0, 32), high = clamp(end - first, 0, 32);

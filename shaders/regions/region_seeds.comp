@@ -1,5 +1,5 @@
-// One word per thread: marks the roots of components that hold a seed: a set voxel of the region that is also set in
-// another box of bits, the previous object, which may be anywhere relative to the region.
+// One word per thread: marks the roots of components that hold a seed. A seed is a set voxel of the region that is also
+// set in the box of bits of the previous object; this box may be anywhere relative to the region.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

@@ -11,15 +11,15 @@ struct Window {
     bool operator==(const Window&) const = default;
 };
 
-/// Returns the window with the largest sum of squared errors; its sides are a quarter of the picture's. In case of a
-/// tie, the first window from the top.
+/// Returns the window with the largest sum of squared errors; its sides are a quarter of the picture's. If several
+/// windows tie, returns the first one from the top.
 Window worst_window(const ImageF& picture, const ImageF& truth);
 /// Returns the window's pixels as displayed (8 bits), each enlarged to `times` x `times`.
 Image8 enlarged(const ImageF& picture, const Window& window, int times);
-/// In linear light, within the window only.
+/// Returns the RMSE in linear light, within the window only.
 double rmse_in(const ImageF& picture, const ImageF& truth, const Window& window);
 
-/// One scene's insets: the reference, each quality, another program.
+/// One scene's insets: of the reference, of each quality, and of another program.
 struct Insets {
     Window window;
     std::vector<std::pair<std::string, const ImageF*>> pictures;  ///< refer to the pictures that they were made from

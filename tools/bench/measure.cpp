@@ -95,7 +95,7 @@ struct Prepared {
     const Run* run;
     golden::Studio* studio;
     Session session;
-    size_t passes = 0;  ///< number of passes of a picture for which everything is prepared
+    size_t passes = 0;  ///< number of passes in a picture that needs no preparation
     int redraws = 0;
 };
 
@@ -243,8 +243,8 @@ void time_in_turns(std::vector<Timed>& timed, int rounds, const std::function<vo
     }
 }
 
-/// Returns the 95 % interval of the median by a deterministic bootstrap: draws equally many times from `sorted` with
-/// replacement, again and again, and takes their medians. `sorted` holds at least one.
+/// Returns the 95 % interval of the median by a deterministic bootstrap: resamples `sorted` many times, with
+/// replacement and at its own size, and takes the median of each resample. `sorted` has at least one value.
 std::pair<double, double> interval_of_median(const std::vector<double>& sorted)
 {
     constexpr size_t DRAWS = 1000;

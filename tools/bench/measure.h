@@ -1,6 +1,6 @@
 #pragma once
-// Draws a scene in every way of `runs`, measures each against the reference renderer, and times them in interleaved
-// rounds. One thread, apart from the reference's.
+// Draws a scene with the settings of each of `runs`, measures each picture against the reference renderer, and times
+// the runs in interleaved rounds. One thread, apart from the threads of the reference renderer.
 
 #include <functional>
 
@@ -23,8 +23,8 @@ struct MeasureOptions {
     std::function<void(const std::string& what, double share)> tell = {};  ///< may throw, which ends the work
 };
 
-/// A scene with pictures to look at: the reference's, those of the qualities, and another program's, drawn with the
-/// step of `interactive`.
+/// A scene and its pictures for readers: the reference, one for each quality, and another program's picture, drawn with
+/// the step of `interactive`.
 struct Pictures {
     ImageF reference;
     std::vector<std::pair<std::string, ImageF>> of_qualities, of_peers = {};
@@ -41,7 +41,7 @@ Results who_measures(const std::string& device);
 Error error_of(const ImageF& picture, const ImageF& reference);
 /// Resizes bilinearly between pixel centres, with the border repeated.
 ImageF resized(const ImageF& image, int width, int height);
-/// Needs at least one value; the 95th percentile is one of the values.
+/// Needs at least one measurement. The 95th percentile is not interpolated: it is a measured value.
 Time time_of(std::vector<double> milliseconds);
 
 }  // namespace shvr::bench

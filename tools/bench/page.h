@@ -8,7 +8,7 @@
 namespace shvr::bench {
 
 enum class Metric { rmse, flip };
-/// A scene's runs: milliseconds to the right, error upwards, one series per family, with the qualities labelled.
+/// Plots a scene's runs: milliseconds to the right, error upwards, one series per family, with labelled qualities.
 report::Plot plot_of(const SceneResult& scene, Metric metric);
 /// Plots the qualities of all scenes over the number of samples that they read: one series per scene.
 report::Plot plot_of_qualities(const Results& results);

@@ -28,10 +28,10 @@ struct PeerRun {
 };
 /// The runs of all mappers.
 std::vector<PeerRun> peer_runs(const PeerOptions& options, bool quick);
-/// Whether a family of runs is the peer's.
+/// Returns whether a family of runs is the peer's.
 bool is_peer(const std::string& family);
 
-/// Reason why VTK cannot draw the same picture, as the end of a sentence; null if it can.
+/// Returns why VTK cannot draw the same picture, as the end of a sentence; null if it can.
 std::optional<std::string> why_not_by_peer(const Session& session, const VolumeSource& source, const Camera& camera,
                                            const std::string& mapper);
 

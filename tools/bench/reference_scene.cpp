@@ -55,7 +55,7 @@ glm::dvec3 to_light(const glm::dvec3& stated, const Camera& camera)
     return glm::dmat3(right, glm::cross(back, right), back) * along;
 }
 
-/// The opacity of a reference length at a position; 0 outside the drawn region.
+/// The opacity, per reference length, at a position; 0 outside the drawn region.
 class OpacityField {
 public:
     explicit OpacityField(const reference::Scene& scene) : scene_(scene), transfer_(scene.points) {}
@@ -72,7 +72,7 @@ public:
         return transfer_.at(reference::density_at(scene_, voxel)).a;
     }
 
-    /// Whether a sample next to a voxel's centre may show something.
+    /// Returns whether a sample next to a voxel's centre may show something.
     bool shows_near(const glm::dvec3& centre) const
     {
         for (int corner = 0; corner < 27; ++corner) {
@@ -88,7 +88,7 @@ private:
     reference::Transfer transfer_;
 };
 
-/// The surface at a voxel's centre, by central differences over two voxels (occlusion.h).
+/// Returns the surface at a voxel's centre, from central differences over two voxels (occlusion.h).
 reference::OcclusionSide side_at(const reference::Scene& scene, const glm::dvec3& centre, const glm::dvec3& per_unit)
 {
     glm::dvec3 slope(0.0);
@@ -159,7 +159,7 @@ std::optional<double> first_hit(const Ball& ball, const reference::Ray& ray, con
     return std::max(near, ray.t_min);
 }
 
-/// Blinn-Phong for a surface with full certainty of its normal.
+/// Returns Blinn-Phong light for a surface whose normal is certain.
 glm::dvec3 lit(const Ball& ball, const reference::Shading& light, const glm::dvec3& normal, const glm::dvec3& to_eye)
 {
     const glm::dvec3 towards = glm::normalize(light.to_light), sum = towards + to_eye;

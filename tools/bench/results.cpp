@@ -150,14 +150,14 @@ void compare_runs(const SceneResult& of_a, const Measured& a, const SceneResult&
     if (looked.at_times) compare_times(of_a, a, of_b, b, looked, changes);
 }
 
-/// The run of `scene` that was drawn with the same settings; null if there is none.
+/// Returns the run of `scene` that was drawn with the settings of `run`; null if there is none.
 const Measured* same_run(const SceneResult& scene, const Measured& run)
 {
     const auto found = std::ranges::find(scene.runs, run.name, &Measured::name);
     return found != scene.runs.end() && found->settings == run.settings ? &*found : nullptr;
 }
 
-/// "only A has tubes; tissue: step 4": lists content that only `a` has.
+/// Lists the content that only `a` has: "only A has tubes; tissue: step 4".
 std::optional<std::string> only_in(const Results& a, const Results& b, const char* name)
 {
     std::string found;

@@ -38,7 +38,7 @@ struct Measured {
     double first_ms = 0.0;                               ///< time of the first picture, which includes preparation
     std::vector<std::pair<std::string, uint64_t>> work;  ///< exact counters
     uint64_t device_bytes = 0;
-    int redraws = 0;  ///< number of timed pictures that were drawn again because the first one created shared data
+    int redraws = 0;  ///< number of timed pictures that were drawn twice because the first time created shared data
     bool on_front = false;  ///< no other run of the scene is better in both error and median time
 };
 
@@ -82,9 +82,9 @@ Results read_results(const std::filesystem::path& file);
 std::string csv_of(const Results& results);
 /// Lists the values that are the same in every run on one machine: the error and the work of each of SHVR's runs.
 std::string front_csv(const Results& results);
-/// For each scene, family and limit of the RMSE: the fastest run whose RMSE is at most the limit.
+/// Lists, for each scene, family and limit of the RMSE, the fastest run whose RMSE is at most the limit.
 std::string equal_error_csv(const Results& results);
-/// For each scene, family and preset of quality: the run with the least error that is no slower than the preset.
+/// Lists, for each scene, family and quality preset, the most accurate run that is no slower than the preset.
 std::string equal_time_csv(const Results& results);
 
 /// Another program's run, and two of SHVR's runs: the fastest one whose error is no larger, and the one with the same
@@ -97,13 +97,13 @@ struct AtPeersError {
 };
 /// The results point into `results`.
 std::vector<AtPeersError> at_peers_errors(const Results& results);
-/// The rows of at_peers_errors, with SHVR's time relative to the other program's.
+/// Returns the rows of at_peers_errors, with SHVR's time relative to the other program's time.
 std::string equal_peer_csv(const Results& results);
 
-/// A difference between `a` and `b`: of an error, by more than 1 % (a picture's error is the same in every run on one
-/// machine); of a counter, by any amount (if driver and instructions agree: otherwise a ray may end a sample later); of
-/// a median, by more than the noise of both (tools/report/noise.h), after both were scaled by their yardsticks: a
-/// busier machine does not mean a slower program.
+/// A difference between `a` and `b`. Errors are listed if they differ by more than 1 % (a picture's error is the same
+/// in every run on one machine). Counters are listed if they differ at all, provided that driver and instructions agree
+/// (otherwise a ray may end a sample later). Medians are listed if they differ by more than the noise of both
+/// (tools/report/noise.h), after scaling by the yardsticks: a busier machine does not mean a slower program.
 struct Change {
     std::string scene, run, what;  ///< "rmse", "samples", "median_ms"
     double a = 0.0, b = 0.0, noise = 0.0;
@@ -112,7 +112,7 @@ struct Change {
 };
 struct Comparison {
     std::vector<Change> changes;      ///< all differences; regressions first
-    std::vector<std::string> beside;  ///< sentences: runs that only one file has, times that mean nothing
+    std::vector<std::string> beside;  ///< sentences about runs that only one file has, and about meaningless times
 };
 /// Fails if the two have no run in common. `with_times`: also compares times.
 Comparison compare(const Results& a, const Results& b, bool with_times);

@@ -176,7 +176,7 @@ std::vector<Scene> own_scenes(int64_t side, const glm::uvec2& pixels)
                          {"radius", (4 + i) * unit},
                          {"color", i % 2 ? "#ff6020" : "#40c0ff"}});
     scenes.push_back(scene_of("surfaces", "opaque balls in translucent tissue", made(tissue, {{"surfaces", balls}})));
-    // Three of the scenes above, shaded as other programs define it.
+    // Three of the scenes above, with shading as other programs define it.
     const Json noisy = points_of({{50, 0.0}, {58, 1.0}, {255, 1.0}});
     scenes.push_back(
         scene_of("tubes-matt", "the clean opaque tubes, matt: as VTK can draw them, too", made(opaque, matt())));
@@ -286,7 +286,7 @@ std::vector<Run> runs_of(const Scene& scene, bool quick)
 
 std::vector<Run> mixed_runs(int count)
 {
-    // A Latin hypercube: divides each knob's range into `count` equal parts, and uses each part once.
+    // Makes a Latin hypercube: divides each knob's range into `count` equal parts, and uses each part once.
     std::mt19937 random(1);
     const auto places = [&] {
         std::vector<int> order(size_t(std::max(count, 0)));

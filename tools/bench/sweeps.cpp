@@ -80,7 +80,7 @@ private:
     }
 };
 
-/// Seconds per call, the median of several.
+/// Returns the seconds per call: the median of several calls.
 double median_seconds(const std::function<void()>& call)
 {
     std::vector<double> seconds;

@@ -33,9 +33,9 @@ struct SweepOptions {
     std::function<void()> poll = {};  ///< may throw, which ends the work
 };
 
-/// Blur time by sigma and voxel type; the error is that against a direct sum in double up to 8 sigma.
+/// Measures blur time by sigma and voxel type; the error is the difference from a direct sum, in double, up to 8 sigma.
 Sweep sweep_blur(const SweepOptions& options);
-/// Labelling time by fraction of open voxels and by connectivity, compared with breadth-first labelling.
+/// Measures labelling time by fraction of open voxels and by connectivity; compares with breadth-first labelling.
 Sweep sweep_labelling(const SweepOptions& options);
 
 /// The sweep's own CSV.

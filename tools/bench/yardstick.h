@@ -1,9 +1,9 @@
 #pragma once
-// Measures the machine's present speed by a fixed amount of work, to distinguish it from changes of the program.
+// Times a fixed amount of work, to distinguish changes of the machine's speed from changes of the program's.
 
 namespace shvr::bench {
 
-/// Milliseconds that `threads` threads take for a fixed piece of arithmetic each: a few on present machines.
+/// Returns the milliseconds in which `threads` threads each do a fixed piece of arithmetic: a few ms at present.
 double yardstick_ms(int threads);
 
 }  // namespace shvr::bench

@@ -40,7 +40,7 @@ void add_input_options(CLI::App& command, Common& common);
 /// Adds only --spacing and --unit, for commands that read volumes without a session. Impossible values are refused.
 void add_spacing_options(CLI::App& command, const std::function<void(const glm::dvec3&)>& take_spacing,
                          const std::function<void(const std::string&)>& take_unit);
-/// The input options, and --device, --budget-device, --budget-host, --threads.
+/// Adds the input options, --device, --budget-device, --budget-host and --threads.
 void add_device_options(CLI::App& command, Common& common);
 /// --budget-host
 void add_host_budget_option(CLI::App& command, Common& common, const std::string& help);
@@ -104,9 +104,9 @@ void warn_of_gaps(Opened& opened, const std::string& path, const Common& common)
 
 /// {device, host, by_resource}
 Json bytes_of(Renderer& renderer);
-/// Numbers of bricks loaded and evicted if the volume is paged; null otherwise.
+/// Returns the numbers of bricks loaded and evicted if the volume is paged; null otherwise.
 Json bricks_of(const Renderer& renderer);
-/// Work counters by name, summed over the passes.
+/// Returns work counters by name, summed over the passes.
 Json counters_of(const std::vector<gpu::PassReport>& passes);
 
 /// If the Khronos validation layer is on (SHVR_VALIDATION=1) and has reported anything, fails with its first message.

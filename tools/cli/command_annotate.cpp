@@ -284,7 +284,7 @@ void run_actions(const AnnotateCommandOptions& options)
             options.project, ": cannot be annotated: ", bench.document().why_only_looks(),
             bench.document().outside.empty() ? "; expected it to be closed there first" : "; --outside writes there"));
     static_cast<void>(work.begin("replaying " + name));
-    bench.set_hand_down(true);  // no step of settings ends by itself: the log states where
+    bench.set_hand_down(true);  // steps of settings stay open until the log ends them
     size_t done = 0;
     for (const auto& [number, action] : actions) {
         work.show(double(done++) / double(actions.size()), {}, -1.0);

@@ -1,4 +1,4 @@
-// shvr bench: time against error, each way of drawing measured against the reference renderer.
+// shvr bench: measures time and error of each way of drawing, compared with the reference renderer.
 
 #include <iostream>
 #include <sstream>
@@ -22,11 +22,11 @@ struct ErrorBenchOptions {
     std::vector<std::string> sweeps;
     std::vector<std::string> compared;  ///< none, or two files
     std::vector<std::string> mappers = {"fixed"};
-    std::string peer, examples;  ///< empty: those of the tree in which the program was built
-    int64_t side = 0;            ///< 0: 32 where quick, otherwise 64
+    std::string peer, examples;  ///< empty: paths in the tree in which the program was built
+    int64_t side = 0;            ///< 0: 32 if quick, otherwise 64
     std::vector<uint32_t> size;  ///< size of pictures; empty: 48 x 36 if quick, otherwise 120 x 90
     bool quick = false, ignores_time = false;
-    int rounds = 0;  ///< 0: 3 where quick, otherwise 7
+    int rounds = 0;  ///< 0: 3 if quick, otherwise 7
     int mixed = 0;
 };
 
@@ -54,7 +54,7 @@ Json pareto_row(const bench::SceneResult& scene, const bench::Measured& run)
 constexpr const char* SWEEPS[] = {"blur", "labelling", "proxy"};
 constexpr int64_t MAX_SWEEP_BYTES = 1 << 20;
 
-/// A file of the tree in which the program was built; empty if it is not there.
+/// Returns a file of the tree in which the program was built; empty if the file is not there.
 std::filesystem::path in_tree(const std::filesystem::path& path)
 {
     std::error_code unknown;
@@ -63,7 +63,7 @@ std::filesystem::path in_tree(const std::filesystem::path& path)
     return std::filesystem::exists(found, unknown) ? found : std::filesystem::path();
 }
 
-/// The present commit of the tree in which the program was built. The program was built from it unless files changed.
+/// The present commit of the tree in which the program was built. It is that of the program unless files changed.
 std::string commit_of_tree()
 {
     const std::filesystem::path folder = in_tree(".git");

@@ -88,7 +88,7 @@ void run_goldens(const GoldenCommandOptions& options)
                                  outcome.failed.front(), "; see ", outcome.report.string()));
 }
 
-/// The goldens that failed in the last run, if only these are requested.
+/// Returns the matching goldens; with `only_failed`, those of them that failed in the last run.
 std::vector<golden::Golden> chosen(const GoldenCommandOptions& options)
 {
     std::vector<golden::Golden> goldens = golden::goldens_in(options.folder, options.pattern);

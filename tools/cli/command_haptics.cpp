@@ -40,7 +40,7 @@ std::vector<std::string> choices()
     return names;
 }
 
-/// Returns which voxels are felt, by the session's settings; traces of older programs felt hidden voxels, too.
+/// Returns the session's limits of the voxels that are felt. In traces of older programs hidden voxels are felt, too.
 FeltLimits limits_of(const ReplayCommandOptions& options, const Trace& trace, const UnmeasuredSession& opened,
                      LongWork& work)
 {
@@ -73,8 +73,8 @@ Document felt_document(const ReplayCommandOptions& options, const UnmeasuredSess
     return work.document();
 }
 
-/// Makes coarser levels if the trace needs them and the file has none: at some size or speed, a large ball is felt on
-/// coarser levels.
+/// Makes coarser levels if the trace needs them and the file has none: a large ball is felt on coarser levels at some
+/// sizes and speeds.
 std::shared_ptr<const VolumeSource> with_levels_for(const Trace& trace, std::shared_ptr<const VolumeSource> source,
                                                     LongWork& work)
 {
@@ -87,7 +87,7 @@ std::shared_ptr<const VolumeSource> with_levels_for(const Trace& trace, std::sha
     return needs_levels ? with_levels(std::move(source), HOST_BYTES, work.begin("making coarser levels")) : source;
 }
 
-/// Returns a function that computes relevance as the window mirrors it. A trace without a unit gets the volume's.
+/// Returns a function that computes relevance as the window's mirror does. A trace without a unit gets the volume's.
 MakeRelevance relevance_of(const ReplayCommandOptions& options, Trace& trace, LongWork& work)
 {
     const UnmeasuredSession opened = open_unmeasured_session(options.volume, options.common.settings);

@@ -69,7 +69,7 @@ void cut(const std::vector<uint8_t>& scene, const glm::dvec3& point, int32_t sid
             }
 }
 
-/// Makes a trace of a hand that follows the tube at 20 mm/s and strays like a human hand. A voxel is 0.25 mm for it.
+/// Makes a trace of a hand that follows the tube at 20 mm/s and strays like a human hand. A voxel is 0.25 mm.
 Trace make_trace(double radius_voxels, TouchMode mode, size_t ticks)
 {
     Trace trace;
@@ -107,7 +107,7 @@ constexpr Case CASES[] = {{64, 12.0, TouchMode::object},  {64, 12.0, TouchMode::
 Json run_case(const std::vector<uint8_t>& scene, const Case& one, LongWork& work, Json& first)
 {
     constexpr size_t TICKS = 1500;
-    constexpr uint32_t EVERY = 2;  // half of the ticks grow again: far more than a mirror delivers
+    constexpr uint32_t EVERY = 2;  // every second tick grows relevance: far more than a mirror delivers
     const Trace trace = make_trace(one.radius, one.mode, TICKS);
     const MakeRelevance make = [&](const RegionWish& wish, double, RelevancePatch& patch) {
         work.stop_if_asked();
@@ -126,7 +126,7 @@ Json run_case(const std::vector<uint8_t>& scene, const Case& one, LongWork& work
             {"energy_mj", measured["energy_mj"]}};
 }
 
-/// The servo on the real clock, with a modelled Touch at rest in the tube.
+/// Runs the servo on the real clock, with a modelled Touch at rest in the tube.
 Json run_servo(const std::vector<uint8_t>& scene, double seconds, LongWork& work)
 {
     const Trace trace = make_trace(12.0, TouchMode::object, 1);

@@ -27,7 +27,7 @@ struct PhantomCommandOptions {
     std::string type = "uint8";
     std::string hand = "right";
     PhantomSpec spec;
-    std::vector<const CLI::Option*> of_capitulum, of_flaws;  ///< options that kinds without these parts refuse
+    std::vector<const CLI::Option*> of_capitulum, of_flaws;  ///< options refused for kinds without these parts
 };
 
 /// "64" or "64x32x16"
@@ -97,8 +97,8 @@ TraceGraph trace_of(const Phantom& truth, const VolumeInfo& volume)
     return trace;
 }
 
-/// Writes FOLDER/NAME.nhdr and NAME.raw. The header is opened first, so that an unwritable name fails before the long
-/// work; and committed last, so that no header describes voxels not yet written.
+/// Writes FOLDER/NAME.nhdr and NAME.raw. Opens the header first, so that an unwritable name fails before the long work,
+/// and commits it last, so that no header describes voxels not yet written.
 std::string write_volume(const std::filesystem::path& folder, const std::string& name, const VolumeSource& volume,
                          LongWork& work)
 {

@@ -25,11 +25,11 @@ struct Row {
     std::string method;
     double radius = 0.0;        ///< voxels
     int points = 0;             ///< 0: exact
-    double error = 0.0;         ///< RMS, relative to the radius, against `slow_mean`
+    double error = 0.0;         ///< RMS difference from `slow_mean`, relative to the radius
     double microseconds = 0.0;  ///< median of all positions
 };
 
-/// A slanted tube through the middle, half as wide as the ball, and 1 % noise.
+/// Makes a slanted tube through the middle, half as wide as the ball, with 1 % noise.
 void make_scene(double radius, RelevancePatch& patch)
 {
     std::mt19937 random(5);

@@ -11,10 +11,10 @@
 
 namespace shvr::cli {
 
-/// One at a time, on the thread that runs the command. During its lifetime, the first Ctrl-C (SIGINT) or SIGTERM asks
-/// the command to stop (stop.h); the command then ends as after an error: files are complete or absent. A second signal
-/// ends the program at once. Unless `quiet`, a line on standard error shows work that takes longer than a second,
-/// including work that never reports progress.
+/// At most one exists, on the thread that runs the command. During its lifetime, the first Ctrl-C (SIGINT) or SIGTERM
+/// asks the command to stop (stop.h); the command then ends as after an error: files are complete or absent. A second
+/// signal ends the program at once. Unless `quiet`, a line on standard error shows work that takes longer than a
+/// second, including work that never reports progress.
 class LongWork final : public ProgressReporter {
 public:
     explicit LongWork(bool quiet);
@@ -34,7 +34,7 @@ private:
 
 /// Returns the work that was begun last, in words: "loading scan.nrrd"; empty: none was begun.
 std::string last_begun();
-/// The largest amount of memory that this process has held.
+/// Returns the largest amount of memory that this process has held.
 int64_t peak_mebibytes();
 /// Erases the progress line from the terminal until the next update; call it before anything is printed.
 void clear_progress();

@@ -91,7 +91,7 @@ int run(int argc, char** argv)
     return Exit::done;
 }
 
-/// " while loading scan.nrrd"; empty: nothing long was begun.
+/// Returns " while loading scan.nrrd", or empty text if nothing long was begun.
 std::string while_doing()
 {
     const std::string what = shvr::cli::last_begun();

@@ -7,10 +7,10 @@
 
 namespace shvr::cli {
 
-/// Sleeps in some turns of such a loop: otherwise the loop would keep cores busy on which a software device draws.
+/// Sleeps in some turns of such a loop, which would otherwise occupy cores that a software device needs to draw.
 inline void rest(uint64_t turn)
 {
-    constexpr uint64_t TURNS_AT_ONCE = 8;  // rare, so that work of many turns that never waits takes no longer
+    constexpr uint64_t TURNS_AT_ONCE = 8;  // sleeps are rare, so as not to slow down work that never waits
     if (turn % TURNS_AT_ONCE == TURNS_AT_ONCE - 1) std::this_thread::sleep_for(std::chrono::microseconds(200));
 }
 

@@ -16,7 +16,7 @@ std::atomic<bool> command_listens = false, is_requested = false;
 std::atomic<int> first_signal = 0;
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
-/// After SIGPIPE the reader of the output wants no further result, and standard error may be the same pipe.
+/// After SIGPIPE, nothing is printed: the reader has left, and standard error may be the same pipe.
 constexpr int HANDLED[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 
 /// Calls only async-signal-safe functions.

@@ -24,7 +24,7 @@ public:
 
     bool is_made() const { return flag(); }
     static const std::atomic<bool>& flag();
-    /// "stopped by Ctrl-C", "stopped by SIGTERM" or "stopped by SIGHUP".
+    /// Returns "stopped by Ctrl-C", "stopped by SIGTERM" or "stopped by SIGHUP".
     static const char* in_words();
 };
 

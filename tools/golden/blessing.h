@@ -20,7 +20,7 @@ Maker maker_of(Renderer& renderer);
 
 /// Kernel counters (shaders/counters.h) by name, as spelled in side-cars and --json, summed over passes.
 std::vector<std::pair<std::string, uint64_t>> work_of(std::span<const gpu::PassReport> passes);
-/// Exact work counters of a picture by name, summed over its passes, and how many passes and dispatches there were.
+/// Returns exact work counters of a picture by name, summed over its passes, and the counts of passes and dispatches.
 std::vector<std::pair<std::string, uint64_t>> counters_of(const Picture& picture);
 
 /// The result of drawing.
@@ -31,7 +31,7 @@ struct Drawn {
     std::vector<std::pair<std::string, uint64_t>> work;  ///< exact counters by name, summed over passes
     bool work_is_exact = true;                           ///< false: bricks are paged, and counters depend on the disk
 };
-/// The first picture of a studio, whose passes include preparation.
+/// Draws the first picture of a studio; the passes of this picture include preparation.
 Drawn drawn_by(Studio& studio);
 
 /// Returns why picture and side-car do not match, or which of them is missing; null if all is well.

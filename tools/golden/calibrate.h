@@ -39,7 +39,7 @@ struct Spread {
 std::vector<Spread> calibrate(const std::vector<Golden>& goldens, const std::filesystem::path& output,
                               const DrawAll& draw_all);
 
-/// The spreads as a page of Markdown, for version control. `command`: the command that makes it.
+/// Returns the spreads as a page of Markdown, for version control. `command`: the command that makes the page.
 std::string table_of(const std::vector<Spread>& spreads, const std::string& command);
 
 /// Whether `strictness` allows twice `most`.

@@ -25,7 +25,7 @@ void read_script_lines(Golden& golden, const JsonNode& lines)
     }
 }
 
-/// The maximum difference of the pixels' channels in 8-bit levels.
+/// Returns the largest difference of any channel between both pictures at a pixel, in 8-bit levels.
 int apart(const Image8& a, const Image8& b, size_t pixel)
 {
     int most = 0;
@@ -34,7 +34,7 @@ int apart(const Image8& a, const Image8& b, size_t pixel)
     return most;
 }
 
-/// Returns `actual`, with the EDGE_FRACTION of its pixels that differ most replaced by those of `expected`.
+/// Returns `actual` after replacing the most different pixels (EDGE_FRACTION of all) by pixels of `expected`.
 Image8 without_edges(Image8 actual, const Image8& expected)
 {
     std::vector<std::pair<int, size_t>> differing;

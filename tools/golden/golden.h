@@ -48,7 +48,7 @@ struct Golden {
 
 /// Fails with a sentence if the file does not conform to README.md.
 Golden read_golden(const std::filesystem::path& file);
-/// The goldens in `folder` whose names match `pattern` ('*', 'tubes_*'), sorted by name. Fails if there are none.
+/// Returns the goldens in `folder` with names that match `pattern` ('*', 'tubes_*'), by name. Fails if none match.
 std::vector<Golden> goldens_in(const std::filesystem::path& folder, const std::string& pattern = "*");
 
 /// Shell patterns: '*', '?', '[ab]'.
@@ -57,7 +57,7 @@ bool matches(const std::string& name, const std::string& pattern);
 /// Returns why `actual` does not match `expected`: each limit exceeded, with the value found; null if it matches.
 std::optional<std::string> why_different(const Image8& actual, const Image8& expected, Strictness strictness);
 
-/// FNV-1a, 64 bits, of a picture's file, as 16 digits. Protects against mistakes, not against malice.
+/// Returns the 64-bit FNV-1a hash of a picture's file as 16 digits. Protects against mistakes, not against malice.
 std::string hash_of(std::span<const std::byte> bytes);
 
 }  // namespace shvr::golden

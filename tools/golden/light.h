@@ -1,5 +1,5 @@
 #pragma once
-// Pictures in linear light, 32-bit floats, as portable float maps, as written by `write_pfm`
+// Pictures in linear light, as 32-bit floats: portable float maps in the form that `write_pfm` writes
 // (engine/base/image_file.h).
 
 #include <filesystem>

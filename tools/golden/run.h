@@ -31,7 +31,7 @@ constexpr bool is_failure(Status status)
     return status != Status::passed && status != Status::informative;
 }
 
-/// Whether `shvr golden bless` helps: false if nothing was drawn, and on a device that may not bless.
+/// Returns whether `shvr golden bless` helps: not if nothing was drawn, nor on a device that may not bless.
 constexpr bool can_be_blessed(Status status)
 {
     return status == Status::failed || status == Status::missing;
@@ -69,8 +69,8 @@ Outcome read_run(const std::filesystem::path& output, const std::string& pattern
 void write_reports(const Outcome& outcome, const std::filesystem::path& output);
 
 nlohmann::ordered_json json_of(const Result& result);
-/// A self-contained page: failures first; expected, actual, difference times 16 and FLIP; a slider, blinking (key b),
-/// both colours under the pointer, metrics, and the command that blesses.
+/// Returns a self-contained page with the failures first. Shows expected and actual pictures, their difference times
+/// 16, and FLIP; has a slider, blinking (key b), both colours under the pointer, metrics, and the command that blesses.
 std::string page_of(const std::vector<Result>& results);
 std::string junit_of(const std::vector<Result>& results);
 

@@ -15,8 +15,8 @@ namespace shvr::golden {
 /// Part of the name of Mesa's lavapipe device.
 inline constexpr std::string_view LAVAPIPE = "llvmpipe";
 
-/// Sets the environment for all goldens drawn later in this process. Lavapipe samples exactly (its fast 8-bit path is
-/// off by 1.6 levels), and it is the device, unless the environment or `device` states another.
+/// Sets the environment for all goldens drawn later in this process. Makes lavapipe sample exactly (its fast 8-bit path
+/// is off by 1.6 levels), and selects it as the device, unless the environment or `device` states another.
 void set_environment(const std::string& device = "");
 
 struct StudioOptions {

@@ -4,8 +4,8 @@
 namespace shvr::report {
 
 inline constexpr int GLYPH_COLUMNS = 5, GLYPH_ROWS = 7;
-/// Whether the pixel is ink; row 0 is the top, row GLYPH_ROWS the one below the base line. Non-ASCII characters are
-/// blank.
+/// Returns whether the pixel is ink. Row 0 is the top row, and row GLYPH_ROWS is the row below the base line. Non-ASCII
+/// characters are blank.
 bool glyph_has(char letter, int column, int row);
 
 }  // namespace shvr::report

@@ -11,11 +11,11 @@
 
 namespace shvr::report {
 
-/// Safe between tags and in attributes with either kind of quotes. Control characters become question marks.
+/// Makes text safe between tags and in attributes, quoted either way. Control characters become question marks.
 std::string escaped(std::string_view text);
 /// RFC 4648, with padding.
 std::string base64(std::span<const std::byte> bytes);
-/// A picture as the value of `src`.
+/// Returns a picture as the value of an `src` attribute.
 std::string source_of(const Image8& image);
 /// Returns a whole page: a head with `title`, the style of all pages (light or dark, like the reader's system) and
 /// `style`; then `body`, which is markup. Colours are variables: --ink, --faint, --line, --field, --good, --bad.

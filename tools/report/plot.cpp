@@ -107,7 +107,7 @@ public:
                 for (int row = 0; row <= GLYPH_ROWS; ++row) {
                     if (!glyph_has(text[i], column, row)) continue;
                     const double along = double(i) * (GLYPH_COLUMNS + 1) + column - wide, up = GLYPH_ROWS - row;
-                    // A texel of a letter is a pixel, or slightly more.
+                    // A texel of a letter is as wide as a pixel, or slightly wider.
                     constexpr double TEXEL = 1.25;
                     const double px = upright ? x - TEXEL * up : x + TEXEL * along;
                     const double py = upright ? y - TEXEL * along : y - TEXEL * up;

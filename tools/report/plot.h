@@ -1,6 +1,6 @@
 #pragma once
-// Log-log scatter plots, as SVG and as pixels, drawn by the same code: marks of families in colours distinguishable
-// with any colour vision (Okabe and Ito 2008) and in distinct shapes, a line along the front, labels. Any thread.
+// Log-log scatter plots, as SVG or pixels, drawn by the same code. Families have marks of distinct shapes and colours,
+// distinguishable with any colour vision (Okabe and Ito 2008); a line joins the front; labels. Any thread.
 
 #include <string>
 #include <vector>

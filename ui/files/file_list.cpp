@@ -31,7 +31,7 @@ bool begins_with(std::string_view name, std::string_view text)
     return name.size() >= text.size() && std::ranges::equal(name.substr(0, text.size()), text, {}, lower, lower);
 }
 
-/// The digits at `at`, without leading zeros.
+/// Returns the digits that begin at `at`, without leading zeros.
 std::string_view number_at(std::string_view text, size_t at)
 {
     size_t end = at;

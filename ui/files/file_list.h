@@ -19,7 +19,7 @@ class FileList {
 public:
     using Entry = FolderEntry;
 
-    /// Starts to list that folder, and waits for the list for an unnoticeable time (AT_ONCE). See `failure`.
+    /// Starts to list `folder`, and waits an unnoticeable time (AT_ONCE) for the list. See `failure`.
     void enter(const std::filesystem::path& folder, size_t at_once = FolderReader::READ_AT_ONCE);
     /// Takes entries read since the last call. Returns whether more will follow.
     bool read_on();
@@ -32,7 +32,7 @@ public:
 
     /// Selects which names become rows. `all_files`: also files whose names do not look like files that SHVR opens.
     void show(bool all_files, bool hidden);
-    /// Number of rows: folders first, then files; "slice2" before "slice10".
+    /// Returns the number of rows. Folders come first, then files; "slice2" comes before "slice10".
     size_t size() const { return rows_.size(); }
     const Entry& at(size_t row) const { return entries_[rows_[row]]; }
     size_t left_out() const { return entries_.size() - rows_.size(); }
@@ -66,7 +66,7 @@ std::string size_text(int64_t bytes);  ///< "1.4 GB": 1000 bytes are 1 kB
 /// Returns $HOME, or the root if it is unknown.
 std::filesystem::path home_folder();
 /// Returns the path that a typed text means: "~" is home, surrounding quotes and spaces are dropped, and relative paths
-/// start at `folder`. Without "." and "..".
+/// start at `folder`. The result has no "." or "..".
 std::filesystem::path typed_path(std::string_view typed, const std::filesystem::path& folder);
 /// Returns the typed text, completed as far as all matching names agree; a single matching folder ends in "/".
 std::string completed(const std::string& typed, const std::filesystem::path& folder);
@@ -80,7 +80,7 @@ enum class Wanted {
 /// Result of the check of a chosen path.
 struct Verdict {
     bool enters = false;  ///< true: a folder to enter instead
-    std::string failure;  ///< why it is refused, in a sentence; empty: it is accepted
+    std::string failure;  ///< why the path is refused, in a sentence; empty: the path is accepted
 };
 /// `enters_folders`: folders are entered unless they are opened as a whole. Asks the file system.
 Verdict verdict_on(const std::filesystem::path& path, Wanted wanted, bool enters_folders);

@@ -69,7 +69,7 @@ const char* text_of(FileKind kind)
     return "";
 }
 
-/// A session names itself at its beginning.
+/// Returns whether a file is a session: sessions state this at the beginning.
 bool begins_as_session(const fs::path& path)
 {
     std::array<char, 256> head{};

@@ -27,7 +27,7 @@ struct FileDetails {
     std::optional<int64_t> bytes;  ///< size of a file
     std::string changed;           ///< local time of the last change, "2026-11-22 17:49"; empty if unknown
 };
-/// Determines the kind by the name; for a folder, by a few names of its content. Asks the file system.
+/// Determines a file's kind from its name, and a folder's kind from a few names in it. Asks the file system.
 FileDetails details_of(const std::filesystem::path& path);
 
 struct FolderEntry {

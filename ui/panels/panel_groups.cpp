@@ -63,7 +63,7 @@ bool visible_cell(const ColorGroup& look, GroupSettings& settings)
     return changed;
 }
 
-/// A locked group neither gains nor loses voxels.
+/// Draws the lock of a group. A locked group neither gains nor loses voxels.
 bool locked_cell(bool is_locked, GroupSettings& settings)
 {
     ImGui::TableNextColumn();
@@ -74,7 +74,7 @@ bool locked_cell(bool is_locked, GroupSettings& settings)
     return changed;
 }
 
-/// Switches to drawing only this group; the settings of the others stay.
+/// Draws the switch for drawing only this group, which keeps the other groups' settings.
 void solo_cell(uint8_t group, const Model& model, Actions& actions)
 {
     ImGui::TableNextColumn();
@@ -95,7 +95,7 @@ void set_parent(uint8_t group, uint8_t parent, const Model& model, Actions& acti
     set(actions, model, [&](Session& s) { s.groups[group].parent = parent; });
 }
 
-/// A row dropped onto another becomes its child; dropped onto the row of unpainted voxels, it gets no parent.
+/// A group dropped onto another group's row becomes its child; a group dropped onto the unpainted row loses its parent.
 void drag_and_drop(uint8_t group, const Model& model, Actions& actions)
 {
     if (group != 0 && ImGui::BeginDragDropSource()) {
@@ -137,7 +137,7 @@ bool settings_popup(uint8_t group, const Model& model, GroupSettings& settings, 
     return changed;
 }
 
-/// A click on the name activates the group.
+/// Draws the name of a group. A click on the name activates the group.
 bool name_cell(const GroupRow& row, const Model& model, GroupSettings& settings, Actions& actions)
 {
     const uint8_t group = row.group;
@@ -321,7 +321,7 @@ void group_table(const Model& model, Actions& actions)
     ImGui::EndTable();
 }
 
-/// For users without a right mouse button, or without a mouse.
+/// Draws a button for renaming, for users without a right mouse button or without a mouse.
 void rename_button(const Model& model, Actions& actions)
 {
     const uint8_t group = model.brush().group;

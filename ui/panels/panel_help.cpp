@@ -116,7 +116,7 @@ bool is_found(const Shortcut& shortcut, const Model& model, const std::string& t
         sentence(shortcut.name, ' ', shortcut.group, ' ', shortcut.id, ' ', all_keys_of(shortcut, model.keymap)), text);
 }
 
-/// The shortcuts with headings; the table is ordered by group.
+/// Draws the shortcuts under headings; the table is ordered by group.
 void key_list(std::span<const Shortcut> listed, const Model& model, const std::string& text, Actions& actions)
 {
     const char* group = "";

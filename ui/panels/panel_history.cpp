@@ -63,7 +63,7 @@ void step(const HistoryList& list, const Model& model, size_t row, Actions& acti
 
 }  // namespace
 
-/// Newest steps at the top, where the present one usually is.
+/// Draws the steps with the newest at the top, where the present step usually is.
 void history_panel(const Model& model, Actions& actions)
 {
     const HistoryList list = history_list(model);

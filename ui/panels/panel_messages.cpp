@@ -40,7 +40,7 @@ void head(const Model& model, Shown& shown)
     hint("Copies a bug report: version, device, session path, last actions and messages.");
 }
 
-/// Lists messages in columns: time, weight, text; the newest at the bottom, which is visible unless scrolled away.
+/// Lists messages in columns (time, weight, text). The newest is at the bottom, and visible unless scrolled away.
 void list(const Model& model, Shown shown)
 {
     const ImGuiTableFlags flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit;

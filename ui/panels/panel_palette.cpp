@@ -1,4 +1,4 @@
-// A box in which the user types to find actions and settings: by name, by an action's text, or by a setting's.
+// A search box for actions and settings: finds them by name, or by the text of the action or setting.
 
 #include <algorithm>
 #include <string>

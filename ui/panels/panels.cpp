@@ -55,7 +55,7 @@ bool is_folded(const PanelRow& row, const Model& model)
 
 enum class HeaderSign { float_out, close };
 
-/// A small button of the panel's heading.
+/// Draws a small button in the panel's heading.
 bool header_button(HeaderSign sign, float right, const char* text)
 {
     const float size = ImGui::GetFrameHeight();
@@ -269,7 +269,7 @@ Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& action
         start_page(model, actions);
     status_bar(model, window, actions);
     const float banners = std::min(notices(model, {0.0f, top}, size.x - side, actions), 0.5f * height);
-    // These come first, at the same place.
+    // Notices take precedence over hints, which have the same place.
     const bool has_notice = !model.holder.empty() || !model.outside.empty() || !model.recovered.empty();
     if (model.is_open && !has_notice) first_hints(model, {0.5f * (size.x - side), top}, actions);
     if (model.shows_help) help_window(model, actions);

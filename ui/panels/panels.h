@@ -26,7 +26,7 @@ bool covers(const glm::dvec2& at);
 /// left. While nothing is open, the start page replaces tools and panels.
 Layout draw_panels(const Model& model, const glm::uvec2& window, Actions& actions);
 
-// The panels' contents, each in its own file; engine/workbench/appearance/panel_rows.h has their titles and order.
+// Draw the panels' contents, each in its own file; engine/workbench/appearance/panel_rows.h has their titles and order.
 void transfer_function_panel(const Model& model, Actions& actions);
 void groups_panel(const Model& model, Actions& actions);
 void probe_panel(const Model& model, Actions& actions);
@@ -111,7 +111,7 @@ void jobs_window(const Model& model, const glm::vec2& lower_middle, Actions& act
 /// Draws the page shown while nothing is open.
 void start_page(const Model& model, Actions& actions);
 void status_bar(const Model& model, const glm::uvec2& window, Actions& actions);
-/// Draws the read-only notice at the upper edge of the graphics window, and the question which files to believe.
+/// Draws the read-only notice at the upper edge of the graphics window, and the question which files to trust.
 /// Returns the height that they take.
 float notices(const Model& model, const glm::vec2& begin, float width, Actions& actions);
 

@@ -103,7 +103,7 @@ std::string explanation(const ToolRow& row, const Keymap& keymap)
     return sentence(row.name, key_in_brackets(row.shortcut, keymap), "\n", row.hint);
 }
 
-/// Draws the tool's sign, and its name if there is room; the active tool is underlined as well.
+/// Draws the tool's icon, and its name if there is room. The active tool has its own background and an underline.
 void tool_button(const ToolRow& row, bool has_name, const Model& model, Actions& actions)
 {
     const bool is_used = model.tool() == row.tool;
@@ -139,7 +139,7 @@ ImU32 color_of_group(const glm::dvec3& linear)
     return ImGui::ColorConvertFloat4ToU32({encoded(linear.r), encoded(linear.g), encoded(linear.b), 1.0f});
 }
 
-/// Its colour; the eraser's is crossed out.
+/// Draws a group's colour; the eraser's square is crossed out.
 void swatch(const Model& model, uint8_t group)
 {
     const float size = ImGui::GetFrameHeight();
@@ -162,7 +162,7 @@ std::string label_of_group(const Model& model, uint8_t group)
     return sentence(int(group), "  ", group_of(model.session.groups, group).name);
 }
 
-/// Draws the button of a shortcut whose label is a sign.
+/// Draws a button for a shortcut, with a symbol as its label.
 void step_button(const char* sign, const char* id, const Model& model, Actions& actions)
 {
     const Shortcut* const shortcut = shortcut_named(id);

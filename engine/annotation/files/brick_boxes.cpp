@@ -13,8 +13,8 @@ namespace {
 /// Size limit of a box that contains more than one brick.
 constexpr int64_t BOX_BYTES = int64_t{64} << 20;
 
-/// Size of a box: a stored block of the file if it is small enough and whole bricks fill it exactly, so that nothing is
-/// decoded twice; else a layer of bricks if that is small enough, else one brick.
+/// Returns the size of a box: that of a stored block, if the block is small enough and whole bricks fill it exactly (so
+/// no block is decoded twice); otherwise a layer of bricks if it is small enough, otherwise one brick.
 Size3 box_size(const VolumeSource& source)
 {
     const auto voxel_bytes = int64_t(bytes_of(source.info().type));

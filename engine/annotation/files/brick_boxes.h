@@ -1,6 +1,6 @@
 #pragma once
-// The boxes in which volumes of annotation are read from other files. Boxes consist of whole bricks and do not overlap,
-// and boxes in which the file stores nothing are skipped.
+// Divides a volume of annotation into the boxes in which it is read from a file. Boxes consist of whole bricks and do
+// not overlap; boxes in which the file stores nothing are skipped.
 
 #include <cstdint>
 #include <functional>
@@ -10,16 +10,16 @@
 
 namespace shvr {
 
-/// Calls `visit` for boxes that consist of whole bricks (clipped to the volume) and have at most 64 MiB, or are one
+/// Calls `visit` for boxes of whole bricks, clipped to the volume. A box has at most 64 MiB, unless it is a single
 /// brick. If the source knows which blocks it stores, and all other voxels are 0, boxes that touch no stored block are
-/// left out; then the cost does not depend on the volume's size. Fails as `stored_blocks` does.
+/// skipped; then the cost does not depend on the volume's size. Fails as `stored_blocks` does.
 void for_each_brick_box(const VolumeSource& source, const std::function<void(const VoxelBox& box)>& visit);
 
 struct BrickOfBox {
     int64_t index;  ///< among the volume's bricks
     Size3 corner;   ///< its first voxel, in the volume
     Size3 extent;   ///< its voxels in the volume
-    int64_t voxel;  ///< index of its first voxel in the box
+    int64_t voxel;  ///< index, within the box, of the brick's first voxel
     Size3 box;      ///< voxels of the box
     /// Index, within the box, of the first voxel of a row of the brick.
     int64_t row(int64_t y, int64_t z) const { return voxel + box.x * (y + box.y * z); }

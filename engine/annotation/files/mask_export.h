@@ -15,9 +15,9 @@ namespace shvr {
 
 bool is_mask_export(const std::filesystem::path& path);
 
-/// Replaces an old file (or label image) atomically. `volume`, of the mask's size, gives the voxels' positions; `image`
-/// holds the additional metadata of a label image; `version` as in `ImportOptions`. Returns a
-/// sentence if the old image is kept under another name, as `foreign` demands (engine/projects/import_sparse.h).
+/// Replaces an old file (or label image) atomically. `volume` has the mask's size and gives the voxels' positions;
+/// `image` holds the additional metadata of a label image; `version` is as in `ImportOptions`. Returns a sentence if
+/// the old image is kept under another name because `foreign` demands it (engine/projects/import_sparse.h).
 std::string export_mask(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
                         const LabelImage& image = {}, std::optional<OmeZarrVersion> version = {},
                         const Progress& progress = {}, Foreign foreign = Foreign::refused);

@@ -8,8 +8,8 @@
 
 namespace shvr {
 
-/// Writes row by row to a temporary file next to `path`, syncs and renames it: a failed save leaves the old file. An
-/// exception from `progress` cancels the save.
+/// Writes row by row to a temporary file next to `path`, then syncs and renames it, so a failed save leaves the old
+/// file untouched. An exception from `progress` cancels the save.
 void save_mask(const std::filesystem::path& path, const Mask& mask, const Progress& progress = {});
 
 /// Fails, naming both sizes, if the file does not hold exactly one byte per voxel of `size`.

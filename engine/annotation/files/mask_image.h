@@ -31,8 +31,8 @@ std::optional<MaskJournal> journal_of_mask(const std::filesystem::path& mask);
 /// The path of the file or folder that `journal_of_mask` reads, for messages.
 std::filesystem::path journal_is_named_in(const std::filesystem::path& mask);
 
-/// Fails if the mask was painted on an image with another hash, or MASK.json is malformed. Accepts an empty hash, and a
-/// mask without MASK.json. `is_other_name`: whether a different hash names the same image; empty: none does.
+/// Fails if the mask was painted on an image with another hash, or if MASK.json is malformed. Accepts an empty hash or
+/// a missing MASK.json. `is_other_name` tells whether a different hash names the same image; if it is empty, none does.
 void check_mask_image(const std::filesystem::path& mask, const std::string& content_hash,
                       const std::function<bool(const std::string& hash)>& is_other_name = {});
 

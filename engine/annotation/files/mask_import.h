@@ -14,22 +14,22 @@
 namespace shvr {
 
 struct ImportedMask {
-    std::vector<MaskBrickChange> changes{};  ///< turn an unpainted mask into this one
+    std::vector<MaskBrickChange> changes{};  ///< the changes that turn an unpainted mask into this mask
     std::vector<std::string> losses{};       ///< content of the file that a mask cannot hold, one sentence each
     std::vector<std::string> remarks{};      ///< how the mask was placed, and which groups its segments became
 };
-/// A mask of another size or place is placed on the volume's grid (mask_place.h), and the layers of a segmentation are
-/// merged (mask_segments.h). Fails if the mask's stated spacing or place does not fit the volume's (naming both), or if
-/// a voxel (of any type) is not a whole number from 0 to 255.
+/// Places a mask of another size or position on the volume's grid (mask_place.h) and merges the layers of a
+/// segmentation (mask_segments.h). Fails if the mask's stated spacing or place does not fit the volume's (naming both),
+/// or if a voxel, whatever its type, is not a whole number from 0 to 255.
 ImportedMask import_mask(const std::filesystem::path& path, const TraceSpace& space);
 
 /// Whether `save_mask_as` can write to the path; if not, its format is read-only.
 bool is_mask_writable(const std::filesystem::path& path);
-/// The path for saving a mask that was read from `mask`: the same path, or NAME.labels.zarr next to it if its format is
-/// read-only. A path in an archive is returned unchanged, though masks cannot be saved there.
+/// Returns the path for saving a mask that was read from `mask`: the same path or, if its format is read-only,
+/// NAME.labels.zarr next to it. A path in an archive is returned unchanged, although masks cannot be saved there.
 std::filesystem::path saved_mask_path(const std::filesystem::path& mask);
 /// Saves in the format that the path names, or as raw bytes if `export_mask` does not support that format. Fails for
-/// formats that can only be read. `image`, `foreign` and the result: as for `export_mask`.
+/// read-only formats. `image`, `foreign` and the returned sentence are as for `export_mask`.
 std::string save_mask_as(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
                          const LabelImage& image = {}, Foreign foreign = Foreign::refused);
 

@@ -27,7 +27,7 @@ bool states_position(const TraceSpace& space)
     return !space.frame.empty() || space.origin != glm::dvec3(0.0) || space.directions != glm::dmat3(1.0);
 }
 
-/// The place of a mask or, if it has none on the grid, the reason.
+/// The place of a mask on the volume's grid or, if there is none, the reason.
 struct Trial {
     std::optional<GridPlace> place{};
     std::string reason{};

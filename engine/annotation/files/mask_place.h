@@ -11,7 +11,7 @@
 
 namespace shvr {
 
-/// Voxel v of a mask lies at voxel `first` + the sum of sign[a] * v[a] along axis[a] of the volume, over its axes a.
+/// Maps voxel v of a mask to voxel `first` + sum over the mask's axes a of sign[a] * v[a] along axis[a] of the volume.
 struct GridPlace {
     std::array<int, 3> axis{0, 1, 2};
     std::array<int, 3> sign{1, 1, 1};
@@ -19,9 +19,9 @@ struct GridPlace {
     bool operator==(const GridPlace&) const = default;
 };
 
-/// Null if the mask covers the volume voxel by voxel: equal sizes, and equal places where both state one. Otherwise the
-/// place that the mask states. Fails, with the reason, if this place is not on the volume's grid: another spacing or
-/// direction, a shift by parts of a voxel, no position stated, or no voxel in common.
+/// Returns the place that the mask states. Returns null if the mask covers the volume voxel by voxel: its size equals
+/// the volume's, and so does its place if both state one. Fails, with the reason, if the mask is not on the volume's
+/// grid: other spacing or direction, a shift by a fraction of a voxel, no stated position, or no voxel in common.
 std::optional<GridPlace> place_of_mask(const std::filesystem::path& path, const VolumeInfo& mask,
                                        const TraceSpace& volume);
 /// Returns a phrase: "its 13, 13, 13 voxels are placed at 2, 2, 2 of this volume, with x in reverse order".

@@ -15,7 +15,7 @@ namespace shvr {
 
 namespace {
 
-/// The boxes around the voxels of each group; empty boxes have lower > upper.
+/// Returns the box around the voxels of each group. In an empty box lower > upper.
 std::array<VoxelBox, 256> boxes_of(const Mask& mask)
 {
     std::array<VoxelBox, 256> boxes;
@@ -38,7 +38,7 @@ std::array<VoxelBox, 256> boxes_of(const Mask& mask)
     return boxes;
 }
 
-/// The extent of a box as text: "5 9 5 9 5 9", both ends included; for an empty segment "0 -1 0 -1 0 -1".
+/// The extent of a box as text: "5 9 5 9 5 9", where both ends are included; "0 -1 0 -1 0 -1" for an empty segment.
 std::string extent_of(const VoxelBox& box)
 {
     if (box.lower.x >= box.upper.x) return "0 -1 0 -1 0 -1";
@@ -48,7 +48,7 @@ std::string extent_of(const VoxelBox& box)
     return text;
 }
 
-/// Whether the text states this colour (three fractions), up to the rounding to 8 bits per channel.
+/// Whether the text states this colour, as three fractions, up to the rounding of channels to 8 bits.
 bool states_color(const std::string& text, const std::array<uint8_t, 4>& rgba)
 {
     const std::vector<std::string_view> words = words_of(text);

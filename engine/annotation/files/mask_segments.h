@@ -1,5 +1,5 @@
 #pragma once
-// A mask as a segmentation of 3D Slicer (.seg.nrrd): names, colours and extents of its segments, which are groups.
+// A mask as a 3D Slicer segmentation (.seg.nrrd): each group is a segment with a name, a colour and an extent.
 
 #include <array>
 #include <atomic>
@@ -15,17 +15,17 @@
 
 namespace shvr {
 
-/// The key/value pairs to set in the NRRD file at `path` (a segmentation, or a file that will be one) when this mask
-/// replaces its voxels. Segments keep their numbers and all other keys; groups without a segment get one. Empty if
-/// neither the name ends in .seg.nrrd nor the present file has segments. `looks`: names and colours of groups.
+/// Returns the key/value pairs to set in the NRRD file at `path` when this mask replaces its voxels. Existing segments
+/// keep their numbers and all other keys; groups without a segment get a new one. Returns an empty list unless the name
+/// ends in .seg.nrrd or the present file has segments. `looks`: names and colours of groups.
 std::vector<NrrdPair> segment_pairs(const std::filesystem::path& path, const Mask& mask,
                                     const std::vector<LabelImage::Color>& looks);
 
-/// Merges the layers of a segmentation, whose segments may overlap, into one volume of groups. A voxel belongs to the
-/// group of its segment (NrrdSegment::group); if several segments contain it, to that of the segment in the last layer.
+/// Merges the layers of a segmentation, whose segments may overlap, into one volume of groups. A voxel gets the group
+/// of its segment (NrrdSegment::group); if several segments contain the voxel, the segment in the last layer wins.
 class LayeredMask final : public VolumeSource {
 public:
-    /// Opens each layer of the file, at least one.
+    /// Opens each layer of the file. The file must have at least one.
     LayeredMask(const std::filesystem::path& path, int64_t layers, const std::vector<NrrdSegment>& segments);
 
     void read(const VoxelBox& box, std::span<std::byte> voxels) const override;

@@ -13,9 +13,9 @@ public:
     MaskSource(const Mask& mask, const VolumeInfo& volume);
 };
 
-/// The records that turn an unpainted mask of the volume's size into the volume, in ascending order. The cost is
-/// proportional to the amount that the source stores. Voxels may be of any type; fails, naming `file` and the voxel, at
-/// the first voxel that is not a whole number from 0 to 255.
+/// Returns, in ascending order, the records that turn an unpainted mask of the volume's size into `groups`. The cost is
+/// proportional to the amount of data that the source stores. Voxels may be of any type. Fails, naming `file` and the
+/// voxel, at the first voxel that is not a whole number from 0 to 255.
 std::vector<MaskBrickChange> mask_changes(const VolumeSource& groups, const std::string& file);
 
 /// The voxels of a box of a mask as groups; fails like `mask_changes`.

@@ -9,8 +9,8 @@
 
 namespace shvr {
 
-/// Writes row by row to a temporary file next to `path`, syncs and renames it: a failed save leaves the old file. An
-/// exception from `progress` cancels the save.
+/// Writes row by row to a temporary file next to `path`, then syncs and renames it, so a failed save leaves the old
+/// file untouched. An exception from `progress` cancels the save.
 void save_offsets(const std::filesystem::path& path, const DensityField& field, const Progress& progress = {});
 
 /// Fails if the file does not have the size of such a volume's offsets (naming both sizes), or if an offset is not

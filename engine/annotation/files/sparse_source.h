@@ -14,7 +14,7 @@ namespace shvr {
 template <class Value>
 class SparseSource : public VolumeSource {
 public:
-    /// `info` has the bricks' size and a type as wide as a value. The bricks must outlive this object, unchanged.
+    /// `info` states the bricks' size and a type as wide as `Value`. The bricks must outlive this object, unchanged.
     SparseSource(const SparseBricks<Value>& bricks, VolumeInfo info) : VolumeSource(std::move(info)), bricks_(bricks)
     {
         SHVR_CHECK(bricks.size() == this->info().size && bytes_of(this->info().type) == sizeof(Value));

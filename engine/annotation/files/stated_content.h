@@ -8,8 +8,8 @@ namespace shvr {
 
 enum class StatedContent { mask, offsets };
 
-/// Mask: an OME-Zarr label image, a segmentation of 3D Slicer, or a mask that was exported as NRRD; offsets: exported
-/// as NRRD. Null if the file states nothing (as every TIFF) or cannot be read.
+/// Returns mask for an OME-Zarr label image, a 3D Slicer segmentation or a mask exported as NRRD; offsets for offsets
+/// exported as NRRD. Null if the file cannot be read or does not state its content (no TIFF does).
 std::optional<StatedContent> stated_content(const std::filesystem::path& path);
 
 }  // namespace shvr

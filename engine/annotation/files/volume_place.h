@@ -13,10 +13,10 @@ bool states_its_size(const std::filesystem::path& path);
 /// Whether the path is an OME-Zarr archive, or leads into one; masks in archives are read, never written.
 bool is_in_archive(const std::filesystem::path& path);
 
-/// Fails, naming both, if `found` differs in size or, where both state them, in spacing or place. `what`: "a mask".
+/// Fails, naming both, if `found` differs in size or in a spacing or place that both state. `what`: "a mask".
 void check_place(const std::filesystem::path& path, const char* what, const VolumeInfo& found, const TraceSpace& space);
 
-/// Describes a volume of annotation, "mask" or "offsets", in the same place as the annotated volume.
+/// Describes a volume of annotation ("mask" or "offsets") that lies in the same place as the annotated volume.
 VolumeInfo info_beside(const VolumeInfo& volume, const char* name, VoxelType type);
 
 }  // namespace shvr

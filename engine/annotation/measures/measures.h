@@ -17,7 +17,7 @@ namespace shvr {
 
 struct SegmentMeasures {
     uint32_t internode = 0;  ///< name of the segment: the smallest number among its internodes
-    uint8_t group = 0;       ///< group with the largest share of its length; the smallest number in case of a tie
+    uint8_t group = 0;       ///< group with the largest share of the length; in case of a tie, the smallest number
     uint32_t from = 0, to = 0;
     size_t internodes = 0;
     double length = 0.0;
@@ -30,7 +30,7 @@ struct SegmentMeasures {
 struct BranchMeasures {
     uint32_t node = 0;
     uint8_t group = 0;
-    std::vector<double> angles_degrees;  ///< between each pair of its internodes, in the order of their numbers
+    std::vector<double> angles_degrees;  ///< one per pair of the branch's internodes, in the order of their numbers
 };
 
 /// Betti numbers. A trace has no cavities.

@@ -54,7 +54,7 @@ private:
     int64_t count_ = 0;
 };
 
-/// A run of painted voxels of a row, from `first` to `last`; its set, and that of the unpainted voxels before it.
+/// A run of painted voxels in a row, from `first` to `last`. `gap`: the set of the unpainted voxels before the run.
 struct Run {
     int64_t first = 0, last = 0;
     uint32_t set = 0, gap = 0;
@@ -63,7 +63,7 @@ using Runs = std::vector<Run>;
 
 struct Row {
     Runs painted;
-    Runs with_previous;  ///< the row's runs, united with those of the same row of the previous slice
+    Runs with_previous;  ///< the row's runs, united with those of the same row in the previous slice
 };
 
 /// Whether the first run ends before the second begins, with a voxel between them.
@@ -162,14 +162,14 @@ private:
     uint64_t pattern_;
 };
 
-/// Bricks with the same y and z, ascending along x; none in a row that only follows a painted one: cells end there.
+/// Bricks with the same y and z, ascending along x; none if the row only follows a painted one (cells end there).
 struct BrickRow {
     int64_t y = 0;
     std::vector<std::pair<int64_t, const MaskBrick*>> bricks;  ///< x of the first voxel
     std::array<Row, BRICK_SIDE> rows, previous;                ///< rows of this slice and of the previous one
 };
-/// Rows of bricks with the same z, ascending along y: rows with painted bricks, and rows that follow a painted row
-/// along y, z or both.
+/// Rows of bricks with the same z, ascending along y. Contains the rows with painted bricks, and the rows that follow a
+/// painted row along y, z or both.
 using Layer = std::vector<BrickRow>;
 
 class Counter {
@@ -262,7 +262,7 @@ private:
 
     const Mask& mask_;
     Chosen chosen_;
-    Layer last_;          ///< the layer before, or none if no brick of it is painted
+    Layer last_;          ///< the previous layer; empty if it has no painted brick
     int64_t last_z_ = 0;  ///< its place along z
     Sets parts_, gaps_;
     int64_t euler_ = 0;

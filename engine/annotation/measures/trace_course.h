@@ -32,8 +32,8 @@ public:
         double distance;
         double along;  ///< distance from the start of the segment
     };
-    /// The segments that touch a ball, up to rounding errors, or miss it by at most `slack`; each at its nearest
-    /// position, in ascending order.
+    /// Returns the segments that touch a ball or miss it by at most `slack`, up to rounding errors, in ascending order.
+    /// Each comes with its position nearest to the ball.
     std::vector<Near> near(const TraceSample& sample, double slack) const;
     struct Nearest {
         size_t piece;  ///< a straight part of a segment

@@ -11,7 +11,7 @@ namespace shvr {
 struct TraceDistance {
     /// Computed from 16 samples per internode; exact if the nearest internode of the truth does not change in between.
     double root_mean_square = 0.0;
-    double greatest = 0.0;  ///< greatest distance; at most one part in 10^9 too small, apart from rounding
+    double greatest = 0.0;  ///< greatest distance; apart from rounding, too small by at most one part in 10^9
 };
 /// Null if the trace has no length or the truth no internodes.
 std::optional<TraceDistance> distance_from(const TraceGraph& trace, const TraceCourse& truth);

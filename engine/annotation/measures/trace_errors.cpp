@@ -44,7 +44,7 @@ void TraceErrors::leave_out(size_t segment)
     for (const uint32_t node : {one.nodes.front(), one.nodes.back()}) ends_[node].erase(segment);
 }
 
-/// Begins with the shortest segments: of two segments that can replace each other, the longer one is kept.
+/// Begins with the shortest segments, so that the longer of two interchangeable segments is kept.
 void TraceErrors::leave_out_superfluous()
 {
     std::vector<std::pair<double, size_t>> candidates;
@@ -71,14 +71,14 @@ bool TraceErrors::note_superfluous(size_t segment)
         ++superfluous_;
         return true;
     }
-    // A trace that continues beyond an end of the truth, but stays in its ball, is only longer: no error.
+    // A trace that continues past an end of the truth, but within the end's ball, is only longer. That is no error.
     if (degree(is_loose(front) ? back : front) < 3) return false;
     ++spurs_;
     return true;
 }
 
-/// Returns whether a segment is the only one that follows a part of the truth, or joins others that follow the same
-/// segment of the truth.
+/// Returns whether a segment alone follows the truth for at least half of its length, or joins other segments that
+/// follow the same segment of the truth.
 bool TraceErrors::is_needed(size_t segment) const
 {
     double alone = 0.0;
@@ -95,7 +95,7 @@ bool TraceErrors::is_needed(size_t segment) const
     return alone >= 0.5 * length_along(with_.trace, with_.match.segments()[segment]);
 }
 
-/// Returns whether a segment only touches a segment of the truth while it follows others.
+/// Returns whether a follower only touches a segment of the truth while following other segments of the truth.
 bool TraceErrors::passes_by(size_t truth_segment, const Follower& follower) const
 {
     return !follower.is_partner && with_.follow.followed_by(follower.segment).size() > 1 &&
@@ -182,7 +182,7 @@ void TraceErrors::note_ends_near_branches(std::set<uint32_t>& unjoined) const
     }
 }
 
-/// Notes ends on the way to a traced branch, with nothing traced in between.
+/// Notes ends of the trace that lie on the way to a traced branch, with nothing traced between end and branch.
 void TraceErrors::note_ends_before_branches(std::set<uint32_t>& unjoined) const
 {
     for (const auto& [branch, segments] : at_branch_) {
@@ -250,7 +250,7 @@ std::set<size_t> TraceErrors::passing(uint32_t branch) const
     return segments;
 }
 
-/// Notes ends that are paired with a branch, where another segment passes and is not joined to them.
+/// Notes ends that are paired with a branch although another segment, not joined to them, passes that branch.
 void TraceErrors::note_branches_passed(std::set<uint32_t>& unjoined) const
 {
     for (const auto& [branch, node] : with_.match.paired())

@@ -28,7 +28,7 @@ public:
     int64_t count_gaps() const;
 
 private:
-    /// Followers of one segment of the truth that are joined to each other, and their extent along it.
+    /// The followers of one segment of the truth that are joined to each other, and their extent along that segment.
     struct Piece {
         std::vector<size_t> segments;
         glm::dvec2 extent;
@@ -52,7 +52,7 @@ private:
     Compared with_;
     std::set<size_t> left_out_;                          ///< segments of the trace that are errors themselves
     std::map<uint32_t, std::multiset<size_t>> ends_;     ///< node of the trace -> segments that are kept and end there
-    std::map<uint32_t, std::vector<size_t>> at_branch_;  ///< branch of the truth -> its segments there
+    std::map<uint32_t, std::vector<size_t>> at_branch_;  ///< branch of the truth -> the truth's segments there
     int64_t spurs_ = 0, superfluous_ = 0;
 };
 

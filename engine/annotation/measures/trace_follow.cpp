@@ -48,8 +48,8 @@ TraceFollow::TraceFollow(const TraceGraph& truth, const TraceCourse& course, con
     for (auto& [truth_segment, some] : followers_) note_doubled(some);
 }
 
-/// Assigns each sample of a segment to a segment of the truth: among all assignments that change segments only
-/// where the truth does, the one with the smallest sum of squared distances (Viterbi 1967). Empty if there is none.
+/// Assigns each sample of a segment to a segment of the truth: the assignment with the smallest sum of squared
+/// distances among all that change segments only where the truth does (Viterbi 1967). Empty if there is none.
 std::vector<TraceCourse::Near> TraceFollow::follow(const std::vector<TraceSample>& samples) const
 {
     struct State {
@@ -84,7 +84,7 @@ std::vector<TraceCourse::Near> TraceFollow::follow(const std::vector<TraceSample
     return followed;
 }
 
-/// Returns whether `b` is the same segment as `a`, or meets it in a node near the sample.
+/// Returns whether `b` is the same segment as `a`, or shares a node with `a` near the sample.
 bool TraceFollow::goes_over(size_t a, size_t b, const TraceSample& sample) const
 {
     if (a == b) return true;
@@ -127,8 +127,8 @@ bool TraceFollow::add_follower(size_t index)
     return true;
 }
 
-/// Marks segments of the trace that follow a part of the truth that an earlier one of `followers` also follows. The
-/// segment that is matched to this segment of the truth comes first and is never marked.
+/// Marks each follower whose part of the truth is also followed by an earlier entry of `followers`. The segment of the
+/// trace that is matched to this segment of the truth comes first and is never marked.
 void TraceFollow::note_doubled(std::vector<Follower>& followers)
 {
     std::ranges::sort(followers, [](const Follower& a, const Follower& b) {

@@ -29,15 +29,15 @@ public:
     /// Keeps references to all three.
     TraceFollow(const TraceGraph& truth, const TraceCourse& course, const TraceMatch& match, double slack);
 
-    /// For each segment of the truth that is followed, the segments of the trace that follow it.
+    /// The followed segments of the truth, each with the segments of the trace that follow it.
     const std::map<size_t, std::vector<Follower>>& followers() const { return followers_; }
     /// The segments of the truth that a segment of the trace follows, each once.
     const std::vector<size_t>& followed_by(size_t segment) const { return followed_by_[segment]; }
-    /// The total length along the truth that a segment of the trace follows.
+    /// The total length of those parts of the truth that a segment of the trace follows.
     double length_followed(size_t segment) const { return lengths_[segment]; }
     /// Segments of the trace that leave the truth, or switch to a segment of the truth that does not begin there.
     const std::set<size_t>& wrong() const { return wrong_; }
-    /// Segments of the trace that follow a part of the truth that another segment of the trace follows, too.
+    /// Segments of the trace that follow a part of the truth already followed by another segment of the trace.
     const std::set<size_t>& doubled() const { return doubled_; }
 
 private:

@@ -100,7 +100,7 @@ void TraceMatch::pair_segments()
     }
 }
 
-/// Returns the segments of the truth that lie near every internode of `segment`.
+/// Returns the segments of the truth that stay near every internode of `segment`.
 std::vector<size_t> TraceMatch::near_all(const TraceSegment& segment) const
 {
     std::vector<size_t> all = near_.at(segment.internodes.front());
@@ -162,7 +162,7 @@ bool TraceMatch::is_found(size_t truth_segment) const
     return covers(truth_segment, ways_between(near, from->second, to->second)).has_value();
 }
 
-/// The internodes that stay near a segment of the truth and stand for no other segment; ascending.
+/// The internodes near a segment of the truth that are not part of a matched segment of the trace; ascending.
 std::vector<uint32_t> TraceMatch::free_near(size_t truth_segment) const
 {
     std::vector<uint32_t> internodes;
@@ -194,7 +194,7 @@ std::vector<uint32_t> TraceMatch::ways_between(const std::vector<uint32_t>& inte
     return core_of({passed.begin(), passed.end()}, {from, to});
 }
 
-/// The internodes left after loose ends, except those at `kept` nodes, have been removed repeatedly.
+/// The internodes that remain after loose ends are removed repeatedly; loose ends at `kept` nodes are not removed.
 std::vector<uint32_t> TraceMatch::core_of(const std::vector<uint32_t>& internodes, const std::set<uint32_t>& kept) const
 {
     std::map<uint32_t, std::set<uint32_t>> ends;

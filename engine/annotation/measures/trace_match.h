@@ -17,22 +17,22 @@ public:
     /// Keeps references to all three; `course` is the truth's.
     TraceMatch(const TraceGraph& trace, const TraceGraph& truth, const TraceCourse& course, double slack);
 
-    /// For each branch or end of the truth, the node of the trace that is matched to it; one to one.
+    /// For each paired branch or end of the truth, the node of the trace that is matched to it; one to one.
     const std::map<uint32_t, uint32_t>& paired() const { return paired_; }
     /// Those nodes of the trace.
     const std::set<uint32_t>& stops() const { return stops_; }
 
     /// The segments of the trace, which also end at `stops()`.
     const std::vector<TraceSegment>& segments() const { return segments_; }
-    /// The segment of the truth that a segment of the trace stands for, one to one: their ends are paired, and each of
-    /// the two is near the other for all of its length. If several join the same two nodes, those with the smallest
-    /// mean squared distance come first.
+    /// The segment of the truth that a segment of the trace stands for, one to one: the ends of the two are paired, and
+    /// each is near the other along its whole length. If several segments join the same two nodes, those with the
+    /// smallest mean squared distance are matched first.
     std::optional<size_t> partner_of(size_t segment) const { return partners_[segment]; }
 
     /// Whether a segment of the truth is found (trace_score.h).
     bool is_found(size_t truth_segment) const;
 
-    /// Samples along a segment of the trace, in its order, spaced by about half of the distance that counts as near.
+    /// Samples in order along a segment of the trace, spaced by about half of the distance that counts as near.
     std::vector<TraceSample> samples_along(const TraceSegment& segment) const;
 
 private:
@@ -52,7 +52,7 @@ private:
     double slack_;
     std::map<uint32_t, uint32_t> paired_;
     std::set<uint32_t> stops_;
-    std::map<uint32_t, std::vector<size_t>> near_;  ///< internode of the trace -> segments of the truth, ascending
+    std::map<uint32_t, std::vector<size_t>> near_;  ///< internode of the trace -> truth's segments near it, ascending
     std::vector<TraceSegment> segments_;
     std::vector<std::optional<size_t>> partners_;        ///< per segment of the trace
     std::vector<std::optional<size_t>> truth_partners_;  ///< per segment of the truth

@@ -11,7 +11,7 @@ namespace shvr {
 
 namespace {
 
-/// Counts painted voxels of a row, x from `first` to `last`. The row lies in the volume.
+/// Counts the painted voxels of a row for x from `first` to `last`. The row lies inside the volume.
 int64_t painted_in_row(const Mask& mask, int64_t first, int64_t last, int64_t y, int64_t z)
 {
     const glm::i64vec3 counts = mask.brick_counts();

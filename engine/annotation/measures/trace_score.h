@@ -37,9 +37,9 @@ struct BallScores {
     int64_t out = 0;             ///< balls with less than half of their voxels in the mask
     int64_t total = 0;
 };
-/// The share of a ball's voxels that are painted. As for a brush, a voxel belongs to the ball if its centre is at most
-/// the radius away; a ball that contains no centre has the voxel it lies in. Voxels outside the volume count as
-/// unpainted. Fails for balls whose box has more than 2^31 voxels. `radius` and `position` in the volume's unit.
+/// Returns the share of a ball's voxels that are painted. As for a brush, a voxel belongs to the ball if its centre is
+/// at most the radius away; a ball that contains no centre consists of the voxel it lies in. Voxels outside the volume
+/// count as unpainted. Fails if the ball's box has over 2^31 voxels. `radius`, `position`: in the volume's unit.
 double share_in_mask(const Mask& mask, const glm::dvec3& spacing, const glm::dvec3& position, double radius);
 BallScores score_nodes(const TraceGraph& trace, const Mask& truth, const glm::dvec3& spacing);
 /// Scores a ball at the middle of each internode, with its radius there.
@@ -51,25 +51,25 @@ BallScores score_internodes(const TraceGraph& trace, const Mask& truth, const gl
 /// a segment of the truth if their ends are paired and each is near the other for all of its length. Each stands for at
 /// most one; if several join the same two nodes, those with the smallest mean squared distance come first.
 struct TraceComparison {
-    /// Counts segments of the truth. One is found if a segment of the trace stands for it; or if both its ends are
-    /// paired, and all of it is covered by paths between the two nodes that stay near it, pass no other paired node and
-    /// stand for nothing else. A segment that is traced in part is not found.
+    /// Counts segments of the truth. A segment is found if a segment of the trace stands for it, or if both its ends
+    /// are paired and all of it is covered by paths between the paired nodes. Such paths stay near it, pass no other
+    /// paired node and stand for nothing else. A segment that is only partly traced is not found.
     int64_t segments_found = 0, segments_total = 0;
     /// Segments of the trace that leave the truth, or switch to a segment of the truth that does not begin there.
     int64_t wrong = 0;
-    /// Segments of the trace that stand for none of the truth, but follow a part of it that another segment also
-    /// follows. The shared part is longer than the surroundings of their ends or, if both join the same two nodes, at
-    /// least half of the stretch that the shorter one follows.
+    /// Segments of the trace that stand for no segment of the truth, but follow a part of it that another segment of
+    /// the trace also follows. The shared part is longer than the surroundings of the two segments' ends or, if both
+    /// join the same two nodes, at least half of the stretch that the shorter segment follows.
     int64_t doubled = 0;
-    /// Ends of the trace that are not joined at a traced branch of the truth: ends near the branch, on the way to it
-    /// with nothing traced in between, or paired with it where another segment passes.
+    /// Ends of the trace that are not joined at a traced branch of the truth although they are near it, are on the way
+    /// to it with nothing traced in between, or are paired with it while another segment passes it.
     int64_t gaps = 0;
-    /// Places along a segment of the truth between two parts that are traced and not joined to each other. A ring that
-    /// is traced in part has one more such place.
+    /// Places along a segment of the truth between two traced parts that are not joined to each other. A partly traced
+    /// ring counts one more place.
     int64_t breaks = 0;
-    /// Other side branches with a loose end: less than half of their length follows the truth where nothing else does.
+    /// Other side branches with a loose end where less than half of the length follows truth that nothing else follows.
     int64_t spurs = 0;
-    /// Segments like `spurs`, with no loose end or with two: small loops, rungs, pieces that are joined to nothing.
+    /// Like `spurs`, but with no loose end or with two: small loops, rungs, and pieces that are joined to nothing.
     int64_t superfluous = 0;
     int64_t topological_errors() const { return wrong + doubled + gaps + breaks + spurs + superfluous; }
     /// Distance from positions along the trace to the nearest position of the truth; null if either has no internodes.

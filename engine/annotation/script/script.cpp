@@ -18,7 +18,7 @@ namespace {
 
 constexpr int64_t MAX_SCRIPT_BYTES = int64_t{256} << 20;
 constexpr int64_t MAX_COUNT = int64_t{1} << 62;
-/// Limits far beyond any volume, and far below numbers whose squares overflow.
+/// Limits far larger than any volume, but small enough that their squares do not overflow.
 const NumberRange COORDINATE{-1e12, 1e12};
 const NumberRange LENGTH{5e-324, 1e12, "a number above 0, up to 1e12"};
 
@@ -94,7 +94,7 @@ NodeOp read_node(const JsonNode& line)
     return op;
 }
 
-/// The search distance of a key such as "near"; `key` holds the position.
+/// The search distance that accompanies a key such as "near"; `key` is the key of the position.
 std::optional<double> read_within(const JsonNode& line, std::string_view key)
 {
     const JsonNode within = line["within"];
@@ -193,7 +193,7 @@ int read_count(const JsonNode& line)
     return int(line["count"].whole(1, 1, 1000000000));
 }
 
-/// The group that a key such as "3" names; null if it is not a group.
+/// The group whose number a key such as "3" states; null if the key is not a group's number.
 std::optional<uint8_t> group_of(const std::string& key)
 {
     uint8_t group = 0;

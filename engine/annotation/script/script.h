@@ -51,8 +51,8 @@ ScriptOp read_script_op(const JsonNode& line);
 /// The line that parses as this operation.
 std::string line_of(const ScriptOp& op);
 
-/// Calls `take` with each non-empty line, whatever its operation, and its number from 1; both are valid during the
-/// call. "-" is standard input; standard input and pipes are read to their end. Fails if a line is not a JSON object.
+/// Calls `take` with each non-empty line, whatever its operation, and its line number (from 1); both are valid during
+/// the call. "-" is standard input, which is read to its end, as pipes are. Fails if a line is not a JSON object.
 void for_each_line(const std::filesystem::path& path,
                    const std::function<void(const JsonNode& line, int number)>& take);
 

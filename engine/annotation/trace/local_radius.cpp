@@ -10,7 +10,7 @@ namespace shvr {
 namespace {
 
 constexpr size_t DIRECTIONS = 200;  ///< about 9 degrees apart
-/// Smallest factor that counts as a larger ball. Less than a thousandth more is noise of the finite set of directions.
+/// Smallest growth of the radius that counts; growth below a thousandth is noise from the finite set of directions.
 constexpr double NOTICEABLE = 1.001;
 
 /// Evenly spread over the sphere: a Fibonacci lattice.
@@ -70,8 +70,8 @@ private:
     double most_, step_;
 };
 
-/// Climbs from `point` to a local maximum of the ball's radius, as long as the ball contains the point and `may_be`
-/// allows its centre, in decreasing steps. Returns the centre in the unit of the spacing.
+/// Climbs in decreasing steps from `point` to a local maximum of the ball's radius, as long as the ball contains the
+/// point and `may_be` allows the ball's centre. Returns the centre in the unit of the spacing.
 template <class MayBe>
 std::optional<LocalBall> largest_ball(const Structure& structure, const glm::dvec3& point, double most,
                                       const MayBe& may_be)
@@ -135,7 +135,7 @@ std::optional<LocalBall> ball_behind(const DensityAt& density_at, double thresho
         return glm::length(point - from - glm::dot(point - from, direction) * direction) <= aside;
     };
     // The visible point is where a wall is steepest; the middle of the wall may be one voxel nearer to the eye. Grains
-    // that the line enters but that are thinner than a voxel are noise and are ignored.
+    // on the line that are thinner than a voxel are noise and are ignored.
     double begin = -2.0 * structure.finest();
     while (begin <= most) {
         while (begin <= most && !structure.contains(from + begin * direction)) begin += structure.step();

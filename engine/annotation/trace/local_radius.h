@@ -22,16 +22,16 @@ using DensityAt = std::function<double(const glm::dvec3& voxel)>;
 struct LocalBall {
     glm::dvec3 middle{0.0};  ///< voxels
     double radius = 0.0;     ///< in the unit of `spacing`
-    bool is_held = false;    ///< a larger ball lies farther from the line of sight than allowed
+    bool is_held = false;    ///< a larger ball was rejected: its centre is too far from the line of sight
 };
-/// Positions at or above `threshold` are inside. Null if the point is not inside, or if the structure extends for
-/// `most`, in the unit of `spacing`, in all directions.
+/// The largest ball inside the structure, where positions at or above `threshold` are inside. Null if the point is not
+/// inside, or if the structure extends for `most` (in the unit of `spacing`) in all directions.
 std::optional<LocalBall> local_ball(const DensityAt& density_at, double threshold, const glm::dvec3& voxel,
                                     const glm::dvec3& spacing, double most);
-/// For the structure that a line of sight enters at `voxel` or at most `most` behind it: the ball around the middle of
-/// the line's path through it. `way`: direction in volume space, any length. `aside`: how far the centre may be from
-/// the line of sight, in the unit of `spacing`. Null if the line enters nothing, or does not leave it within `2 *
-/// most`.
+/// Returns the ball around the middle of a line of sight's path through the structure that the line enters at `voxel`,
+/// or at most `most` behind `voxel`. `way`: the line's direction in volume space, any length. `aside`: how far the
+/// ball's centre may be from the line, in the unit of `spacing`. Null if the line enters no structure, or does not
+/// leave it within `2 * most`.
 std::optional<LocalBall> ball_behind(const DensityAt& density_at, double threshold, const glm::dvec3& voxel,
                                      const glm::dvec3& way, const glm::dvec3& spacing, double most,
                                      double aside = std::numeric_limits<double>::infinity());

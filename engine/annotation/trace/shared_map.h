@@ -26,7 +26,7 @@ public:
 private:
     static constexpr uint32_t PAGE_NUMBERS = 256;
     struct Page {
-        uint64_t mark = 0;           ///< mark of the map that may change it
+        uint64_t mark = 0;           ///< mark of the map that may change this page in place
         std::vector<Entry> entries;  ///< ascending, never empty
     };
     using Pages = std::map<uint32_t, std::shared_ptr<const Page>>;  ///< by number / PAGE_NUMBERS

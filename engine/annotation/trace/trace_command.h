@@ -11,7 +11,7 @@
 
 namespace shvr {
 
-/// Defaults for values that an operation does not state.
+/// Default values for parameters that an operation does not state.
 struct TraceDefaults {
     glm::dvec3 spacing{1.0};     ///< the volume's
     double radius_voxels = 6.0;  ///< the probe's

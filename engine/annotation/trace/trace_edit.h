@@ -15,8 +15,8 @@ namespace shvr {
 
 /// Joins the new node to the selected one, if any, by an internode of the new node's group.
 std::vector<TraceChange> add_node(const TraceGraph& trace, const TraceNode& node);
-/// Splits an internode of one group into two that meet in the new node. If another node is selected that is not an end
-/// of the internode, also joins it to the new node by an internode of the selected node's group.
+/// Splits an internode of one group into two that meet in the new node. If the selected node is another one, and not an
+/// end of the internode, also joins it to the new node by an internode of the selected node's group.
 std::vector<TraceChange> divide_internode(const TraceGraph& trace, uint32_t internode, const TraceNode& node);
 /// Joins the selected node to another node by an internode of the selected node's group, and keeps the selection.
 std::vector<TraceChange> link_selected(const TraceGraph& trace, uint32_t to);
@@ -40,7 +40,7 @@ std::vector<TraceChange> set_internode_radius(const TraceGraph& trace, uint8_t g
 
 /// The argument of `TraceGraph::select`.
 TraceSelection nearest_node_selection(const TraceGraph& trace, const glm::dvec3& position);
-/// Selects the nearest of the selected node's internodes; other nodes' internodes may be nearer, but are not meant.
+/// Selects the nearest of the selected node's internodes, even if an internode of another node is nearer.
 TraceSelection nearest_internode_selection(const TraceGraph& trace, const glm::dvec3& position);
 /// The segment of the selected internode, or of the selected node if it lies on only one.
 TraceSelection segment_selection(const TraceGraph& trace);

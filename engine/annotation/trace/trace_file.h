@@ -26,8 +26,8 @@
 
 namespace shvr {
 
-/// How to handle loops in a format that holds trees. `break_open` leaves out the internode with the largest number, the
-/// last one drawn, of each loop; the omitted internodes are listed in a comment of the file and returned.
+/// How to handle loops in a format that holds only trees. `break_open` leaves out one internode of each loop, the one
+/// with the largest number (drawn last); a comment in the file and the return value list these internodes.
 enum class Loops { refuse, break_open };
 
 /// Writes as `write_file_atomically` does. Returns a sentence for each omission.
@@ -39,13 +39,13 @@ std::string trace_text(const std::filesystem::path& path, const TraceGraph& trac
 
 struct TraceFile {
     TraceGraph trace;
-    std::optional<TraceSpace> space;  ///< the file's space, if it states all parts of it
-    /// Oddities that were skipped in SWC, GraphML and RSML files of other programs, one sentence per kind, and
+    std::optional<TraceSpace> space;  ///< the file's space; null unless the file states all parts of it
+    /// Oddities that were skipped in SWC, GraphML and RSML files of other programs (one sentence per kind), and
     /// assumptions that were made. Such a file may hold more than the trace: keep it before saving over it.
     std::vector<std::string> warnings{};
 };
-/// Returns the trace in volume space. At most 256 MiB and 4 million nodes. Lengths are converted to the unit of
-/// `expected`. Fails if a stated size, spacing, place or unit (other than of length) differs from `expected`.
+/// Returns the trace in volume space. A file may have at most 256 MiB and 4 million nodes. Lengths are converted to the
+/// unit of `expected`. Fails if a stated size, spacing, place or (non-length) unit differs from `expected`.
 TraceFile load_trace(const std::filesystem::path& path, const std::optional<TraceSpace>& expected);
 
 /// Whether `load_trace` supports the extension.

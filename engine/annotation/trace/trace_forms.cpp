@@ -223,7 +223,7 @@ void TraceReader::to_volume_space(const std::optional<TraceSpace>& expected)
     TraceSpace space{.spacing = stated.spacing ? *stated.spacing : expected->spacing,
                      .directions = *stated.directions,
                      .origin = *stated.origin};
-    // Tolerance between a position computed from the physical one and the exact one in the file: the rounding of
+    // Tolerance between the file's exact position and the one computed from the physical position: the rounding of
     // numbers of this size, amplified by nearly coplanar axes.
     const double rounding = 1e-14 / glm::determinant(space.directions);
     std::vector<TraceNodeChange> changes;

@@ -37,8 +37,8 @@ struct StatedSpace {
 };
 
 class TraceReader;
-/// Lines that begin with "#": the space of the positions, in words and for `read_space_comment`, then unit, spacing and
-/// size.
+/// Lines that begin with "#": first the space of the positions, in words and in the form that `read_space_comment`
+/// reads, then unit, spacing and size.
 std::string comments_of(const TraceWriting& writing);
 /// `comment` begins with "#". Since files of other programs have comments of their own, "space" counts only if it is
 /// followed by "physical" or "volume", and a place counts only after "space physical".
@@ -61,7 +61,7 @@ public:
     Size3 size(const std::string& where, std::string_view text) const;
     glm::dvec3 spacing(const std::string& where, std::string_view text) const;
 
-    /// Handles a statement of `statements_of`; ignores other names. "space" must be "physical" or "volume".
+    /// Handles a statement that `statements_of` writes; ignores other names. "space" must be "physical" or "volume".
     void state(const std::string& where, std::string_view name, std::string_view value);
     /// Converts positions to volume space if the file states that they are physical. `expected` supplies the spacing if
     /// the file does not state it.
@@ -115,7 +115,7 @@ struct TraceTrees {
         uint32_t node;
         std::optional<uint32_t> internode;  ///< to the parent
     };
-    std::vector<Place> places;         ///< depth first, roots (smallest numbers first) without an internode
+    std::vector<Place> places;         ///< depth first; roots (smallest numbers first) have no internode
     std::vector<uint32_t> left_out{};  ///< internodes that close loops, ascending
 };
 /// Fails if there are loops and `loops` does not allow breaking them; `form` is for messages ("SWC").

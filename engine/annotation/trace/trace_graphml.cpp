@@ -69,8 +69,8 @@ private:
         keys_[id] = std::move(read);
     }
 
-    /// Maps the names of the keys to their values. Keys that are declared for `domain` ("node", "edge") start with
-    /// their defaults.
+    /// Maps the names of a node's keys to their values. Keys that are declared for `domain` ("node", "edge") start with
+    /// their default values.
     Data data_of(const pugi::xml_node& node, std::string_view domain) const
     {
         Data data;
@@ -282,7 +282,7 @@ void write_nodes(ElementWriter& writer, const TraceWriting& writing)
         add_data(element, "z", digits_of(node.position.z));
         add_data(element, "radius", digits_of(node.radius));
         add_data(element, "group", std::to_string(node.group));
-        // Positions computed from the values above would lack the last bits.
+        // Writes the exact positions: those computed from the values above would lack the last bits.
         if (writing.exact) {
             const glm::dvec3& exact = writing.exact->node(number).position;
             if (position_of(writing.space, node.position) != exact)

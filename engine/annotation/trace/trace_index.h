@@ -21,7 +21,7 @@ public:
     void set(uint32_t number, const glm::dvec3& position);
     void erase(uint32_t number);
 
-    /// The number of the nearest point; the smallest in case of a tie. Coordinates must be finite.
+    /// The number of the nearest point; in case of a tie, the smallest number. Coordinates must be finite.
     std::optional<uint32_t> nearest(const glm::dvec3& position, std::optional<uint32_t> except = {}) const;
     /// The numbers of all points within `distance`, ascending.
     std::vector<uint32_t> within(const glm::dvec3& position, double distance) const;

@@ -14,22 +14,22 @@ struct NodeOp {
     glm::dvec3 at{0.0};
     std::optional<double> radius_voxels;  ///< default: the probe's
     std::optional<uint8_t> group;         ///< default: the probe's
-    /// An internode to split into two that meet in the node;
-    /// size and group default to the internode's.
+    /// An internode to split into two that meet in the node; the node's size and group default to the
+    /// internode's.
     std::optional<uint32_t> divides{};
 };
 struct SelectOp {
     std::optional<glm::dvec3> near;  ///< selects the nearest node, or internode of the selected node
     std::optional<uint32_t> number;  ///< used without `near`
     bool is_internode = false;
-    std::optional<double> within_voxels;  ///< maximum distance of the nearest; default: any
+    std::optional<double> within_voxels;  ///< maximum distance of the nearest object; default: no limit
 };
 struct SelectSegmentOp {};
 struct DeselectOp {};
 struct LinkOp {
     std::optional<glm::dvec3> near;         ///< the nearest other node
     std::optional<uint32_t> node;           ///< used without `near`
-    std::optional<double> within_voxels{};  ///< maximum distance of the nearest; default: any
+    std::optional<double> within_voxels{};  ///< maximum distance of the nearest object; default: no limit
 };
 struct MoveOp {
     glm::dvec3 to{0.0};

@@ -17,7 +17,7 @@ struct Branch {
     double reach;  ///< length of the longest path from here to a leaf, including the internode that leads here
 };
 
-/// The children of each node, sorted by the longest path onwards.
+/// The children of each node, sorted by the longest path through each child, longest first.
 std::map<uint32_t, std::vector<Branch>> branches_of(const TraceGraph& trace, const TraceTrees& trees)
 {
     std::map<uint32_t, std::vector<Branch>> branches;
@@ -100,7 +100,7 @@ std::string write_trace_rsml(const TraceWriting& writing, Loops loops, std::vect
             while (!branches.at(axis.nodes.back()).empty())
                 axis.nodes.push_back(branches.at(axis.nodes.back()).front().node);
             add_axis(root, trace, axis.nodes, space.spacing.x);
-            // The node at which an axis begins belongs to the axis it branches off from.
+            // Skips the node at which a side axis begins: that node belongs to the axis it branches off from.
             for (size_t i = given - 1; i < axis.nodes.size(); ++i) {
                 const std::vector<Branch>& children = branches.at(axis.nodes[i]);
                 for (size_t child = 1; child < children.size(); ++child)

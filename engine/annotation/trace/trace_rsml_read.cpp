@@ -115,7 +115,7 @@ private:
 
     double length(double pixels) const { return pixels / pixels_per_unit_ * per_unit_; }
 
-    /// In document order, without recursion: nesting may be deep.
+    /// Visits roots in document order and without recursion, since nesting may be deep.
     void read_plant(const pugi::xml_node& plant)
     {
         std::vector<Waiting> waiting;
@@ -135,8 +135,8 @@ private:
             if (name_of(child) == "root") waiting.push_back({child, axis});
     }
 
-    /// A function's values at the points of a polyline, at the distances `along` it; empty if there is none. Over the
-    /// length or at equal distances, values are interpolated linearly; a group is that of the nearer sample.
+    /// A function's values at the points of a polyline, at the distances `along` it; empty without such a function. For
+    /// the domains length and uniform, values are interpolated linearly; a group is that of the nearer sample.
     std::vector<std::string> samples_of(const pugi::xml_node& root, const std::string& where, std::string_view name,
                                         const std::vector<double>& along)
     {
@@ -238,7 +238,7 @@ private:
         return axis;
     }
 
-    /// The first point of a root nested in another has a `parent`.
+    /// Adds a point of a root. Only the first point of a root nested in another root has a `parent`.
     void add_point(const std::string& where, const TraceNode& node, Axis* parent, Axis& axis)
     {
         std::optional<uint32_t> number;

@@ -12,7 +12,7 @@
 namespace shvr {
 
 struct TraceSegment {
-    std::vector<uint32_t> nodes;       ///< along the segment, one more than internodes; in a loop the last is the first
+    std::vector<uint32_t> nodes;       ///< in order; one more than internodes; a loop ends with its first node
     std::vector<uint32_t> internodes;  ///< in that order
     bool is_loop() const { return nodes.front() == nodes.back(); }
 };
@@ -22,7 +22,7 @@ TraceSegment segment_through(const TraceGraph& trace, uint32_t internode, const 
 /// All segments, sorted by their smallest internode. Nodes without internodes belong to no segment.
 std::vector<TraceSegment> segments_of(const TraceGraph& trace, const std::set<uint32_t>& stops = {});
 
-/// The targets of edits of the segment: its internodes, and its nodes except branches, which other segments share.
+/// The objects that edits of the segment change: its internodes, and its nodes except (shared) branches.
 TraceSelection selection_of(const TraceGraph& trace, const TraceSegment& segment);
 
 /// The fraction along an internode of its position nearest to a point: 0 at its first node, 1 at its second.
@@ -33,9 +33,9 @@ struct PlaceOnTrace {
     double share = 0.0;        ///< fraction along it
     glm::dvec3 position{0.0};  ///< volume space
 };
-/// The position nearest to a point, within `reach`, on any internode of these groups except those of the node
-/// `except_of`; the smallest number in case of a tie. Only checks internodes of nodes within `reach` plus half the
-/// longest internode: no others can be within reach.
+/// The position nearest to a point, within `reach`, on any internode of `groups` except the internodes of the node
+/// `except_of`; in case of a tie, on the internode with the smallest number. Only checks internodes of nodes within
+/// `reach` plus half the longest internode: no others can be within reach.
 std::optional<PlaceOnTrace> nearest_place(const TraceGraph& trace, const glm::dvec3& position, double reach,
                                           std::optional<uint32_t> except_of = {},
                                           const std::bitset<256>& groups = std::bitset<256>().set());

@@ -20,7 +20,7 @@ struct TraceSpace {
     std::string unit = "voxel";
     glm::dmat3 directions{1.0};
     glm::dvec3 origin{0.0};
-    std::string frame{};  ///< "RAS", "LPS", or "" if it has no name
+    std::string frame{};  ///< "RAS", "LPS", or "" for a frame without a name
     bool operator==(const TraceSpace&) const = default;
 };
 TraceSpace space_of(const VolumeInfo& volume);
@@ -29,14 +29,14 @@ TraceSpace space_of(const VolumeInfo& volume);
 enum class Positions { volume, physical };
 
 glm::dvec3 physical_of(const TraceSpace& space, const glm::dvec3& position);
-/// The inverse of `physical_of`, except for the rounding of both.
+/// The inverse of `physical_of`, up to the rounding errors of both functions.
 glm::dvec3 position_of(const TraceSpace& space, const glm::dvec3& physical);
 
-/// "origin 1 2 3, axes ..., of LPS; expected origin ..."; empty if both have the same place up to a twentieth of a
-/// voxel, or if one of them does not state any.
+/// Returns a text like "origin 1 2 3, axes ..., of LPS; expected origin ...". Empty if both have the same place, up to
+/// a twentieth of a voxel, or if one of them states no place.
 std::string why_elsewhere(const TraceSpace& found, const TraceSpace& expected);
 
-/// For comments of files: describes the space of their positions, without a line end.
+/// Describes the space of a file's positions, for a comment in the file; without a line end.
 std::string in_words(const TraceSpace& space, Positions positions);
 /// "space physical", "frame LPS", ...: the statements that a reader needs, as pairs of name and value.
 std::vector<std::pair<const char*, std::string>> statements_of(const TraceSpace& space, Positions positions);

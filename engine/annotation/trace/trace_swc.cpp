@@ -46,7 +46,7 @@ std::optional<int64_t> number_of_sample(TraceReader& reader, const std::string& 
     return int64_t(*number);
 }
 
-/// Reads a sample's type as a group. A neurite's type may be any number; a type that is no group is dropped.
+/// Returns a sample's type as a group. Any number may be a neurite's type; a type that is no group is dropped.
 uint8_t group_of(TraceReader& reader, const std::string& where, std::string_view word)
 {
     try {

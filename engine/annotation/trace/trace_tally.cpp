@@ -71,7 +71,7 @@ size_t inner_nodes_of(const TraceGraph& trace, const TraceInternode& internode)
     return size_t{is_inner(trace, internode.a)} + size_t{is_inner(trace, internode.b)};
 }
 
-/// The binary exponent of a length; for 0, that of the smallest double.
+/// The binary exponent of a length. For 0, returns the exponent of the smallest double.
 int exponent_of(double length)
 {
     return std::ilogb(std::max(length, DBL_MIN));
@@ -144,7 +144,7 @@ void TraceTally::change_group(const TraceGraph& trace, const TraceInternode& fro
 TraceSummary TraceTally::summary_of(const TraceGraph& trace) const
 {
     TraceSummary summary{.nodes = trace.nodes().size(), .internodes = trace.internodes().size()};
-    // A segment has one internode more than it has inner nodes; a closed segment has equally many of both.
+    // A segment has one more internode than inner nodes; a closed segment has equally many of both.
     summary.segments = summary.internodes - inner_nodes_ + closed_segments_;
     LongSum length;
     for (const auto& [number, group] : groups_) {

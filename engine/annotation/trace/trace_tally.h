@@ -34,7 +34,7 @@ public:
     void change_group(const TraceGraph& trace, const TraceInternode& from, const TraceInternode& to);
 
     TraceSummary summary_of(const TraceGraph& trace) const;
-    /// A power of two that is an upper bound of all internode lengths, and at most twice the longest; 0 without any.
+    /// An upper bound of all internode lengths: a power of two, at most twice the longest length; 0 if there are none.
     double longest_at_most() const;
 
 private:
@@ -52,7 +52,7 @@ private:
     void remove_length(const TraceGraph& trace, const TraceInternode& internode);
 
     std::map<uint8_t, Group> groups_;  ///< groups that have internodes
-    std::map<int, size_t> lengths_;    ///< internodes by the binary exponent of their length
+    std::map<int, size_t> lengths_;    ///< number of internodes by the binary exponent of their length
     size_t inner_nodes_ = 0;           ///< nodes with exactly two internodes: a segment continues through them
     size_t closed_segments_ = 0;       ///< loops made of such nodes only
 };

@@ -56,19 +56,19 @@ struct TraceNodeChange {
     std::optional<TraceNode> before, after;
     bool operator==(const TraceNodeChange&) const = default;
 };
-/// Adds, removes or changes an internode likewise. A record that only changes an internode keeps its two nodes.
+/// Adds, removes or changes an internode, as above. A record that only changes an internode keeps its two nodes.
 struct TraceInternodeChange {
     uint32_t internode = 0;
     std::optional<TraceInternode> before, after;
     bool operator==(const TraceInternodeChange&) const = default;
 };
-/// The radius of all internodes of a group; without one they taper from node to node.
+/// Changes the radius of all internodes of a group; without such a radius they taper from node to node.
 struct TraceSizeChange {
     uint8_t group = 0;
     std::optional<double> before, after;
     bool operator==(const TraceSizeChange&) const = default;
 };
-/// Replaces the selection, whatever it is. A command that changes the selection begins with a record whose `after` is
+/// Replaces the selection, whatever it was. A command that changes the selection begins with a record whose `after` is
 /// empty and ends with one whose `before` is empty, so that redo and undo never select missing objects.
 struct TraceSelectionChange {
     TraceSelection before, after;
@@ -90,13 +90,13 @@ public:
     /// The radius at the fraction `t` (0 ... 1) of the way from a to b.
     double radius_of(const TraceInternode& internode, double t) const;
 
-    /// The numbers of the next node and internode: larger than any number ever applied.
+    /// The number that the next node (or internode) will get: larger than any number ever applied.
     uint64_t next_node() const { return next_node_; }
     uint64_t next_internode() const { return next_internode_; }
     /// Reserves all numbers below these. A file states them because deleted objects had such numbers.
     void reserve_numbers(uint64_t next_node, uint64_t next_internode);
 
-    /// The node nearest to a position, the smallest number in case of a tie; null if there are no nodes.
+    /// The node nearest to a position; in case of a tie, the one with the smallest number; null if there are no nodes.
     std::optional<uint32_t> nearest_node(const glm::dvec3& position, std::optional<uint32_t> except = {}) const;
 
     /// All nodes within `distance`, ascending.
@@ -104,7 +104,7 @@ public:
     /// An upper bound of internode lengths, at most twice the longest; 0 without internodes.
     double longest_at_most() const { return tally_.longest_at_most(); }
 
-    /// Counts of nodes, internodes and segments, and lengths; kept up to date, so cheap at any size.
+    /// Counts of nodes, internodes and segments, and lengths. They are kept up to date, so this is cheap at any size.
     TraceSummary summary() const { return tally_.summary_of(*this); }
 
     /// Changes with each record that is applied, also in copies; equal numbers mean equal traces.

@@ -52,8 +52,8 @@ struct Command {
 
 /// Applies a change; one that does not fit is a bug of ours (SHVR_CHECK).
 void apply(Document& document, const Change& change, Direction direction);
-/// Applies all changes in order or, backwards, in reverse order. For records from files: if one does not fit, fails
-/// with the reason and leaves the document as it was.
+/// Applies all changes in order or, if backwards, in reverse order. For records from files: if one of them does not
+/// fit, fails with the reason and leaves the document unchanged.
 void apply_if_it_fits(Document& document, std::span<const Change> changes, Direction direction);
 /// Their approximate memory use.
 uint64_t memory_of(std::span<const Change> changes);

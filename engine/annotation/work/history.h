@@ -20,11 +20,11 @@ public:
     /// Reads a record's content from the journal; fails if it cannot be read.
     using Fetch = std::function<std::vector<Change>(RecordNumber)>;
 
-    /// Applies the command and records it; commands that were undone are dropped. Returns the command, valid until the
-    /// history changes; null if it has no changes and is not recorded. `record`: its number in the journal.
+    /// Applies the command and records it; drops commands that were undone. Returns the command, valid until the
+    /// history changes; null if the command has no changes and so is not recorded. `record`: its number in the journal.
     const Command* perform(Document& document, Command command, RecordNumber record = 0);
-    /// Applies `changes` and adds them to the last command: a stroke continues. Nothing may have been undone since that
-    /// command.
+    /// Applies `changes` and adds them to the last command, for instance when a stroke continues. Nothing may have been
+    /// undone since that command.
     void extend(Document& document, std::vector<Change> changes, RecordNumber record = 0);
     /// Return the command that was undone or redone; null if there is none. If the command was dropped and cannot be
     /// fetched or does not fit, fail and change nothing.
@@ -42,14 +42,14 @@ public:
 
     /// The label of a step; steps count from 0, the oldest, to undoable() + redoable() - 1. Always in memory.
     const std::string& label_of(size_t step) const { return commands_[step].command.label; }
-    /// Passes the changes of a step to `visit`; fetches them if they were dropped, and fails if that is not possible.
-    /// The span is valid during the call.
+    /// Passes the changes of a step to `visit`. Fetches the changes if they were dropped, and fails if that is
+    /// impossible. The span is valid only during the call.
     void look_at(size_t step, const std::function<void(std::span<const Change>)>& visit) const;
 
     void fetch_from(Fetch fetch) { fetch_ = std::move(fetch); }
     uint64_t memory_bytes() const { return memory_; }
-    /// Drops changes of the oldest commands until at most `max_bytes` are left. Only drops commands whose records are
-    /// on disk: the journal's records up to `durable`.
+    /// Drops the changes of the oldest commands until at most `max_bytes` are left. Only drops commands whose records
+    /// are on disk, that is, up to the record `durable`.
     void shrink(uint64_t max_bytes, RecordNumber durable);
 
 private:

@@ -54,7 +54,7 @@ int sync(int file)
                                 before.file_bytes, " bytes: open it again"));
 }
 
-/// The file as it was read, locked; created if it was not there.
+/// Opens and locks the file, which must be as it was when read; creates the file if there was none.
 FileDescriptor opened(const fs::path& path, const JournalScan& before)
 {
     const bool was_there = before.inode != 0;
@@ -126,7 +126,7 @@ Journal::Journal(const fs::path& path, JournalScan before, std::shared_ptr<const
     records_ = std::move(before.records);
     last_ = records_.size();
     try {
-        // Checked only now: a process that claims the journal later finds this file, and leaves it to this process.
+        // Checked only now: a process that claims the journal after this finds this file, and leaves it alone.
         expect_hold(before);
         if (end_ == 0 || end_ < before.file_bytes || !before.head.empty()) begin(free_rest(path), before.head);
         if (!own.empty()) put_in_place(own, before);
@@ -152,7 +152,7 @@ void Journal::put_in_place(const fs::path& own, const JournalScan& before)
         switch (put_at_free(own, path_)) {
             case Renaming::done:
                 sync_folder(path_);
-                // As after opening: a process that has claimed the journal by now did not find this file.
+                // Checked again: a process that has claimed the journal by now did not find this file.
                 return expect_hold(before);
             case Renaming::name_taken: static_cast<void>(set_aside(path_)); break;
             case Renaming::gone: fail(own.string(), ": is missing; expected the journal that was just written there");
@@ -160,8 +160,8 @@ void Journal::put_in_place(const fs::path& own, const JournalScan& before)
     }
 }
 
-/// Removes the file that this process created at the journal's path, in which there is no record yet. Another process
-/// may be replacing it by its own file, so the file is moved first, and removed only if it is this process's.
+/// Removes the file that this process created at the journal's path and that has no record yet. Another process may be
+/// replacing this file, so whatever is at the path is moved first, and removed only if it is this process's file.
 void Journal::remove_new() noexcept
 {
     try {
@@ -199,8 +199,8 @@ void Journal::begin(const fs::path& rest, std::span<const std::byte> head)
     is_to_begin_ = true;
 }
 
-/// To be called before any record is written: a journal without a header, as a power cut may leave it, must contain
-/// nothing else (has_file_header in journal_file.cpp). Returns the reason of a failure; empty on success.
+/// Must be called before any record is written: a journal whose header was lost in a power cut must contain nothing
+/// else (has_file_header in journal_file.cpp). Returns the reason of a failure; empty on success.
 std::string Journal::sync_beginning() const
 {
     try {
@@ -241,7 +241,7 @@ void Journal::flush()
     std::unique_lock lock(mutex_);
     const RecordNumber target = last_;
     if (records_.size() >= target) return;
-    // A write that is under way may have begun before the last record was appended.
+    // The write in progress may have begun before the last record was appended, so one more is needed.
     const uint64_t enough = tries_ + 2;
     ++flushing_;
     appended_.notify_all();

@@ -29,10 +29,10 @@ class AtomicWriter;
 
 class Journal {
 public:
-    /// Continues after the valid prefix in `before`; data after it is kept as JOURNAL.rest1, .rest2 and so on, and a
-    /// damaged head is repaired. Fails if the file cannot be created or written, with JournalTaken if another process
-    /// holds it. `hold`: null if no other process knows the journal. `own`: a name that only this process uses;
-    /// `before` is the file of that name, or none. That file replaces any at `path`, which gets another name.
+    /// Continues after the valid prefix in `before`: keeps any data after it as JOURNAL.rest1, .rest2 and so on, and
+    /// repairs a damaged head. Fails if the file cannot be created or written; fails with JournalTaken if another
+    /// process holds it. `hold`: null if no other process knows the journal. `own`: a file name that only this process
+    /// uses; `before` then describes that file (or none). It replaces any file at `path`, which is renamed.
     Journal(const std::filesystem::path& path, JournalScan before, std::shared_ptr<const Hold> hold = {},
             const std::filesystem::path& own = {});
     /// Tries to write the queue first.
@@ -45,22 +45,22 @@ public:
     RecordNumber last() const;
     /// Waits until everything appended is on disk; fails with the reason if that is not possible.
     void flush();
-    /// The number of the last record that is on disk, as are all records before it.
+    /// The number of the last record on disk; all records before it are on disk as well.
     RecordNumber durable() const;
     /// Number and checksum of the last durable record; 0, 0 if there is none.
     std::pair<RecordNumber, uint64_t> last_durable() const;
     /// False if the file was removed or replaced since it was
     /// opened: data written to it will be lost.
     bool is_in_place() const;
-    /// Whether another process claimed the journal (Hold::is_kept), as found after the last write.
+    /// Whether another process claimed the journal (Hold::is_kept), as noticed after the last write.
     bool is_claimed() const { return is_claimed_; }
-    /// The file's present name, even if the file was renamed in its folder; empty if it has no name any more.
+    /// The file's present name, which differs if the file was renamed in its folder; empty if it has no name any more.
     std::filesystem::path present_name() const;
     /// Copies the part of the journal that is on disk to another file, atomically.
     void copy_to(const std::filesystem::path& path) const;
     /// Why writing fails at present; empty if it does not.
     std::string failure() const;
-    /// Size of the file, including the queue (uncompressed).
+    /// Size of the file in bytes, plus the uncompressed size of the queue.
     uint64_t bytes() const;
 
     /// The content of a durable record.
@@ -102,7 +102,7 @@ private:
     std::string failure_;
 
     uint64_t checksum_ = 0;     ///< checksum of the last framed record; used by the journal's thread
-    bool is_to_begin_ = false;  ///< header or length may not be on disk yet; used by the journal's thread
+    bool is_to_begin_ = false;  ///< header or length may still be missing on disk; used by the journal's thread
     std::thread thread_;
 };
 
@@ -110,7 +110,7 @@ private:
 void copy_bytes(const FileDescriptor& file, const std::filesystem::path& path, uint64_t end,
                 std::span<const std::byte> head, AtomicWriter& to);
 
-/// Fails with JournalTaken if another process has written, created or replaced the file since it was read, or locks it.
+/// Fails with JournalTaken if another process locks the file, or wrote, created or replaced it since it was read.
 void expect_as_read(const std::filesystem::path& path, const JournalScan& before);
 
 }  // namespace shvr

@@ -67,7 +67,7 @@ uint64_t checksum_of(uint64_t before, const Header& header, std::span<const std:
     return checksum.value();
 }
 
-/// Returns the number of bytes read; fewer at the end of the file. `head`: as in JournalScan.
+/// Returns the number of bytes read, which is smaller at the end of the file. `head`: as in JournalScan.
 size_t read_at(const FileDescriptor& file, const fs::path& path, uint64_t at, std::span<std::byte> into,
                std::span<const std::byte> head = {})
 {
@@ -88,7 +88,7 @@ bool has_plausible_sizes(const JournalRecord& record)
     return record.bytes <= MAX_RECORD_BYTES && (record.is_compressed || record.bytes == record.stored_bytes);
 }
 
-/// The fields of a record, except label and checksum; also sets `label_bytes`.
+/// Returns the fields of a record, except its label and checksum; also sets `label_bytes` to the label's length.
 JournalRecord fields_of(const Header& header, uint64_t at, uint64_t& label_bytes)
 {
     label_bytes = get(&header[6], 2);

@@ -24,25 +24,25 @@
 namespace shvr {
 
 enum class RecordKind : uint32_t {
-    subject = 1,  ///< JournalSubject; the first record of every journal, and nowhere else
+    subject = 1,  ///< JournalSubject; always the first record of a journal, and only that
     state,        ///< the whole document after record `about`
     command,      ///< label, changes
     extension,    ///< changes that continue the preceding command
     undo,
     redo,
     saving,  ///< start of a save: from here on each saved file may be the old or the new one
-    /// SavedFiles. `about`: number of the last `kept` record whose settings the session's file held; 0: unknown.
+    /// SavedFiles. `about`: number of the last `kept` record that the session's file reflected; 0: unknown.
     saved,
     /// JournalSpace: from here on positions are in another spacing; earlier ones are converted when they are read.
     /// Older programs would mix the two spacings, so this kind makes them refuse the journal.
     respaced,
-    /// SavedFiles, `about` as in `saved`: the user decided about files that other programs had changed; from here on
-    /// the present state of these files is known. Older programs skip it, and ask (or take the files) again.
+    /// SavedFiles, with `about` as in `saved`: the user has decided about files changed by other programs, so from here
+    /// on the present state of these files is known. Older programs skip the record and ask (or take the files) again.
     known = 128,
-    /// SettingValues: kept settings that were changed since the record `about`, or (0) all of them. Older programs skip
-    /// them, and use those of the session's file.
+    /// SettingValues: all kept settings that changed since the record `about` or, if that is 0, all kept settings.
+    /// Older programs skip these records and use the settings of the session's file.
     kept = 129,
-    /// JournalSpace, once: space of the positions in this journal. Older programs skip it, and accept any spacing.
+    /// JournalSpace, once: the space of this journal's positions. Older programs skip it and accept any spacing.
     space = 130,
     /// The second record: an uncompressed copy of all bytes before it. Older programs skip it.
     head = 131,
@@ -67,7 +67,7 @@ struct JournalScan {
     uint64_t end = 0;         ///< end of the valid prefix
     uint64_t file_bytes = 0;  ///< including unreadable data at the end
     uint64_t inode = 0;       ///< 0: there is no file
-    /// Bytes to use instead of the beginning of the file, if some of the latter are damaged.
+    /// Bytes that replace the beginning of the file, if bytes there are damaged; otherwise empty.
     std::vector<std::byte> head{};
 
     /// Checksum of the last record; 0 if there is none.
@@ -79,8 +79,8 @@ struct JournalScan {
 /// More than any single command paints; larger sizes are refused before memory is allocated.
 constexpr uint64_t MAX_RECORD_BYTES = uint64_t{1} << 30;
 
-/// Fails if the file is not a journal, is from a newer program, or cannot be read; with JournalDamaged if its head is
-/// beyond repair.
+/// Fails if the file is not a journal, is from a newer program, or cannot be read; fails with JournalDamaged if the
+/// journal's head is beyond repair.
 JournalScan scan_journal(const std::filesystem::path& path);
 
 /// The content of a record. Fails if the file no longer holds it. `head`: as in JournalScan.
@@ -97,7 +97,7 @@ std::optional<ParsedRecord> parse_record(std::span<const std::byte> bytes, uint6
 
 /// The 16 bytes at the start of the file.
 std::vector<std::byte> journal_header();
-/// The bytes of a record. `checksum`: the previous record's; replaced by this record's. Completes `record`.
+/// The bytes of a record; completes `record`. Replaces `checksum`, the previous record's, by this record's.
 std::vector<std::byte> framed(JournalRecord& record, std::span<const std::byte> content, uint64_t& checksum);
 
 /// XXH3-64 of a file's bytes, or of all files of a folder with their names; null if there is none.

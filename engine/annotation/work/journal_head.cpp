@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 using Bytes = std::span<const std::byte>;
 
-/// Number of flipped bits tolerated in the 64 bits of the magic "SHVRJRNL"; texts of other files differ in more.
+/// Tolerated number of flipped bits among the 64 bits of the magic "SHVRJRNL"; texts of other files differ in more.
 constexpr int MAX_DAMAGED_BITS = 8;
 
 int bits_between(Bytes a, Bytes b)
@@ -29,7 +29,7 @@ bool are_equal(Bytes a, Bytes b)
     return std::ranges::equal(a, b);
 }
 
-/// Size and checksum of a sound first record; null if it is damaged.
+/// Size and checksum of the file's first record if that record is sound; null if it is damaged.
 struct First {
     size_t bytes = 0;
     uint64_t checksum = 0;
@@ -41,7 +41,7 @@ std::optional<First> first_record(Bytes bytes)
     return First{parsed->bytes, parsed->record.checksum};
 }
 
-/// The record `head` as it comes after `head`: the file's first bytes and the first record.
+/// The second record, of kind `head`. Its content, the argument `head`, is the file's first bytes and first record.
 std::vector<std::byte> second_record(Bytes head, uint64_t checksum)
 {
     JournalRecord record{.kind = RecordKind::head};
@@ -57,7 +57,7 @@ Bytes sound_front(Bytes begin)
     return first ? begin.first(header.size() + first->bytes) : Bytes{};
 }
 
-/// Where the repetition seems to begin: at "SHVRJRNL", up to damaged bits, after the first bytes. Null: nowhere.
+/// Where the repetition seems to begin: at a (perhaps damaged) "SHVRJRNL" after the first bytes. Null: nowhere.
 std::optional<size_t> place_of_repetition(Bytes begin)
 {
     const std::vector<std::byte> header = journal_header();
@@ -73,7 +73,7 @@ Bytes sound_repetition(Bytes begin)
     const std::optional<size_t> at = place_of_repetition(begin);
     if (!at) return {};
     const Bytes front = sound_front(begin.subspan(*at));
-    // The place proves that this is a repetition of this journal's head, not content that repeats another's.
+    // The place proves that this is a repetition of this journal's own head, not content that quotes another journal.
     return *at == front.size() + RECORD_HEADER_BYTES ? front : Bytes{};
 }
 
@@ -144,8 +144,8 @@ std::vector<std::byte> repaired_head(std::span<const std::byte> begin, const fs:
         return differing(expected_head(begin, front, true));
     const bool is_like_header = bits_between(begin.first(MAGIC_BYTES), header) <= MAX_DAMAGED_BITS;
     if (!is_like_header || is_newer(begin)) return {};
-    // An older journal has no repetition, and in this one the repetition may be damaged as well: then the first bytes
-    // are derived from the first record.
+    // An older journal has no repetition, and the repetition in this journal may be damaged as well. In both cases the
+    // first bytes are derived from the first record.
     std::vector<std::byte> front(begin.begin(), begin.end());
     std::ranges::copy(header, front.begin());
     if (const Bytes sound = sound_front(front); !sound.empty()) return differing(expected_head(front, sound, false));

@@ -25,14 +25,14 @@ public:
     using Error::Error;
 };
 
-/// The beginning of a file in which a head is looked for.
+/// Size of the beginning of a file in which the head is searched for.
 constexpr size_t MAX_HEAD_BYTES = 65536;
 
 /// The content of the record `head`, for a journal whose first record has the content `subject`.
 std::vector<std::byte> repeated_head(std::span<const std::byte> subject);
 
-/// `begin`: the file's first bytes, at most MAX_HEAD_BYTES. If some of them are damaged, returns the bytes that should
-/// be there; empty if none is damaged, or if the right bytes are unknown. Fails with JournalDamaged.
+/// Returns the bytes that belong at the file's beginning if some are damaged; empty if none is, or if the right bytes
+/// are unknown. `begin`: the file's first bytes, at most MAX_HEAD_BYTES. Fails with JournalDamaged.
 std::vector<std::byte> repaired_head(std::span<const std::byte> begin, const std::filesystem::path& path);
 
 }  // namespace shvr

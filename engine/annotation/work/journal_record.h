@@ -27,8 +27,8 @@ struct JournalSubject {
     bool operator==(const JournalSubject&) const = default;
 };
 
-/// Label of the first `saved` record of work that started empty next to files of earlier work. Those files do not count
-/// as saves of this work.
+/// Label of the first `saved` record of a work that started empty although files of earlier work existed. Those files
+/// do not count as saves of the new work.
 inline constexpr char AFRESH[] = "afresh";
 
 /// The files that hold the annotation between sessions, in the state last recorded in the journal; null: no file.
@@ -43,16 +43,16 @@ std::vector<std::byte> bytes_of(const JournalSpace& space);
 std::vector<std::byte> bytes_of(const SavedFiles& files);
 std::vector<std::byte> bytes_of(const SettingValues& values);
 std::vector<std::byte> bytes_of(std::span<const Change> changes);
-/// The whole document, as the changes that create it from an empty one, and the trace's next numbers.
+/// The whole document as bytes: the changes that create it from an empty one, and the trace's next numbers.
 std::vector<std::byte> bytes_of(const Document& document);
 
-/// These fail with the reason alone; callers add the file's name.
+/// Functions that read a record's content. Their failures state the reason alone; callers add the file's name.
 JournalSubject subject_of(std::span<const std::byte> bytes);
 JournalSpace space_of(std::span<const std::byte> bytes);
 SavedFiles saved_files_of(std::span<const std::byte> bytes);
 SettingValues setting_values_of(std::span<const std::byte> bytes);
 std::vector<Change> changes_of(std::span<const std::byte> bytes);
-/// `empty`: an empty document of the same volume. `convert` is called for each change before the change is applied.
+/// `empty`: an empty document of the same volume. `convert` is called with each change before the change is applied.
 Document document_of(std::span<const std::byte> bytes, Document empty,
                      const std::function<void(Change&)>& convert = {});
 

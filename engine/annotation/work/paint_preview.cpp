@@ -8,7 +8,7 @@ namespace shvr {
 
 namespace {
 
-/// Calls `row(first voxel, count)` for each row, or part of one, in a run, which may span several rows of its brick.
+/// Calls `row(first voxel, count)` for each row (or part of a row) in a run. A run may span several rows of its brick.
 template <class Run, class Row>
 void for_each_row(const Run& run, const Size3& brick_begin, const Row& row)
 {

@@ -1,6 +1,6 @@
 #pragma once
-// The voxels that a brush would change if it painted now, as bits of the box around these voxels; drawn before anything
-// is painted. Pure; any thread.
+// The voxels that a brush would change if it painted now, as bits of the box around them. They are drawn before
+// anything is painted. Pure; any thread.
 
 #include <cstdint>
 #include <span>

@@ -10,8 +10,8 @@
 
 namespace shvr {
 
-/// `journal`: the mask records its name (from `files`) and its last durable record; null if there is none. Returns a
-/// sentence if the old image is kept under another name, as `foreign` demands.
+/// `journal`: its name (from `files`) and its last durable record are recorded with the mask; null if there is none.
+/// Returns a sentence if the old image is kept under another name because `foreign` demands it.
 std::string write_part(Part part, const Document& document, const WorkFiles& files,
                        const std::vector<LabelImage::Color>& looks, const Journal* journal, Foreign foreign);
 

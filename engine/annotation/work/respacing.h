@@ -1,7 +1,7 @@
 #pragma once
-// Traces are stored in volume space, voxel * spacing. If a spacing is corrected, a node stays at its voxel and a radius
-// keeps its number of voxels along x, so lengths change accordingly. Equal values stay equal, so records that fitted
-// one another still do afterwards. Any thread.
+// Adapts traces to a corrected spacing. Traces are stored in volume space, voxel * spacing; if the spacing changes, a
+// node stays at its voxel and a radius keeps its number of voxels along x, so lengths change accordingly. Equal values
+// stay equal, so records that fitted one another still do. Any thread.
 
 #include <string>
 
@@ -22,7 +22,7 @@ std::string in_words(const JournalSpace& space);
 
 /// Whether two spacings are equal up to rounding and the precision of nine-digit text.
 bool is_same_spacing(const glm::dvec3& one, const glm::dvec3& other);
-/// Converts a position to position / from * to, and a radius to radius / from.x * to.x; leaves other changes alone.
+/// Changes a position to position / from * to, and a radius to radius / from.x * to.x; leaves other changes alone.
 void respace(Change& change, const glm::dvec3& from, const glm::dvec3& to);
 
 }  // namespace shvr

@@ -60,8 +60,8 @@ std::vector<Change> traces_between(const TraceGraph& from, const TraceGraph& to)
     differences(from.nodes(), to.nodes(), lost_nodes, nodes);
     differences(from.internodes(), to.internodes(), lost_links, links);
     differences(from.internode_radii(), to.internode_radii(), lost_sizes, sizes);
-    // An internode whose nodes change is removed first, and all removals precede additions: two nodes can be joined
-    // only once.
+    // An internode whose nodes change is first removed, then added again. All removals precede all additions, because
+    // two nodes can be joined only once.
     std::vector<TraceInternodeChange> joins;
     for (TraceInternodeChange& link : links) {
         if (link.before && (link.before->a != link.after->a || link.before->b != link.after->b)) {
@@ -135,7 +135,7 @@ LoadNotes load(Part part, const WorkFiles& files, Document& into)
     const TraceSpace space = space_of(files.volume);
     switch (part) {
         case Part::mask: {
-            // The size is checked first: a mask of another size is also of another image, but the size explains more.
+            // Checks the size first: a mask of another size is also of another image, but its size explains more.
             const fs::path& file = file_to_read(files, part);
             ImportedMask mask = import_mask(file, space);
             check_mask_image(file, files.volume_hash, files.is_other_name);

@@ -19,14 +19,14 @@ namespace shvr {
 struct WorkFiles {
     std::filesystem::path journal{};                   ///< empty: work is kept in memory only
     std::filesystem::path mask{}, trace{}, density{};  ///< empty: not saved
-    /// A mask in a read-only format, from which the work starts as long as `mask` has not been saved; empty: none. Set
-    /// by `Work`, which then also renames `mask` (saved_mask_path).
+    /// A mask in a read-only format, with which the work starts as long as `mask` has not been saved; empty if there is
+    /// none. Set by `Work`, which then also gives `mask` another name (saved_mask_path).
     std::filesystem::path mask_to_read{};
     std::string volume_hash{};  ///< Session::volume_hash
-    /// Returns whether another hash names the same voxels; may read them all. Empty: no other hash does.
+    /// Returns whether `hash` is another hash of the same voxels; may read all voxels. Empty: no other hash is.
     std::function<bool(const std::string& hash)> is_other_name{};
     VolumeInfo volume{};       ///< the annotated volume
-    SettingValues settings{};  ///< the session's, as read from its file
+    SettingValues settings{};  ///< the session's settings, as read from its file
     /// Converts settings to the form that this version writes, so that files and journals of different versions can be
     /// compared. Fails if the settings cannot be read.
     std::function<SettingValues(const SettingValues&)> normalized{};
@@ -54,23 +54,23 @@ bool is_there(const std::filesystem::path& path);
 
 /// Sentences about a file that was read.
 struct LoadNotes {
-    std::vector<std::string> losses{};   ///< the file holds more than the document: keep it before saving over it
+    std::vector<std::string> losses{};   ///< content that the document lacks: keep the file before saving over it
     std::vector<std::string> remarks{};  ///< how it was read
 };
-/// The file from which a part is read. For the mask it is `mask_to_read`, until `mask` has been saved.
+/// The file from which a part is read. For a mask this is `mask_to_read`, if any, until `mask` has been saved.
 const std::filesystem::path& file_to_read(const WorkFiles& files, Part part);
-/// Reads the file of a part into a document whose part is empty. Fails if the file is malformed, or of another volume
-/// or image.
+/// Reads the file of a part into a document whose part is empty. Fails if the file is malformed, or belongs to another
+/// volume or image.
 LoadNotes load(Part part, const WorkFiles& files, Document& into);
 
 /// The changes that turn a part of one document into that of another document of the same volume; none if the parts are
 /// equal. The selection is ignored.
 std::vector<Change> changes_between(Part part, const Document& from, const Document& to);
 
-/// The digest of the file to which a trace would be saved; null if it cannot be saved in that format.
+/// The digest that the saved file of a trace would have; null if the file's format cannot hold the trace.
 std::optional<uint64_t> trace_digest(const WorkFiles& files, const TraceGraph& trace);
 
-/// When a file was written, according to the system: a file with the same stamp is not read again.
+/// A file's times, size and inode, as the system states them: a file with an unchanged stamp is not read again.
 struct FileStamp {
     int64_t written_ns = 0, changed_ns = 0;
     uint64_t bytes = 0, inode = 0;
@@ -81,10 +81,10 @@ std::optional<FileStamp> stamp_of(const std::filesystem::path& path);
 
 /// "paint.mask.old", or "paint.mask.old2" and so on if that already exists.
 std::filesystem::path old_of(const std::filesystem::path& path);
-/// Renames a file or folder to its `old_of`, and returns that name; null if another process has moved the file
-/// meanwhile. Fails if renaming fails.
+/// Renames a file or folder to its `old_of`, and returns this new name; null if another process has moved the file in
+/// the meantime. Fails if renaming fails.
 std::optional<std::filesystem::path> set_aside(const std::filesystem::path& path);
-/// Renames `file` to the `old_of` of `path` likewise; `file` and `path` may differ.
+/// Like `set_aside`, but renames `file` to the `old_of` of `path`, which may be another path.
 std::optional<std::filesystem::path> rename_to_old(const std::filesystem::path& file,
                                                    const std::filesystem::path& path);
 

@@ -41,7 +41,7 @@ enum class Belief {
 struct Dispute {
     Part part = Part::mask;
     std::filesystem::path file;
-    std::string text;                 ///< file, what was found, what was expected
+    std::string text;                 ///< the file, what was found in it, and what was expected
     std::vector<Change> differences;  ///< changes that lead from the journal's content to the file's
 };
 
@@ -66,23 +66,23 @@ public:
         Start start = Start::as_left;
         Belief belief = Belief::ask;
         bool only_look = false;  ///< read-only: takes no hold, and accepts no command
-        /// The work will be changed at once: a journal that others may still write is taken from them during opening,
-        /// not by the first command. It is read again if they write it meanwhile.
+        /// States that the work will be changed at once: a journal that others may still write is taken from them
+        /// during opening, not by the first command. The journal is read again if others write it meanwhile.
         bool takes_over = false;
         std::shared_ptr<Hold> hold{};  ///< existing hold of this journal; null: the hold is taken during opening
         std::string program = "shvr";  ///< description as in Holder, for a hold that is taken during opening
         Progress progress{};           ///< progress of replaying the journal; an exception from it cancels the opening
     };
-    /// To be called on a Work without commands. Returns messages: unsaved work, files that are missing or unreadable, a
-    /// journal that is missing or damaged. Fails, loading nothing, if a file is of another volume or malformed and no
-    /// journal holds its content, and with JournalTaken if another process is writing the journal.
+    /// Must be called on a Work without commands. Returns messages about unsaved work, missing or unreadable files, and
+    /// a missing or damaged journal. Fails, loading nothing, if a file belongs to another volume or is malformed and no
+    /// journal holds its content; fails with JournalTaken if another process is writing the journal.
     std::vector<Notice> open(const WorkFiles& files, const Opening& opening);
     std::vector<Notice> open(const WorkFiles& files) { return open(files, Opening{}); }
 
     /// Decisions to be made; empty: none.
     const std::vector<Dispute>& disputes() const { return disputes_; }
-    /// Resolves all disputes in favour of the files, whose differences are applied as one command, or of the journal as
-    /// it is. Returns messages about the choice, and the command, which is valid until the history changes.
+    /// Resolves all disputes, either in favour of the files (whose differences are applied as one command) or in favour
+    /// of the journal as it is. Returns messages about the choice, and the command, valid until the history changes.
     struct Choice {
         std::vector<Notice> notices;
         const Command* command = nullptr;
@@ -93,8 +93,8 @@ public:
 
     /// True if commands and saves are refused.
     bool only_looks() const { return only_looks_; }
-    /// Whether another process has claimed the journal since the last call, as revealed by the last write to the
-    /// journal. From then on this work only looks; `claimed` says why, and where its journal is kept.
+    /// Returns whether another process has claimed the journal since the last call, as seen at the last write to the
+    /// journal. After a claim this work only looks; `claimed` states the reason and where its journal is kept.
     bool look_for_claim();
     const std::string& claimed() const { return claimed_; }
     const std::string& claimed_by() const { return claimed_by_; }  ///< as in `in_words`; empty: no process
@@ -102,18 +102,18 @@ public:
     std::shared_ptr<Hold> hold() const { return hold_; }
 
     const Document& document() const { return document_; }
-    /// The session's lasting settings: the journal's or, if the session's file was changed since it was saved, the
-    /// file's. In the latter case the first command records the change as a step of its own.
+    /// The session's lasting settings: those of the journal or, if the session's file was changed after it was saved,
+    /// those of the file. In the latter case the first command also records the change of the file, as a separate step.
     SettingValues settings() const;
     /// The settings that are restored on opening but are not part of the work, as last kept.
     const SettingValues& kept_settings() const { return kept_; }
     const History& history() const { return history_; }
 
-    /// As in History, but written to the journal first. Fail without any effect if the journal cannot be started, is
-    /// locked by another process, or does not accept the command.
+    /// Like the functions of History, but write to the journal first. They fail without any effect if the journal
+    /// cannot be started, is locked by another process, or does not accept the command.
     const Command* perform(Command command);
     void extend(std::vector<Change> changes);
-    /// Sets the sections whose values differ, as one command; null if none does.
+    /// Sets the sections whose values differ from the present ones, as one command; null if none differs.
     const Command* change_settings(std::string label, const SettingValues& values);
     const Command* undo();
     const Command* redo();
@@ -121,10 +121,10 @@ public:
     /// differs. The state is read from the journal, so later changes of the files do not matter. If nothing was ever
     /// saved or the journal cannot be read, fails and changes nothing.
     const Command* revert();
-    /// Keeps the sections that differ; this is neither a command nor a reason to save. They are written to the journal
-    /// once the first command has started it; before that, or if the journal cannot be written, they stay in memory
-    /// and are written with the next record. Never fails. Sections set for this run only ("key=value") must not be
-    /// passed.
+    /// Keeps the sections that differ. This is not a command, and no reason to save. The sections are written to the
+    /// journal if the first command has started it; otherwise, or if the journal cannot be written, they stay in memory
+    /// and are written with the next record. Never fails. Sections that were set for this run only ("key=value") must
+    /// not be passed.
     void keep_settings(const SettingValues& values);
     /// Selects objects, which must exist. This is not a step of the history.
     void select_trace(TraceSelection selection) { document_.trace.select(std::move(selection)); }
@@ -143,10 +143,10 @@ public:
     /// A save in the background: writes the state at the time when the save began. Later commands are not included and
     /// stay unsaved. Until `write` has completed, the journal does not record the save.
     class Saving;
-    /// Copies the state to be written, at the cost of a copy of the document; fails as `save` does before it writes.
-    /// Only one save at a time; `end_save` must follow.
+    /// Copies the state to be written, at the cost of a copy of the document; fails for the same reasons as `save` does
+    /// before it writes. Only one save can be in progress; `end_save` must follow.
     std::unique_ptr<Saving> begin_save(std::vector<LabelImage::Color> looks);
-    /// To be called after begin_save in any case, whether or not the files were written.
+    /// Ends a save. Must follow every begin_save, whether or not the files were written.
     Saved end_save(Saving& saving);
     bool is_saving() const { return is_saving_; }
 
@@ -171,13 +171,13 @@ public:
                     const std::filesystem::path& density);
     /// Number of commands, undos and redos since the last save.
     size_t unsaved() const { return unsaved_; }
-    /// Whether nothing needs saving: no command, and no file that is missing or unreadable.
+    /// Whether nothing needs saving: there is no unsaved command, and no file is missing or unreadable.
     bool is_saved() const { return unsaved_ == 0 && !misses_files_; }
-    /// Whether all commands are on disk, in the journal: closing without a save loses none.
+    /// Whether the journal on disk holds all commands, so that closing without a save loses none.
     bool is_kept() const;
     /// Completes background tasks, so that another Work can open the same files before this one is destroyed.
     void settle();
-    /// A function that waits, on any thread, until the journal is on disk; empty: no journal. It may outlive the work.
+    /// A function that waits, on any thread, until the journal is on disk, and may outlive the work; empty: no journal.
     std::function<void()> flusher() const;
     /// Returns whether the trace is unchanged since the last save.
     bool trace_is_saved() const { return !touched_[size_t(Part::trace)]; }
@@ -193,8 +193,8 @@ public:
     struct Limits {
         /// Budget of commands kept in memory; older ones are fetched from the journal.
         uint64_t history_bytes = uint64_t{256} << 20;
-        /// After this many bytes (or twice the last state's size), or this many steps, a state is written to the
-        /// journal. Opening then takes as long as reading one state, and states are at most half of a journal.
+        /// A state is written to the journal after this many bytes (or twice the last state's size), or this many
+        /// steps. So opening takes about as long as reading one state, and states make up at most half of a journal.
         uint64_t bytes_between_states = uint64_t{16} << 20;
         size_t steps_between_states = 20000;
     };
@@ -222,7 +222,7 @@ private:
     void open_fresh();
     std::vector<Notice> open_from_files(const std::string& damage);
     void check_subject() const;
-    /// Returns why it stopped early, in which case the remaining records are dropped from the scan; otherwise empty.
+    /// Returns the reason if it stopped early, and then drops the remaining records from the scan; otherwise empty.
     std::string replay();
     struct Replayed {
         Document document;
@@ -287,7 +287,7 @@ private:
     std::optional<FileDescriptor> scanned_;  ///< its file
     bool is_to_set_aside_ = false;           ///< the journal that was read does not belong to this work
     bool only_looks_ = false;
-    bool takes_files_ = false;  ///< the saved files count, not a journal that cannot be read
+    bool takes_files_ = false;  ///< the saved files count, instead of a journal that cannot be read
     bool is_fresh_ = false;     ///< started empty next to files of earlier work
     std::string program_;       ///< as in Holder
     std::string claimed_, claimed_by_;
@@ -297,7 +297,7 @@ private:
     SettingValues kept_;                         ///< the present values
     SettingValues journaled_kept_;               ///< the kept settings in the journal
     RecordNumber last_kept_ = 0;                 ///< the journal's last record of kept settings
-    RecordNumber known_kept_ = 0;                ///< last `kept` record that the session's file reflects; 0: not known
+    RecordNumber known_kept_ = 0;                ///< last `kept` record that the session's file reflects; 0: unknown
     size_t kept_since_whole_ = 0;                ///< number of `kept` records since the last one with all sections
     bool keeps_settings_ = false;                ///< the caller keeps some settings
     bool kept_from_outside_ = false;             ///< whether the state of the session's file is yet to be recorded
@@ -314,7 +314,7 @@ private:
     struct Seen {
         std::optional<uint64_t> digest{};
         std::optional<FileStamp> stamp{};
-        bool is_foreign = false;  ///< its content is not in the journal
+        bool is_foreign = false;  ///< the journal does not hold the file's content
     };
     static Seen seen_at(const std::filesystem::path& file);
     static void note_file(const std::filesystem::path& file, Seen& seen);
@@ -330,7 +330,7 @@ private:
     Progress opening_progress_;  ///< null except while opening
     uint64_t since_state_bytes_ = 0, state_bytes_ = 0;
     size_t since_state_steps_ = 0;
-    std::future<std::vector<std::byte>> state_;  ///< state that is encoded from a copy of the document
+    std::future<std::vector<std::byte>> state_;  ///< a state being encoded from a copy of the document
     RecordNumber state_about_ = 0;
     Limits limits_;
 };
@@ -338,9 +338,9 @@ private:
 class Work::Saving {
 public:
     Saving(const Saving&) = delete;
-    /// Writes the files and their digests, as `Work::save` does, on any thread; only once. An exception from `progress`
-    /// ends the save: then some files may be new and the rest old, as after a failure. `save_names`: used if no session
-    /// is saved; writes new names of files, and no settings, into the session's file.
+    /// Writes the files and their digests, as `Work::save` does, on any thread. To be called only once. An exception
+    /// from `progress` ends the save; as after a failure, some files may then be new and the rest old. `save_names` is
+    /// used if no session is saved; it writes the new names of files, but no settings, into the session's file.
     void write(const std::function<void()>& save_session = {}, const Progress& progress = {},
                const std::function<void()>& save_names = {});
 
@@ -380,7 +380,7 @@ private:
     std::vector<LabelImage::Color> looks_;
     std::filesystem::path session_;
     std::string program_;
-    std::shared_ptr<Journal> before_;  ///< the present work's; null if it has no history yet
+    std::shared_ptr<Journal> before_;  ///< the journal of the work under its old name; null if it has no history yet
     SettingValues kept_;
     RecordNumber last_kept_ = 0, known_kept_ = 0;
 

@@ -10,13 +10,13 @@ namespace shvr {
 /// The bricks with offsets, as OffsetSource takes them.
 std::vector<OffsetSource::Brick> offset_bricks(const DensityField& field);
 
-/// `base` with the field's offsets; `base` itself if there are none. The field must have the volume's size and type; it
-/// may change afterwards.
+/// Returns `base` with the field's offsets added, or `base` itself if there are none. The field must have the volume's
+/// size and type; later changes of the field have no effect on the result.
 std::shared_ptr<const VolumeSource> with_offsets(std::shared_ptr<const VolumeSource> base, const DensityField& field);
 
 /// Reads only the offsets that `Work::open` would load; if there is no journal, mask and trace are not read. Fails as
-/// Work::open does, and with Disputed if another program has changed the offsets' file and `belief` does not decide;
-/// appends messages to `notices`. One thread.
+/// `Work::open` does; fails with Disputed if another program has changed the offsets' file and `belief` does not
+/// decide. Appends messages to `notices`. One thread.
 DensityField offsets_of(const WorkFiles& files, Belief belief, std::vector<Notice>& notices);
 
 }  // namespace shvr

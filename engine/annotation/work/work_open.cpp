@@ -103,7 +103,7 @@ std::vector<Notice> Work::open(const WorkFiles& files, const Opening& opening)
     is_fresh_ = opening.start == Start::fresh;
     takes_files_ = opening.belief == Belief::files || is_fresh_;
     std::vector<Notice> notices = read();
-    // Changes seen now may be those of a save that another process is making.
+    // Changes seen now may come from a save that another process has in progress, so they are looked at again.
     for (int i = 0; i < TRIES && only_looks_ && !disputes_.empty() && holder_of(files.journal); ++i) {
         std::this_thread::sleep_for(TURN);
         notices = read();
@@ -125,7 +125,7 @@ void Work::name_mask(const fs::path& stated)
     files_.mask_to_read = files_.mask == stated ? fs::path() : stated;
 }
 
-/// Reports the mask that is read, at opening, before anything is painted.
+/// Reports, at opening and before any painting, which mask is read if it can only be read, not written.
 void Work::tell_mask_to_read(std::vector<Notice>& notices) const
 {
     if (is_in_archive(files_.mask))
@@ -173,7 +173,7 @@ std::vector<Notice> Work::open_once()
     std::vector<Notice> notices;
     const std::string name = files_.journal.string();
     if (!damage.empty()) notices.push_back({sentence(name, ": ", damage, "; what comes before is used"), true});
-    // Data at the end that another process is just writing is not damage.
+    // A partial record at the end is not damage if another process is just writing it.
     if (scan_.end < scan_.file_bytes && !(only_looks_ && holder_of(files_.journal)))
         notices.push_back({sentence(name, ": its last ", scan_.file_bytes - scan_.end,
                                     " bytes are an incomplete or damaged record; expected complete ones; the ",
@@ -212,7 +212,7 @@ void Work::read_journal()
     }
 }
 
-/// Existing files belong to earlier work. They are renamed and kept if that work's journal does not hold them.
+/// Treats existing files as those of earlier work; they are renamed and kept if the earlier work's journal lacks them.
 void Work::open_fresh()
 {
     read_journal();
@@ -256,7 +256,7 @@ std::vector<Notice> Work::open_from_files(const std::string& damage)
              true});
     for (const Part part : PARTS) {
         note_file(part);
-        // A mask may be a label image in an archive; trace and offsets, by default next to it, cannot be.
+        // A mask may be a label image in an archive; trace and offsets, by default next to the mask, cannot.
         const fs::path &file = file_to_read(files_, part), &saved = file_of(files_, part);
         if (is_there(file) || (part == Part::mask && is_in_archive(file))) {
             const LoadNotes notes = load(part, files_, document_);
@@ -316,7 +316,7 @@ std::string Work::replay()
     }
 }
 
-/// The work after record `last`. On failure, `at` is the record that could not be replayed.
+/// Returns the work as it was after record `last`. On failure, `at` is the record that could not be replayed.
 Work::Replayed Work::replayed(const JournalScan& scan, RecordNumber last, RecordNumber& at) const
 {
     Replayed work{empty_document(), {}};
@@ -443,7 +443,7 @@ void Work::look_at_mask_image(std::vector<Notice>& notices) const
     }
 }
 
-/// The record at which the save of a `saved` record began; the save contains the work as it was at that record.
+/// Returns the record at which a save began whose end is the record `saved`. The save holds the work as of that record.
 RecordNumber Work::begin_of_save(const JournalScan& scan, RecordNumber saved)
 {
     for (RecordNumber number = saved - 1; number > 0; --number) {
@@ -454,7 +454,7 @@ RecordNumber Work::begin_of_save(const JournalScan& scan, RecordNumber saved)
     return saved;  // the first record, which lists files that were found, not saved
 }
 
-/// The states that a save may have written: the last completed one, and all that were begun since.
+/// The states that saves may have written: the state of the last completed save, and those of all saves begun since.
 std::vector<Document> Work::documents_at_saves() const
 {
     constexpr size_t MAX_SAVES = 512;  // each is replayed

@@ -6,7 +6,7 @@
 
 namespace shvr {
 
-/// A part taken from a file that others changed counts as saved at that moment.
+/// Counts a part that was taken from a file changed by others as saved at that moment.
 Work::LastSave Work::last_save(const JournalScan& scan) const
 {
     LastSave last;

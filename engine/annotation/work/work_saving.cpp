@@ -98,7 +98,7 @@ std::unique_ptr<Work::Saving> Work::begin_save(std::vector<LabelImage::Color> lo
     refuse_if_only_looking();
     expect_choice();
     expect_names(files_);
-    // Called also if another process has begun a journal since this one checked; begin_journal then refuses.
+    // Also called if another process has begun a journal since this process last looked; begin_journal then refuses.
     if (scan_.inode != 0 || is_there(files_.journal) || history_.undoable() + history_.redoable() > 0) begin_journal();
     if (journal_) journal_->append(RecordKind::saving, {}, {});
     is_saving_ = true;
@@ -156,7 +156,7 @@ void Work::Saving::write(Part part)
                                                name_of(part), " as this one knows it; it is kept as ", old->string(),
                                                ", and what is saved is this program's"),
                                       true});
-    // If false, the file, if any, is of an interrupted save, or of another program that wrote the same content.
+    // If false, the file (if any) is from an interrupted save, or from a program that wrote the same content.
     const bool is_last_save = seen.digest && seen.digest == digest_of(known_, part);
     try {
         std::string kept = write_part(part, document_, files_, looks_, journal_.get(),

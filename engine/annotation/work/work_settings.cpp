@@ -1,5 +1,5 @@
-// Settings that can be undone: the choice between journal and session file at opening, and the records of changes. Kept
-// settings, which are restored but are not steps of the history: the same choice, and their records.
+// Undoable settings: the choice between journal and session file at opening, and the records of changes. Kept settings
+// (restored on opening, but not steps of the history): likewise their choice and their records.
 
 #include <utility>
 
@@ -58,7 +58,7 @@ void Work::record_settings_from_outside()
     const RecordNumber number = record(RecordKind::command, command.label, bytes_of(command.changes));
     history_.perform(document_, std::move(command), number);
     note_unsaved(1);
-    // Without this, the change would be detected again after the next change.
+    // Without this, the difference in the session's file would be detected again after the next change.
     if (!known_.settings) known_.settings.emplace();
     for (const auto& [name, value] : files_.settings) (*known_.settings)[name] = value;
     record_files(RecordKind::known);
@@ -80,7 +80,7 @@ const Command* Work::change_settings(std::string label, const SettingValues& val
 
 namespace {
 
-/// After this many records of differences, one of all sections is written, so that opening reads few records.
+/// After this many records of differences, a record of all sections is written, so that opening reads few records.
 constexpr size_t MAX_DIFFERENCES = 256;
 
 SettingValues normalized_by(const std::function<SettingValues(const SettingValues&)>& normalized,
@@ -91,7 +91,7 @@ SettingValues normalized_by(const std::function<SettingValues(const SettingValue
 
 }  // namespace
 
-/// Kept settings as of a `kept` record. Each record names the previous one, back to one that holds all sections.
+/// Kept settings as of a `kept` record. Each such record names its predecessor, back to a record of all sections.
 SettingValues Work::kept_at(RecordNumber number) const
 {
     SettingValues values;
@@ -177,7 +177,7 @@ void Work::keep_settings(const SettingValues& values)
     if (!differs || only_looks_ || is_saving_as_) return;
     if (journal_) return write_kept();
     const bool is_there = !scan_.records.empty() && !is_to_set_aside_;
-    // Without a hold another program may write the journal, until a command takes the hold.
+    // Writes nothing without a hold: another program may write the journal until a command takes the hold.
     if (!is_there || !hold_ || !hold_->doubtful().empty() || !disputes_.empty() || cannot_keep_) return;
     try {
         open_journal();

@@ -11,7 +11,7 @@ std::vector<Change> Work::changes_at(RecordNumber number) const
     return changes;
 }
 
-/// Converts a change through all spacings that are stated after its record.
+/// Converts a change through all spacings that the journal states after the change's record.
 void Work::bring_to_spacing(Change& change, RecordNumber number) const
 {
     for (size_t i = 1; i < spaces_.size(); ++i)
@@ -35,8 +35,8 @@ void Work::read_spaces(RecordNumber& at)
     spaces_.push_back({scan_.records.size() + 1, std::move(own)});
 }
 
-/// Reports that the journal has another spacing or unit for the same voxels, and marks files that state a spacing for
-/// rewriting.
+/// Reports that the journal has another spacing or unit for the same voxels, and marks the files that state a spacing,
+/// so that they are rewritten.
 void Work::tell_spacing(std::vector<Notice>& notices)
 {
     if (!space_to_note_ || spaces_.size() < 2) return;

@@ -13,8 +13,8 @@ namespace shvr {
 
 namespace fs = std::filesystem;
 
-/// Another process has claimed the journal: the records of this process stay in the file that the other one renamed, or
-/// are renamed here.
+/// Handles a claim of the journal by another process: this process's records stay in the file that the other process
+/// has renamed; if it has not, the file is renamed here.
 void Work::note_claim()
 {
     const std::optional<Holder> other = hold_->successor();
@@ -84,8 +84,8 @@ void Work::take_over(std::vector<Notice>& notices)
         }
 }
 
-/// If it is unknown whether others have ended, this process never writes their file again: it continues in a copy that
-/// it alone created. Null if all of them have closed the journal meanwhile.
+/// Continues in a copy that this process alone created, if it is unknown whether other writers have ended: this process
+/// never writes their file again. Null if all of them have closed the journal meanwhile.
 std::shared_ptr<Journal> Work::journal_left_to_others()
 {
     expect_as_read(files_.journal, scan_);

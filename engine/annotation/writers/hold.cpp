@@ -107,7 +107,7 @@ Holder described(const FileDescriptor& file)
     return parse_holder(text);
 }
 
-/// Returns whether a dead process of this host left the file's content: the present holder has yet to write its own.
+/// Returns whether the content is empty or a dead process's of this host, so the present holder has yet to write.
 bool is_dated(const Holder& holder)
 {
     const std::optional<int64_t> process = whole_of(holder.process);
@@ -136,7 +136,7 @@ Holder holder_in(const FileDescriptor& file)
 /// False only if there certainly is no such file.
 bool is_there(const fs::path& path)
 {
-    // Network file systems ask the server when a file is opened, but not always for its status.
+    // On network file systems, opening a file asks the server; querying the file's status may not.
     const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW));
     return file || errno != ENOENT;
 }
@@ -221,7 +221,7 @@ std::optional<FileDescriptor> locked(const fs::path& journal)
     return std::nullopt;
 }
 
-/// A copy of the journal, made by the owner of a mark, which is about to put it in the journal's place.
+/// A copy of the journal, made by the owner of the mark, who is about to put the copy in the journal's place.
 fs::path copy_beside(const fs::path& mark)
 {
     return fs::path(mark).replace_extension(".copy");

@@ -50,8 +50,8 @@ public:
     Hold(const Hold&) = delete;
 
     const std::filesystem::path& journal() const { return journal_; }
-    /// False if another process has claimed the journal meanwhile: this process must not begin to write the journal,
-    /// and the records that it still writes into its open file stay separate. Any thread.
+    /// False if another process has claimed the journal meanwhile. This process must then not begin to write the
+    /// journal; records that it still writes into its open file stay separate. Any thread.
     bool is_kept() const;
     /// Another process that writes the journal now. Null if none does.
     std::optional<Holder> successor() const;
@@ -60,7 +60,7 @@ public:
     /// Releases the lock only, so that this process can take another hold after it has lost this one.
     void unlock() { lock_.reset(); }
 
-    /// Processes that held the journal and may still hold it: from here, it is unknown whether they have ended.
+    /// Processes that held the journal and may still hold it: this process cannot determine whether they have ended.
     const std::vector<Holder>& doubtful() const { return doubtful_; }
     /// Takes the journal from the doubtful processes. False if all of them have closed it meanwhile. If true, do not
     /// write their file: keep it under another name, put a copy in its place, and then call `end_claim`.

@@ -30,7 +30,7 @@ Renaming after_failure(const fs::path& from, const fs::path& to, int error)
     fail(to.string(), ": cannot be written, to keep ", from.filename().string(), " there: ", reason_of(error));
 }
 
-/// Reserves the name with an empty file, then renames over it. Only for names that no other process moves meanwhile.
+/// Reserves `to` with an empty file, then renames over it. Only for names that no other process moves meanwhile.
 Renaming rename_over_own(const fs::path& from, const fs::path& to)
 {
     const FileDescriptor own(::open(to.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
@@ -59,7 +59,7 @@ Renaming move_to_free(const fs::path& from, const fs::path& to)
     struct stat status {};
     if (::lstat(from.c_str(), &status) != 0) return after_failure(from, to, errno);
     if (!S_ISDIR(status.st_mode)) return rename_over_own(from, to);
-    // A folder replaces at most an empty folder.
+    // Renaming a folder can replace an empty folder, but nothing else.
     if (std::rename(from.c_str(), to.c_str()) == 0) return Renaming::done;
     if (errno == ENOTEMPTY || errno == ENOTDIR) return Renaming::name_taken;
     return after_failure(from, to, errno);

@@ -12,11 +12,11 @@ enum class Renaming {
     gone,        ///< there is no `from`
 };
 
-/// Renames the file or folder `from`, which other processes may move at the same time, to a name that nothing is moved
-/// away from. Fails only for reasons other than those of `Renaming`.
+/// Renames the file or folder `from`, which other processes may move at the same time. `to` must be a name that no
+/// process moves files away from. Fails only for reasons other than those of `Renaming`.
 Renaming move_to_free(const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// Renames `own`, which only this process knows, to a name from which others may move it. Fails as `move_to_free`.
+/// Renames `own`, a name known to this process only, to `to`, from which others may move it. Fails like `move_to_free`.
 Renaming put_at_free(const std::filesystem::path& own, const std::filesystem::path& to);
 
 }  // namespace shvr

@@ -17,8 +17,8 @@ std::string boot_name();
 /// The PID namespace in which this process's number is unique: containers have their own. 0: not known.
 uint64_t process_space();
 
-/// When a process began, in the kernel's ticks since boot: together with its number, this identifies the process. Null
-/// if it has ended (even if its parent has not waited for it yet); 0 if that cannot be determined.
+/// When a process began, in kernel ticks since boot; with the process's number, this identifies the process. Null if
+/// the process has ended (even if its parent has not waited for it yet); 0 if its start cannot be determined.
 std::optional<uint64_t> start_of(pid_t process);
 
 /// Whether a folder is on a disk of one computer, so that every process that can reach it runs on that computer's

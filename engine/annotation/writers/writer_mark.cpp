@@ -30,7 +30,7 @@ fs::path folder_of(const fs::path& journal)
     return journal.has_parent_path() ? journal.parent_path() : fs::path(".");
 }
 
-/// The beginning of the names of a journal's marks. A long journal name is cut, and its checksum (FNV-1a) appended.
+/// The prefix of the names of a journal's marks. A long journal name is cut, with its checksum (FNV-1a) appended.
 std::string beginning_of(const fs::path& journal)
 {
     const std::string name = journal.filename().string();
@@ -86,7 +86,7 @@ WriterMark::Owner owner_of(const Name& name, const fs::path& folder)
     using enum WriterMark::Owner;
     if (name.host != plain_host()) return unknown;
     const bool is_local = is_on_local_disk(folder);
-    // A copy of a folder has copies of its marks.
+    // In a copied folder the marks are copies, too: their names state another folder.
     if (is_local && name.folder != sentence(inode_of(folder))) return ended;
     const std::string boot = plain_boot(), space = sentence(process_space());
     if (boot.empty() || name.boot.empty() || space == "0") return unknown;

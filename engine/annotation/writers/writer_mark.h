@@ -21,25 +21,25 @@ namespace shvr {
 struct WriterMark {
     enum class Owner {
         running,
-        unknown,  ///< on another computer, in another container, or before a restart of this one
+        unknown,  ///< owner is on another computer, in another container, or from before a restart
         ended,
     };
     std::filesystem::path path;
     Owner owner = Owner::unknown;
-    Holder holder{};            ///< as stated in the file, or else derived from the file's name and time
-    bool is_described = false;  ///< false: its owner has not looked for others yet
+    Holder holder{};            ///< as stated in the mark's file, or else derived from its name and time
+    bool is_described = false;  ///< false: the mark's owner has not looked for others yet
 };
 
 /// Creates this process's mark. Null if that is impossible; `error` is the reason.
 std::optional<std::filesystem::path> make_mark(const std::filesystem::path& journal, int& error);
-/// Failures do not matter: the name is sufficient.
+/// Writes the holder into the mark. Failures are ignored, since the mark's name is sufficient.
 void describe_mark(const std::filesystem::path& mark, const Holder& holder);
 
 /// All marks of a journal except `own`. Null if the folder cannot be listed.
 std::optional<std::vector<WriterMark>> marks_of(const std::filesystem::path& journal,
                                                 const std::filesystem::path& own = {});
 
-/// The name to which a mark is renamed when its owner must not write any more. A revoked mark still counts as a mark.
+/// The name given to a mark whose owner must not write any more. A revoked mark still counts as a mark.
 std::filesystem::path revoked(const std::filesystem::path& mark);
 
 }  // namespace shvr

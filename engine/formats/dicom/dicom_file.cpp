@@ -24,13 +24,13 @@ using gdcm::DataSet;
 using gdcm::Tag;
 
 constexpr int64_t MAX_FRAMES = 65536;
-/// A larger slice must not expand its file by more than MAX_EXPANSION; no codec compresses real slices better.
+/// A slice above this size may be at most MAX_EXPANSION times its file's size; no codec compresses real slices better.
 constexpr int64_t LARGE_SLICE = int64_t{64} << 20;
 constexpr int64_t MAX_EXPANSION = 1000;
 
 // ---- Values ---------------------------------------------------------------------------------------------------------
 
-/// Looks up values in a data set; in a file with many frames, first in the data sets of one frame and of all frames.
+/// Looks up values in a data set; in a multi-frame file, first in the per-frame and shared functional groups.
 class Values {
 public:
     explicit Values(std::vector<const DataSet*> sets) : sets_(std::move(sets)) {}
@@ -100,8 +100,8 @@ Sequence sequence_of(const DataSet& set, const Tag& tag)
     return set.FindDataElement(tag) ? set.GetDataElement(tag).GetValueAsSQ() : Sequence();
 }
 
-/// The places where values of one frame may be: in the functional groups (PS3.3, C.7.6.16) of the frame or of all
-/// frames, or in the file's own data set, which may state a frame's values, too.
+/// The places that may state a value of one frame: the per-frame functional groups, the shared functional groups
+/// (PS3.3, C.7.6.16), and the file's own data set.
 class FrameValues {
 public:
     explicit FrameValues(const DataSet& file)

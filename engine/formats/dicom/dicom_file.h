@@ -19,7 +19,7 @@ struct DicomFrame {
     glm::dvec3 along_y{0.0, 1.0, 0.0};     ///< from row to row
     std::optional<glm::dvec2> spacing{};   ///< mm from column to column, from row to row
     bool has_orientation = false;
-    /// mm between slices as the file states it, or else slice thickness. Negative: slices run against the normal.
+    /// Stated distance between slices, or else slice thickness, in mm. Negative: slices run against the normal.
     std::optional<double> distance{};
     int64_t time_number = 0;  ///< temporal position
     std::string stack{};      ///< identifies the frame's stack of slices, in a file of several stacks

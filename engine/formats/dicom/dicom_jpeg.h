@@ -9,7 +9,7 @@
 
 namespace shvr {
 
-/// Whether pixels of that transfer syntax are JPEG pictures as in T.81, or JPEG-LS pictures (T.87).
+/// Whether `transfer_syntax` stands for JPEG pictures as in T.81, or for JPEG-LS pictures (T.87).
 bool is_jpeg(const std::string& transfer_syntax);
 
 /// Fails if a fragment of Pixel Data begins a picture whose header is damaged or does not state `columns` x `rows` grey

@@ -46,7 +46,7 @@ class Walk {
 public:
     explicit Walk(const InputFile& file) : file_(file) {}
 
-    /// `at`: where elements begin. `states_types`: whether the first element states a type, absent a file meta group.
+    /// `at`: where elements begin. `states_types`: without a file meta group, whether the first element states a type.
     DicomLayout run(int64_t at, bool states_types)
     {
         constexpr Encoding META{true, false};

@@ -157,7 +157,7 @@ std::vector<std::vector<Placed>> by_position(const std::vector<Placed>& slices)
     return positions;
 }
 
-/// The number of slices that most positions have.
+/// Number of slices that most positions have.
 size_t usual_count(const std::vector<std::vector<Placed>>& positions)
 {
     std::map<size_t, size_t> counts;
@@ -190,7 +190,7 @@ void choose_repeated(const std::string& where, const OpenOptions& options, Volum
 }
 
 /// If there are several slices at each position, keeps those of one time point. Returns false if all slices state the
-/// same position and no times: then they are not time points, and the stated position is that of the first slice.
+/// same position and no times: such slices are not time points; the position stated is the first slice's.
 bool choose_time(const std::string& where, const OpenOptions& options, VolumeInfo& info, std::vector<Placed>& slices)
 {
     const std::vector<std::vector<Placed>> positions = by_position(slices);
@@ -245,7 +245,7 @@ double find_distance(const std::vector<Placed>& slices, VolumeInfo& info)
     return usual;
 }
 
-/// The step from slice to slice. The slices' first pixels need not be aligned along the normal, since gantries tilt.
+/// The step from slice to slice. If the gantry was tilted, the slices' first pixels are not aligned along the normal.
 glm::dvec3 step_between(const std::vector<Placed>& slices, double distance, const glm::dvec3& normal)
 {
     const glm::dvec3 way = *slices.back().frame->position - *slices.front().frame->position;
@@ -253,7 +253,7 @@ glm::dvec3 step_between(const std::vector<Placed>& slices, double distance, cons
     return height > 0.0 ? way * (distance / height) : normal * distance;
 }
 
-/// Warns of slices that state other pixel spacings than the first slice; they are all drawn with that of the first.
+/// Warns of slices whose pixel spacing differs from that of the first slice; all are drawn with the first one's.
 void warn_of_spacings(const std::vector<Placed>& slices, VolumeInfo& info)
 {
     constexpr double SAME_SPACING = 1e-4;
@@ -273,7 +273,7 @@ void warn_of_spacings(const std::vector<Placed>& slices, VolumeInfo& info)
                                      usual.y, " x ", usual.x, " mm, and all are drawn with that"));
 }
 
-/// The step between slices without positions of their own; if the distance is negative, it runs against the normal.
+/// The step between slices without positions of their own; with a negative distance, the step runs against the normal.
 glm::dvec3 stated_step(const std::vector<Placed>& slices, const glm::dvec3& normal, VolumeInfo& info)
 {
     const DicomFrame& frame = *slices[0].frame;

@@ -13,7 +13,7 @@
 namespace shvr {
 namespace {
 
-/// The defined terms (which may also have "2022 " after "ISO "), and iconv's names for them.
+/// The defined terms of Specific Character Set, with iconv's names. A term may also have "2022 " after "ISO ".
 constexpr std::pair<std::string_view, const char*> ENCODINGS[] = {
     {"ISO_IR 100", "ISO-8859-1"},  {"ISO_IR 101", "ISO-8859-2"},  {"ISO_IR 109", "ISO-8859-3"},
     {"ISO_IR 110", "ISO-8859-4"},  {"ISO_IR 144", "ISO-8859-5"},  {"ISO_IR 127", "ISO-8859-6"},

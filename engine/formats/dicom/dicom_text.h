@@ -7,7 +7,7 @@
 namespace shvr {
 
 /// Converts `bytes` from the encoding that Specific Character Set (PS3.5, 6.1.2) names. Valid UTF-8 is kept, whatever
-/// is named; without a known encoding, Latin-1 is assumed. The result is always valid UTF-8.
+/// encoding is named; if the encoding is unknown, Latin-1 is assumed. The result is always valid UTF-8.
 std::string dicom_text(std::string_view bytes, std::string_view character_set);
 
 }  // namespace shvr

@@ -102,8 +102,8 @@ std::vector<fs::path> dicom_files_in(const fs::path& folder)
     return paths;
 }
 
-/// The DICOM files in folders below: studies come as folders of patients, studies and series. Folders that cannot be
-/// read are skipped, and so are links to folders.
+/// The DICOM files in the subfolders of `folder`: studies come as nested folders of patients, studies and series. Skips
+/// folders that cannot be read, and links to folders.
 std::vector<fs::path> dicom_files_below(const fs::path& folder)
 {
     constexpr int MAX_DEPTH = 8;
@@ -155,7 +155,7 @@ struct Opened {
     DicomVolume volume{};
 };
 
-/// One file stands for its whole series. But a file of many frames may be a volume of its own, and is then read alone.
+/// Opens the file's whole series. If a file of many frames forms no volume with its series, opens the file alone.
 Opened open_file(const fs::path& path, DicomFile&& file, const OpenOptions& options)
 {
     const std::string where = path.string();

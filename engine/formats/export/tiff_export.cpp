@@ -121,8 +121,8 @@ int sample_format(VoxelType type)
     return is_signed ? SAMPLEFORMAT_INT : SAMPLEFORMAT_UINT;
 }
 
-/// Lines for ImageJ, which ignores lines with unknown keys. ImageJ reads the spacing in x and y from the pages'
-/// resolution, fractions of 32 bits.
+/// Description lines for ImageJ, which ignores lines with unknown keys. ImageJ reads the spacing in x and y from the
+/// pages' resolution, a fraction of 32-bit integers.
 std::string description_of(const VolumeInfo& info)
 {
     const std::string unit = plain_unit(info.unit);

@@ -48,7 +48,7 @@ std::string nrrd_axes(const VolumeInfo& info)
                     "\nspace origin: ", in_brackets(info.origin));
 }
 
-/// Whether a replaced file's field remains valid: it describes neither voxels nor axes, or only unchanged axes.
+/// Whether a field of the replaced file stays valid: it describes neither voxels nor axes, or only unchanged axes.
 bool is_kept(const std::string& field, bool has_same_axes, bool has_space)
 {
     constexpr std::string_view ANY[] = {"content", "number", "sample units", "sampleunits"};

@@ -13,7 +13,7 @@ namespace {
 constexpr const char* DIRECTIONS = "space directions";
 constexpr const char* DIRECTIONS_EXPECTED = "three vectors of three numbers, (a,b,c) (d,e,f) (g,h,i)";
 
-/// "mm" "mm" "mm", with or without quotes.
+/// Splits values such as "mm" "mm" "mm", with or without quotes.
 std::vector<std::string> texts_of(std::string_view value)
 {
     std::vector<std::string> texts;

@@ -1,4 +1,4 @@
-// NIfTI-1 and NIfTI-2: .nii, .nii.gz, and pairs of .hdr and .img; the files of a pair may also be compressed.
+// NIfTI-1 and NIfTI-2: .nii, .nii.gz, and pairs of .hdr and .img, in which either file may be compressed.
 
 #include <cmath>
 #include <utility>

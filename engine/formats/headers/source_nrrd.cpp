@@ -95,7 +95,7 @@ RawVoxels::Part place_in(const HeaderFields& fields, const std::filesystem::path
     constexpr int64_t MOST = int64_t{1} << 62;
     const char* const byte_skip = fields.has("byteskip") ? "byteskip" : "byte skip";
     const char* const line_skip = fields.has("lineskip") ? "lineskip" : "line skip";
-    // Compressed bytes allow no negative skip (from the end). Lines are skipped before decompression.
+    // A negative skip counts from the end, so compressed bytes allow none. Lines are skipped before decompression.
     const int64_t bytes = fields.whole(byte_skip, 0, deflated ? 0 : -1, MOST);
     if (bytes == RawVoxels::AT_END) return {file, RawVoxels::AT_END};
     const int64_t begin = skip_lines(fields, file, from, fields.whole(line_skip, 0, 0, MOST));
@@ -131,7 +131,7 @@ RawVoxels place_voxels(const NrrdHeader& header, const VolumeInfo& info)
     return voxels;
 }
 
-/// Moves to one of several time points.
+/// Moves the start of the voxels to the chosen time point.
 void choose_frame(const HeaderFields& fields, int64_t frame, int64_t frames, const VolumeInfo& info, RawVoxels& voxels)
 {
     if (frames == 1) return;

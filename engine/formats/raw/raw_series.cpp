@@ -40,7 +40,7 @@ bool comes_before(const std::string& a, const std::string& b)
     return a.size() - i != b.size() - j ? a.size() - i < b.size() - j : a < b;
 }
 
-/// Bytes of one slice after `layout.offset_bytes`; null if the sum exceeds 63 bits.
+/// Bytes of a file with one slice, including `layout.offset_bytes`; null if they exceed 63 bits.
 std::optional<int64_t> slice_file_bytes(const RawLayout& layout)
 {
     int64_t bytes = 0;

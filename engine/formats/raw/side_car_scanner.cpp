@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view FILE_SECTION = "[file1]", NEXT_FILE_SECTION = "[file2]";
 
-/// Adds the lines "name = value" to `fields`: those inside the section that describes the voxel file, or, unless
-/// `is_inside`, those outside of it. If a field repeats, the first one counts.
+/// Adds lines "name = value" to `fields`: if `is_inside`, only those inside the section that describes the voxel file,
+/// otherwise only those outside of it. If a field repeats, the first one counts.
 void add_lines(std::string_view text, bool is_inside, HeaderFields& fields)
 {
     bool is_of_file = false;
@@ -169,7 +169,7 @@ SideCar read_vgi(const HeaderFields& fields, fs::path raw)
     return made;
 }
 
-/// Whether the header names another existing file. Other names do not count: a renamed header states an old name.
+/// Whether the header names an existing file other than `raw`. A missing file does not count: its name may be outdated.
 bool is_of_another(const HeaderFields& fields, const fs::path& raw)
 {
     const std::string* const name = fields.find("Name");

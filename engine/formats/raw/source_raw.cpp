@@ -12,7 +12,7 @@
 namespace shvr {
 namespace {
 
-/// Decoded bytes kept per deflated part: each part is a slice, and several may be open at once.
+/// Decoded bytes to cache per deflated part. Each part is a slice, and several may be open at once.
 constexpr int64_t KEPT_OF_PART = int64_t{2} << 20;
 
 struct Layout {

@@ -15,7 +15,7 @@
 
 namespace shvr {
 
-/// The maximum memory for a whole picture: PNGs and JPEGs that are stored in several passes cannot be read row by row.
+/// Maximum memory for a whole picture. PNGs and JPEGs that are stored in several passes cannot be read row by row.
 inline constexpr int64_t MAX_WHOLE_PICTURE_BYTES = int64_t{256} << 20;
 
 struct PictureLayout {
@@ -26,7 +26,7 @@ struct PictureLayout {
     bool is_sliceable() const;  ///< whether each pixel has one value, apart from alpha
     bool operator==(const PictureLayout&) const = default;
 };
-/// "512x512 pixels of uint8", "512x512 pixels of 3 samples of uint8"
+/// Returns, for example, "512x512 pixels of uint8" or "512x512 pixels of 3 samples of uint8".
 std::string in_words(const PictureLayout& layout);
 
 /// Takes row `y` of a picture: `samples` values per pixel, in native byte order.
@@ -36,7 +36,7 @@ class PictureFile {
 public:
     virtual ~PictureFile() = default;
     virtual const PictureLayout& layout() const = 0;
-    /// Calls `take` for the rows before `end_row`, from row 0 or from `first_row` on. May be called once only.
+    /// Calls `take` for the rows from `first_row` to before `end_row`, in order. May be called only once.
     virtual void read(int64_t first_row, int64_t end_row, const TakeRow& take) = 0;
 };
 
@@ -56,7 +56,7 @@ void check_picture_size(const std::filesystem::path& path, int64_t width, int64_
 /// the file is truncated, or made to exhaust memory.
 void check_expansion(const std::filesystem::path& path, int64_t pixel_bytes, int64_t file_bytes, int64_t factor);
 
-/// A file for the C libraries, closed at the end.
+/// Deleter of CFile, for files that C libraries use.
 struct CloseFile {
     void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
 };

@@ -1,4 +1,4 @@
-// JPEG: grey, or colours, of 8 bits. A file that ends too early is refused; libjpeg would fill the rest with grey.
+// JPEG: grey or colour, 8 bits each. Refuses a file that ends too early; libjpeg would fill the rest with grey.
 
 #include <cstdio>
 

@@ -44,7 +44,7 @@ public:
         }
         for (int64_t y = first_row; is_interlaced_ && y < end_row; ++y)
             take(y, std::span(pixels_).subspan(size_t(y) * row_bytes, row_bytes));
-        // The checked stream ends with the last row.
+        // After the last row, checks that the rest of the file is complete.
         if (end_row == layout_.height) finish();
     }
 

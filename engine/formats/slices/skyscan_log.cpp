@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 /// Maximum number of logs in a folder that are considered.
 constexpr int MAX_LOGS = 1000;
 
-/// Of the logs in the slice's folder whose names are prefixes of the slice's name, the one with the longest name.
+/// The log with the longest name, among those in the slice's folder whose names are prefixes of the slice's name.
 std::optional<fs::path> log_of(const fs::path& slice)
 {
     const std::string name = lower_case(slice.filename().string());

@@ -91,7 +91,7 @@ std::string series_of(const SliceName& name, size_t last_number)
     return series;
 }
 
-/// If one pattern has several files, removes single pictures of other patterns that are no slices of that series.
+/// If one pattern has several files, removes the single pictures of other patterns, which are no slices of that series.
 void remove_odd_pictures(const DiffersInSize& differs, std::vector<SliceName>& names,
                          std::vector<std::string>& warnings)
 {

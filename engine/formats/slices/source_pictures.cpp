@@ -31,7 +31,7 @@ const char* name_of(SliceFormat format)
 }
 
 /// Caches decoded slices: bricks need a part of each slice, and pictures are decoded from their first row on. Evicts at
-/// random, as for blocks of TIFFs: passes that cycle through a volume next need the slice used longest ago.
+/// random, as for blocks of TIFFs: repeated passes through a volume next need the least recently used slice.
 class SliceCache {
 public:
     using Slice = std::shared_ptr<const std::vector<std::byte>>;

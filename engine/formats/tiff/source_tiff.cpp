@@ -166,8 +166,8 @@ private:
         std::swap(description_.channels, description_.slices);
     }
 
-    /// Handles a stack that was recorded as time points or channels of one slice each. Time points of one channel
-    /// become slices unless one of them is chosen; otherwise the choice "slices" has this effect.
+    /// Handles a stack that was recorded as time points or channels of one slice each. Time points become slices if the
+    /// choice is "slices", or by default if there is only one channel; channels only if the choice is "slices".
     void take_frames_as_slices()
     {
         TiffDescription& description = description_;

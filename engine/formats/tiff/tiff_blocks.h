@@ -15,7 +15,7 @@ struct TiffSlice {
     uint32_t file = 0;       ///< index into the volume's files
     uint32_t page = 1;       ///< number of the page in that file, for messages; 0: the file lacks it
     uint64_t directory = 0;  ///< in that file
-    /// ImageJ's long stacks have one directory: a slice's voxels lie this far behind those that the directory names.
+    /// ImageJ's long stacks have one directory. The slice's voxels lie this far behind those that the directory names.
     int64_t shift_bytes = 0;
 };
 
@@ -56,7 +56,7 @@ private:
     uint32_t random_ = 1;
 };
 
-/// Half-open, in pixels of the page as stored.
+/// A half-open rectangle, in pixels of the page as stored.
 struct TiffRectangle {
     int64_t left = 0, top = 0, right = 0, bottom = 0;
 };

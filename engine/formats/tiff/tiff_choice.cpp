@@ -20,7 +20,7 @@ bool is_plain_word(const std::string& name)
     });
 }
 
-/// "1 or 2", "1, 2 or 3", "1 to 40".
+/// The numbers 1 to `count` in words: "1 or 2", "1, 2 or 3", "1 to 40".
 std::string numbers_to(int64_t count)
 {
     if (count > 6) return sentence("1 to ", count);

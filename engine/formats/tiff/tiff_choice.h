@@ -7,7 +7,7 @@
 
 namespace shvr {
 
-/// A volume that each page's pixels can hold: one of their samples, or one colour of the palette.
+/// One of the volumes that the pixels of the pages can hold: one sample of each pixel, or one palette colour.
 struct TiffPixelChannel {
     std::string name{};  ///< "" if the channel has only a number
     int sample = 0;
@@ -19,7 +19,7 @@ struct TiffPixelChannel {
 std::vector<TiffPixelChannel> channels_of_pixel(const TiffPage& page, const TiffLayout& layout,
                                                 const TiffDescription& description, std::vector<std::string>& warnings);
 
-/// Returns `options`, with the usual one of `channels`, and a warning, if no channel is chosen and a usual one exists.
+/// Returns `options`. If no channel is chosen and `channels` has a usual one, chooses that one and adds a warning.
 OpenOptions with_usual_channel(const OpenOptions& options, const std::vector<TiffPixelChannel>& channels,
                                std::vector<std::string>& warnings);
 
@@ -28,9 +28,9 @@ struct TiffChoice {
     int64_t frame = 0;   ///< from 0
 };
 
-/// The choice that takes all channels, or all time points, as the slices of one volume.
+/// The value of a choice that makes all channels, or all time points, the slices of one volume.
 inline constexpr const char* AS_SLICES = "slices";
-/// Fails, listing the choices, if there are several and none is chosen, or if the chosen one does not exist.
+/// Returns the choice. Fails, listing the choices, if several exist and none is chosen, or the chosen one is missing.
 /// `may_be_slices`: whether AS_SLICES is one of the choices; the caller applies it.
 TiffChoice choose(const std::string& subject, const OpenOptions& options, const std::vector<std::string>& names,
                   int64_t frames, bool may_be_slices = false);

@@ -57,7 +57,7 @@ Resolution resolution_of(const TiffFile& file, uint64_t directory, const TiffPag
     const uint16_t unit = page.number16(TIFFTAG_RESOLUTIONUNIT, RESUNIT_INCH);
     if (unit == RESUNIT_INCH) resolution.um_per_unit = UM_PER_INCH;
     if (unit == RESUNIT_CENTIMETER) resolution.um_per_unit = UM_PER_CM;
-    // Values that programs write for screens and printers, and that mean nothing here. 1 stands for "unknown".
+    // Resolutions that programs write for screens and printers; they say nothing about voxels. 1 stands for "unknown".
     const double dots_per_inch = *resolution.x * (resolution.um_per_unit == UM_PER_CM ? 2.54 : 1.0);
     for (const double usual : {72.0, 75.0, 90.0, 96.0, 100.0, 120.0, 144.0, 150.0, 200.0, 300.0, 600.0, 1200.0}) {
         if (std::abs(dots_per_inch - usual) < 0.02 * 2.54) resolution.is_for_printing = true;
@@ -102,7 +102,7 @@ void add_resolution(TiffDescription& description, const Resolution& resolution)
         return;
     }
     if (has_unit || (is_imagej && resolution.um_per_unit == 0.0)) {
-        // ImageJ states pixels per unit of its own description.
+        // ImageJ's resolution fields state pixels per unit, where the unit is the one in its description.
         description.spacing[0] = 1.0 / *resolution.x;
         description.spacing[1] = 1.0 / *resolution.y;
         return;
@@ -128,7 +128,7 @@ void add_resolution(TiffDescription& description, const Resolution& resolution)
     for (std::string& unit : description.unit) unit = "um";
 }
 
-/// Resolution fields are 32-bit fractions, so the exact spacing is taken instead if the fields were derived from it.
+/// Takes the placement. Resolution fields are 32-bit fractions; an exact spacing that agrees with them replaces them.
 void take_place(VolumeInfo& info, const TiffDescription::Place& place, const std::string& unit)
 {
     constexpr double TOLERANCE = 1e-5;

@@ -16,9 +16,9 @@ struct TiffDescription {
     enum class Writer { unknown, imagej, ome };
     Writer writer = Writer::unknown;
 
-    /// Each is 1 if nothing is stated. Each channel here has pages of its own; the colours of a pixel are not counted.
+    /// Each count is 1 if not stated. Only channels with pages of their own are counted, not the colours of a pixel.
     int64_t slices = 1, channels = 1, frames = 1;
-    /// The page (from 0) of slice z, channel c, frame t is at index z + slices * (c + channels * t). Empty if pages are
+    /// Element z + slices * (c + channels * t) is the page (from 0) of slice z, channel c, frame t. Empty if pages are
     /// in ImageJ's order: channels fastest, then slices, then frames.
     static constexpr uint32_t NO_PAGE = UINT32_MAX;
     std::vector<uint32_t> pages{};
@@ -43,11 +43,11 @@ struct TiffDescription {
     std::vector<std::string> warnings{};
 };
 
-/// Whether the file is the whole volume, or one of several files for its slices. An OME-TIFF may refer to other files.
+/// Whether the file is the whole volume, or one of several with its slices. An OME-TIFF may refer to other files.
 enum class TiffRole { whole, slice };
 
 /// `samples`: number of channels of an OME-TIFF that each pixel holds. Fails if the description is of a known kind but
-/// broken. In the role `whole`, also fails if it describes more than this file.
+/// broken. In the role `whole`, also fails if the description covers more than this file.
 TiffDescription read_description(const TiffFile& file, std::string_view text, int samples, TiffRole role);
 
 /// Puts spacing and unit into `info`, with a warning for everything that had to be assumed. `page`: the first page.

@@ -13,7 +13,7 @@
 namespace shvr {
 namespace {
 
-/// Maximum number of fields, as in libtiff: a larger count is taken as the sign of a wrong offset.
+/// Maximum number of fields, as in libtiff: a larger count is assumed to come from a wrong offset.
 constexpr uint64_t MAX_FIELDS = 4096;
 
 enum Tag : uint16_t {
@@ -190,7 +190,7 @@ public:
         (field.tag == STRIP_OFFSETS || field.tag == TILE_OFFSETS ? offset_ : bytes_) = value;
     }
 
-    /// Returns whether too many bytes were stated: more than the file holds, although it holds all the pixels' bytes.
+    /// Returns whether too many bytes were stated: more than the file holds, although the file holds all pixels.
     bool finish(size_t page)
     {
         const bool states_too_many = !file_.holds(offset_, bytes_) && picture_.bytes() < bytes_;
@@ -226,7 +226,7 @@ private:
 
     void look_at_picture(const Field& field, const Reader& reader)
     {
-        // With several samples per pixel, the bits of each are stored outside the field, and are left to libtiff.
+        // With several samples per pixel, the bit depths are stored outside the field, and libtiff reads them.
         const uint64_t value = field.count == 1 ? reader.value(field) : 0;
         if (field.tag == IMAGE_WIDTH) picture_.width = value;
         if (field.tag == IMAGE_LENGTH) picture_.length = value;
@@ -256,7 +256,7 @@ public:
         if (field.tag == IMAGE_LENGTH) length_ = value;
     }
 
-    /// Returns the kind of the directory whose fields were added since the last call.
+    /// Returns the kind of directory that has the fields added since the last call.
     uint32_t finish(const TiffFile& file, std::vector<TiffKind>& kinds, size_t page)
     {
         check_side(file, page, "ImageWidth", width_);

@@ -1,8 +1,8 @@
 #pragma once
 // A TIFF file and its chain of directories, read without libtiff, because libtiff takes some microseconds for each
 // directory, and a file may have a million. Finds only how many pages there are, which of them are alike and where they
-// start. libtiff (tiff_page.h) reads one page of each kind on opening, and other pages when their voxels are read.
-// Nothing changes after construction; any thread may read.
+// start. libtiff (tiff_page.h) reads one page of each kind when the file is opened, and other pages when their voxels
+// are read. Nothing changes after construction; any thread may read.
 
 #include <array>
 #include <filesystem>
@@ -57,7 +57,7 @@ struct TiffDirectory {
 struct TiffKind {
     size_t first_page = 0;
     bool is_reduced = false;  ///< whether the page is marked as a smaller copy of another page, or as a mask
-    std::string fields{};     ///< the values of these fields; pages of two files are equivalent if they are equal
+    std::string fields{};     ///< values of these fields; pages of two files are alike if these are equal
 };
 
 struct TiffDirectories {

@@ -74,7 +74,7 @@ private:
     std::map<std::string, std::string> values_;
 };
 
-/// Reads as many numbers, separated by spaces, as `Value` has components; null if they are malformed.
+/// Reads space-separated numbers, one for each component of `Value`; null if they are malformed.
 template <class Value, size_t COUNT>
 std::optional<Value> numbers_of(const std::string& text)
 {

@@ -16,8 +16,8 @@ constexpr int64_t MAX_BLOCK_BYTES = int64_t{1} << 31;
 struct Compression {
     int scheme;
     const char* name;
-    /// How many bytes one byte can decode to, by the format's own rules, rounded up. 0: no such number, but one bit
-    /// decodes to at most one row. Formats that encode areas of one colour have no bound.
+    /// Maximum number of bytes that one byte can decode to, by the format's own rules, rounded up. 0: unknown, but one
+    /// bit decodes to at most one row. UNBOUNDED: formats that encode areas of one colour have no maximum.
     int64_t largest_ratio;
     bool is_read;
 };
@@ -30,11 +30,11 @@ constexpr Compression COMPRESSIONS[] = {
     {COMPRESSION_CCITTFAX4, "CCITT group 4", 0, true},
     {COMPRESSION_CCITTRLEW, "CCITT RLE", 0, true},
     {COMPRESSION_LZW, "LZW", 4096, true},                // 9 bits decode to at most 4093 bytes
-    {COMPRESSION_JPEG, "JPEG", 4096, true},              // one bit per block of 64 samples, in each of few scans
+    {COMPRESSION_JPEG, "JPEG", 4096, true},              // few scans, each at least one bit per 64 samples
     {COMPRESSION_ADOBE_DEFLATE, "Deflate", 1032, true},  // 2 bits decode to 258 bytes
     {COMPRESSION_DEFLATE, "Deflate", 1032, true},
-    {COMPRESSION_PACKBITS, "PackBits", 64, true},  // 2 bytes for 128
-    {COMPRESSION_LZMA, "LZMA", 16384, true},       // measured on zeros: 6900
+    {COMPRESSION_PACKBITS, "PackBits", 64, true},  // 2 bytes decode to at most 128
+    {COMPRESSION_LZMA, "LZMA", 16384, true},       // rounded up from 6900, measured on zeros
     {COMPRESSION_ZSTD, "Zstandard", 65536, true},  // at least 4 bytes encode a block of 128 KiB
     {COMPRESSION_WEBP, "WebP", UNBOUNDED, true},
     {COMPRESSION_OJPEG, "old-style JPEG", 1, false},
@@ -209,7 +209,7 @@ void check_is_supported(const TiffPage& page, const TiffLayout& layout)
              "64 "
              "bits");
     }
-    // In fax formats one bit may stand for a row, that is, for a fax's few pixels, not for thousands of channels.
+    // In fax formats one bit may encode a whole row. A row of a fax has few pixels; thousands of channels are refused.
     if (known->largest_ratio == 0 && ((layout.samples != 1 && !layout.is_planar) || layout.bits != 1))
         fail(page.subject(), ": has ", layout.samples, " samples of ", layout.bits, " bits a pixel by ", known->name,
              "; expected one of 1 bit, as there is in a fax");

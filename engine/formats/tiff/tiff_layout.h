@@ -63,7 +63,7 @@ struct TiffExtent {
 TiffExtent extent_of_block(const TiffFile& file, const TiffPage& page, const TiffLayout& layout, int64_t block);
 /// Checks all blocks of a page, and that no two of them overlap.
 void check_blocks(const TiffFile& file, const TiffPage& page, const TiffLayout& layout);
-/// Fails if a file of this size cannot contain `pages` pages with this layout.
+/// Fails if a file of the given size cannot contain `pages` pages with this layout.
 void check_amount(const TiffFile& file, const TiffLayout& layout, int64_t pages);
 /// Returns the maximum memory that libtiff may allocate at once to decode blocks of a page with this layout.
 int64_t decoding_memory(const TiffFile& file, const TiffLayout& layout);

@@ -219,7 +219,7 @@ private:
     {
         const auto planes = int64_t(result_.pages.size());
         std::map<std::string, uint32_t> files;  // by the name in the XML; number 0 is this file
-        std::vector<uint32_t> file_of_page;  // empty until a file is named
+        std::vector<uint32_t> file_of_page;     // empty until a file is named
         int64_t stated = 0;
         bool is_stated = false;
         for_each_child(pixels, "TiffData", [&](const pugi::xml_node& data) {
@@ -251,7 +251,7 @@ private:
         for (int64_t i = 0; i < planes && !is_stated; ++i) result_.pages[place_of(i)] = uint32_t(i);
     }
 
-    /// Sets the files of a stack in several files. A stack in one file of another name is this file, renamed.
+    /// Sets the files of a stack in several files. A single named file is this file, perhaps renamed.
     void name_files(const std::map<std::string, uint32_t>& files, std::vector<uint32_t> file_of_page)
     {
         if (files.size() < 2 || role_ != TiffRole::whole) return;

@@ -21,7 +21,7 @@ struct TiffPage::Access {
 
     static Access& of(thandle_t handle) { return *static_cast<Access*>(handle); }
 
-    // Exceptions must not cross libtiff: it expects -1 for a failed read.
+    // Exceptions must not propagate through libtiff, which expects -1 for a failed read.
     static tmsize_t read(thandle_t handle, void* bytes, tmsize_t count) noexcept
     {
         Access& access = of(handle);

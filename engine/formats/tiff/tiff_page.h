@@ -17,8 +17,8 @@ inline constexpr int64_t DIRECTORY_MEMORY = int64_t{64} << 20;
 
 class TiffPage {
 public:
-    /// `page` counts from 1 and is only for messages. Fails if libtiff cannot read the directory, or would allocate
-    /// more than `max_memory_bytes` at once.
+    /// `page` counts from 1 and is only for messages. Fails if libtiff cannot read the directory, or if libtiff would
+    /// allocate more than `max_memory_bytes` at once.
     TiffPage(const TiffFile& file, uint64_t directory, size_t page, int64_t max_memory_bytes = DIRECTORY_MEMORY);
     TiffPage(const TiffPage&) = delete;
     ~TiffPage();
@@ -29,7 +29,7 @@ public:
     /// Returns libtiff's last error message, made printable; a generic message if there was none.
     std::string complaint() const;
 
-    /// Fields that hold one number; libtiff's default, or else `fallback`, if the field is missing.
+    /// Return a field's single number. If the field is missing: libtiff's default, or else `fallback`.
     uint16_t number16(uint32_t tag, uint16_t fallback) const;
     uint32_t number32(uint32_t tag, uint32_t fallback) const;
     bool has(uint32_t tag) const;

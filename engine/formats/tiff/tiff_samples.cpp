@@ -80,7 +80,7 @@ std::vector<uint16_t> palette_of(const TiffPage& page, const TiffLayout& layout,
     }
     const size_t entries = size_t{1} << layout.bits;
     std::vector<uint16_t> palette(colors[color], colors[color] + entries);
-    // Some programs write 8-bit values where 16 bits belong; like libtiff's tools, this treats the values as bytes.
+    // Some programs write 8-bit values into 16-bit entries. Like libtiff's tools, this code treats them as bytes.
     const auto is_byte = [](uint16_t entry) { return entry <= 255; };
     const bool are_bytes = std::all_of(colors, colors + 3, [&](const uint16_t* of_color) {
         return of_color != nullptr && std::all_of(of_color, of_color + entries, is_byte);

@@ -18,12 +18,12 @@ struct TiffRecipe {
     bool mirrors_y = false;
 };
 
-/// Whether rows of voxels equal rows of the block, byte for byte, except for byte order and `exchanged_bits`.
+/// Whether a row of voxels has the bytes of a row of the block, apart from byte order and `exchanged_bits`.
 bool is_plain(const TiffLayout& layout, const TiffRecipe& recipe);
 
 /// Returns the 2^bits entries of one colour of the page's palette; fails if the page has no palette.
 std::vector<uint16_t> palette_of(const TiffPage& page, const TiffLayout& layout, int color);
-/// Whether the entries are 8-bit values v widened to v * 257 (the byte written twice) or to v * 256.
+/// Whether each entry is an 8-bit value v widened to 16 bits, as v * 257 (the byte twice) or v * 256.
 bool has_8_bits(const std::vector<uint16_t>& palette);
 
 /// Fills `voxels` with pixels of one row of a block, beginning with pixel `first`, in native byte order.

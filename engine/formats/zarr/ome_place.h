@@ -14,7 +14,7 @@ namespace shvr {
 
 inline constexpr const char* OME_PLACEMENT = "shvr_placement";
 
-/// Returns the centre of voxel 0, measured along the volume's own axes, in the volume's unit.
+/// Returns the position of voxel 0's centre along the volume's own axes, in the volume's unit.
 glm::dvec3 ome_translation(const VolumeInfo& info);
 
 /// Sets `directions`, `origin` and `frame` of `info` from the attributes of an image that states `translation`. If the

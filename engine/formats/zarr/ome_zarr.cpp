@@ -125,7 +125,7 @@ struct Transformation {
     }
 };
 
-/// Applies the transformations that `owner` states: one dataset, or the multiscale for all of its datasets.
+/// Applies the transformations of `owner`: a dataset, or the multiscale, whose transformations hold for all datasets.
 void apply_transformations(const JsonNode& owner, size_t axes, Transformation& transformation)
 {
     constexpr const char* EXPECTED = "a list of at most 8 objects of type scale, translation or identity";

@@ -1,7 +1,7 @@
 #pragma once
-// The label descriptions of an OME-Zarr label image (https://ngff.openmicroscopy.org/0.5/#labels-md; 0.4 has the same):
-// "image-label" with "colors" [{"label-value", "rgba"}] and "properties" [{"label-value", "name", ...}]. Any thread may
-// call these functions.
+// The label descriptions of an OME-Zarr label image (https://ngff.openmicroscopy.org/0.5/#labels-md; 0.4 has the same
+// descriptions): "image-label" with "colors" [{"label-value", "rgba"}] and "properties" [{"label-value", "name", ...}].
+// Any thread may call these functions.
 
 #include <array>
 #include <cstdint>

@@ -29,7 +29,7 @@ constexpr size_t HEADER_BYTES = 64;
 constexpr char MAGIC[] = "SHVRTAB1";
 /// Maximum size of a table: enough for the ranges of 10^13 voxels.
 constexpr int64_t MAX_TABLE_BYTES = int64_t{2} << 30;
-/// Maximum that one byte of zstd decodes to: the smallest block has four bytes, and decodes to at most 128 KiB.
+/// Maximum number of bytes that one byte of zstd decodes to: four bytes, the smallest block, decode to 128 KiB.
 constexpr int64_t MAX_OUT_OF_A_BYTE = int64_t{32} << 10;
 
 // ---- volume.json ----------------------------------------------------------------------------------------------------
@@ -119,7 +119,7 @@ std::vector<std::byte> content_of(const ProjectTable& table)
 
 uint64_t checksum_of(std::span<const std::byte> header, std::span<const std::byte> elements)
 {
-    // The hash of the header seeds the hash of the elements, so it covers both.
+    // The header's hash seeds the hash of the elements, so the result covers header and elements.
     return XXH3_64bits_withSeed(elements.data(), elements.size(), XXH3_64bits(header.data(), header.size()));
 }
 
@@ -282,7 +282,7 @@ std::vector<std::byte> to_bytes(const ProjectTable& table)
 
 namespace {
 
-/// Returns the size that the frame states for its content, which must be a whole number of elements with their keys.
+/// Returns the content size that the frame states; it must fit the default and whole elements with keys.
 int64_t bytes_of_list(const Path& file, const ProjectTable& table, std::span<const std::byte> frame)
 {
     const unsigned long long stated = ZSTD_getFrameContentSize(frame.data(), frame.size());

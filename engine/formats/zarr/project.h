@@ -55,20 +55,20 @@ struct ProjectTable {
 std::filesystem::path ranges_path(const std::filesystem::path& project, int level);
 std::filesystem::path checksums_path(const std::filesystem::path& project, int level);
 
-/// Fails, naming the file, if a table of such a volume would be too large unless sparse. Call it before the work.
+/// Fails, naming the file, if a table with every element would be too large. Call it before the work begins.
 void check_tables(const std::filesystem::path& project, const VolumeInfo& info);
 
 /// Whether a sparse table that lists this many elements is smaller than a table with every element.
 bool is_smaller_as_list(const ProjectTable& table, size_t listed);
-/// Returns a sparse table as it is stored: with every element, if that is smaller or if `is_small`. So equal content
-/// has equal bytes, and older programs can read the tables of all volumes that they could import.
+/// Returns a table in the form to store: with every element if that form is smaller or `is_small`, else sparse. So
+/// equal content has equal bytes, and older programs can read the tables of all volumes that they could import.
 ProjectTable stored_form(ProjectTable sparse, bool is_small);
 std::vector<std::byte> to_bytes(const ProjectTable& table);
 /// Reads the table in `file`, sparse or not. Its kind, level, counts and element size must be those of `expected`.
 ProjectTable read_project_table(const std::filesystem::path& file, const ProjectTable& expected);
 
-/// Decodes an element of ranges-LEVEL: two voxels, the smallest and the largest finite value. The first is larger than
-/// the second if no value is finite.
+/// Decodes an element of ranges-LEVEL: two voxels, the smallest and the largest finite value. If no value is finite,
+/// the first is larger than the second.
 ValueRange range_of(VoxelType type, std::span<const std::byte> element);
 
 }  // namespace shvr

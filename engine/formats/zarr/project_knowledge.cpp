@@ -55,7 +55,7 @@ std::string list_of(const std::vector<int64_t>& numbers)
     return list + "]";
 }
 
-/// Adds a warning for each array that differs from the one written by the import.
+/// Adds a warning for each array that differs from the array that the import wrote.
 void check_arrays(const fs::path& folder, const ProjectRecord& record, std::vector<std::string>& warnings)
 {
     for (int level = 0; level < record.levels; ++level) {

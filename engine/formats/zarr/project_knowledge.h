@@ -1,6 +1,6 @@
 #pragma once
-// The data that a project folder states about its volume in addition to the voxels, as far as they can be read; all of
-// them are optional. For source_ome_zarr.cpp.
+// The data that a project folder states about its volume in addition to the voxels. All of these data are optional, and
+// unreadable parts are left out. For source_ome_zarr.cpp.
 
 #include <filesystem>
 #include <optional>

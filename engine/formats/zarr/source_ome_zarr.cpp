@@ -1,6 +1,6 @@
 // OME-Zarr images, versions 0.1 to 0.4 (Zarr version 2) and 0.5 (Zarr version 3), and bare Zarr arrays, in a local
-// folder or an archive (zarr_store.h). A project is such an image with a folder shvr/ (project.h), which holds ranges
-// and statistics.
+// folder or an archive (zarr_store.h). A project is such an image with an added folder shvr/ (project.h) that holds
+// ranges and statistics.
 //
 // Levels are the datasets that are aligned with level 0 as source.h requires: each level is twice as coarse as the one
 // before, along every axis. Other datasets are left out, with a warning.
@@ -95,8 +95,8 @@ private:
         });
     }
 
-    /// A level whose size was rounded down lacks the last voxels along an axis. Adds the chunks of those voxels if they
-    /// contain no other voxels.
+    /// A level whose size was rounded down lacks the last voxels along an axis. Adds the chunks that would contain only
+    /// such voxels.
     void add_beyond(int level, std::vector<glm::ivec3>& chunks) const
     {
         const ZarrVolume& volume = volumes_[size_t(level)];
@@ -114,7 +114,7 @@ private:
         });
     }
 
-    /// Fills in the last voxel along an axis, if rounding down cut it off, by repeating the voxel before it.
+    /// Reads a box. Where rounding down cut off the last voxel along an axis, repeats the voxel before it.
     void read_beyond(int level, const VoxelBox& box, std::span<std::byte> voxels) const
     {
         const Size3 size = volumes_[size_t(level)].size();
@@ -223,8 +223,8 @@ std::string objection(const OmeImage& image, const ZarrMetadata& first, size_t d
         if (!(std::abs(ratio / factor - 1.0) < 1e-3)) {
             return sentence("is ", ratio, " times as coarse along ", "xyz"[axis], ", not ", factor, " times");
         }
-        // The centre of the level's first voxel must be the centre of the voxels it covers. If it is the first of those
-        // voxels instead, the translation is assumed to be missing: older programs do not write it.
+        // The centre of the level's first voxel must be the centre of the voxels it covers. If it is that of the first
+        // of them, the translation is assumed to be missing: older programs do not write it.
         const double offset = (stated.translation ? (*stated.translation)[axis] : 0.0) -
                               (fine.translation ? (*fine.translation)[axis] : 0.0);
         const double voxels = offset / (*fine.scale)[axis];
@@ -316,7 +316,7 @@ std::unique_ptr<VolumeSource> open_image(const ZarrPlace& place, const ZarrNode&
                    folder.string());
 }
 
-/// Returns the axes called x, y and z; null unless each name occurs exactly once.
+/// Returns the indices of the axes named x, y and z; null unless each name occurs exactly once.
 std::optional<std::array<size_t, 3>> named_axes(const ZarrMetadata& metadata)
 {
     std::array<size_t, 3> xyz{};
@@ -359,7 +359,7 @@ std::unique_ptr<VolumeSource> open_array(const ZarrPlace& place, int version, co
                    folder.string());
 }
 
-/// Lists the images in a group that is no image itself: bioformats2raw puts them into 0, 1, ... or lists them.
+/// Lists the images in a group that is no image itself. bioformats2raw names the images 0, 1, ... or lists them.
 std::vector<std::string> images_in(const ZarrPlace& group)
 {
     const ZarrPlace listing = group / "OME";
@@ -402,8 +402,8 @@ std::unique_ptr<VolumeSource> open_group(const ZarrPlace& place, const ZarrNode&
     return open_image(inner, *image, options);
 }
 
-/// Refuses an archive and names the usual mistake: the folder was zipped instead of its content, or the archive holds
-/// something else.
+/// Refuses an archive that is no image, and names the likely mistake: the folder was zipped instead of its content, or
+/// the archive holds something else.
 [[noreturn]] void refuse_archive(const fs::path& path, const ZarrPlace& place)
 {
     std::string first;

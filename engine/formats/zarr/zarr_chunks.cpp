@@ -12,7 +12,7 @@ namespace shvr {
 namespace {
 
 constexpr int64_t KEPT_INDEX_BYTES = int64_t{16} << 20;
-/// Maximum number of names searched for one that looks like a chunk's name but is not one of this array.
+/// Maximum number of names to search for a name that looks like a chunk's but belongs to no chunk of this array.
 constexpr int64_t MAX_NAMES_LOOKED_AT = 1024;
 
 /// Whether a key consists of numbers between any separators, perhaps after a "c", as in "0.1.2" or "c/0/1/2".

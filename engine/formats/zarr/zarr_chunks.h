@@ -35,9 +35,9 @@ public:
     /// True if the chunk is certainly not stored; false if it is stored, or if that cannot be determined.
     bool is_missing(std::span<const int64_t> chunk) const;
     /// Calls `take` with the indices of every stored chunk that matches `at` (null: any index), in no particular order.
-    /// Stops and returns false after `most` matches, or once other names make listing much longer than for `most`
-    /// chunks. Reads only names and the indices of shards, and never probes for missing chunks. Fails if names or
-    /// indices cannot be read.
+    /// Stops and returns false if there are more than `most` matches, or if other names make listing much slower than
+    /// for `most` chunks. Reads only names and the indices of shards, and never probes for missing chunks. Fails if
+    /// names or indices cannot be read.
     bool list(std::span<const std::optional<int64_t>> at, int64_t most,
               const std::function<void(std::span<const int64_t> chunk)>& take) const;
     /// Returns the path of a value, among the first few, whose name resembles a chunk's but names no chunk here:

@@ -95,7 +95,7 @@ void decompress_deflate(Bytes stored, std::span<std::byte> chunk, const std::str
     if (made != chunk.size()) refuse_size(name, "decodes to", made, chunk.size());
 }
 
-/// Makes the check of `check_stored_size` for one compressor, without checksums.
+/// Does the check of `check_stored_size` for one compressor; the sizes exclude checksums.
 void check_compressed_size(ZarrCompressor::Kind kind, size_t stored_bytes, size_t chunk_bytes, const std::string& name)
 {
     if (kind == ZarrCompressor::Kind::none) {
@@ -110,7 +110,7 @@ void check_compressed_size(ZarrCompressor::Kind kind, size_t stored_bytes, size_
     }
 }
 
-/// A chain of codecs: at most one compressor, and the numbers of checksums that are added before and after it.
+/// A chain of codecs: at most one compressor, and how many checksums are added before and after it.
 struct Steps {
     ZarrCompressor::Kind kind = ZarrCompressor::Kind::none;
     size_t before = 0, after = 0;

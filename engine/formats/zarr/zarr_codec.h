@@ -11,7 +11,7 @@
 
 namespace shvr {
 
-/// Maximum size that any compressor gives to a chunk: longer files are refused before they are read.
+/// Maximum compressed size of a chunk, with any compressor; larger files are refused before they are read.
 int64_t longest_stored(int64_t chunk_bytes);
 
 /// Fails if `stored_bytes` are too few to decode to `chunk_bytes`. Called before memory is allocated.

@@ -12,7 +12,7 @@
 namespace shvr {
 namespace {
 
-/// A brick with its apron touches at most this many chunks of usual size; that few probes beat most listings.
+/// A brick with its apron touches at most this many chunks of usual size; probing those beats most listings.
 constexpr int64_t FEW_FILES = 8;
 constexpr size_t MANY_LOOKS = 4096;
 /// Bits for a chunk's number along an axis, which is below 2^21.
@@ -26,7 +26,7 @@ uint64_t spread(uint64_t number)
     return code;
 }
 
-/// Returns the chunk's Morton code, by which the chunks of a cube of 2^k chunks per side follow each other.
+/// Returns the chunk's Morton code. Chunks of an aligned cube of 2^k chunks per side have consecutive codes.
 uint64_t code_of(const Size3& chunk)
 {
     return spread(uint64_t(chunk.x)) | spread(uint64_t(chunk.y)) << 1 | spread(uint64_t(chunk.z)) << 2;
@@ -63,7 +63,7 @@ bool any_in(Codes codes, const Size3& corner, int bits, const VoxelBox& box)
 
 }  // namespace
 
-/// The known facts about a level. The mutex must be held for any access.
+/// The known facts about a level. Access to any member requires the mutex.
 struct ZarrGaps::Level {
     std::mutex mutex{};
     std::optional<std::vector<uint64_t>> codes{};     ///< codes of all stored chunks, ascending
@@ -84,7 +84,7 @@ struct ZarrGaps::Level {
         codes = std::move(found);
         is_missing = {};
     }
-    /// Lists the chunks if possible. A failure is not reported here: whichever read needs the data reports it.
+    /// Lists the chunks if possible. A failure is not reported here: the read that needs the data reports it.
     void try_to_list(const ZarrVolume& volume)
     {
         if (is_unlistable) return;
@@ -144,7 +144,7 @@ ZarrGaps::Chunks ZarrGaps::chunks_below(int level, const VoxelBox& box, int belo
 {
     const ZarrVolume& volume = volumes_[size_t(below)];
     const int64_t factor = int64_t{1} << (level - below);
-    // A level whose size was rounded down lacks its last voxels; the last existing voxels stand in for them.
+    // A level whose size was rounded down lacks its last voxels; the last stored voxels stand in for the lacking ones.
     const Size3 lower = glm::min(box.lower * factor, volume.size() - int64_t{1});
     const Size3 upper = glm::min(box.upper * factor, volume.size());
     return {lower / volume.chunk(), (upper - int64_t{1}) / volume.chunk() + int64_t{1}};

@@ -4,10 +4,10 @@
 // In the files of other programs, a coarse level need not hold the means of the finer one, so a part of a coarse level
 // is a gap only if everything that it covers, down to level 0, is a gap.
 //
-// The chunks of a level are listed once, on the first query (ZarrChunks::list), and kept as 8 bytes each. As long as it
-// is faster, a few chunks are probed one by one instead; so no level is listed in dense images, where a coarse level
-// already answers the query. Levels with more than MAX_LISTED chunks are listed only on request; without that list, a
-// query that would need more than MAX_FILES probes is not answered. Any thread may call these.
+// The chunks of a level are listed once, on the first query (ZarrChunks::list), and kept as 8 bytes each. If a query
+// needs only a few chunks, they are probed one by one instead, which is faster; so no level is listed in dense images,
+// where a coarse level already answers the query. Levels with more than MAX_LISTED chunks are listed only on request;
+// without that list, a query that would need more than MAX_FILES probes is not answered. Any thread may call these.
 
 #include <memory>
 #include <mutex>

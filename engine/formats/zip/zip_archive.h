@@ -20,17 +20,17 @@ public:
     explicit ZipArchive(std::filesystem::path path);
 
     const std::filesystem::path& path() const { return path_; }
-    /// All entries, sorted by name. Their sizes are unverified until they are read.
+    /// All entries, sorted by name. The sizes are unverified until the entries are read.
     const std::vector<ZipEntry>& entries() const { return directory_.entries; }
     /// Null if there is none.
     const ZipEntry* find(std::string_view name) const;
 
-    /// Returns the decoded bytes; their size and CRC-32 must be as the directory states. Fails if there are more than
+    /// Returns the decoded bytes; their size and CRC-32 must be as the directory states. Fails if they are more than
     /// `max_bytes`, or if the entry is encrypted, compressed in another way, damaged, or outside the file.
     std::vector<std::byte> read(const ZipEntry& entry, int64_t max_bytes) const;
     /// Whether the entry is stored uncompressed, so that parts of it can be read.
     static bool is_plain(const ZipEntry& entry);
-    /// Reads bytes of a plain entry from `offset` on; the entry must have enough. Its CRC-32 is not checked.
+    /// Reads bytes of a plain entry from `offset` on; the entry must have enough bytes. Its CRC-32 is not checked.
     void read_part(const ZipEntry& entry, int64_t offset, std::span<std::byte> part) const;
 
 private:

@@ -82,7 +82,7 @@ End find_end(const std::string& path, uint64_t file_bytes, const ReadAt& read_at
     refuse(path, "has no end record: it is truncated, or not a zip archive");
 }
 
-/// Reads, from an extra field and in this order, 64-bit values for those fields of the entry that are all ones.
+/// Reads 64-bit values from an extra field, in the order of `values`, for fields of the entry that are all ones.
 void take_zip64_sizes(const std::string& path, std::string_view extra, ZipEntry& entry)
 {
     const bool wanted[] = {entry.bytes == IN_ZIP64, entry.stored_bytes == IN_ZIP64, entry.header == IN_ZIP64};
@@ -103,7 +103,7 @@ void take_zip64_sizes(const std::string& path, std::string_view extra, ZipEntry&
         }
         return;
     }
-    // If there is no such extra field, the size is taken literally: 2^32 - 1.
+    // Without the zip64 extra field, a size of all ones is taken literally: 2^32 - 1.
 }
 
 std::vector<ZipEntry> entries_of(const std::string& path, const std::vector<char>& bytes, uint64_t count)

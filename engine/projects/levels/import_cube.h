@@ -29,7 +29,7 @@ struct ImportCube {
     std::vector<T> values, lower, upper;
 };
 
-/// Finds the ranges of level 0. They are needed only if some voxels are not finite; those have an empty range.
+/// Finds the ranges of level 0. Ranges are needed only if some voxels are not finite; such voxels have empty ranges.
 template <class T>
 void find_own_ranges(ImportCube<T>& cube)
 {

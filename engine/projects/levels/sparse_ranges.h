@@ -1,6 +1,6 @@
 #pragma once
-// The ranges of the bricks of a level of which only some chunks are made: stores only ranges that differ from the range
-// of bricks in which nothing is stored.
+// Ranges of the bricks of a level in which only some chunks are made. Stores only the ranges that differ from the range
+// of a brick in which nothing is stored.
 
 #include <algorithm>
 #include <cmath>

@@ -112,7 +112,7 @@ void Capitulum::add_abaxial()
     }
 }
 
-/// Adds adaxial veins from the outer end inwards, along radii or waving around them.
+/// Adds adaxial veins, each from its outer end inwards, along a radius or in waves around it.
 void Capitulum::add_spokes()
 {
     const double thick = radius(0.024);
@@ -121,7 +121,7 @@ void Capitulum::add_spokes()
     for (int i = 0; i < species_.spokes; ++i) {
         const double turns = (double(i) + 0.2 * (random(SPOKES, i) - 0.5)) / species_.spokes;
         const double phase = random(WAVES, i);
-        // Every second one of the joined veins ends half-way, at its neighbour.
+        // Every second vein of the pattern `joined` ends half-way along, at its neighbour.
         const double from = is_joined && i % 2 == 1 ? std::max(0.34, adaxial_from()) : adaxial_from();
         std::vector<Vein> spoke;
         constexpr int PIECES = 8;
@@ -159,7 +159,7 @@ void Capitulum::add_joins(const std::vector<std::vector<Vein>>& spokes)
     }
 }
 
-/// Adds a node below each floret, and joins it to the two nearest nodes that come later along the parastichies.
+/// Adds a node below each floret, and joins it to the two nearest nodes of florets further out on its parastichies.
 void Capitulum::add_net()
 {
     const double thick = radius(0.024);
@@ -193,7 +193,7 @@ void Capitulum::add_net()
 
 void Capitulum::add_florets()
 {
-    // From the rim inwards, because veins nearer to the axis join veins further out.
+    // Veins near the axis join veins further out, so florets are added from the rim inwards.
     for (int k = spec_.florets - 1; k >= 0; --k)
         if (floret_place(spec_, k).rho >= stage_.florets_from) add_floret(k);
 }
@@ -246,7 +246,7 @@ void Capitulum::add_phloem()
     }
 }
 
-/// Returns ground tissue between the receptacle and the bowl and in the stem, with a dermal layer; air around it.
+/// Returns the tissue: ground tissue between receptacle and bowl and in the stem, a dermal layer on it, air outside.
 std::function<double(const glm::dvec3&)> Capitulum::tissue() const
 {
     return [species = species_, middle = middle_, scale = scale_, blur = spec_.flaws.blur](const glm::dvec3& voxel) {

@@ -18,10 +18,10 @@ enum class AdaxialPattern { straight, joined, net };
 struct CapitulumSpecies {
     const char* name;
     AdaxialPattern pattern;
-    int spokes;            ///< adaxial veins; of a net none
-    double rim, dome;      ///< height of the receptacle's edge, and height of the receptacle's middle above its edge
-    double adaxial_inner;  ///< where adaxial veins end inwards
-    double depth, droop;   ///< adaxial veins' depth below the receptacle's edge, and its increase per radius inwards
+    int spokes;            ///< number of adaxial veins; 0 for a net
+    double rim, dome;      ///< height of the receptacle's edge; height of the receptacle's middle above its edge
+    double adaxial_inner;  ///< rho of the inner end of adaxial veins
+    double depth, droop;   ///< depth of adaxial veins below the receptacle's edge; its increase per radius inwards
 };
 
 /// Species whose heads are a flat, a depressed and an elongated sphere.
@@ -31,13 +31,13 @@ inline constexpr CapitulumSpecies CAPITULUM_SPECIES[] = {
     {"bellis", AdaxialPattern::net, 0, -0.05, 0.75, 0.08, 0.10, 0.0},
 };
 
-/// The parts that exist at a stage; members give their extent as rho. Veins of florets exist outside `florets_from`.
+/// The parts that exist at a stage; numbers are values of rho. Veins of florets exist only outside `florets_from`.
 struct CapitulumStage {
     char name;
     double adaxial_from, adaxial_to;  ///< equal: no adaxial veins; `adaxial_from` is at least the species' inner end
     double florets_from;
-    bool joins_rim;  ///< florets of the rim with abaxial veins
-    /// Joins other florets with adaxial veins, or with each other near the axis; and adaxial with abaxial veins.
+    bool joins_rim;  ///< joins florets of the rim with abaxial veins
+    /// Joins other florets with adaxial veins or, near the axis, with each other; and adaxial with abaxial veins.
     bool joins_between;
 };
 inline constexpr CapitulumStage CAPITULUM_STAGES[] = {

@@ -15,14 +15,14 @@
 
 namespace shvr {
 
-/// Flaws as percentages of the difference between veins and ground tissue, unless stated.
+/// Flaws of scanners and samples. Percentages are of the difference between veins and ground tissue, unless stated.
 struct PhantomFlaws {
     double blur = 1.0;     ///< voxels over which one tissue changes into the next (partial volume)
     double noise = 3.0;    ///< standard deviation of normal noise, independent in each voxel
-    double rings = 0.0;    ///< height of rings around the z axis, as from a detector's unequal pixels
+    double rings = 0.0;    ///< height of rings around the z axis, like those from unequal detector pixels
     double streaks = 0.0;  ///< height, straight across slices
     double specks = 0.0;   ///< percentage of voxels, at most 4, in bright balls of 1 to 2.5 voxels radius
-    double gaps = 0.0;     ///< percentage of a vein's pieces whose middle is invisible; the truth keeps them
+    double gaps = 0.0;     ///< percentage of a vein's pieces whose middle is invisible; the ground truth keeps them
     double falling = 0.0;  ///< percentage of the intensity that is missing on the axis (cupping)
 };
 
@@ -30,7 +30,7 @@ struct PhantomSpec {
     std::string kind = "capitulum";  ///< one of `phantom_kinds()`
     Size3 size{64};                  ///< voxels
     uint32_t seed = 1;
-    /// Intensities are 0 ... 250; for int8 they are 128 lower, for types of more than 8 bits 100 times as large.
+    /// Intensities are 0 ... 250; int8 voxels are lower by 128, and voxels of more than 8 bits are 100 times as large.
     VoxelType type = VoxelType::uint8;
     PhantomFlaws flaws{};
 
@@ -46,7 +46,7 @@ struct PhantomSpec {
 struct Phantom {
     std::unique_ptr<VolumeSource> volume;
     std::unique_ptr<VolumeSource> mask{};          ///< uint8: the colour group of each voxel; null if it is not known
-    std::unique_ptr<VolumeSource> partial_mask{};  ///< section: without bundles that no trace reaches
+    std::unique_ptr<VolumeSource> partial_mask{};  ///< kind `section`: the mask without bundles that no trace reaches
     /// The graph along the tubes' centre lines. The balls of nodes and of the middles of links lie entirely in the
     /// mask, except in `section`.
     std::vector<ProceduralTruth::Node> nodes{};
@@ -54,11 +54,11 @@ struct Phantom {
     std::map<std::string, uint8_t> sections{};  ///< the colour group of each named part
 };
 
-/// Returns the kinds of this folder, to which `PhantomSpec`'s flaws apply, and `procedural_kinds()`.
+/// Returns the kinds defined in this folder, to which PhantomSpec::flaws applies, and those of `procedural_kinds()`.
 std::vector<std::string> phantom_kinds();
 bool has_flaws(const std::string& kind);
 std::vector<std::string> capitulum_species();
-/// Fails with a sentence that names the field if its value is not among the values listed above.
+/// Fails with a sentence that names the field if a field of `spec` has a value that is not among those listed above.
 Phantom make_phantom(const PhantomSpec& spec);
 
 }  // namespace shvr

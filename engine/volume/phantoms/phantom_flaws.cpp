@@ -48,7 +48,7 @@ FlawedIntensity::FlawedIntensity(const PhantomFlaws& flaws, const Size3& size, u
 /// Adds bright balls, at most one in each cell of 8^3 voxels.
 double FlawedIntensity::with_specks(double intensity, const glm::dvec3& voxel) const
 {
-    constexpr double CELL = 8.0, MEAN_BALL = 25.7;  // MEAN_BALL: voxels of a ball, averaged over the range of radii
+    constexpr double CELL = 8.0, MEAN_BALL = 25.7;  // MEAN_BALL: voxels in a ball, averaged over the range of radii
     const Size3 cell(glm::floor(voxel / CELL));
     uint32_t hash = hash_at(seed_, SPECKS, cell);
     if (unit_of(hash) * MEAN_BALL * 100.0 >= flaws_.specks * CELL * CELL * CELL) return intensity;
@@ -62,7 +62,7 @@ double FlawedIntensity::with_specks(double intensity, const glm::dvec3& voxel) c
     return std::max(intensity, GROUND_TISSUE + CONTRAST * cover_of(std::sqrt(squared) - radius, flaws_.blur));
 }
 
-/// Returns the rings' height: two rings in three are flat (height 0); a row of the detector covers four slices.
+/// Returns the height of the rings at a voxel: 0 in two of three rings; a detector row covers four slices.
 double FlawedIntensity::rings(const glm::dvec3& voxel) const
 {
     const double dx = voxel.x - centre_.x, dy = voxel.y - centre_.y;

@@ -16,8 +16,8 @@ struct PhantomModel {
     std::vector<ProceduralTruth::Node> nodes;
     std::vector<std::array<size_t, 2>> links;
     std::map<std::string, uint8_t> sections;
-    uint8_t group_of_separate = 0;  ///< group of tubes that the partial mask leaves out; 0: no partial mask
-    /// Intensity outside all tubes, in voxel coordinates; uses only sums, products, divisions and square roots.
+    uint8_t group_of_separate = 0;  ///< group of the tubes that the partial mask leaves out; 0: no partial mask
+    /// Intensity outside all tubes, at voxel coordinates. It uses only sums, products, divisions and square roots.
     std::function<double(const glm::dvec3& voxel)> tissue = [](const glm::dvec3&) { return GROUND_TISSUE; };
 
     size_t add_node(const glm::dvec3& voxel, double radius, uint8_t group)
@@ -25,7 +25,7 @@ struct PhantomModel {
         nodes.push_back({voxel, radius, group});
         return nodes.size() - 1;
     }
-    /// Adds an internode and the tube around it, in the group of the second node.
+    /// Adds an internode and the tube around it; both get the group of the second node.
     void link(size_t from, size_t to, double intensity_from = VEIN, double intensity_to = VEIN)
     {
         links.push_back({from, to});
@@ -49,7 +49,7 @@ Phantom make_procedural_phantom(const PhantomSpec& spec);
 PhantomModel make_section(const PhantomSpec& spec);
 PhantomModel make_capitulum(const PhantomSpec& spec);
 
-/// Returns the fraction of a voxel inside a flat surface at this distance, for a surface that is `blur` voxels thick.
+/// Returns the fraction of a voxel that lies inside a flat surface at `distance`; the surface is `blur` voxels thick.
 inline double cover_of(double distance, double blur)
 {
     const double cover = 0.5 - distance / blur;

@@ -1,4 +1,4 @@
-// Phantoms made of the kinds that are functions of their own (procedural/).
+// Phantoms made from the kinds of procedural volumes in procedural/.
 
 #include "engine/base/error.h"
 #include "engine/volume/phantoms/phantom_model.h"

@@ -14,11 +14,11 @@ namespace {
 enum SectionRandom : uint32_t { PLACES = 71, RADII };
 constexpr uint8_t SECTION_ADAXIAL = 2, SECTION_FLORET = 3, SECTION_SEPARATE = 4;
 constexpr double MIN_RADIUS = 0.0130, MAX_RADIUS = 0.0210;
-/// The truth's nodes were sized by hand; where a vein is locally thin, they are wider than it. These factors give the
-/// scores of the thesis's own truth (table 6.1): .971 for nodes, 1 for internodes, which lie at the mean of two nodes.
+/// The ground truth's nodes were sized by hand: they are wider than a vein where it is locally thin. The factors give
+/// the scores of the thesis's truth (table 6.1): .971 for nodes, 1 for internodes, at the mean of two nodes.
 constexpr double WIDE_NODE = 1.105, NODE = 0.88;
-/// Separate bundles, which are joined to no others, fill 29.9 % of all bundles' voxels, for a Dice score of .824: the
-/// square of their radius is this fraction of the other bundles' volume (over pi, in cubes of the side).
+/// Separate bundles are joined to no others. They fill 29.9 % of all bundles' voxels, for a Dice score of .824: the
+/// square of their radius is this fraction of the other bundles' volume (divided by pi; in cubes of the side).
 constexpr double SEPARATE_SHARE = 0.1527;
 
 class Section {
@@ -53,7 +53,7 @@ private:
     {
         return random_unit(spec_.seed, purpose, uint32_t(index));
     }
-    /// Adds a node at `place`, in fractions of the side. The vein's own radius differs from the node's.
+    /// Adds a node at `place`, in fractions of the side. The tube's radius, in `veins_`, differs from the node's.
     size_t add_node(const glm::dvec3& place, uint8_t group, bool is_wide)
     {
         const double radius = scale_ * (MIN_RADIUS + (MAX_RADIUS - MIN_RADIUS) * random(RADII, model_.nodes.size()));
@@ -68,7 +68,7 @@ private:
                                 .group = group,
                                 .intensity = {VEIN, VEIN}});
     }
-    /// Adds a segment of `inner` nodes between two nodes. The first inner node is wide; if there are three, the second.
+    /// Adds a segment of `inner` nodes between two nodes. One of them is wide: the second of three, or else the first.
     void add_segment(size_t from, size_t to, int inner, uint8_t group, const glm::dvec3& bend)
     {
         const glm::dvec3 a = (model_.nodes[from].voxel - corner_) / scale_;
@@ -158,7 +158,7 @@ void Section::add_separate()
     for (const double y : {0.36, 0.66})
         add_separate_tube({0.06, y, 0.16}, {0.94, y + 0.02 * (random(PLACES, VEINS) - 0.5), 0.10}, radius);
     add_separate_tube({0.62, 0.12, 0.82}, {0.60, 0.10, 0.46}, radius);
-    // Adds tubes next to the upper halves of the third and fifth floret's veins, outside each half's larger radius.
+    // Adds a tube next to the upper half of the third and fifth floret's vein, outside the half's larger radius.
     const auto next_to = [&](size_t link, double apart) {
         const auto& [from, to] = model_.links[link];
         const double away = (std::max(veins_[from], veins_[to]) + radius + apart) / scale_;

@@ -1,4 +1,4 @@
-// The procedural volume in which exchanged axes and mirror images are visible.
+// The procedural volume that shows exchanged axes and mirror images.
 
 #include <algorithm>
 
@@ -13,7 +13,7 @@ constexpr uint8_t BALL_GROUP = 4;
 /// Positions as fractions of the volume's size along each axis.
 constexpr glm::dvec3 BALL(0.25, 0.3, 0.35);
 constexpr glm::dvec3 ARM_ENDS(0.85, 0.7, 0.6);
-/// A fraction of the volume's shortest side. The arms meet inside the ball; each is thinner than half of the ball.
+/// Fraction of the volume's shortest side. The arms meet inside the ball; each is thinner than half of the ball.
 constexpr double ARM_RADIUS = 0.05;
 
 class Chirality final : public ProceduralKind {

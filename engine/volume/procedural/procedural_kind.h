@@ -27,9 +27,9 @@ public:
         virtual void evaluate(int64_t y, int64_t z, std::span<double> values) = 0;
     };
     virtual std::unique_ptr<Rows> rows(const VoxelBox& box) const;
-    /// Returns rows of a coarser level. Its voxels span `side` voxels of a volume of `size` voxels; box, y and z count
-    /// voxels of the coarser level. Values are evaluated at voxel centres, except for features thinner than a voxel
-    /// (ProceduralSpec).
+    /// Returns rows of a coarser level, each of whose voxels spans `side` voxels of a volume of `size` voxels. `box`, y
+    /// and z count voxels of the coarser level. Values are evaluated at voxel centres, except for features thinner than
+    /// a voxel (ProceduralSpec).
     virtual std::unique_ptr<Rows> coarse_rows(double side, const Size3& size, const VoxelBox& box) const;
 };
 

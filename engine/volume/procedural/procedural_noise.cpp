@@ -41,7 +41,7 @@ public:
     bool has_gradient() const override { return false; }
     glm::dvec3 gradient(const glm::dvec3&) const override { return glm::dvec3(0.0); }
 
-    /// Returns a node for each ball that lies entirely in the volume; none in volumes of more than MAX_CELLS cells.
+    /// Returns a node for each ball that lies entirely in the volume; none if the volume has more than MAX_CELLS cells.
     std::optional<ProceduralTruth> truth() const override
     {
         ProceduralTruth truth;
@@ -104,7 +104,7 @@ double mix(double a, double b, double t)
     return a + (b - a) * t;
 }
 
-/// Value noise: random values on a lattice with smooth blending between them. 0 <= value < 1.
+/// Value noise: random values on a lattice, blended smoothly between lattice points. 0 <= value < 1.
 class Octave {
 public:
     Octave(uint32_t seed, double period) : seed_(seed), period_(period) {}

@@ -82,7 +82,7 @@ public:
         return FULL / (2.0 * (1.0 + ALPHA)) * slope * scale_;
     }
 
-    /// Computes the part that varies with x and y once, since it is the same in every slice.
+    /// Computes the part that depends only on x and y once, since it is the same in every slice.
     class PlaneRows final : public Rows {
     public:
         PlaneRows(const MarschnerLobb& kind, const VoxelBox& box)

@@ -98,7 +98,7 @@ public:
         return profile(nearest) + noise_of(hash);
     }
 
-    /// Excludes the noise, which is constant within a voxel and jumps at the voxel's faces.
+    /// Returns the gradient without the noise, which is constant within a voxel and jumps at the voxel's faces.
     glm::dvec3 gradient(const glm::dvec3& voxel) const override
     {
         double nearest = 1.0;
@@ -117,7 +117,7 @@ public:
         return length > 0.0 ? offset * (profile_slope(nearest) / length) : glm::dvec3(0.0);
     }
 
-    /// Evaluates only segments near a row; the rest of the row is noise.
+    /// Evaluates tube segments only where they come near a row; the rest of the row is noise alone.
     class BinnedRows final : public Rows {
     public:
         BinnedRows(const Tubes& kind, const VoxelBox& box)
@@ -166,7 +166,7 @@ public:
     };
     std::unique_ptr<Rows> rows(const VoxelBox& box) const override { return std::make_unique<BinnedRows>(*this, box); }
 
-    /// Like BinnedRows, but tubes are at least MIN_THICKNESS voxels of the coarse level thick.
+    /// Like BinnedRows, but draws tubes at least MIN_THICKNESS voxels of the coarse level thick.
     class CoarseRows final : public Rows {
     public:
         CoarseRows(const Tubes& kind, double side, const Size3& size, int64_t first_x)

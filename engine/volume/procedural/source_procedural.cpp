@@ -69,7 +69,7 @@ double shift_of(VoxelType type)
     return type == VoxelType::int8 ? -128.0 : 0.0;
 }
 
-/// Converts `values`, which all kinds return in 0 ... 250, to voxels.
+/// Stores `values` as voxels of `type`; all kinds return values in 0 ... 250.
 void store(VoxelType type, std::span<double> values, std::byte* voxels)
 {
     const double shift = shift_of(type);

@@ -13,8 +13,8 @@ namespace shvr {
 /// A scalar field in voxel coordinates (the centre of voxel i is at i + 0.5), in intensity units.
 struct ScalarField {
     std::function<double(glm::dvec3 voxel)> value;
-    /// d value / d voxel; empty if the field has no useful derivative (speckles). For `tubes` the gradient excludes the
-    /// noise, which is constant within a voxel and jumps at its faces. At a kink, it is the slope of one side.
+    /// Derivative d value / d voxel; at a kink, the slope of one side. Empty if the field has no useful one (speckles).
+    /// For `tubes` it excludes the noise, which is constant within a voxel and jumps at the voxel's faces.
     std::function<glm::dvec3(glm::dvec3 voxel)> gradient;
 };
 
@@ -25,9 +25,9 @@ struct ProceduralSpec {
     VoxelType type = VoxelType::uint8;
     glm::dvec3 spacing{1.0};
     std::string unit = "voxel";
-    /// Number of levels. Each samples the same function, at the centres of larger voxels. 0: one level; or, for more
-    /// than 2^33 voxels, enough levels to end with a single brick. Tubes thinner than 1.5 voxels of a level are drawn
-    /// 1.5 voxels thick on that level: otherwise they would fall between the centres of its voxels.
+    /// Number of levels. Every level samples the same function, at the centres of its voxels. 0: one level or, for
+    /// volumes of more than 2^33 voxels, enough levels to end with a single brick. Tubes thinner than 1.5 voxels of a
+    /// level are drawn 1.5 voxels thick on that level; otherwise they would fall between the centres of its voxels.
     int levels = 0;
     bool operator==(const ProceduralSpec&) const = default;
 };
@@ -66,7 +66,7 @@ struct ProceduralTruth {
     std::vector<Node> nodes;                   ///< along the centre lines
     std::vector<std::array<size_t, 2>> links;  ///< internodes; each has the group of its second node
 };
-/// Returns null for kinds whose parts are not known. Fails as `open_procedural` does.
+/// Returns the known contents; null for kinds whose parts are not known. Fails as `open_procedural` does.
 std::optional<ProceduralTruth> procedural_truth(const ProceduralSpec& spec);
 
 }  // namespace shvr

@@ -14,7 +14,7 @@ TubeDistance distance_from(const Tube& tube, const glm::dvec3& voxel)
     const double from_first = d.x * d.x + d.y * d.y + d.z * d.z;
     const auto [r0, r1] = tube.radii;
     const double length = std::sqrt(squared);
-    if (length <= std::abs(r0 - r1)) {  // one ball contains the other, and therefore the tube
+    if (length <= std::abs(r0 - r1)) {  // one ball contains the other, so that ball is the whole tube
         if (r0 >= r1) return {std::sqrt(from_first) - r0, 0.0};
         const glm::dvec3 e = voxel - tube.ends[1];
         return {std::sqrt(e.x * e.x + e.y * e.y + e.z * e.z) - r1, 1.0};
@@ -24,7 +24,7 @@ TubeDistance distance_from(const Tube& tube, const glm::dvec3& voxel)
     const double x = std::sqrt(std::max(0.0, from_first - y * y));
     const double slope = (r0 - r1) / length;  // sine of the angle between axis and surface
     const double flat = std::sqrt(1.0 - slope * slope);
-    const double along = flat * y - slope * x;  // distance along the surface, from where it leaves the first ball
+    const double along = flat * y - slope * x;  // distance along the surface from its start on the first ball
     if (along < 0.0) return {std::sqrt(from_first) - r0, 0.0};
     if (along > flat * length) {
         const double past = y - length;

@@ -15,15 +15,15 @@ namespace shvr {
 struct Tube {
     std::array<glm::dvec3, 2> ends{};       ///< voxel coordinates
     std::array<double, 2> radii{1.0, 1.0};  ///< voxels
-    uint8_t group = 0;                      ///< colour group in the truth's mask; 0: none, as for a stone
+    uint8_t group = 0;                      ///< colour group in the ground-truth mask; 0: not in the mask
     std::array<double, 2> intensity{200.0, 200.0};
-    /// Visible fraction of the length at each end; the intensity in between is `gap_intensity`. 0.5: all is visible.
+    /// Visible fraction of the length, measured from each end; between is `gap_intensity`. 0.5: all is visible.
     double seen = 0.5;
     double gap_intensity = 0.0;
 };
 
-/// Signed distance from a tube's surface in voxels, negative inside: exact outside, and inside up to the opposite side
-/// of the tube's axis. `along` is 0 at the first end, 1 at the second.
+/// Signed distance from a tube's surface in voxels, negative inside. It is exact outside the tube, and inside up to the
+/// opposite side of the tube's axis. `along` is 0 at the first end, 1 at the second.
 struct TubeDistance {
     double voxels = 0.0;
     double along = 0.0;
@@ -32,17 +32,17 @@ TubeDistance distance_from(const Tube& tube, const glm::dvec3& voxel);
 
 class TubeScene {
 public:
-    /// `reach`: maximum distance from a tube's surface, in voxels, of positions asked for. Tubes may leave the volume.
+    /// `reach`: largest distance from a tube's surface, in voxels, that `near` must cover. Tubes may leave the volume.
     TubeScene(std::vector<Tube> tubes, const Size3& size, double reach);
 
     const std::vector<Tube>& tubes() const { return tubes_; }
 
-    /// Returns all tubes whose surface may be within `reach` of a position, in the order given, and perhaps further
-    /// tubes. All positions of a cell give the same result; positions outside the volume give that of the nearest cell.
+    /// Returns, in the order given, all tubes whose surface may be within `reach` of a position, and perhaps others.
+    /// All positions of a cell give the same result; positions outside the volume give that of the nearest cell.
     std::span<const uint32_t> near(const glm::dvec3& voxel) const;
 
-    /// Returns the group of the tube in which the position lies deepest (the first of several equally deep ones); 0: it
-    /// lies in none. Tubes are enlarged by a millionth of a voxel, so that the balls of a trace along their axes lie
+    /// Returns the group of the tube in which the position lies deepest (of equally deep tubes, the first); 0: it lies
+    /// in no tube. Tubes are enlarged by a millionth of a voxel, so that the balls of a trace along their axes lie
     /// entirely in them, however distances are rounded.
     uint8_t group(const glm::dvec3& voxel) const;
 
@@ -55,7 +55,7 @@ private:
     std::vector<Tube> tubes_;
     glm::dvec3 cell_;  ///< voxels
     Size3 counts_;
-    std::vector<uint32_t> first_;  ///< for each cell, its first index in `lists_`; an additional entry ends the last
+    std::vector<uint32_t> first_;  ///< each cell's first index in `lists_`; an extra entry ends the last cell's list
     std::vector<uint32_t> lists_;
 };
 

@@ -38,7 +38,7 @@ Fork nearest_on(const TubeStrand& strand, const glm::dvec3& position)
     return nearest;
 }
 
-/// Returns the interval of a piece, as fractions, where balls of `radius` lie in the volume; empty: x > y.
+/// Returns the part of a piece, as fractions of it, where balls of `radius` lie in the volume; empty: x > y.
 glm::dvec2 part_inside(const glm::dvec3& from, const glm::dvec3& to, double radius, const Size3& size)
 {
     glm::dvec2 part(0.0, 1.0);
@@ -91,7 +91,7 @@ private:
             fork = forks_[index]->before + 1;
             points.insert(points.begin() + ptrdiff_t(*fork), forks_[index]->place);
         }
-        std::optional<size_t> previous;  // node at points[k], if the line continues from it
+        std::optional<size_t> previous;  // node at points[k]; null if the line does not continue from points[k]
         for (size_t k = 0; k + 1 < points.size(); ++k) {
             const glm::dvec2 part = part_inside(points[k], points[k + 1], strand.radius, size_);
             if (!(part.x < part.y)) {

@@ -1,7 +1,7 @@
 #pragma once
 // The actions of the user. Keys, mouse, menus, panels, the stylus and scripts only create actions; the workbench
-// carries them out in one place, in order. Each has a stable id and arguments as JSON (action_rows.h), so it can be
-// logged, replayed and written in a script. Plain data; any thread.
+// carries them out in one place, in order. Each action has a stable id, and arguments as JSON (action_rows.h), so it
+// can be logged, replayed and written in a script. Plain data; any thread.
 
 #include <variant>
 #include <vector>

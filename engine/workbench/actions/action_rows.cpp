@@ -41,7 +41,7 @@ Action default_action(size_t index)
     return Action(std::in_place_index<INDEX>);
 }
 
-/// Visits the key "op", which names the action, then the action's arguments.
+/// Visits the key "op", whose value names the action, and then the action's arguments.
 Fields::Visit with_op(std::string& op, const Fields::Visit& arguments)
 {
     return [&op, arguments](Fields& f) {

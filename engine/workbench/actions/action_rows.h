@@ -29,10 +29,10 @@ Action read_action(std::string_view line, const std::string& origin);
 std::string text_of(const Action& action);
 Action action_of_text(const std::string& text);
 
-/// Returns why the action would do nothing or be refused: "nothing is open", "no node is selected"; empty if it is
-/// available. Carrying it out may still fail for reasons known only to the device or visible only in a file.
+/// Returns the reason if the action would do nothing or be refused: "nothing is open", "no node is selected"; empty: it
+/// is available. An available action may still fail for reasons that only the device or a file reveals.
 std::string why_not(const Model& model, const Action& action);
-/// Returns whether the action is blocked only until ended strokes are painted.
+/// Returns whether only strokes that have ended but are not painted yet block the action.
 bool waits_for_strokes(const Model& model, const Action& action);
 
 }  // namespace shvr::ui

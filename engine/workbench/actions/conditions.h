@@ -19,7 +19,7 @@ std::string why_not_edited(const Model& model);
 std::string why_not_traced(const Model& model);
 std::string why_without_selection(const Model& model);
 std::string why_without_node(const Model& model);
-/// `group`: group of the new nodes or internodes.
+/// `group`: group that the new nodes or internodes would have.
 std::string why_without_group(const Model& model, uint8_t group);
 /// `name`: name of a transfer function that the user has saved.
 std::string why_not_own(const Model& model, const std::string& name);

@@ -30,11 +30,11 @@ struct RecordStylus {
 
 struct StopRecording {};
 
-/// Moves the probe along a recorded file, tick by tick, as a hand would under the current guidance. The stylus's first
-/// button paints, or adds nodes in the trace tool.
+/// Moves the probe along a recorded file, tick by tick, as a hand would under the current guidance. While the first
+/// button is down in the recording, paints or, with the trace tool, adds nodes.
 struct FollowStylus {
     std::filesystem::path path;
-    bool by_hand = true;             ///< simulates a hand with a stylus; false: uses the recorded device's answers
+    bool by_hand = true;             ///< simulates a hand with a stylus; false: replays the device's recorded responses
     double node_every_voxels = 8.0;  ///< distance between nodes, along x
 };
 

@@ -15,7 +15,7 @@ struct Roll {
     double degrees = 0.0;
 };
 
-/// Moves the camera by distances along its right, up and forward; 1 is the height of the view at the target's depth.
+/// Moves the camera along its right, up and forward axes; distance 1 is the height of the view at the target's depth.
 struct Move {
     glm::dvec3 heights{0.0};
 };
@@ -82,7 +82,7 @@ struct ResetCuts {};
 
 /// Fits the volume, or the part of it within the cutting planes, into the view without rotating the camera.
 struct FitView {
-    size_t pane = 0;  ///< if this pane shows a slice, all slices are fitted and the camera stays
+    size_t pane = 0;  ///< if this pane shows a slice, all slices are fitted and the camera stays unchanged
 };
 
 /// Returns to the camera that the session opens with.

@@ -1,5 +1,5 @@
 #pragma once
-// Actions of the brush. The strokes of scripts (PaintOp) are also actions.
+// Actions of the brush. The strokes that scripts paint (PaintOp) are actions, too.
 
 #include "engine/annotation/script/script.h"
 #include "engine/session/session.h"

@@ -8,7 +8,7 @@ namespace shvr::ui {
 class PresetShelf;
 class SettingsEditor;
 
-/// Changes any settings at once, by a patch of the session (session_patch.h). Lasting settings form a history step.
+/// Changes any number of settings by a patch of the session (session_patch.h). Lasting settings form a history step.
 struct Set {
     std::string patch;
 };
@@ -16,10 +16,10 @@ struct Set {
 /// Adds the first unused group to the session and activates it.
 struct NewGroup {};
 
-/// Makes one history step of all changes since the last step; this also happens when the hand lets go.
+/// Makes one history step of all changes since the last step; the end of a drag does so, too.
 struct EndStep {};
 
-/// Sets the black and white levels of slices so that almost all voxels lie between them.
+/// Sets the black and white levels of slices so that almost all voxel values lie between the levels.
 struct AutoContrast {};
 
 struct KeepPreset {

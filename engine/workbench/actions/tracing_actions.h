@@ -21,8 +21,8 @@ struct NodeAt {
     glm::dvec2 pixel{0.0};
 };
 
-/// Selects the visible node or internode at the pixel. Without one, activates the group painted there; without paint,
-/// clears the selection.
+/// Selects the visible node or internode at the pixel. If there is none, activates the group painted there; if there is
+/// no paint either, clears the selection.
 struct SelectAt {
     size_t pane = 0;
     glm::dvec2 pixel{0.0};

@@ -83,7 +83,7 @@ struct ShowFullScreen {
 };
 
 struct Quit {
-    bool saves = true;  ///< false: discards changes: the work returns to the last save, as a step that can be undone
+    bool saves = true;  ///< false: discards changes, as one step that can be undone: the work returns to the last save
 };
 
 inline constexpr const char* WINDOW_GROUP = "Window";

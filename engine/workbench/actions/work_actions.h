@@ -40,7 +40,7 @@ struct Screenshot {
 /// Opens a file in the background; the open document stays until the new one is loaded.
 struct Open {
     std::filesystem::path path;
-    std::string settings{};      ///< settings for this opening, one per line, as for --set: "volume.channel=red"
+    std::string settings{};      ///< settings for this opening, one per line, as after --set: "volume.channel=red"
     bool saves_outside = false;  ///< the user agrees that the session may write files outside its folder
 };
 
@@ -62,8 +62,8 @@ constexpr std::span<const Spelling<FileUse>> spellings_of(FileUse)
 
 /// Takes a file dropped onto the window. Volumes, sessions, projects and pictures are opened; annotation and transfer
 /// functions are added to the open document, as steps that can be undone. The contents decide the kind of file; if they
-/// leave open whether it is a scan or annotation, the user is asked (Model::unclear_file). If one of several dropped
-/// files can be opened, the others are added to it.
+/// fit both a scan and annotation, the user is asked (Model::unclear_file). If several files are dropped and one of
+/// them can be opened, the other files are added to it.
 struct TakeFile {
     std::filesystem::path path;
     std::string beside{};  ///< paths of the other files dropped together with this one, one per line
@@ -93,7 +93,7 @@ struct ForgetRecent {
     std::filesystem::path path;
 };
 
-/// Chooses between the journal and annotation files that another program changed; taking the files can be undone.
+/// Chooses between the journal and annotation files that another program changed; using the files can be undone.
 struct ChooseBelief {
     bool takes_files = false;
 };

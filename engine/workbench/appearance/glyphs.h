@@ -15,7 +15,7 @@ public:
     static constexpr uint32_t LIMIT = 0x10000;  ///< Dear ImGui knows no characters above
 
     GlyphSet();
-    /// Adds UTF-8 text, skipping invalid bytes. Returns whether the text has a character that no earlier text had.
+    /// Adds UTF-8 text, skipping invalid bytes. Returns whether the text has a character that was not added before.
     bool add(std::string_view text);
     bool add(uint32_t character);
     /// Returns whether any added character is missing from some fonts.

@@ -25,7 +25,7 @@ constexpr std::span<const Spelling<PanelPlace>> spellings_of(PanelPlace)
 
 struct PanelRow {
     const char* id = "";     ///< never changes: preferences refer to it
-    const char* title = "";  ///< the same in menus, headings and help
+    const char* title = "";  ///< title, used alike in menus, headings and help
     const char* hint = "";   ///< purpose of the panel
     PanelPlace place = PanelPlace::side;
     bool is_folded = false;
@@ -70,7 +70,7 @@ struct WindowLayout {
 /// Width of the column of panels at the right, in window units: the chosen width, but at most half of the window.
 double side_units(const WindowLayout& layout, double window_units, double font_units);
 
-/// Returns the corner of a floating panel, moved into a window of the given size so that its title can be reached.
+/// Returns the corner of a floating panel, moved so that its title can be reached in a window of the given size.
 glm::dvec2 within_reach(const glm::dvec2& at, const glm::dvec2& size, const glm::dvec2& window);
 
 }  // namespace shvr::ui

@@ -24,7 +24,7 @@ enum class ColorRole {
     // Texts
     text,
     faint_text,  ///< hints, keys, disabled items
-    warning,     ///< colour of a warning mark; a word or sign next to it gives its meaning
+    warning,     ///< colour of a warning mark; a word or icon next to the mark gives its meaning
     error,
     accent_text,  ///< headings
     // Surfaces that texts stand on
@@ -62,7 +62,7 @@ enum class ColorRole {
 };
 
 inline constexpr double MIN_TEXT_CONTRAST = 4.5;
-/// Opacity of a greyed widget, blended over the window's surface.
+/// Opacity at which a greyed widget is blended over the window's surface.
 inline constexpr float DISABLED_SHARE = 0.75f;
 
 Shade shade_of(ColorRole role, Theme theme);

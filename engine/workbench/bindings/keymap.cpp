@@ -111,7 +111,7 @@ std::vector<const Shortcut*> Keymap::shortcuts_for(const Chord& chord) const
     for (const Shortcut& shortcut : shortcuts())
         if (std::ranges::any_of(chords_of(shortcut), [&](const Chord& bound) { return means(shortcut, bound, chord); }))
             found.push_back(&shortcut);
-    // A shortcut bound to the chord with Shift precedes a shortcut that Shift only slows down.
+    // A shortcut bound to the chord including Shift takes precedence over a shortcut that Shift merely slows down.
     const auto is_exact = [&](const Shortcut* shortcut) {
         return std::ranges::find(chords_of(*shortcut), chord) != chords_of(*shortcut).end();
     };

@@ -36,13 +36,13 @@ public:
     explicit Keymap(KeySet set = KeySet::modern, const Changes& changes = {});
 
     /// Returns the shortcuts bound to this chord: one, unless the user bound a chord twice. A shortcut that Shift slows
-    /// down is also returned for its chord with Shift.
+    /// down is also returned for its chord with Shift added.
     std::vector<const Shortcut*> shortcuts_for(const Chord& chord) const;
     /// Returns the chords of a shortcut.
     const std::vector<Chord>& chords_of(const Shortcut& shortcut) const;
     /// Returns the first chord as displayed; empty if there is none.
     std::string text_of(const Shortcut& shortcut) const;
-    /// Returns the other shortcuts that share a chord with this one.
+    /// Returns the other shortcuts that share a chord with `shortcut`.
     std::vector<const Shortcut*> rivals_of(const Shortcut& shortcut) const;
     /// Returns one sentence for each chord that is bound to more than one shortcut.
     std::vector<std::string> conflicts() const;

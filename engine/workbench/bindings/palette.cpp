@@ -99,7 +99,7 @@ std::vector<PaletteEntry> palette_entries(const Model& model, std::string_view t
     text = trimmed(text);
     std::vector<PaletteEntry> entries, as_typed;
     add_typed(as_typed, model, text);
-    // If the action of a text is unavailable, the text may instead be the beginning of a shortcut's name.
+    // A typed action that is unavailable may be meant as the beginning of a shortcut's name, so shortcuts come first.
     const bool is_done = !as_typed.empty() && as_typed.front().why_not.empty();
     if (is_done) entries = as_typed;
     add_shortcuts(entries, model, text);

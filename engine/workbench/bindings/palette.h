@@ -1,6 +1,6 @@
 #pragma once
 // Interprets text typed into the palette: shortcuts by words, an action as text ("look_from camera=top"), a setting
-// ("light.ambient=0.4"), or the beginning of one of these. Pure; the main thread.
+// ("light.ambient=0.4"), or the beginning of one of these. Pure; main thread only.
 
 #include <optional>
 #include <string>

@@ -15,9 +15,9 @@ namespace shvr::ui {
 std::filesystem::path preferences_file();
 /// Returns defaults if the file does not exist. Fails at unknown keys and values, naming file, key, value and the
 /// expected value. An unknown shortcut or chord is not an error: its key change goes to `unusable_keys`, and a sentence
-/// about it to `complaints`.
+/// that describes it to `complaints`.
 Preferences load_preferences(const std::filesystem::path& file, std::vector<std::string>* complaints = nullptr);
-/// Applies a merge patch of that file, as in {"theme": "light"}; null restores a default. Fails like load_preferences.
+/// Applies a merge patch, as in {"theme": "light"}; null restores a default. Fails like load_preferences.
 Preferences patched(const Preferences& preferences, std::string_view patch);
 /// Returns the patch that changes a panel's layout; `change` may set any of its parts.
 std::string patch_of_panel(const std::string& id, const PanelLayout& change);

@@ -62,14 +62,14 @@ Action at_pane(const Model& model, double)
     return action;
 }
 
-/// Moves the probe by a voxel; directions are those of the pane under the pointer.
+/// Moves the probe by a voxel in a direction relative to the pane under the pointer.
 template <int AWAY, int RIGHT, int UP>
 Action step_probe(const Model& model, double amount)
 {
     return PushProbe{model.pointer ? model.pointer->pane : 0, AWAY * amount, RIGHT * amount, UP * amount};
 }
 
-/// Looks from the NUMBER-th saved view, in the order of names, not counting the window's own view.
+/// Looks from saved view number NUMBER, in the order of names; the window's own view is not counted.
 template <size_t NUMBER>
 Action look_from_kept(const Model& model, double)
 {
@@ -237,7 +237,7 @@ Action move_clip(const Model&, double amount)
     return MoveClip{FAR, CLIP_SHARE * DIRECTION * amount};
 }
 
-/// Rounds values near 0 to exactly 0, which costs nothing to render.
+/// Changes a blend value. Values near 0 become exactly 0, since a value of 0 costs nothing to render.
 template <double DistanceBlend::*VALUE, int DIRECTION>
 Action blend(const Model& model, double amount)
 {

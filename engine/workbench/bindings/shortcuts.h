@@ -17,7 +17,7 @@ struct Shortcut {
     enum class Mode {
         tap,        ///< once per press
         repeated,   ///< acts once per press, and again at the keyboard's auto-repeat
-        step,       ///< acts once per press; with Shift, by a fifth of the amount
+        step,       ///< acts once per press; with Shift, by a fifth of the usual amount
         hold,       ///< continuous while held; slower with Shift
         while_held  ///< starts when pressed and ends when released
     };
@@ -25,8 +25,8 @@ struct Shortcut {
     const char* group = "";  ///< heading in menus, help and palette
     const char* name = "";   ///< "Undo"
     Mode mode = Mode::tap;
-    /// `amount`: for a tap 1, less with Shift; while held, 5 per second; for `while_held`, 1 at the start and 0 at the
-    /// end.
+    /// `amount`: 1 for a tap, less with Shift; 5 per second while the key is held; for `while_held`, 1 at the start and
+    /// 0 at the end.
     Action (*action)(const Model& model, double amount) = nullptr;
     /// Chords by KeySet, separated by spaces: "Ctrl+Y Ctrl+Shift+Z" (keymap.h).
     std::array<const char*, 2> keys{"", ""};

@@ -1,5 +1,5 @@
 #pragma once
-// A drag in which the item moves a tenth as far as the mouse while a modifier is held. Pressing or releasing the
+// A drag that moves an item a tenth as far as the mouse while a modifier key is held. Pressing or releasing the
 // modifier during the drag causes no jump. Pure; any thread.
 
 #include <glm/glm.hpp>
@@ -11,7 +11,7 @@ public:
     static constexpr float SHARE = 0.1f;
 
     FineDrag() = default;
-    /// `mouse`: position where the drag begins; `held`: position of the dragged item, which may differ from `mouse`.
+    /// `mouse`: position where the drag begins. `held`: position of the dragged item, which may differ from `mouse`.
     FineDrag(const glm::vec2& mouse, const glm::vec2& held) : mouse_(mouse), held_(held) {}
     /// Returns the position of the item once the mouse is at `mouse`.
     glm::vec2 follow(const glm::vec2& mouse, bool is_fine)

@@ -9,7 +9,7 @@ namespace shvr::ui {
 
 namespace {
 
-constexpr int64_t MAX_VALUES = 65536;  ///< what integers of 16 bits can be
+constexpr int64_t MAX_VALUES = 65536;  ///< number of values of a 16-bit integer
 
 /// Returns the bin as VolumeSource::measure assigns it; values are relative to the minimum.
 size_t bin_of(double value, int64_t span, size_t bins)
@@ -38,7 +38,7 @@ std::vector<int64_t> values_in_bins(const Lattice& lattice, size_t bins)
     return values;
 }
 
-/// Returns whether a bin that cannot hold any value contains voxels.
+/// Returns whether voxels lie in a bin that cannot hold any value, which refutes the assumed values.
 bool is_refuted(const std::vector<int64_t>& values, const std::vector<int64_t>& counts)
 {
     for (size_t bin = 0; bin < counts.size(); ++bin)
@@ -46,7 +46,7 @@ bool is_refuted(const std::vector<int64_t>& values, const std::vector<int64_t>& 
     return false;
 }
 
-/// Measures the jumps of a histogram between successive bins that can hold values.
+/// Returns how much the histogram jumps between successive bins that can hold values.
 double roughness(const std::vector<int64_t>& values, const std::vector<int64_t>& counts)
 {
     double sum = 0.0, last = std::numeric_limits<double>::quiet_NaN();
@@ -59,19 +59,19 @@ double roughness(const std::vector<int64_t>& values, const std::vector<int64_t>&
     return sum;
 }
 
-/// Determines the possible voxel values, as far as the histogram reveals them. The greatest value is among them.
+/// Determines the possible voxel values, as far as the histogram reveals them. `span` is always one of them.
 Lattice lattice_of(int64_t span, const std::vector<int64_t>& counts)
 {
     const double bin_width = double(span) / double(counts.size());
-    // Steps wider than a bin leave the bins between two values empty. A rounded value may fall into either of two bins,
-    // so most, but not all, of the bins without a value must be empty.
+    // If the step is wider than a bin, the bins between two values are empty. A rounded value may fall into either of
+    // two bins, so most, but not all, of the bins without a value must be empty.
     for (int64_t intervals = 1; double(span) > bin_width * double(intervals); ++intervals) {
         const Lattice lattice{span, intervals};
         const bool is_apart = span % intervals == 0 || lattice.step() >= std::max(4.0 * bin_width, 3.0);
         if (is_apart && !is_refuted(values_in_bins(lattice, counts.size()), counts)) return lattice;
     }
-    // With narrower steps, the numbers of values in two bins differ by one, which shows as a comb; dividing by the
-    // number of values of the right step makes the histogram smooth.
+    // If the step is narrower, bins differ by one in their number of values, which looks like a comb; dividing by the
+    // number of values that the right step gives makes the histogram smooth.
     constexpr double CLEARLY = 0.6;
     Lattice best{span, span};
     double least = CLEARLY * roughness(values_in_bins(best, counts.size()), counts);
@@ -96,8 +96,8 @@ void add_values(const Lattice& lattice, double lowest, const std::vector<int64_t
     }
 }
 
-/// Closes small gaps: an intensity curve that maps few values to many, as when a scan was brightened, skips some
-/// values. Each bar that has voxels is extended halfway to the next such bar.
+/// Closes small gaps: an intensity curve that maps few values to many, such as one that brightened a scan, skips some
+/// values. Extends each bar that has voxels halfway to the next such bar.
 void join_small_gaps(std::vector<HistogramBar>& bars)
 {
     constexpr size_t MAX_GAP = 2;    // consecutive empty bars

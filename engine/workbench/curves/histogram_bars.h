@@ -9,18 +9,18 @@ namespace shvr::ui {
 
 struct HistogramBar {
     double lower = 0.0, upper = 0.0;  ///< intensities
-    double voxels = 0.0;              ///< per possible voxel value within the bar; for floats, in the whole bar
+    double voxels = 0.0;              ///< number per possible voxel value within the bar; for floats, in the whole bar
 };
 struct HistogramBars {
     std::vector<HistogramBar> bars;
-    std::vector<HistogramBar> fill{};  ///< a bar for each fill value, which lies outside all other values
-    /// Voxel values are the minimum plus multiples of this step, rounded if the step is not a whole number; 0: floats,
-    /// or the values are unknown.
+    std::vector<HistogramBar> fill{};  ///< one bar per fill value; these lie outside all other values
+    /// Voxel values are the minimum plus multiples of this step, rounded if the step is not a whole number; 0: voxels
+    /// are floats, or the step is unknown.
     double step = 0.0;
 };
 
 /// Volumes are measured in 256 bins, and the number of integer voxel values per bin varies by one. Drawn directly, the
-/// smooth histogram of a volume with 300 grey values looks like a comb; so does one whose values are multiples of a
+/// smooth histogram of a volume with 300 grey values looks like a comb, as does that of values that are multiples of a
 /// step. So bars count voxels per possible value, and bars without a possible value are joined with others.
 HistogramBars histogram_bars(VoxelType type, const VolumeStatistics& statistics);
 

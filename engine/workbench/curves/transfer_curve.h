@@ -39,13 +39,13 @@ public:
         size_t point = 0;
         bool operator==(const Found&) const = default;
     };
-    /// Threshold lines, and the start and end of their labels along x. The paint threshold's label is in the first row.
+    /// Threshold lines, and the extent of their labels along x. The label of the paint threshold is in the first row.
     struct Lines {
         double paint_threshold = 0.0, haptic_threshold = 0.0;
         glm::vec2 paint_word{0.0f}, haptic_word{0.0f};
     };
-    /// Hit distances. The mouse grabs points within `pixels`, then labels, whose rows are `label` high, then lines. If
-    /// both lines are at the same position, it grabs the paint threshold, except in the row of the other line's label.
+    /// Hit distances. The mouse grabs points within `pixels`, then labels (in rows of height `label`), then lines. If
+    /// both lines coincide, it grabs the paint threshold, except in the row of the haptic threshold's label.
     struct Reach {
         float pixels = 9.0f, label = 17.0f;
     };
@@ -62,7 +62,7 @@ public:
 
     /// Adds a point with the colour that the function has there. Returns its index.
     size_t add(double intensity, double opacity);
-    /// Removes a point; keeps at least two. Returns the index of the point that is then selected.
+    /// Removes a point unless only two are left. Returns the index of the point to select afterwards.
     size_t remove(size_t point);
     /// Moves a point, clamped between its neighbours so that its index stays the same.
     void move(size_t point, double intensity, double opacity);
@@ -74,8 +74,8 @@ private:
     Points points_;
 };
 
-/// Returns the distance that all points move per wheel notch, a fraction of the displayed range; a tenth of it if slow.
-/// If voxels are integers, the distance is a whole number, at least one.
+/// Returns the distance by which a wheel notch moves all points: a fraction of the displayed range, or a tenth of it if
+/// slow. If voxels are integers, the distance is a whole number, at least one.
 double wheel_shift(double notches, const CurveRange& range, bool is_slow, bool is_whole);
 
 }  // namespace shvr::ui

@@ -1,6 +1,6 @@
 #pragma once
 // State that all services of the workbench share: the open document, the renderer, messages, and the two workers. Main
-// thread.
+// thread only.
 
 #include <functional>
 #include <memory>
@@ -22,7 +22,7 @@ std::string short_name(const std::filesystem::path& path);
 struct WorkbenchOptions {
     View::Options view{};
     bool has_servo = true;  ///< guidance and haptic devices run; false: guidance has no effect
-    /// Set for scripts, which do exactly what they state: no setting becomes a step or is kept, saves write only
+    /// Set for scripts, which do exactly what they state: settings become no steps and are not kept, saves write only
     /// annotation, to the files that the session names, and the selection stays.
     bool is_script = false;
     bool saves_outside = false;           ///< sessions may write outside their folders without asking
@@ -31,7 +31,7 @@ struct WorkbenchOptions {
     std::function<double()> now_s{};      ///< seconds of any clock; null: the system's
     std::string version{};                ///< the program's, for reports; empty: unknown
     DeviceSource devices{};               ///< source of haptic devices; if its functions are empty: this machine
-    /// Slices follow a probe that leaves their plane, and the move is logged; false: only logged actions move slices.
+    /// Slices follow a probe that leaves their plane, and this move is logged; false: only logged actions move slices.
     bool slices_follow = true;
     TextDrawer draw_texts{};  ///< draws labels into picture files; null: no labels
 };
@@ -48,7 +48,7 @@ struct Desk {
     uint64_t openings = 0;  ///< how often a document was opened
     double opened_s = 0.0;  ///< when this one was
     MessageLog messages;
-    bool are_messages_shown = false;  ///< then all of them have been read
+    bool are_messages_shown = false;  ///< while messages are shown, all of them count as read
     std::function<void(const std::string&)> log;
     std::vector<std::string> logged_instead;  ///< lines to log instead of the action being carried out
     Jobs jobs;

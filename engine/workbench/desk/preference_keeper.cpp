@@ -27,7 +27,7 @@ void PreferenceKeeper::act(const BindKeys& action)
     keys_of_it.clear();
     preferences.unusable_keys.erase(action.shortcut);
     for (const std::string_view chord : words_of(action.keys)) keys_of_it.emplace_back(chord);
-    // A binding equal to the default is not stored, so that it changes if the user later chooses the other set.
+    // A binding equal to the default is not stored, so that it follows if the user later chooses the other set of keys.
     if (Keymap(preferences.key_set, preferences.keys).chords_of(*shortcut) ==
         Keymap(preferences.key_set).chords_of(*shortcut))
         preferences.keys.erase(action.shortcut);

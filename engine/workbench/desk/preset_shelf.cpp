@@ -36,7 +36,7 @@ const TransferPreset& PresetShelf::own(const std::string& name) const
     return *found;
 }
 
-/// Never returns the file name of a preset that ships: both presets would look the same in the list.
+/// Returns an unused file name, never that of a preset that ships: both presets would look the same in the list.
 std::filesystem::path PresetShelf::free_file(const std::string& name) const
 {
     const std::filesystem::path file = preset_file(folder(), name);

@@ -1,5 +1,5 @@
 #pragma once
-// The base of all services: short names for the members of the desk, and a step of the main loop.
+// The base of all services: short names for the members of the desk, and one step of the main loop.
 //
 // A service has its own state, carries out the actions whose rows name it (`act`), and contributes its part of the
 // model. Its header includes no other service: the functions of other services that it calls are members of its struct
@@ -35,7 +35,7 @@ protected:
     explicit Service(Desk& desk);
     virtual ~Service() = default;
 
-    /// State of a step of the main loop that may fail and is then retried.
+    /// State of a main-loop step that may fail and is then retried.
     struct Attempt {
         std::string said;       ///< message of the last failure
         double failed_s = 0.0;  ///< time of the last failure; 0: never

@@ -234,7 +234,7 @@ Session Document::saved_session() const
 
 // ---- Saving ---------------------------------------------------------------------------------------------------------
 
-/// Returns the user's settings as they would be written, but not surfaces: nothing here changes them, they are many.
+/// Returns the user's settings as they would be written, but without surfaces: these are many and never change here.
 Session Document::edits() const
 {
     Session edits = saved_session();
@@ -319,10 +319,10 @@ std::optional<LocalBall> Document::ball_at(const glm::dvec3& voxel, const std::o
     const double finest = std::min({info.spacing.x, info.spacing.y, info.spacing.z});
     const glm::dvec3 size(info.size), ahead = way ? glm::normalize(*way) : glm::dvec3(0.0);
     if (glm::any(glm::lessThan(voxel, glm::dvec3(0.0))) || glm::any(glm::greaterThan(voxel, size))) return {};
-    // Small sizes are tried first: most structures are thin, so few voxels have to be read for them.
+    // Small sizes are tried first: most structures are thin, and a small size needs few voxels to be read.
     for (const double most_voxels : {6.0, 12.0, 24.0}) {  // along the finest axis
         const double most = most_voxels * finest;
-        // The centre is within `most` of the voxel, or of a point up to `most` behind it; the radius is at most `most`.
+        // The centre is within `most` of the voxel, or of a point up to `most` behind it. The radius is at most `most`.
         const glm::dvec3 about = voxel + 0.5 * most * ahead / info.spacing;
         const glm::dvec3 reach = (way ? 2.5 : 2.0) * most / info.spacing + 2.0;
         const VoxelBox box{Size3(glm::clamp(glm::floor(about - reach), glm::dvec3(0.0), size - 1.0)),

@@ -39,8 +39,8 @@ struct Document {
         bool is_script = false;  ///< as WorkbenchOptions::is_script
     };
     /// Reads the saved work of a session. `overridden`: "key=value" settings in which the session differs from its
-    /// file. `hold`: the hold of the document that is replaced, which may be this document. If another process writes
-    /// the work, or if the session would write outside its folder and `may_write_outside` is not set, the document is
+    /// file. `hold`: the hold of the document to be replaced, possibly the same document. If another process writes the
+    /// work, or if the session would write outside its folder and `may_write_outside` is not set, the document is
     /// opened read-only. Fails if it cannot be read. Any thread.
     static Read read(OpenedSession opened, const std::filesystem::path& input,
                      const std::vector<std::string>& overridden, Work::Opening opening, bool may_write_outside);
@@ -49,7 +49,7 @@ struct Document {
     Document(const Document&) = delete;
 
     std::filesystem::path session_path;  ///< where the session is saved
-    Session session;                     ///< includes thresholds of the probe: the file's, or chosen for the volume
+    Session session;                     ///< includes the probe's thresholds: the file's, or ones chosen for the volume
     std::shared_ptr<const VolumeSource> source;
     VolumeStatistics statistics;
     Camera camera;
@@ -64,14 +64,14 @@ struct Document {
     std::string outside;                ///< files that the session would write outside its folder, if the user has not
                                         ///< agreed to that (annotation_files.h); empty: none
     bool drags_node = false;            ///< the selection follows the probe
-    glm::dvec3 drag_from{0.0};          ///< where tools acted when the drag began, in voxels: one selected node goes to
-                                        ///< the probe, several parts keep their distance from it
+    glm::dvec3 drag_from{0.0};          ///< place of the tools when the drag began, in voxels. A single selected node
+                                        ///< moves to the probe; several parts keep their distance from it
 
     // State of the open document that is not part of the work
     std::optional<glm::dvec3> measuring_from;               ///< first end of a measurement that lacks its second end
     std::optional<glm::dvec3> picked_pivot;                 ///< volume space
     std::optional<std::pair<uint32_t, uint32_t>> cut_ends;  ///< nodes that the last deletion separated
-    /// Probe position at the end of its last stroke: until the probe moves, its ball is not drawn over the fresh paint.
+    /// Probe position at the end of the last stroke. Until the probe moves, its ball is not drawn over the fresh paint.
     std::optional<glm::dvec3> painted_at;
 
     /// Loads everything onto the device again with the current settings. Fails like Renderer::load and
@@ -83,7 +83,7 @@ struct Document {
     const VolumeInfo& volume() const { return source->info(); }
     glm::dvec3 probe_voxel() const { return touch.probe() / volume().spacing; }
     /// Returns the point where tools act: the probe or, depending on the session's `probe.touch`, the centre of the
-    /// touched structure, a node in its ball, or a centre line that passes through it.
+    /// structure it touches, a node in its ball, or a centre line that passes through its ball.
     ToolPlace tool_place() const;
     glm::dvec3 tool_voxel() const { return tool_place().point / volume().spacing; }
     /// Returns where tools would act if the probe were at `point` and touched nothing.
@@ -91,7 +91,7 @@ struct Document {
     /// Returns the limits of the voxels that can be felt: by default the voxels that the view shows.
     FeltLimits felt_limits() const;
     const BrushSettings& brush() const { return session.probe.brush; }
-    /// Chooses missing thresholds for the volume; choose_for_volume() also the size of nodes and the slices' contrast.
+    /// Chooses missing thresholds for the volume; choose_for_volume() also chooses node size and the slices' contrast.
     void choose_thresholds(Session& of) const;
     void choose_for_volume(Session& of) const;
     double probe_radius() const { return brush().radius_voxels * volume().spacing.x; }
@@ -107,9 +107,9 @@ struct Document {
     TraceDefaults trace_defaults() const;
     /// Returns whether the cut can still be mended: both of its ends exist, and no link joins them.
     bool is_cut() const;
-    /// Returns the largest ball in the structure above the paint threshold at a point. With `way`, the structure is the
-    /// one that a line of sight in that direction enters there, at most the probe's radius aside (local_radius.h). Null
-    /// if it is unknown. Reads 30^3 voxels, up to 124^3 in wide structures.
+    /// Returns the largest ball in the structure above the paint threshold at a point. If `way` is given, the structure
+    /// is that which a line of sight in this direction enters there, at most the probe's radius to the side of the line
+    /// (local_radius.h). Null if it is unknown. Reads 30^3 voxels, up to 124^3 in wide structures.
     std::optional<LocalBall> ball_at(const glm::dvec3& voxel, const std::optional<glm::dvec3>& way = {}) const;
     /// Returns the bounding box of the probe's ball; it contains at least one voxel of the volume.
     VoxelBox voxels_around_probe() const;
@@ -124,7 +124,7 @@ struct Document {
     Place place() const;
     /// Returns the session as it would be saved, with the current view and probe.
     Session saved_session() const;
-    /// is_saved(): closing would lose neither work nor settings, except perhaps the view and the probe.
+    /// is_saved(): whether closing loses neither work nor settings, except perhaps the view and the probe.
     bool has_session_file() const { return session_text_.has_value(); }
     bool is_saved() const { return work_is_saved() && edits_are_saved(); }
     bool work_is_saved() const { return only_looks() || annotator.work().is_saved(); }
@@ -140,13 +140,13 @@ struct Document {
     void note_edit() { edits_are_saved_.reset(); }
     /// Writes view, probe and similar settings to the journal, if there is one; adds no step to the history.
     void keep_settings();
-    /// Adds all settings changed since the last step to the history, as one step. Not while a stroke is running.
-    /// Returns whether there was anything to record.
+    /// Adds all settings changed since the last step to the history, as one step. Call it only while no stroke is
+    /// running. Returns whether there was anything to record.
     bool record_settings();
     /// Applies the settings of the work's history, after undo and redo.
     void take_settings();
-    /// A save in the background: a snapshot of the files at its start. Each file is replaced atomically: first mask,
-    /// offsets and trace, then the session. Files that other programs changed meanwhile are kept under other names.
+    /// A save in the background, of the state at its start. Each file is replaced atomically: first mask, offsets and
+    /// trace, then the session. Files that other programs changed meanwhile are kept under other names.
     class Saving;
     enum class Parts { all, session, work };
     /// Fails if nothing can be saved; writes nothing. `end_save` must be called afterwards, whatever the save's result.
@@ -158,8 +158,8 @@ struct Document {
     bool has_view_to_keep() const;
     /// Returns whether settings must be saved; false while any setting is overridden for this run.
     bool has_settings_to_save() const { return !edits_are_saved() && overridden_.empty(); }
-    /// Saves under another name; the work continues there with the whole history, and existing files stay unchanged.
-    /// Commands are refused until the save has ended. `path`: the session's. Fails if a file of that name exists.
+    /// Saves under another name. The work continues there with the whole history, and existing files stay unchanged.
+    /// Commands are refused until the save has ended. `path`: the new session's. Fails if a file of that name exists.
     std::shared_ptr<Saving> begin_save_as(const std::filesystem::path& path);
     /// Returns a function that writes the current mask, offsets, trace and session to new files, on any thread, and
     /// returns the session's path. `path`: that path; empty: an unused one next to this session. Fails if it exists.
@@ -182,7 +182,7 @@ private:
     mutable std::optional<bool> edits_are_saved_;  ///< cached answer of edits_are_saved()
 };
 
-/// Returns a session's path: for a session file, its own path; for a volume or folder, a path next to it.
+/// Returns a session's path: for a session file, the file's own path; for a volume or folder, a path next to it.
 std::filesystem::path session_path_of(const std::filesystem::path& input);
 /// Returns the file's contents; no value if there is no such file.
 std::optional<std::string> text_of_session(const std::filesystem::path& path);

@@ -78,8 +78,8 @@ std::shared_ptr<Document::Saving> Document::begin_save(Parts parts)
     return saving;
 }
 
-/// Projects of earlier versions store a byte for every voxel; from their next save on they store only painted bricks.
-/// The old files stay.
+/// Projects of earlier versions store a byte for every voxel. From their next save on, they store only painted bricks,
+/// in files of new names; the old files stay.
 void Document::name_sparse_files(Parts parts, Saving& saving)
 {
     const bool is_named_here =
@@ -95,16 +95,16 @@ void Document::name_sparse_files(Parts parts, Saving& saving)
     saving.names_path_ = session_path;
 }
 
-/// Writes the names into the session file as it is now, even if another program wrote it meanwhile; the rest stays.
+/// Writes the names into the current session file, even if another program has just written it; the rest stays.
 void Document::Saving::write_names()
 {
     const std::optional<std::string> there = text_of_session(names_path_);
-    if (!there) return;  // then default names are those of a new project
+    if (!there) return;  // without a session file, the default names apply, which are those of a new project
     text_ = with_names(*there, *names_, names_path_);
     write_file_atomically(names_path_, std::as_bytes(std::span(text_)));
 }
 
-/// Moves contents that another program wrote there meanwhile to another file, which the notice names.
+/// Writes the session. Moves aside a file that another program wrote there meanwhile; the notice names the moved file.
 void Document::Saving::write_session()
 {
     if (const std::optional<std::string> there = text_of_session(session_path_); there && there != text_there_)

@@ -11,7 +11,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Size of a voxel, as felt by the hand, for which the force law's stiffness was chosen (micro-CT of vascular bundles).
+/// Size of a voxel, as felt by the hand, that the force law's stiffness suits (micro-CT of vascular bundles).
 constexpr double VOXEL_M = 0.00025;
 
 uint64_t now_ns()
@@ -96,7 +96,7 @@ Workspace Touch::workspace(const TouchSettings& settings) const
     return {.to_volume = glm::dmat3(finest / VOXEL_M), .origin = 0.5 * glm::dvec3(info.size) * info.spacing};
 }
 
-/// Afterwards, the plane that constrains the probe goes through the probe's new position.
+/// Moves the probe, and moves the plane that constrains the probe through its new position.
 void Touch::place(const glm::dvec3& point)
 {
     if (plane_ != TouchPlane::none) on_plane_ = point;
@@ -142,7 +142,7 @@ void Touch::hold_to_plane(const TouchSettings& settings)
     ++planes_;
 }
 
-/// Does not send settings again that the servo already has, so that a recording contains only changes.
+/// Sends only settings that the servo does not have yet, so that a recording contains only changes.
 void Touch::send_settings(const TouchSettings& settings)
 {
     const GuideSettings& guide = settings.guide;
@@ -216,7 +216,7 @@ void Touch::ask()
         relevance_.ask(wanted->place.box, wanted->threshold, now_ns());
     } catch (const DeviceLost&) {
         throw;
-    } catch (const Error&) {  // the device has no room for such a cube
+    } catch (const Error&) {  // the device has no room for this cube of voxels
         mirror_->decline(*wanted);
     }
 }

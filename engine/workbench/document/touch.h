@@ -38,7 +38,7 @@ class Touch {
 public:
     /// The mouse moves the probe until use() is called.
     explicit Touch(Renderer& renderer);
-    /// Makes `device` move the probe or the view from now on; null: the mouse moves the probe.
+    /// Makes `device` move the probe or, if `moves_view`, the view; null: the mouse moves the probe.
     void use(std::shared_ptr<HapticDevice> device, bool moves_view = false);
 
     /// Moves the probe at once; `point` is in physical units of the volume.
@@ -50,7 +50,7 @@ public:
     /// Drops pending requests to the graphics device.
     void drop_queries() { relevance_.drop(), asked_.reset(); }
 
-    /// Records from the next frame on. Restarts the servo, so that a replay starts in the same state.
+    /// Starts recording with the next frame. Restarts the servo, so that a replay starts in the same state.
     void begin_recording(const std::filesystem::path& path);
     /// Returns null while nothing is recorded.
     const StylusRecorder* recorder() const { return recorder_.get(); }

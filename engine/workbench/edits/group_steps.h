@@ -7,7 +7,7 @@
 
 namespace shvr::ui {
 
-/// Returns the groups that have a key, are described, painted, traced or active: in ascending order, without 0.
+/// Returns, in ascending order and without 0, the groups that have a key, are described, painted, traced or active.
 std::vector<uint8_t> known_groups(const Model& model);
 /// Returns the next known group above the active one (direction 1) or below it (-1), with wrap-around.
 uint8_t next_group(const Model& model, int direction);

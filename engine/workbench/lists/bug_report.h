@@ -1,6 +1,6 @@
 #pragma once
-// Texts of messages for the user, and a report to paste into an issue. Pure, except for the clock's time zone; the main
-// thread.
+// Texts of messages for the user, and a report to paste into an issue. Pure, except for the clock's time zone; main
+// thread only.
 
 #include <string>
 

@@ -1,5 +1,5 @@
 #pragma once
-// The history as a list of steps, to display and to jump to a step. Pure; the main thread.
+// The history as a list of steps, to display and to jump to a step. Pure; main thread only.
 
 #include <optional>
 #include <string>
@@ -12,8 +12,8 @@ namespace shvr::ui {
 /// Row N is the state after N steps: row 0 is the start, row `rows - 1` the newest state.
 struct HistoryList {
     const History* history = nullptr;
-    size_t done = 0;        ///< number of steps done; a changed setting that is not a step does not count
-    bool is_ahead = false;  ///< a changed setting is not a step yet: shown as an additional last row, the present one
+    size_t done = 0;        ///< number of steps done, not counting changed settings that are not a step yet
+    bool is_ahead = false;  ///< a changed setting is not a step yet: an additional last row shows it as the present
 
     size_t rows() const;
     size_t present() const { return done + is_ahead; }

@@ -8,9 +8,9 @@
 namespace shvr::ui {
 
 struct LoadForm {
-    std::string channel, frame;   ///< empty: the only one in the file
+    std::string channel, frame;   ///< empty: the file has only one
     int level = 0;                ///< 0: the finest
-    bool states_spacing = false;  ///< false: the file's spacing, or 1 voxel
+    bool states_spacing = false;  ///< false: uses the file's spacing, or 1 voxel if the file states none
     glm::dvec3 spacing{1.0};
     std::string unit;      ///< empty: the unit in the file
     bool is_bare = false;  ///< raw voxels without a header

@@ -26,7 +26,7 @@ void fields(Fields& f, SavedPass& pass)
     f.number("longest_ms", pass.longest_ms, MILLISECONDS, {});
 }
 
-/// Reads a pass from the output of `shvr profile`; the pass's time is its time per frame.
+/// Reads a pass from the output of `shvr profile`; its time in PassTime is the time per frame.
 View::PassTime of_profile(const JsonNode& node)
 {
     View::PassTime pass{.name = node["name"].text(), .runs = 1};

@@ -1,6 +1,6 @@
 #pragma once
 // GPU time of each pass of a picture, over the last frames of the window and in a saved run. Pure, except for reading
-// and writing; the main thread.
+// and writing; main thread only.
 
 #include <deque>
 #include <filesystem>
@@ -17,7 +17,7 @@ namespace shvr::ui {
 struct PassRun {
     std::string name;                    ///< the file's name
     std::vector<View::PassTime> passes;  ///< in the file's order
-    bool is_of_profile = false;          ///< printed by `shvr profile`: each time is the median over frames
+    bool is_of_profile = false;          ///< printed by `shvr profile`: each time is a median over frames
     const View::PassTime* find(const std::string& pass) const;
 };
 /// Reads a file from `save_pass_run` or the output of `shvr profile --json`. Errors name file, key and value.

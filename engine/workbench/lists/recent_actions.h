@@ -1,7 +1,7 @@
 #pragma once
 // The last actions, for bug reports. Actions that follow the mouse arrive many times a second, so a run of actions of
 // one kind is one entry, which stores the last of them. Actions are stored unformatted and formatted only on request,
-// so recording an action costs only its copy. The main thread.
+// so recording an action costs only its copy. Main thread only.
 
 #include <cstdint>
 #include <deque>
@@ -19,8 +19,8 @@ public:
     void begin(const Action& action);
     /// Marks the most recently begun action as carried out.
     void note_done() { entries_.back().is_done = true; }
-    /// Returns lines that replay the actions, oldest first (action_rows.h). After " # ", a line states that the action
-    /// was refused, or the length of its run.
+    /// Returns lines that replay the actions, oldest first (action_rows.h). A comment after " # " states that the
+    /// action was refused, or how many actions its run had.
     std::vector<std::string> lines() const;
 
 private:

@@ -1,6 +1,6 @@
 #pragma once
 // A trace as two lists: its segments and its nodes. They are built once for each state of the trace, so that the cost
-// of scrolling depends only on the visible rows. Pure; the main thread.
+// of scrolling depends only on the visible rows. Pure; main thread only.
 
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@
 namespace shvr::ui {
 
 struct SegmentRow {
-    uint32_t internode = 0;        ///< number of the segment's smallest internode, which identifies the segment
+    uint32_t internode = 0;        ///< smallest internode number in the segment; identifies the segment
     uint32_t first = 0, last = 0;  ///< nodes at its ends
     size_t nodes = 0;
     uint8_t group = 0;       ///< group of most of its length
@@ -30,7 +30,7 @@ enum class TraceOrder { number, group, nodes, length };
 
 class TraceList {
 public:
-    /// Rebuilds the rows unless trace and order are the same as in the last call. Returns whether it rebuilt them.
+    /// Rebuilds the rows unless trace and order are unchanged since the last call. Returns whether it rebuilt them.
     bool update(const TraceGraph& trace, TraceOrder order, bool is_descending);
     const std::vector<SegmentRow>& segments() const { return segments_; }
     /// Nodes in the order of their numbers; `order` applies to segments only.

@@ -1,5 +1,5 @@
 #pragma once
-// Read-only view of the open document; if none is open, of an empty session.
+// Read-only view of the open document, or of an empty session if no document is open.
 
 #include <filesystem>
 #include <span>

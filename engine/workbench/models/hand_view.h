@@ -19,7 +19,7 @@ struct HandView {
     std::string in_use;   ///< id of the open device; empty: none is open, and the mouse moves the probe
     std::string opening;  ///< id of the device being opened; empty: none
     std::string name = "mouse", serial, connection;
-    std::string trouble;       ///< fault of the open device, or why the last device could not be opened
+    std::string trouble;       ///< fault of the open device, or the reason why the last device did not open
     bool is_puck = false;      ///< the device reports speeds
     bool moves_probe = false;  ///< a device moves the probe; false: the mouse does
     bool is_realtime = false;  ///< whether the running servo has realtime priority

@@ -1,5 +1,5 @@
 #pragma once
-// Messages that the program has shown to the user, with their weight. The main thread.
+// Messages that the program has shown to the user, with their weight. Main thread only.
 
 #include <array>
 #include <cstdint>
@@ -57,8 +57,8 @@ public:
         return messages_.empty() ? NOTHING : messages_.back().text;
     }
     uint64_t count() const { return count_; }
-    /// Returns the first message of that weight after message number `count`, unless that message was dropped; null if
-    /// there is none.
+    /// Returns the first message of that weight with a number above `count`, among messages that were not dropped; null
+    /// if there is none.
     const Message* first_after(uint64_t count, Weight weight) const
     {
         for (const Message& message : messages_)

@@ -18,11 +18,11 @@ struct Candidate {
     std::filesystem::path path;
     std::string settings;  ///< settings used to inspect it
     bool is_being_read = true;
-    std::string failure;            ///< why the file cannot be opened; empty: it can, as far as is known
+    std::string failure;            ///< reason why the file cannot be opened; empty: no reason is known
     std::vector<Choice> choices{};  ///< alternatives to choose from, if the file cannot be opened without a choice
     std::string kind;               ///< "Volume", "Session", "Project", "Picture of a session"
     bool is_project = false;        ///< the file needs no import
-    VolumeInfo volume{};            ///< valid only if `failure` is empty, as are the members below
+    VolumeInfo volume{};            ///< this and the members below are valid only if `failure` is empty
     int levels = 1;
     std::string memory{};  ///< required host and device memory
     std::vector<std::string> warnings{};

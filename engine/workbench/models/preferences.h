@@ -32,7 +32,7 @@ constexpr std::span<const Spelling<PuckMoves>> spellings_of(PuckMoves)
     return PUCK_MOVES;
 }
 
-/// A haptic device, by data that stay the same at another USB port. Empty name: the first usable device.
+/// A haptic device, identified by data that do not depend on its USB port. Empty name: the first usable device.
 struct ChosenDevice {
     std::string name, serial;
     bool operator==(const ChosenDevice&) const = default;
@@ -55,7 +55,7 @@ struct Preferences {
     WindowLayout layout;
     ChosenDevice device;
     PuckMoves puck = PuckMoves::view;
-    int hints_seen = 0;  ///< number of first hints that were dismissed, 0 ... 3 (appearance/hints.h)
+    int hints_seen = 0;  ///< number of first hints that were dismissed, 0 ... 3 (bindings/hints.h)
 
     void note_opened(const std::filesystem::path& path);
     bool operator==(const Preferences&) const = default;

@@ -18,7 +18,7 @@ struct Pointer {
 struct Reading {
     glm::dvec3 voxel{0.0};            ///< position of the probe; over a slice, position of the pointer
     bool is_inside = false;           ///< inside the volume; if false, the next three members are unknown
-    std::optional<double> intensity;  ///< in the file's units; null: it cannot be read, or was not read yet
+    std::optional<double> intensity;  ///< in the file's units; null: it cannot be read, or has not been read yet
     double offset = 0.0;              ///< density offset added by painting
     uint8_t group = 0;
     /// Depth of the probe in the first pane: physical units along the view, from where the drawn volume begins.

@@ -35,7 +35,7 @@ struct HistoryModel {
 /// Made by the saver.
 struct SaveModel {
     bool is_saved = true;
-    bool is_saving = false;               ///< files are being written; they do not include later changes
+    bool is_saving = false;               ///< files are being written, without the changes made since then
     bool is_saving_as = false;            ///< saving under another name is under way: commands are refused
     std::span<const Dispute> disputes{};  ///< saved files that other processes changed; empty: no choice is needed
 };

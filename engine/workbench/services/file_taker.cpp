@@ -35,8 +35,8 @@ bool is_opened(FileContent content)
            content == FileContent::picture;
 }
 
-/// Returns whether the points of a transfer function are relative to the tissue of any volume, as in preset files,
-/// rather than given as intensities.
+/// Returns whether a transfer function's points are relative to the tissue of any volume, as in preset files, and not
+/// intensities.
 bool is_preset(const std::string& text, const std::filesystem::path& path)
 {
     const JsonDocument json(text, path.string());
@@ -145,7 +145,7 @@ void FileTaker::act(const TakeFile& action)
     });
 }
 
-/// The user asked for annotation, so this never closes the open scan, whatever the file is.
+/// Never closes the open scan, whatever the file contains, since the user asked for annotation.
 void FileTaker::act(const LoadAnnotation& action)
 {
     unclear_.reset();
@@ -176,8 +176,8 @@ void FileTaker::ask_what_it_is(UnclearFile file)
     unclear_ = std::move(file);
 }
 
-/// Annotation dropped together with a scan must not be added to the scan that is still open. A volume as large as the
-/// open scan counts as a scan if a mask is dropped with it; without a mask, the user is asked.
+/// Prevents annotation that is dropped together with a scan from being added to the scan that is still open. A volume
+/// as large as the open scan counts as a scan if a mask is dropped with it; without a mask, the user is asked.
 void FileTaker::take_together(std::vector<std::filesystem::path> paths)
 {
     std::optional<VolumeInfo> volume;

@@ -51,7 +51,7 @@ TouchSettings Hand::touch_settings() const
         .camera = document.camera,
         .view_height = pixel_size(document.camera, {1, 1}, glm::distance(document.camera.eye, document.camera.target)),
         .scale = document.session.interaction.workspace_scale,
-        // While the volume moves with the stylus, the felt voxels would lag behind it.
+        // Forces are off while the volume moves with the stylus, since the felt voxels would lag behind the volume.
         .lets_go = hand_.is_let_go || grab_.has_value(),
         .source = document.source,
         .offsets = &document.annotator.document().density,
@@ -113,7 +113,7 @@ void Hand::follow_grab()
     others_.look_from(camera_of_grab(*grab_, device.position_m, device.rotation, units_per_m));
 }
 
-/// Moves the view as the puck reports. Without a report the puck is at rest: the back end then reports no speed.
+/// Moves the view as the puck reports. If there is no report, the puck is at rest: the back end reports no speed then.
 void Hand::follow_puck()
 {
     const double now = options_.now_s();
@@ -204,7 +204,7 @@ void Hand::act(const FollowStylus& action)
         });
 }
 
-/// Acts as a hand would: while the first button is down, paints or, in the trace tool, adds nodes.
+/// Acts as a hand would: while the first button is down, paints or, with the trace tool, adds nodes.
 void Hand::follow_points(const std::vector<StylusPoint>& points, double node_every)
 {
     constexpr double APART_VOXELS = 0.5;

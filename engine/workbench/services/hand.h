@@ -30,7 +30,7 @@ public:
     void act(const FollowStylus& action);
 
     void advance() override;
-    /// Makes this device move the probe from now on, whatever is plugged in; the device's button paints.
+    /// Makes this device move the probe, whatever else is plugged in; the device's button paints.
     void use_device(std::shared_ptr<HapticDevice> device, const std::string& name);
     TouchedModel model() const;
 
@@ -54,7 +54,7 @@ private:
     std::unique_ptr<DeviceWatch> watch_;    ///< null: no search for devices
     std::shared_ptr<HapticDevice> device_;  ///< null: none is open
     HandView hand_;
-    std::set<std::string> refused_;  ///< ids of devices that could not be opened; removed when requested again
+    std::set<std::string> refused_;  ///< ids of devices that failed to open; an id is removed when requested again
     bool is_given_device_ = false;   ///< the caller supplied the device
     double look_again_s_ = 0.0, puck_at_s_ = 0.0;
     std::optional<Grab> grab_;

@@ -30,8 +30,8 @@ std::filesystem::path opened_for_picture(const std::filesystem::path& path, cons
     return has_file ? opened.session.volume_path : std::filesystem::path();
 }
 
-/// Returns the session saved next to a volume if the session belongs to this very file: reopening a scan then uses it.
-/// Empty: there is none.
+/// Returns the session saved next to a volume if the session belongs to this very file, so that reopening the scan uses
+/// the session. Empty: there is no such session.
 std::filesystem::path session_saved_for(const std::filesystem::path& volume)
 {
     std::error_code ignored;
@@ -89,7 +89,7 @@ void Opener::open(const std::filesystem::path& path, const std::vector<std::stri
     if (*failure) std::rethrow_exception(*failure);
 }
 
-/// Starts reading on the worker. Called again if the open document changed the journal since the last read began.
+/// Starts reading on the worker; called again if the open document changed its journal after the last read began.
 void Opener::read_next()
 {
     Opening& opening = *opening_;
@@ -225,7 +225,7 @@ void Opener::finish()
     for (const std::filesystem::path& taken : opening->taken_into_it) others_.take_file(TakeFile{.path = taken});
 }
 
-/// Shows the document again that was unloaded to make room.
+/// Shows the previous document again, which was unloaded to make room.
 void Opener::show_again()
 {
     try {

@@ -57,7 +57,7 @@ public:
     /// Returns the name of the file being opened; empty: none.
     std::string_view opening_name() const;
     void cancel();
-    /// Cancels the opening if `number` is its number. Returns whether it is.
+    /// Cancels the opening if its number is `number`. Returns whether it has that number.
     bool cancel(Jobs::Number number);
     /// Handles the end of the reading job. Returns whether `job` is that job.
     bool end_reading(const Jobs::Finished& job);
@@ -91,8 +91,8 @@ private:
     PreferenceKeeper& keeper_;
     const Others others_;
     std::shared_ptr<Opening> opening_;                     ///< null: nothing is being opened
-    std::shared_ptr<std::exception_ptr> awaited_failure_;  ///< failure of the opening that `open` waits for
-    Jobs::Number next_return_ = Jobs::Number{1} << 48;     ///< numbers in a range of their own, distinct from jobs
+    std::shared_ptr<std::exception_ptr> awaited_failure_;  ///< failure of the opening for which `open` waits
+    Jobs::Number next_return_ = Jobs::Number{1} << 48;     ///< counts in a range distinct from the jobs' numbers
     std::unique_ptr<Document> away_;  ///< the open document without a scene, while the device has room for only one
     std::set<std::filesystem::path> allowed_outside_;
     std::vector<std::string> recovered_;

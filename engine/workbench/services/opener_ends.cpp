@@ -145,7 +145,7 @@ void Opener::restart_device(const std::function<void()>& make_anew)
         document_->screen.drop();
     }
     if (opening_) opening_->scene.reset();   // it is loaded again from its beginning
-    if (document_) others_.forget_reload();  // the document was loaded with its present settings
+    if (document_) others_.forget_reload();  // the document was just loaded with its present settings
     make_anew();
     others_.look_again();
     if (document_) load_again();

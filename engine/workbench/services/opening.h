@@ -12,13 +12,13 @@ struct Opener::Opening {
     double begun_s = 0.0;
     Work::Opening how{.program = {}};
     bool saves_before = true;
-    bool comes_back = false;                             ///< restores the document that was put away
+    bool comes_back = false;                             ///< restores the unloaded document
     std::vector<std::filesystem::path> taken_into_it{};  ///< annotation dropped together with it
 
-    Jobs::Number number = 0;                       ///< number of the reading job, which then stays the opening's number
+    Jobs::Number number = 0;                       ///< the reading job's; the opening keeps it after the job ends
     std::shared_ptr<Document::Read> read{};        ///< null: still being read
     std::shared_ptr<std::exception_ptr> thrown{};  ///< exception from the job
-    uint64_t journal_bytes = 0;  ///< open document's journal size when reading began; used if `read` has the journal
+    uint64_t journal_bytes = 0;  ///< size of the open document's journal when reading began; used if `read` has it
     std::optional<Session> pictured{};  ///< look of a picture, if the opened file is one
     std::unique_ptr<Scene> scene{};     ///< scene being loaded
 };

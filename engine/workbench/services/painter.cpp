@@ -112,8 +112,8 @@ void Painter::advance_stroke()
     if (has_painted || before != stroke_uploads_) stroke_progress_s_ = options_.now_s();
 }
 
-/// Waits for strokes that have ended, before annotation is changed. This takes milliseconds unless bricks come from a
-/// slow disk; an action that is impossible even afterwards fails with its reason.
+/// Waits, before annotation is changed, until strokes that have ended are painted. The wait takes milliseconds unless
+/// bricks come from a slow disk; an action that is still impossible afterwards fails with its reason.
 void Painter::await_strokes()
 {
     constexpr double MAX_WAIT_S = 2.0;
@@ -147,7 +147,7 @@ std::string Painter::finish_stroke()
     return unpainted;
 }
 
-/// Returns false while memory is insufficient. Other failures store their reason in `unpainted`.
+/// Returns false while memory is insufficient. Stores the reason of any other failure in `unpainted`.
 bool Painter::tries_stroke(std::string& unpainted)
 {
     try {

@@ -36,7 +36,7 @@ public:
     bool is_stuck() const;
     /// Returns the message about an abandoned stroke.
     static std::string why_stuck();
-    /// Number of voxels in the preview when the last stroke began; null if there was no preview.
+    /// Number of voxels that the preview showed when the last stroke began; null if there was no preview.
     std::optional<int64_t> previewed_at_stroke() const { return previewed_at_stroke_; }
     PaintModel model() const;
 

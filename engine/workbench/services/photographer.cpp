@@ -64,7 +64,7 @@ void Photographer::add_loading(std::vector<Jobs::State>& states) const
 void Photographer::act(const Screenshot& action)
 {
     if (!action.is_large) {
-        document_->painted_at.reset();  // pictures are redrawn from their session, which cannot state a smaller ball
+        document_->painted_at.reset();  // a picture can be redrawn from its session, which lacks `painted_at`
         screenshots_.take();
         return say("The screenshot will be taken when the picture is sharp");
     }

@@ -21,13 +21,13 @@ public:
     void wait() const { screenshots_.wait(); }
     /// Cancels the large screenshot, if there is one, and reports `by` as the cause.
     void drop_large(const char* by);
-    /// Cancels the large screenshot and reports that, if `number` is its job number. Returns whether it is.
+    /// Cancels the large screenshot, and reports so, if its job number is `number`. Returns whether it has that number.
     bool cancel(Jobs::Number number);
     /// Adds the state of the large screenshot, if there is one.
     void add_loading(std::vector<Jobs::State>& states) const;
     /// Returns the base of names for files next to the session: "scan" for scan-view-1.png.
     std::filesystem::path stem() const;
-    /// Sets the pixels per unit of the interface, used to draw over pictures.
+    /// Sets the number of pixels per unit of the interface, for drawing over pictures.
     void set_units(double units) { units_ = units; }
     /// Sets whether the device is idle; large screenshots continue only then.
     void set_still(bool is_still) { is_still_ = is_still; }

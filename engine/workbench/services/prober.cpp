@@ -26,7 +26,7 @@ glm::dvec3 in_plane_of(const glm::dvec3& probe, const Pane& seen, const glm::dve
 
 Prober::Prober(Desk& desk, Others others) : Service(desk), others_(std::move(others)) {}
 
-/// Interrupts an open stroke, so that it paints nothing between here and the hand's next position.
+/// Interrupts an open stroke, so that nothing is painted between the probe and the hand's next position.
 void Prober::lift()
 {
     if (document_->annotator.stroke_is_open()) document_->annotator.lift_stroke();

@@ -23,7 +23,7 @@ public:
     void advance() override;
     /// Discards the last read voxel, since another document is open.
     void begin_document() { read_voxel_.reset(); }
-    /// Returns the text to copy that was set since the last call; empty: none.
+    /// Returns the text that was set for copying since the last call; empty: none.
     std::string take_clipboard() { return std::exchange(clipboard_, {}); }
     ReadingModel model() const;
 

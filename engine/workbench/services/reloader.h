@@ -1,7 +1,7 @@
 #pragma once
-// Reloads the volume after changes of render.sampling or render.paging. The new scene is loaded in slices while the
-// displayed scene stays in use, until the new one is complete. If the device has no room for both, the document is
-// unloaded during that time, as for opening.
+// Reloads the volume after changes of render.sampling or render.paging. The new scene is loaded in slices; the
+// displayed scene stays in use until the new one is complete. If the device has no room for both, the document is
+// unloaded while the new scene loads, as for opening.
 
 #include "engine/workbench/desk/service.h"
 
@@ -28,9 +28,9 @@ public:
     bool is_wanted() const { return reload_ != nullptr; }
     /// Cancels the reload. Returns whether there was one.
     bool cancel();
-    /// Cancels the reload and reports that, if `number` is its job number. Returns whether it is.
+    /// Cancels the reload, and reports so, if its job number is `number`. Returns whether it has that number.
     bool cancel(Jobs::Number number);
-    /// Drops the reload, because the volume was already loaded with the current settings in another way.
+    /// Drops the reload, since another operation has already loaded the volume with the current settings.
     void forget() { reload_.reset(); }
     /// Adds the state of the reload, if there is one.
     void add_loading(std::vector<Jobs::State>& states) const;

@@ -34,7 +34,7 @@ void Saver::act(const SaveAs& action)
     save_to(action.path);
 }
 
-/// Starts a save, which includes the whole stroke under way and so may begin a little later.
+/// Requests a save. It begins once a stroke under way is ended and painted, so that it contains the whole stroke.
 void Saver::save_to(const std::filesystem::path& path)
 {
     Annotator& annotator = document_->annotator;
@@ -51,7 +51,7 @@ void Saver::follow_save()
     if (!wanted_save_ || save_) return;
     Annotator& annotator = document_->annotator;
     if (annotator.stroke_is_running()) {
-        renderer_.scene().advance();                              // the scene takes its bricks even without a picture
+        renderer_.scene().advance();                              // takes the stroke's bricks even without a picture
         if (annotator.stroke_is_open()) others_.note_progress();  // a hand may rest
         if (!others_.is_stuck()) return;
         annotator.drop_strokes();
@@ -182,7 +182,7 @@ Leave Saver::leave(std::string& why)
         if (asks && !document_->has_settings_to_save()) return Leave::now;
         if (!asks && document_->is_saved() && !is_running) {
             if (!document_->has_view_to_keep() || std::exchange(has_tried_view_, true)) return Leave::now;
-            begin_save(false, Document::Parts::session);  // failing to save only the view is not worth an error message
+            begin_save(false, Document::Parts::session);  // a failed save of the view alone deserves no error message
             return Leave::later;
         }
         if (asks)

@@ -72,7 +72,7 @@ private:
         bool is_asked_for = true;  ///< false: success is not reported
     };
     std::unique_ptr<Save> save_;
-    /// A save to start once the current stroke or save has ended. Empty path: in place; else under that path.
+    /// Save to start once the current stroke or save has ended. Empty path: in place; otherwise the new path.
     std::optional<std::filesystem::path> wanted_save_;
     std::string unpainted_;          ///< why part of the stroke before the save was not painted
     std::string save_failure_;       ///< why the last save failed; empty: it succeeded

@@ -12,7 +12,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Returns whether pictures of the volume stay the same: the other settings are drawn over the picture, or not drawn.
+/// Returns whether pictures of the volume stay the same: settings drawn over a picture, or not at all, may differ.
 bool look_the_same(Session before, const Session& after)
 {
     before.probe = after.probe;  // drawn separately over the picture, like distances
@@ -201,8 +201,8 @@ void SettingsEditor::step(int count, const char* done, const char* nothing, Way 
     say(steps == 1 ? sentence(done, ": ", last) : sentence(done, ": ", steps, " steps, the last: ", last));
 }
 
-/// Returns whether undo would skip the user's last stroke, which changed nothing and so is no step, and revert the step
-/// before it. True once after such a stroke; never in scripts, which count steps.
+/// Returns whether undo must do nothing because the user's last stroke changed nothing: the stroke is no step, so undo
+/// would revert the step before it. True only once after such a stroke; never in scripts, which count steps.
 bool SettingsEditor::follows_empty_stroke()
 {
     record_settings();

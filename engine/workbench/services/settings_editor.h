@@ -45,7 +45,7 @@ public:
     bool has_view_to_keep() const { return to_keep_since_s_.has_value(); }
     /// While the hand is down, changes make no history step, so that a drag is one step.
     void set_hand_down(bool is_down) { is_hand_down_ = is_down; }
-    /// Records whether the stroke that just ended changed nothing; if so, the next undo only takes back that stroke.
+    /// Notes whether the stroke that just ended changed nothing; if so, the next undo only takes back that stroke.
     void note_stroke(bool is_empty);
     /// Discards changes. Files stay unchanged. The journal keeps the changes: undo restores them next time.
     void discard();
@@ -64,7 +64,7 @@ private:
     const Others others_;
     bool is_hand_down_ = false;
     bool settings_to_record_ = false, was_set_in_this_turn_ = false;
-    std::optional<double> to_keep_since_s_;       ///< when the view changed that the journal lacks; null: it lacks none
+    std::optional<double> to_keep_since_s_;       ///< time of the oldest view change that the journal lacks; null: none
     double last_change_s_ = 0.0;                  ///< time of the last change to keep
     std::optional<Session> session_before_hand_;  ///< the session before the hand began to change settings
     /// Number of undoable steps when the work was discarded; while the number stays the same, nothing is saved.

@@ -14,7 +14,7 @@ public:
     struct Others {
         Call<void(const Jobs::Finished&)> end_save;
         Call<bool(const Jobs::Finished&)> end_reading;  ///< returns whether the job was the opening's
-        Call<bool(Jobs::Number)> cancel;                ///< returns whether another service has this number
+        Call<bool(Jobs::Number)> cancel;                ///< cancels another service's job; returns whether it is one
         Call<void(std::vector<Jobs::State>&)> add_loading;
         Call<void(std::vector<Jobs::State>&)> add_reading;
         Call<void(const std::filesystem::path&)> open;

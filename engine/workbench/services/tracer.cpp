@@ -10,7 +10,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Returns the two neighbours of the selected node if it has two and no link joins them: deleting it cuts the trace.
+/// Returns both neighbours of the selected node if deleting it cuts the trace: it has two, and no link joins them.
 std::optional<std::pair<uint32_t, uint32_t>> ends_of_cut(const TraceGraph& trace)
 {
     const std::optional<uint32_t> node = trace.selection().node();
@@ -20,7 +20,7 @@ std::optional<std::pair<uint32_t, uint32_t>> ends_of_cut(const TraceGraph& trace
     return trace.internode_between(ends.first, ends.second) ? std::nullopt : std::optional(ends);
 }
 
-/// Returns whether the selected node lies outside the volume, within the distance that is allowed.
+/// Returns whether the selected node lies outside the volume; nodes may do so up to a limited distance.
 bool lies_outside(const TraceGraph& trace, const VolumeInfo& volume)
 {
     const std::optional<uint32_t> node = trace.selection().node();
@@ -131,7 +131,7 @@ std::optional<ToolPlace> Tracer::line_at(const Pane& seen, const glm::dvec2& pix
     const glm::dvec3 there = unproject(seen.shot.camera, seen.pixels(), pixel, hit.depth);
     const glm::dvec3 way = glm::normalize(sight_through(seen.shot.camera, there));
     const glm::dvec3 a = trace.node(internode.a).position, b = trace.node(internode.b).position;
-    // The point of the line that is nearest to the line of sight.
+    // Find the point of the line that is nearest to the line of sight.
     const auto across = [&](const glm::dvec3& v) { return v - way * glm::dot(v, way); };
     const glm::dvec3 begin = across(a - there), along = across(b - a);
     const double square = glm::dot(along, along);
@@ -139,7 +139,7 @@ std::optional<ToolPlace> Tracer::line_at(const Pane& seen, const glm::dvec2& pix
     return ToolPlace{glm::mix(a, b, share), {}, hit.internode};
 }
 
-/// Carries out the operation with the part of the trace that attracts the tool here. Returns whether there was one.
+/// Carries out the operation on the part of the trace that attracts the tool at `place`. Returns whether there was one.
 bool Tracer::add_drawn_node(const ToolPlace& place)
 {
     const glm::dvec3& spacing = document_->volume().spacing;
@@ -216,7 +216,7 @@ void Tracer::act(const SelectAt& action)
     others_.set(edited(document.session, [&](Session& s) { s.probe.brush.group = group; }));
 }
 
-/// Selects the segment of the selection. A node at which segments meet, or that belongs to no segment, stays selected.
+/// Selects the segment of the selected part. A node where segments meet, or that belongs to no segment, stays selected.
 void Tracer::select_segment()
 {
     try {

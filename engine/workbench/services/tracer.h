@@ -1,5 +1,5 @@
 #pragma once
-// The trace: its operations, which scripts also use, as commands of the history; selecting and adding by pointing.
+// The trace: its operations as commands of the history (scripts use the same); selecting and adding by pointing.
 
 #include "engine/workbench/desk/preference_keeper.h"
 #include "engine/workbench/desk/service.h"

@@ -94,10 +94,10 @@ void Viewer::show_slices(SliceSettings slices)
     others_.note_to_keep();
 }
 
-/// Moves the slices along with a probe that has left their plane, however the probe was moved.
+/// Moves the slices along with a probe that has left their plane, whatever moved the probe.
 void Viewer::follow_slices()
 {
-    constexpr double STIR_VOXELS = 0.05;  // a stylus is never quite at rest, and the user may have moved the slices
+    constexpr double STIR_VOXELS = 0.05;  // ignores a stylus's slight motion: the user may have moved the slices
     if (!options_.slices_follow) return;
     Document& document = *document_;
     const glm::dvec3 voxel = document.probe_voxel();
@@ -110,7 +110,7 @@ void Viewer::follow_slices()
     if (next == document.session.view.slices) return;
     const Set following = edited(document.session, [&](Session& s) { s.view.slices = next; });
     show_slices(next);
-    if (log_) log_(line_of(following));  // pixels of slices in later lines refer to the new position
+    if (log_) log_(line_of(following));  // pixels of slices in later lines refer to the slices' new position
 }
 
 void Viewer::follow_look()
@@ -124,7 +124,7 @@ void Viewer::follow_look()
             document.screen.look_from(document.camera, document.probe_voxel());
         look_is_stale_ = camera_moved_ = false;
     }
-    // Not during a stroke or while the servo runs: these request bricks themselves.
+    // Strokes and the servo request bricks themselves, so the probe's bricks are not requested while one of them runs.
     if (!document.touch.servo() && !document.annotator.stroke_is_running())
         renderer_.volume().prefer(document.voxels_around_probe());
     document.screen.show_probe(document.probe_look());
@@ -311,7 +311,7 @@ void Viewer::act(const FitView& action)
 void Viewer::act(const ResetView&)
 {
     const Session& session = document_->session;
-    // A session that was open before may name its last camera; then the side that shows most is used instead.
+    // The window's last camera, named by a session opened earlier, is replaced by the side that shows most.
     const std::string name = session.camera_name == "window" ? std::string() : session.camera_name;
     look_from(camera_named(session, name, document_->volume()));
     say("The view is reset");

@@ -66,7 +66,7 @@ private:
     glm::uvec2 pixels_{0};
     bool look_is_stale_ = true, camera_moved_ = false;
     std::optional<Pointer> pointer_;
-    glm::dvec3 followed_voxel_{0.0};  ///< probe position that the slices have followed
+    glm::dvec3 followed_voxel_{0.0};  ///< position of the probe that the slices last followed
     double cut_shown_until_s_ = 0.0;
     Attempt looking_;
 };

@@ -17,7 +17,7 @@ struct TextImage {
     glm::ivec2 pixels{0};
     std::vector<uint8_t> coverage;
 };
-/// Draws texts, all with the same height in pixels. The main thread.
+/// Draws texts, all with the same height in pixels. Main thread only.
 using TextDrawer = std::function<std::vector<TextImage>(std::span<const std::string> texts, double pixels)>;
 
 struct Figure {

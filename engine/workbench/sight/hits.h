@@ -18,7 +18,7 @@ struct TraceHit {
 /// its plane or lie within half a voxel of it. Visits the whole trace.
 TraceHit trace_hit(const TraceGraph& trace, const Pane& pane, const glm::dvec2& pixel, const VolumeInfo& volume);
 
-/// Returns how far a point lies behind the plane of a slice.
+/// Returns the distance by which a point lies behind the plane of a slice.
 double behind_plane(const Camera& camera, const glm::dvec3& point);
 
 }  // namespace shvr::ui

@@ -244,7 +244,7 @@ private:
         }
     }
 
-    /// Draws the scale bar in the lower right corner. In perspective lengths differ with depth, so the label states it.
+    /// Draws the scale bar in the lower right corner. In perspective, its label states the depth at which it applies.
     void scale()
     {
         if (pane_.kind == Pane::Kind::map || pane_.shot.right_eye) return;
@@ -312,7 +312,7 @@ private:
             text = std::to_string(std::lround(100.0 * *model_.reading.relevant_share)) + " % full, " + text;
             meter(at->pixel, reach + 4.0 * units_, *model_.reading.relevant_share);
         }
-        // Without room at the right, the text goes to the left; CHARACTER is an upper bound of a character's width.
+        // If the right lacks room, the text goes to the left; CHARACTER is an upper bound of a character's width.
         constexpr double CHARACTER = 8.0;
         const double beside = 0.75 * reach + 6.0 * units_;
         const bool has_room =

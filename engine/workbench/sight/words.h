@@ -17,7 +17,7 @@ std::string length_in_words(double length, const std::string& unit);
 double length_of(const Measurement& measurement, const glm::dvec3& spacing);
 /// Returns "voxel 120, 80, 33 (1.2, 0.8, 0.33 mm)"; voxels count from 0. Without a unit, names the voxel only.
 std::string place_in_words(const glm::dvec3& voxel, const VolumeInfo& volume);
-/// Returns "value 12345 + 30", "value ...", "outside"; integers with all digits, others with four.
+/// Returns a text such as "value 12345 + 30", "value ..." or "outside". Integers have all digits, other values four.
 std::string value_in_words(const Reading& reading);
 /// Formats the whole reading in one line, for the status bar. `group_name`: name of the reading's group.
 std::string in_words(const Reading& reading, const VolumeInfo& volume, const std::string& group_name);

@@ -20,7 +20,7 @@
 
 namespace shvr::ui {
 
-/// A plane in the device's frame; the force along its normal is removed. Off: no plane.
+/// A plane in the device's frame that holds the probe: the force along its normal is removed, unless `is_on` is false.
 struct PlaneHold {
     bool is_on = false;
     glm::dvec3 normal{0.0, 0.0, 1.0}, point_m{0.0};
@@ -156,7 +156,7 @@ private:
 struct TappedServo {
     explicit TappedServo(std::shared_ptr<HapticDevice> with, std::unique_ptr<Pacing> pacing = real_pacing(),
                          uint32_t recording = 0);
-    /// Returns the relevance to fill before `publish_relevance()`. Both: on one thread, not necessarily the main one.
+    /// Returns the relevance to fill before `publish_relevance()`. Both are for one thread, main or not.
     RelevancePatch& relevance() { return servo.relevance().writing(); }
     void publish_relevance();
     std::shared_ptr<HapticDevice> device;

@@ -1,6 +1,6 @@
 #pragma once
-// Looks for haptic devices and opens them on a thread of its own, since both may wait for hardware or for a service.
-// The functions here are for the main thread; only the destructor waits for the watch's thread.
+// Looks for haptic devices and opens them on a thread of its own, since looking and opening may wait for hardware or a
+// service. The functions here are for the main thread; only the destructor waits for the watch's thread.
 
 #include <condition_variable>
 #include <functional>
@@ -18,7 +18,7 @@ namespace shvr::ui {
 /// Functions that list and open devices; tests provide their own. Called on the watch's thread.
 struct DeviceSource {
     std::function<std::vector<DeviceListing>()> list;
-    /// Returns null for the mouse. Fails with a sentence.
+    /// Opens the device; returns null for the mouse. Fails with a one-sentence reason.
     std::function<std::unique_ptr<HapticDevice>(const std::string& id)> open;
 };
 /// Returns the source for this machine, with the profiles that ship.

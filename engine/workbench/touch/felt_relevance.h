@@ -11,8 +11,8 @@ namespace shvr::ui {
 void put_bits(const RelevancePlace& place, const RelevanceBits& bits, RelevancePatch& patch);
 void put_mirrored(const MirroredRelevance& mirrored, RelevancePatch& patch);
 
-/// Returns which voxels the session lets a hand feel: voxels in its felt groups and, unless hidden voxels are felt too,
-/// only those of them that the session's picture shows.
+/// Returns which voxels the session lets a hand feel: voxels in its felt groups, except those that the session's
+/// picture does not show, unless hidden voxels are felt too.
 FeltLimits felt_limits(const Session& session, const Camera& camera, const VolumeInfo& volume,
                        const IntensityWindow& window);
 

@@ -1,6 +1,6 @@
 #pragma once
 // Records the relevance passed to a servo: the mirror's thread adds entries, and the main thread takes them. The servo
-// itself reports only the sequence in use, so it neither copies bits nor meets a lock.
+// itself reports only the sequence in use, so it neither copies bits nor waits for a lock.
 
 #include <deque>
 #include <memory>

@@ -27,7 +27,7 @@ struct Grab {
     glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
 };
 /// Returns a camera that realizes Eq. 4.9 of the thesis, M_volume = M_probe M_probe_start^-1 M_volume_start: since the
-/// grab, the volume has moved and turned in the view with the stylus, about the stylus. `units_per_m`: the scale of the
+/// grab, the volume has moved with the stylus in the view, and turned about it. `units_per_m`: the scale of the
 /// workspace. The probe then stays on its voxel.
 Camera camera_of_grab(const Grab& grab, const glm::dvec3& position_m, const glm::dquat& rotation, double units_per_m);
 
@@ -46,9 +46,9 @@ struct ToolPlace {
     std::optional<uint32_t> node;       ///< the node that attracts tools
     std::optional<uint32_t> internode;  ///< the internode that attracts tools between its ends
 };
-/// Returns the point, or the part of the trace within `reach` that attracts tools, as `feel` selects: the nearest node,
-/// or the nearest point of a centre line. Internodes of `except_of`, the node from which the user continues, attract
-/// nothing, nor do parts of the trace in groups that are not `drawn`.
+/// Returns the place on the trace within `reach` that attracts tools, as `feel` selects: the nearest node or else the
+/// nearest point of a centre line; if there is none, `point`. Internodes of `except_of`, the node from which the user
+/// continues, attract nothing, nor do parts of the trace in groups that are not `drawn`.
 ToolPlace tool_place(const FeelSettings& feel, const TraceGraph& trace, const glm::dvec3& point, double reach,
                      std::optional<uint32_t> except_of, const std::bitset<256>& drawn = std::bitset<256>().set());
 

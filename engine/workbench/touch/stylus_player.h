@@ -29,7 +29,7 @@ struct StylusPoint {
     double relevant_share = 0.0;
     bool is_pressed = false;  ///< state of the first button
 };
-/// Recordings of older programs feel hidden voxels, too, as they did then. `by_hand`: a modelled hand and stylus are
+/// Recordings by older versions feel hidden voxels, too, as when recorded. `by_hand`: a modelled hand and stylus are
 /// pulled along the recording; otherwise the probe follows it. `source` includes density offsets already.
 std::vector<StylusPoint> play_stylus(const Trace& trace, const GuideSettings& guide, bool by_hand,
                                      std::shared_ptr<const VolumeSource> source, const Mask& mask);

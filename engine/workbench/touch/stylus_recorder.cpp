@@ -67,7 +67,7 @@ void StylusRecorder::add_caps()
 
 Trace StylusRecorder::take()
 {
-    const size_t ticks = trace_.ticks.size();  // smaller after a swap to a device that never answered
+    const size_t ticks = trace_.ticks.size();  // swaps and settings of a device that never answered lie at or past this
     std::erase_if(trace_.swaps, [&](size_t from) { return from >= ticks; });
     std::erase_if(trace_.settings, [&](const TraceSettings& settings) { return settings.from_tick >= ticks; });
     if (trace_.ticks.empty()) fail("the recording is empty; expected a device that moves the probe");

@@ -7,7 +7,7 @@
 
 namespace shvr::ui {
 
-/// Returns a sentence about a change that needs more than its new value; empty for other changes.
+/// Returns a sentence about a change whose new value alone says too little; empty for other changes.
 std::string special_sentence(const Session& was, const Session& is);
 
 }  // namespace shvr::ui

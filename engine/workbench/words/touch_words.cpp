@@ -7,7 +7,7 @@ namespace shvr::ui {
 
 namespace {
 
-/// Returns whether an enumeration has a name for the value. Compilers write a value without a name as a cast.
+/// Returns whether an enumeration has a name for the value. A compiler spells a value without a name as a cast.
 template <auto VALUE>
 consteval bool is_named()
 {

@@ -12,7 +12,7 @@ struct TraceSize {
     size_t nodes = 0, internodes = 0;
 };
 
-/// Returns the result for the status bar. `selects`: the operation selects. `done`: null if nothing changed.
+/// Describes the operation's result for the status bar. `selects`: whether it selects. `done`: null if nothing changed.
 /// `before`: size of the trace before.
 std::string said_of(const TraceOp& op, bool selects, const Command* done, const TraceGraph& trace,
                     const TraceSize& before);

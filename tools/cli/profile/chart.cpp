@@ -26,7 +26,7 @@ double tick_of(double length)
     return 10.0 * power;
 }
 
-/// "#rrggbb" -> whichever of black and white has more contrast on it (WCAG 2: from a luminance of 0.179 on, black).
+/// Returns black or white, whichever has more contrast on "#rrggbb" (WCAG 2: black from a luminance of 0.179 on).
 const char* ink_on(const std::string& color)
 {
     double luminance = 0.0;

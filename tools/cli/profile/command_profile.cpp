@@ -13,7 +13,7 @@ namespace shvr::cli {
 namespace {
 
 constexpr int64_t MAX_PROFILE_BYTES = int64_t(64) << 20;
-constexpr int DEEPEST_PROFILE = 16;  // ours have 4 levels; each costs far more memory than its two characters
+constexpr int DEEPEST_PROFILE = 16;  // our profiles nest 4 deep; a level costs far more memory than 2 characters
 
 struct ProfileCommandOptions {
     Common common;

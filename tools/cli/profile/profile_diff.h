@@ -11,16 +11,16 @@ struct Timing {
     std::optional<double> noise;  ///< null if it was measured too few times (tools/report/noise.h)
 };
 
-/// The keys PREFIXmin_ms, PREFIXmedian_ms and PREFIXp95_ms of `object`, measured `count` times. Null if the run had no
-/// times. Fails, naming the file, if they are not numbers.
+/// Returns the keys PREFIXmin_ms, PREFIXmedian_ms and PREFIXp95_ms of `object`, measured `count` times. Null if the run
+/// had no times. Fails, naming the file, if they are not numbers.
 std::optional<Timing> timing_of(const Json& object, const std::string& prefix, size_t count, const std::string& file);
 
 /// {name, a_ms, b_ms, delta_ms, ratio, noise_ms, verdict}: "faster" or "slower" beyond the noise, "same" within it,
 /// "unknown" if the noise is not known.
 Json compared_times(const std::string& name, const std::optional<Timing>& a, const std::optional<Timing>& b);
-/// The counters that both have: {name, a, b, delta}.
+/// Returns the counters that both profiles have: {name, a, b, delta}.
 Json compared_counts(const Json& a, const Json& b);
-/// The section "bytes" of both: {name, a, b, delta}.
+/// Compares the section "bytes" of both profiles: {name, a, b, delta}.
 Json compared_memory(const Json& a, const Json& b);
 
 /// `object[key]`, which must be a number.
@@ -31,10 +31,10 @@ bool is_of_session(const Json& summary);
 Json session_difference_of(const Json& a, const std::string& a_name, const Json& b, const std::string& b_name);
 std::string session_difference_text(const Json& difference);
 
-/// Return rows of tables: of a comparison of times, and of one of counts.
+/// Return the table row of a comparison of times, and of a comparison of counts.
 std::vector<std::string> time_row(const Json& row);
 std::vector<std::string> count_row(const Json& row);
-/// Explains "unknown", if one of these rows has it.
+/// Returns an explanation of the verdict "unknown" if one of these rows has it.
 std::string note_on_unknown(const std::vector<const Json*>& lists);
 
 }  // namespace shvr::cli

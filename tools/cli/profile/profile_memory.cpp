@@ -18,7 +18,7 @@ struct Need {
     bool overlaps(const Need& other) const { return first_step <= other.last_step && other.first_step <= last_step; }
 };
 
-/// In order of declaration, without resources that no kept pass uses.
+/// Returns the needs in order of declaration, without resources that no kept pass uses.
 std::vector<Need> needs_of(const FrameGraph& graph, const CompiledGraph& compiled)
 {
     std::vector<std::optional<Need>> found(graph.resources().size());
@@ -36,11 +36,11 @@ std::vector<Need> needs_of(const FrameGraph& graph, const CompiledGraph& compile
     return needs;
 }
 
-/// The maximum bytes that any one step needs: a lower bound for any sharing.
+/// Returns the most bytes that any one step needs: a lower bound for the memory of any sharing.
 uint64_t most_at_once(const std::vector<Need>& needs)
 {
     uint64_t most = 0;
-    for (const Need& at : needs) {  // the sum grows only at steps where a resource begins
+    for (const Need& at : needs) {  // the sum grows only at the first steps of resources
         uint64_t sum = 0;
         for (const Need& need : needs)
             if (need.first_step <= at.first_step && at.first_step <= need.last_step) sum += need.bytes;

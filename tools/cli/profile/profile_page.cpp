@@ -96,7 +96,7 @@ std::string median_frame(const Profile& profile, const PassColors& colors)
     return sentence("<h2>The median frame: frame ", middle, "</h2>\n", chart.svg());
 }
 
-/// "-" for null, digits of integers in groups.
+/// Returns the text of a table cell: "-" for null; integers have their digits in groups.
 std::string cell_of(const Json& value)
 {
     return value.is_string()           ? escaped(value.get<std::string>())
@@ -132,7 +132,7 @@ std::string passes_table(const Json& summary, const PassColors& colors)
     return "<table>\n" + rows + "</table>\n";
 }
 
-/// One-time work: uploads, the leap grid, ambient occlusion.
+/// Returns the table of one-time work: uploads, the leap grid, ambient occlusion.
 std::string first_frame_table(const Json& summary)
 {
     std::string rows = "<tr><th>pass</th><th>ms</th></tr>\n";
@@ -151,7 +151,7 @@ std::string pairs_table(const Json& object)
     return "<table>\n" + rows + "</table>\n";
 }
 
-/// One bar per resource, from its first step to its last.
+/// Draws one bar per resource, from its first step to its last.
 std::string lifetimes_of(const Json& memory)
 {
     const double steps = memory["steps"];
@@ -178,7 +178,7 @@ std::string lifetimes_of(const Json& memory)
                escaped(list), ".</p>\n");
 }
 
-/// The totals of a memory section, as text.
+/// Returns the totals of a memory section, as text.
 Json totals_of(const Json& summary)
 {
     const Json &bytes = summary["bytes"], &memory = summary["memory"];

@@ -36,15 +36,15 @@ struct Profile {
     std::vector<std::string> warnings;
 };
 
-/// Statistics of the same work, repeated. p95: at least 95 % of the values are at or below it.
+/// Statistics of repeated measurements of the same work. p95: at least 95 % of the values are at or below it.
 struct Spread {
     double minimum = 0.0, median = 0.0, p95 = 0.0, maximum = 0.0;
 };
 /// Null if there are no values.
 std::optional<Spread> spread_of(std::vector<double> values);
 
-/// The resources of a frame with their lifetimes, and the memory that transients would need if they shared it.
-/// README.md lists the keys.
+/// Returns the resources of a frame with their lifetimes, and the memory that the transient ones would need if they
+/// shared it. README.md lists the keys.
 Json frame_memory_of(const FrameGraph& graph);
 
 /// README.md lists the keys.
@@ -56,10 +56,10 @@ std::string trace_of(const Profile& profile);
 /// One row per frame and pass.
 std::string csv_of(const Profile& profile);
 
-/// A self-contained page: frames and passes over time, memory over time, passes, work, resources.
+/// Returns a self-contained page: frames and passes over time, memory over time, passes, work, resources.
 std::string page_of(const Profile& profile);
 
-/// Writes .dot, .svg (through the program `dot`) or .json, by the extension of `path`.
+/// Writes .dot, .svg (through the program `dot`) or .json, depending on the extension of `path`.
 void write_graph(const std::filesystem::path& path, const FrameGraph& graph);
 
 void write_text(const std::filesystem::path& path, const std::string& text);

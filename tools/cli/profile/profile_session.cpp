@@ -81,7 +81,7 @@ public:
     void set_up(const std::function<void()>& poll)
     {
         bench.set_pixels(bench.document().session.render.size);
-        bench.set_hand_down(true);  // no step of settings ends by itself: the script states where
+        bench.set_hand_down(true);  // steps of settings stay open until the script ends them
         ProfiledAction opening;
         bench.advance();
         settle(

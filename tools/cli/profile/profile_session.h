@@ -10,7 +10,7 @@ struct ProfiledAction {
     int line = 0;                         ///< line in the script
     std::string action;                   ///< its key "op"
     double begin_ms = 0.0, end_ms = 0.0;  ///< time on the host's clock, from the first action
-    // From the beginning of the action; null if the event did not happen before the next action.
+    // Times from the beginning of the action; each is null if its event did not happen before the next action.
     std::optional<double> paint_ms;       ///< time until the voxels that the action changed are painted; null: their
                                           ///< number is unchanged
     std::optional<double> sketch_ms;      ///< time until every pane shows at least a sketch of the result

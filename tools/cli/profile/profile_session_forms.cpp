@@ -73,7 +73,7 @@ Json over_replays(const SessionProfile& profile, size_t index)
     return spreads;
 }
 
-/// The whole script over all replays: total times of its actions, and its duration.
+/// Summarises the whole script over all replays: total times of its actions, and its duration.
 Json whole_of(const SessionProfile& profile)
 {
     Json whole = Json::object();
@@ -96,7 +96,7 @@ Json whole_of(const SessionProfile& profile)
 
 Json summary_of(const SessionProfile& profile)
 {
-    // Counts and positions in time are those of the last replay, the input's own; times are medians over all.
+    // Counts and positions in time come from the last replay, which ran on the input; times are medians over all.
     const Replayed& own = profile.replays.back();
     Json actions = Json::array();
     for (size_t i = 0; i < own.size(); ++i) {

@@ -13,7 +13,7 @@ namespace {
 constexpr const char *SKETCH_COLOR = "#e69f00", *SHARP_COLOR = "#56b4e9", *PAINT_COLOR = "#cc79a7",
                      *REST_COLOR = "#9aa0a6";
 
-/// "12.3 (11.9 to 14.0)": a median, and the spread if there is more than one replay.
+/// Returns "12.3 (11.9 to 14.0)": a median, and the spread if there is more than one replay.
 std::string time_cell(const Json& action, const char* key, size_t replays)
 {
     const Json& spread = action["over_replays"][key];

@@ -41,7 +41,7 @@ std::string begin_row(std::string_view name)
     return "##" + std::string(name);
 }
 
-/// The first ending that a key's meaning lists: ".swc" of "nodes: .swc, .txt"; empty: none.
+/// Returns the first ending that a key's meaning lists: ".swc" of "nodes: .swc, .txt"; empty: none.
 std::string first_ending(std::string_view meaning)
 {
     const size_t at = meaning.find(": .");
@@ -142,7 +142,7 @@ public:
     void other(std::string_view, const std::function<void(const JsonNode&)>&,
                const std::function<std::optional<std::string>()>&, const About&) override
     {}
-    /// An optional section is opened by a check box; unchecking removes it.
+    /// Draws a section. A check box (`has`) opens an optional section; unchecking it removes the section.
     void section(std::string_view name, const Visit& visit, const About&) override
     {
         ImGui::PushID(std::string(name).c_str());

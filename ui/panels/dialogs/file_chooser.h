@@ -59,7 +59,7 @@ private:
     FileList list_;
     std::vector<Place> places_;
     std::string text_;     ///< text of the path field
-    std::string failure_;  ///< why the path was not taken
+    std::string failure_;  ///< why the path was refused
     std::optional<size_t> selected_;
     std::string wanted_name_;  ///< name to select as soon as it is listed
     std::optional<std::filesystem::path> accepted_;

@@ -1,5 +1,5 @@
-// Opening with choices: the file's kind, the resources that loading takes, and the user's statements that replace the
-// file's. The spacing of the open volume, and its correction.
+// Opening with choices: the file's kind, the resources that loading takes, and values from the user that replace the
+// file's. Also the spacing of the open volume, and how the user corrects it.
 
 #include <algorithm>
 #include <string>

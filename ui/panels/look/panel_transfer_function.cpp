@@ -375,7 +375,7 @@ void unpainted(const Model& model, Actions& actions)
         "through.");
 }
 
-/// Number fields of the point last touched.
+/// Draws number fields of the point last touched.
 void edit_point(const Model& model, size_t index, Actions& actions)
 {
     const auto before = model.session.transfer_function.points();

@@ -36,7 +36,7 @@ bool stereo_controls(StereoSettings& stereo, bool& is_reset, Actions& actions)
     return is_other;
 }
 
-/// Selects the slices: the probe's position, one number per axis, in voxels from 0.
+/// Draws sliders that select the slices: they set the probe's position, per axis, in voxels from 0.
 void slice_sliders(const Model& model, Actions& actions)
 {
     for (int axis = 2; axis >= 0; --axis) {

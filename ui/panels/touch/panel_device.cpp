@@ -76,7 +76,7 @@ void force_plot(const HandView& hand, const ServoState& servo)
         ImGui::SetTooltip("The last five seconds, the newest at the right; the upper edge is %.1f N.", double(highest));
 }
 
-/// Logarithmic, so that one late tick in a million is visible.
+/// Draws a plot on a logarithmic scale, so that one late tick in a million is visible.
 void lateness_plot(const TimeHistogram& lateness)
 {
     std::array<float, TimeHistogram::BINS> heights{};

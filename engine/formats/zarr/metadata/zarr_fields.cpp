@@ -76,7 +76,7 @@ std::vector<int64_t> read_zarr_chunk(const JsonNode& node, size_t axes)
 
 void read_zarr_fill(const JsonNode& node, ZarrMetadata& metadata)
 {
-    // A fill value of null leaves such voxels undefined; other readers return 0.
+    // A fill value of null leaves the voxels of missing chunks undefined; other readers return 0.
     if (!node.exists() || node.is_null()) return;
     switch (metadata.stored) {
         case StoredNumber::int64: return put_whole<int64_t>(node, metadata);

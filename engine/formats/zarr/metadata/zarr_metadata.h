@@ -21,7 +21,7 @@ inline constexpr int64_t MAX_CHUNK_BYTES = int64_t{256} << 20;
 struct ZarrCompressor {
     enum class Kind { none, blosc, zstd, zlib, gzip, crc32c };
     Kind kind = Kind::none;
-    // Compressor settings for writing; for reading, stored chunks state how to decode them.
+    // Compressor settings, used for writing only: stored chunks themselves state how to decode them.
     std::string codec = "zstd";  ///< blosc's
     int level = 1;
     int shuffle = 1;  ///< shuffle of blosc: 0 none, 1 bytes, 2 bits
@@ -66,12 +66,12 @@ struct ZarrMetadata {
     const char* key() const { return version == 2 ? ".zarray" : "zarr.json"; }
 };
 
-/// Reads the metadata of an array. Fails if a field is missing, invalid or not supported (filters, other types, codecs
-/// and grids), or if a chunk is larger than MAX_CHUNK_BYTES.
+/// Reads the metadata of an array. Fails if a field is missing, invalid or not supported (as are filters, and other
+/// types, codecs and grids), or if a chunk is larger than MAX_CHUNK_BYTES.
 ZarrMetadata read_zarr_metadata(const ZarrPlace& array, int version);
 
-/// Returns the text for the file `key()`; equal for equal metadata. For shards, the index must be little-endian, in the
-/// order of the array's axes, and have one checksum.
+/// Returns the text for the file `key()`; equal metadata give equal texts. For shards, the index must be little-endian,
+/// in the order of the array's axes, and have one checksum.
 std::string to_text(const ZarrMetadata& metadata);
 
 }  // namespace shvr

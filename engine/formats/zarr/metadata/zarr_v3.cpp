@@ -22,7 +22,7 @@ constexpr size_t MAX_CODECS = 16;
 /// Maximum size of a shard's index, which is read as a whole; enough for four million chunks.
 constexpr int64_t MAX_INDEX_BYTES = int64_t{64} << 20;
 
-/// Names that begin with "numcodecs." are those of zarr-python's numcodecs.zarr3, which stores the same bytes.
+/// Names with the prefix "numcodecs." come from zarr-python's numcodecs.zarr3; the prefix changes no stored byte.
 constexpr Spelling<Kind> CODECS[] = {{Kind::blosc, "blosc"},         {Kind::zstd, "zstd"},
                                      {Kind::gzip, "gzip"},           {Kind::crc32c, "crc32c"},
                                      {Kind::zlib, "zlib"},           {Kind::blosc, "numcodecs.blosc"},
@@ -136,7 +136,7 @@ Chain read_chain(const JsonNode& node, const std::vector<size_t>& axes)
     return chain;
 }
 
-/// Returns the order of the axes, but empty if it is the array's own order.
+/// Returns the order of the axes; empty if it equals the array's own order.
 std::vector<size_t> unless_plain(std::vector<size_t> order)
 {
     return std::ranges::is_sorted(order) ? std::vector<size_t>() : order;
@@ -157,7 +157,7 @@ void read_index(const JsonNode& configuration, ZarrSharding& sharding)
     sharding.is_index_first = place.exists() && place.choice(places) == 0;
 }
 
-/// Reads the metadata of shards. Then `chunks` are the chunks inside a shard, the unit of reads.
+/// Reads the metadata of shards. Afterwards `chunks` is the shape of the chunks inside a shard, the unit of reads.
 void read_sharding(const Chain& outer, ZarrMetadata& metadata)
 {
     const JsonNode configuration = (*outer.bytes)["configuration"];

@@ -5,7 +5,7 @@
 namespace shvr {
 namespace {
 
-/// Cost of an entry in addition to its voxels, so that entries without voxels (only fill values) cannot pile up.
+/// Bytes charged for an entry in addition to its voxels, so that entries without voxels (all fill) cannot pile up.
 constexpr int64_t OVERHEAD_BYTES = 256;
 
 int64_t cost_of(const Block& block)

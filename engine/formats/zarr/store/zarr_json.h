@@ -13,7 +13,7 @@ inline constexpr int64_t MAX_ZARR_ATTRIBUTE_BYTES = int64_t{4} << 20;
 /// Reads the object in a file. Fails if it is not valid JSON, not an object, or nested more than 64 deep. Repeated keys
 /// are allowed, since other programs also write attributes, and some of them repeat keys.
 JsonDocument read_zarr_json(const std::filesystem::path& file, int64_t max_bytes);
-/// Likewise for the value `name` of a group or an array.
+/// Likewise, reads the object in the value `name` of a group or an array.
 JsonDocument read_zarr_json(const ZarrPlace& place, const std::string& name, int64_t max_bytes);
 
 }  // namespace shvr

@@ -16,13 +16,13 @@ struct ZarrNode {
     JsonDocument document;
 
     JsonNode attributes() const;
-    /// The attributes of OME-Zarr. Since 0.5 they are an object of their own, which is missing if there are none.
+    /// The attributes of OME-Zarr. Since 0.5 they form a separate object, which may be missing if empty.
     JsonNode ome() const;
 };
 
 /// Returns null if the place is neither group nor array. Fails if its metadata is damaged, or of an unknown version.
 std::optional<ZarrNode> read_zarr_node(const ZarrPlace& place);
-/// Likewise for the place that a path refers to (zarr_place).
+/// Likewise, for the place that a path refers to (zarr_place).
 std::optional<ZarrNode> read_zarr_node(const std::filesystem::path& path);
 
 /// Checks the keys that metadata of groups and arrays share in version 3. Fails for keys other than `known`, unless

@@ -90,7 +90,7 @@ private:
 };
 
 /// Size of a cache for deflated entries that are read in parts, such as shards that the archive's writer compressed
-/// again: they are decoded as a whole, and the most recent ones are kept.
+/// again. Such entries are decoded as a whole, and the most recent are kept.
 constexpr int64_t KEPT_ENTRY_BYTES = int64_t{64} << 20;
 constexpr int64_t MAX_DEFLATED_SHARD_BYTES = int64_t{256} << 20;
 

@@ -34,7 +34,7 @@ public:
     /// listed; a missing folder has no keys.
     virtual bool list(const std::string& prefix, const std::function<bool(std::string_view key)>& take) const = 0;
 
-    /// Whether the value exists, or certainly does not. Both return false if `size_of` fails.
+    /// Whether the value certainly exists; whether it certainly does not. Both return false if `size_of` fails.
     bool has(const std::string& key) const;
     bool lacks(const std::string& key) const;
 };
@@ -44,11 +44,11 @@ struct ZarrPlace {
     std::shared_ptr<const ZarrStore> store;
     std::string prefix{};  ///< "", or ends with a slash
 
-    /// The path of the value `name`, for messages; for "", the path of the place itself.
+    /// Returns the path of the value `name`, for messages; if `name` is "", the path of the place itself.
     std::filesystem::path path_of(const std::string& name) const;
     std::string key(const std::string& name) const { return prefix + name; }
     bool has(const std::string& name) const { return store->has(key(name)); }
-    /// A group or an array inside this place; `path` is relative and contains no "..".
+    /// Returns the place of a group or an array inside this place; `path` is relative and contains no "..".
     ZarrPlace operator/(const std::filesystem::path& path) const;
 };
 
