@@ -38,6 +38,7 @@ const float MIN_PIECE = 0.002;    // reference lengths
 // A piece is halved if the normal turns by more than this along it, or if light or highlight begins or ends in it.
 const float MIN_COSINE = 0.98;
 const uint HALVINGS = 6u;
+const float MIN_PART = 1e-3;      // of a stretch: shorter pieces are not halved, so that each piece advances
 
 // -ln(1 - opacity), the optical depth of a reference length.
 float depth_of_opacity(float opacity)
@@ -277,7 +278,8 @@ void add_stretch(const RaycastParams params, const Ray ray, const Stretch stretc
         if (SHADED != 0u && is_seen) {
             const vec3 slope = slope_at(params, stretch, x);
             [[unroll]] for (uint i = 0u; i < HALVINGS; ++i) {
-                const bool is_turning = turns_much(params, ray, slope, slope_at(params, stretch, next));
+                const bool is_turning = next - x > MIN_PART &&
+                                        turns_much(params, ray, slope, slope_at(params, stretch, next));
                 next = is_turning ? 0.5 * (x + next) : next;
                 is_whole = is_whole && !is_turning;
             }
