@@ -44,7 +44,7 @@ struct Ray {
 };
 
 /// Where a ray enters a surface with radii larger by `grown`; infinity if it does not. Distance from a convex body is a
-/// convex function along a line.
+/// convex function along a line, and changes by no more than the way along it.
 double entry(const SurfaceLook& surface, const Ray& ray, double grown)
 {
     const auto distance = [&](double s) { return distance_from(surface, ray.at(s)).value - grown; };
@@ -55,14 +55,17 @@ double entry(const SurfaceLook& surface, const Ray& ray, double grown)
     if (!(low < high)) return INFINITY;
     const double begin = low;
     for (int i = 0; i < 120 && high - low > 1e-12 * reach; ++i) {
-        const double a = low + (high - low) / 3.0, b = high - (high - low) / 3.0;
-        (distance(a) < distance(b) ? high : low) = distance(a) < distance(b) ? b : a;
+        const double third = (high - low) / 3.0, a = low + third, b = high - third;
+        const double at_a = distance(a), at_b = distance(b);
+        if (std::min(at_a, at_b) > third) return INFINITY;  // no place is farther than a third from both
+        (at_a < at_b ? high : low) = at_a < at_b ? b : a;
     }
     double inside = 0.5 * (low + high), outside = begin;
     if (distance(inside) > 0.0) return INFINITY;
     if (distance(outside) <= 0.0) return outside;
     for (int i = 0; i < 80; ++i) {
         const double s = 0.5 * (inside + outside);
+        if (s == inside || s == outside) break;
         (distance(s) <= 0.0 ? inside : outside) = s;
     }
     return inside;

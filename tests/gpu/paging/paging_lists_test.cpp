@@ -12,6 +12,7 @@
 #include "engine/live/annotator.h"
 #include "tests/gpu/paging/paged_scenes.h"
 #include "tests/support/nap.h"
+#include "tests/support/slow.h"
 
 using namespace shvr;
 using namespace shvr::test;
@@ -139,7 +140,10 @@ TEST_CASE("a stroke that comes to a new brick, or a shell that does, makes nobod
         };
         std::vector<ImageF> seen{follow(std::nullopt)};
         Mask mask(size);
-        for (const int64_t x : {1, 9, 10, 13}) {
+        // Every day one kind of volume has half of the places, and the other kind the rest.
+        const auto is_tried = [&](size_t place) { return is_slow() || (place % 2 == 1) == is_sparse; };
+        for (size_t place = 0; const int64_t x : {1, 9, 10, 13}) {
+            if (!is_tried(place++)) continue;
             CAPTURE(x);
             const int64_t brick = x + ALONG * (8 + ALONG * 8);
             mask.apply({.brick = brick, .runs = {{.first = 0, .last = 32767, .before = 0, .after = 3}}},
@@ -148,7 +152,8 @@ TEST_CASE("a stroke that comes to a new brick, or a shell that does, makes nobod
             seen.push_back(follow(std::nullopt));
             CHECK(different_bits(seen.back(), seen[seen.size() - 2]) > 0);
         }
-        for (const double x : {50.0, 270.0, 300.0, 420.0}) {
+        for (size_t place = 0; const double x : {50.0, 270.0, 300.0, 420.0}) {
+            if (!is_tried(place++)) continue;
             CAPTURE(x);
             const ProbeLook probe{.center = {x, 250.0, 250.0},
                                   .radius = 20.0,

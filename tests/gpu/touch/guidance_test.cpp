@@ -14,6 +14,7 @@
 #include "haptics/simulated_device.h"
 #include "tests/support/gpu.h"
 #include "tests/support/haptic_scenes.h"
+#include "tests/support/nap.h"
 
 using namespace shvr;
 using namespace shvr::test;
@@ -81,8 +82,10 @@ double follow(Relevance& relevance, const HandModel& hand, bool assistance, uint
         const uint64_t now_ns = uint64_t(tick + 1) * TICK_NS;
         if (tick % MIRROR_TICKS == 0) {
             // The answer queried in the last turn has arrived: relevance is 12 to 24 ticks old.
-            while (relevance.is_asking())
+            for (int turn = 0; relevance.is_asking(); ++turn) {
+                nap(turn);
                 if (const auto bits = relevance.take()) publish(*patch, *bits);
+            }
             relevance.ask(probe / VOXEL_MM, 25000.0, now_ns);
         }
         const ForceStep now = step(settings, device->caps(), result, state, *patch, now_ns, memory, *growth);
@@ -105,7 +108,7 @@ TEST_CASE_FIXTURE(OnDevice, "relevance is what the volume holds at or above the 
          {glm::dvec3(50, 20, 35), glm::dvec3(-30, 5, 69), glm::dvec3(99, 39, 0), glm::dvec3(31.5)}) {
         relevance.ask(at, 30000.0, 17);
         std::optional<RelevanceBits> bits;
-        while (!bits) bits = relevance.take();
+        for (int turn = 0; !(bits = relevance.take()); ++turn) nap(turn);
         CHECK(bits->asked_ns == 17);
         CHECK(bits->box.size() == Size3(64, 40, 64));
         CHECK(glm::all(glm::greaterThanEqual(bits->box.lower, Size3(0))));
