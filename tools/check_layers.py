@@ -39,6 +39,7 @@ MAY_INCLUDE = {
     "engine/projects": "engine/base engine/volume engine/formats engine/formats/zarr shaders",
     "engine/annotation/trace": "engine/base engine/volume engine/annotation",
     "engine/annotation/measures": "engine/base engine/volume engine/annotation engine/annotation/trace",
+    "engine/annotation/patterns": "engine/base engine/annotation/trace engine/annotation/measures",
     "engine/annotation/files": "engine/base engine/volume engine/annotation engine/annotation/trace engine/formats "
     "engine/formats/export engine/formats/zarr engine/projects shaders",
     "engine/annotation/script": "engine/base engine/annotation engine/annotation/trace",
@@ -49,8 +50,8 @@ MAY_INCLUDE = {
     "engine/annotation/trace engine/formats engine/formats/zarr engine/projects",
     "engine/jobs": "engine/base",
     "engine/tasks": "engine/base engine/volume engine/look engine/components engine/formats/export engine/annotation "
-    "engine/annotation/trace engine/annotation/measures engine/annotation/files engine/annotation/writers "
-    "engine/projects engine/session engine/jobs",
+    "engine/annotation/trace engine/annotation/measures engine/annotation/patterns engine/annotation/files "
+    "engine/annotation/writers engine/projects engine/session engine/jobs",
     "engine/device": "engine/base engine/volume engine/gpu engine/passes engine/look engine/bricks engine/annotation "
     "engine/annotation/trace engine/annotation/work shaders",
     "engine/picture": "engine/base engine/volume engine/passes engine/look engine/annotation/work engine/session engine/device",

@@ -5,6 +5,7 @@
 #include "engine/annotation/files/mask_export.h"
 #include "engine/annotation/files/offset_export.h"
 #include "engine/annotation/measures/measures.h"
+#include "engine/annotation/patterns/head.h"
 #include "engine/annotation/trace/trace_mesh.h"
 #include "engine/base/atomic_file.h"
 #include "engine/base/text.h"
@@ -50,6 +51,28 @@ ExportResult summary_of(const AnnotationView& annotation)
     return result;
 }
 
+HeadSections sections_of(const ExportTask& task, const Groups& groups)
+{
+    return head_sections(task.sections, option_name(task.names, "sections"), [&](uint8_t group) {
+        const auto found = groups.find(group);
+        return found == groups.end() ? SectionGroup{} : SectionGroup{found->second.name, parent_of(groups, group)};
+    });
+}
+
+/// Returns the rows of a flower head's pattern. Nothing unless sections are stated, or the trace has veins in the usual
+/// groups of adaxial veins or florets: other plants have no such rows.
+std::string pattern_text(const ExportTask& task, const AnnotationView& annotation, const TraceSpace& space)
+{
+    const HeadSections sections = sections_of(task, annotation.groups);
+    const auto is_of_head = [&](const auto& numbered) {
+        const HeadPart part = sections.parts[numbered.second.group];
+        return part == HeadPart::adaxial || part == HeadPart::floret;
+    };
+    if (annotation.trace.nodes().empty()) return {};
+    if (!sections.is_stated && std::ranges::none_of(annotation.trace.nodes(), is_of_head)) return {};
+    return pattern_csv(measure_patterns(annotation.trace, sections, space), space.unit);
+}
+
 std::filesystem::path plain(const std::filesystem::path& path)
 {
     return std::filesystem::absolute(path).lexically_normal();
@@ -68,7 +91,11 @@ void fields(Fields& f, ExportTask& task)
            {"each loop is opened where its last internode closed it, for .swc and .rsml, which hold trees"});
     f.path("mesh", task.mesh, {.meaning = "the trace as tubes: .obj, .ply", .standard = "none"});
     f.choice("space", task.space, {"of trace and mesh: where other programs show the volume, or voxel * spacing"});
-    f.path("metrics", task.metrics, {.meaning = "counts, lengths, angles, radii, topology: .csv", .standard = "none"});
+    f.path("metrics", task.metrics,
+           {.meaning = "counts, lengths, angles, radii, topology, patterns of flower heads: .csv", .standard = "none"});
+    f.text("sections", task.sections,
+           {.meaning = "for metrics, the groups of a flower head's parts, such as abaxial=1+4,adaxial=2,floret=3",
+            .standard = "groups whose names have these words, or 1, 2, 3"});
 }
 
 std::vector<std::filesystem::path> replaced_files(const ExportTask& task)
@@ -126,6 +153,15 @@ void check(const ExportTask& task)
     check_output(name("trace"), task.trace, {".txt", ".swc", ".graphml", ".rsml"});
     check_output(name("mesh"), task.mesh, {".obj", ".ply"});
     check_output(name("metrics"), task.metrics, {".csv"});
+    if (task.sections.empty()) return;
+    if (task.metrics.empty())
+        throw UsageError(sentence(name("sections"), " is '", task.sections, "' but ", name("metrics"),
+                                  " is not given; expected both, since sections are for the measures"));
+    try {
+        static_cast<void>(sections_of(task, {}));
+    } catch (const Error& error) {
+        throw UsageError(error.what());
+    }
 }
 
 void check(const ExportTask& task, const AnnotationView& annotation)
@@ -176,7 +212,8 @@ ExportResult run(const ExportTask& asked, const AnnotationView& annotation, Prog
     if (!task.metrics.empty()) {
         const Progress progress = reporter.begin("measuring what is painted");
         const std::string text = metrics_csv(measure(annotation.trace), annotation.mask.voxels_by_group(),
-                                             topology_by_group(annotation.mask, progress), space);
+                                             topology_by_group(annotation.mask, progress), space) +
+                                 pattern_text(task, annotation, space);
         write_file_atomically(task.metrics, std::as_bytes(std::span(text)));
         note(task.metrics);
     }

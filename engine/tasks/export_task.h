@@ -31,6 +31,7 @@ struct ExportTask {
     bool break_loops = false;  ///< removes loops of the trace, for formats that can only hold trees
     Positions space = Positions::physical;
     std::optional<OmeZarrVersion> version;
+    std::string sections;  ///< for `metrics`: the groups of a flower head's parts, as head_sections() reads them
 
     OptionNames names = OptionNames::keys;  ///< how messages name options; not an option itself
 };

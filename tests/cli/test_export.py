@@ -146,6 +146,28 @@ class Export(CliTest):
         self.assertEqual([row["value"] for row in rows if row["measure"] == "angle"], ["90", "90", "90"])
         self.assertEqual({row["unit"] for row in rows if row["measure"] == "length"}, {"mm"})
 
+    def test_patterns_of_a_flower_head(self):
+        self.check("phantom", "capitulum", "--size", 24, "--stage", "c", "-o", self.folder)
+        session = self.write_session("head.json", volume={"path": "capitulum.nhdr"},
+                                     annotation={"trace": "capitulum-trace.graphml"})
+        self.check("export", session, "--metrics", self.folder / "h.csv")
+        with open(self.folder / "h.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertTrue(all(row["unit"] and None not in row.values() for row in rows))
+        values = {row["measure"]: row["value"] for row in rows if row["item"] == "pattern"}
+        self.assertEqual([values["stage_" + stage] for stage in "abcd"], ["0", "0", "1", "0"])
+        self.assertEqual(float(values["axis_direction_z"]), 1)
+        self.assertAlmostEqual(float(values["radiality"]), 1)
+        self.assertEqual(values["connections_adaxial_floret_rho_least"], "")
+        reasons = [row["measure"] for row in rows if row["item"] == "reason"]
+        self.assertIn("connections_adaxial_floret_rho_least: there is no such connection", reasons)
+        # Without florets there is no connection, and no other stage.
+        self.check("export", session, "--metrics", self.folder / "h.csv", "--sections", "abaxial=1,adaxial=2")
+        self.assertIn("pattern,,,florets,0,1", (self.folder / "h.csv").read_text())
+        for sections, words in [("adaxial", "expected abaxial, adaxial or floret"), ("adaxial=300", "1 to 255")]:
+            self.check_refused("export", session, "--metrics", self.folder / "h.csv", "--sections", sections,
+                               status=2, says=[words])
+
     def test_a_project_is_exported(self):
         header = Volume((8, 8, 8), [100] * 512).write(self.folder)
         self.check("import", header, self.folder / "project")

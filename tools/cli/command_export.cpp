@@ -114,7 +114,11 @@ void add_export(CLI::App& program)
                      "of voxel 0 unless the file states another place; or volume, voxel * spacing, with the origin at "
                      "the outer corner of voxel 0")
         ->check(CLI::IsMember({"physical", "volume"}));
-    command->add_option("--metrics", options->metrics, "Counts, lengths, angles, radii, topology (.csv)");
+    command->add_option("--metrics", options->metrics,
+                        "Counts, lengths, angles, radii, topology, and patterns of flower heads (.csv)");
+    command->add_option("--sections", options->task.sections,
+                        "For --metrics: the groups of a flower head's parts, such as abaxial=1+4,adaxial=2,floret=3; "
+                        "unless given, groups whose names have these words, or else 1, 2 and 3");
     add_belief_option(*command, options->common);
     add_input_options(*command, options->common);
     add_output_options(*command, options->common);

@@ -56,8 +56,8 @@ BranchMeasures branch_of(const TraceGraph& trace, uint32_t node)
     return branch;
 }
 
-/// Returns a field of the table, quoted as in RFC 4180. Spreadsheets execute text that begins like a formula, so such
-/// text is prefixed with an apostrophe.
+}  // namespace
+
 std::string csv_field(std::string text)
 {
     if (!text.empty() && std::string_view("=+-@").find(text[0]) != std::string_view::npos) text = "'" + text;
@@ -66,8 +66,6 @@ std::string csv_field(std::string text)
     for (const char character : text) quoted += character == '"' ? std::string("\"\"") : std::string(1, character);
     return quoted + "\"";
 }
-
-}  // namespace
 
 Topology topology_of(const TraceGraph& trace)
 {

@@ -64,6 +64,10 @@ inline constexpr int ALL_GROUPS = -1;
 /// The topology of all painted voxels (ALL_GROUPS), and of each group with voxels: each group's bricks are read once.
 std::map<int, Topology> topology_by_group(const Mask& mask, const Progress& progress = {});
 
+/// Returns a field of a table, quoted as in RFC 4180. Spreadsheets execute text that begins like a formula, so such
+/// text is prefixed with an apostrophe.
+std::string csv_field(std::string text);
+
 /// A table, one measure per row: item, number, group, measure, value, unit (RFC 4180).
 std::string metrics_csv(const TraceMeasures& trace, const std::array<int64_t, 256>& voxels_by_group,
                         const std::map<int, Topology>& mask_topology, const TraceSpace& space);

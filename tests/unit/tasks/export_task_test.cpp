@@ -89,7 +89,47 @@ TEST_CASE("every option of an export is documented")
         CHECK(!option.standard.empty());
     }
     CHECK(names == std::set<std::string>{"mask", "labels", "ome_zarr", "offset", "trace", "break_loops", "mesh",
-                                         "space", "metrics"});
+                                         "space", "metrics", "sections"});
+}
+
+TEST_CASE("patterns of flower heads follow the measures where sections are stated, named or in use")
+{
+    const TemporaryFolder folder;
+    VolumeInfo volume = annotated_volume();
+    Document document = unannotated();
+    Groups groups;
+    PlainReporter reporter;
+    const auto node = [&](uint32_t number, uint8_t group) {
+        document.trace.apply(TraceNodeChange{number, {}, TraceNode{{2.0 + number % 3, 1.0 + number, 2.0}, 1.0, group}},
+                             Direction::forwards);
+    };
+    for (uint32_t i = 0; i < 5; ++i) node(i, 1);
+    const auto rows = [&](const std::string& sections) {
+        const ExportTask task{.metrics = folder.path / "a.csv", .sections = sections};
+        run(task, {volume, document.mask, document.density, document.trace, groups}, reporter);
+        return bytes_of_file(task.metrics);
+    };
+    const std::string plain = rows("");
+    CHECK(!contains(plain, "pattern"));  // group 1 alone is any trace
+    CHECK(rows("abaxial=1").starts_with(plain + "pattern,,,"));
+    groups[1].name = "stem";
+    CHECK(contains(rows(""), "pattern,,,stage_a,1,1\r\n"));
+    groups.clear();
+    node(5, 2);
+    CHECK(contains(rows(""), "pattern,,,stage_a,0,1\r\n"));
+    groups[2].parent = 3;
+    CHECK(contains(rows("abaxial=1,floret=3"), "pattern,,,florets,1,1\r\n"));
+}
+
+TEST_CASE("sections are refused without measures, and where they are malformed")
+{
+    const auto refusal = [](ExportTask task) {
+        task.names = OptionNames::command_line;
+        return error_of([&] { check(task); });
+    };
+    CHECK(contains(refusal({.sections = "adaxial=2"}), "--sections is 'adaxial=2' but --metrics is not given"));
+    CHECK(
+        contains(refusal({.metrics = "a.csv", .sections = "adaxial=two"}), "found 'two'; expected a group, 1 to 255"));
 }
 
 TEST_CASE("what an export would replace can be asked before")

@@ -1,0 +1,38 @@
+#pragma once
+// The axis of a flower head, fitted to its trace, and positions relative to it. Any thread may call these.
+
+#include <optional>
+#include <string>
+
+#include "engine/annotation/patterns/vein_graph.h"
+
+namespace shvr {
+
+struct HeadFrame {
+    glm::dvec3 centre{0.0};  ///< on the axis; physical space
+    /// Right-handed axes of unit length; `up` points from the stem to the florets.
+    glm::dvec3 x{1.0, 0.0, 0.0}, y{0.0, 1.0, 0.0}, up{0.0, 0.0, 1.0};
+    bool knows_up = true;  ///< false: nothing tells above from below, so up.z >= 0
+    /// Root mean square angle between abaxial veins and planes through the axis, by length; null if they were not used.
+    std::optional<double> residual_degrees{};
+
+    /// Distances along x, y and up from the centre.
+    glm::dvec3 local(const glm::dvec3& at) const
+    {
+        const glm::dvec3 p = at - centre;
+        return {glm::dot(p, x), glm::dot(p, y), glm::dot(p, up)};
+    }
+};
+
+struct FoundFrame {
+    std::optional<HeadFrame> frame{};
+    std::string reason{};  ///< why there is none
+};
+/// Fits the axis. Abaxial veins run in planes through it, so each of their pieces, as a line, meets it: it is the line
+/// with the least sum of log(1 + (e / 0.05)^2), by length, with e = (p - c) . (t x w), p a piece's middle, t its
+/// direction, c and w the axis, and lengths in root mean square radii of the sections. Without abaxial veins around the
+/// axis, it is the principal axis of inertia of the florets (12 or more) or else of all sections whose moment differs
+/// from the other two. Time is linear in the number of nodes.
+FoundFrame fit_frame(const VeinGraph& graph);
+
+}  // namespace shvr

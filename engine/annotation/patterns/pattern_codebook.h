@@ -1,0 +1,82 @@
+#pragma once
+// The codebook of patterns: the only list of their names. CODEBOOK.md prints it, and a test compares the two.
+
+#include "engine/annotation/patterns/pattern_table.h"
+
+namespace shvr {
+
+inline constexpr PatternMeasure PATTERN_MEASURES[] = {
+    {"head_radius", "LENGTH",
+     "distance from the axis of the outermost floret; without florets, of the outermost node of a section. All rho are "
+     "distances from the axis in this unit",
+     "built-in value of a phantom"},
+    {"axis_x", "LENGTH", "a point of the axis, in physical space, as exported traces are; likewise axis_y and axis_z",
+     "the fit in head_frame.h; built-in value of a phantom"},
+    {"axis_y", "LENGTH", "see axis_x", ""},
+    {"axis_z", "LENGTH", "see axis_x", ""},
+    {"axis_direction_x", "1", "unit vector along the axis from the stem to the florets; likewise _y and _z",
+     "built-in value of a phantom"},
+    {"axis_direction_y", "1", "see axis_direction_x", ""},
+    {"axis_direction_z", "1", "see axis_direction_x", ""},
+    {"axis_residual", "degree",
+     "root mean square angle between abaxial veins and planes through the axis, by length; large where the axis is "
+     "uncertain",
+     "veins in planes through an axis: 0"},
+    {"vein_length_A", "LENGTH", "length of the veins of section A (abaxial, adaxial or floret), without connections",
+     "sum"},
+    {"florets", "1",
+     "ends of florets' veins that are higher along the axis than the other end of their segment, and nodes of the "
+     "florets' section without internodes",
+     "built-in number of a phantom"},
+    {"connections_A_B", "1",
+     "internodes between nodes of sections A and B, and nodes at which veins of both meet without such an internode; "
+     "floret_floret: internodes of florets' veins between the places nearest, along the veins, to two florets",
+     "thesis, figure 5.3; planted numbers"},
+    {"connections_A_B_rho_least", "1", "least rho of these connections; of an internode at its middle", "planted"},
+    {"connections_A_B_rho_median", "1", "median", "planted"},
+    {"connections_A_B_rho_most", "1", "greatest", "planted"},
+    {"connections_A_B_rho_FROM_to_TO", "1", "number of these connections with FROM <= rho < TO", "planted"},
+    {"radiality", "1",
+     "mean of the absolute cosine between adaxial internodes, projected to the receptacle's tangent plane, and the "
+     "radial direction in it, weighted by their projected lengths; the plane across the axis where florets do not "
+     "determine the receptacle",
+     "spokes 1; circle 0; random directions 2/pi"},
+    {"droop", "degree",
+     "mean angle of adaxial veins, followed inwards, below the tangent plane of the receptacle at the same rho, "
+     "weighted by length, where florets lie above; the receptacle is an even polynomial of rho through the florets",
+     "parallel veins 0; a slope s of the depth under a flat receptacle: atan s"},
+    {"sectors_rho_R", "1", "number of crossings of adaxial veins with the circle of rho R around the axis",
+     "number of spokes"},
+    {"sector_gap_mean_rho_R", "degree", "mean difference of azimuth of successive crossings", "360 / number"},
+    {"sector_gap_cv_rho_R", "1", "standard deviation of these differences / their mean",
+     "equal spokes 0; N at random: sqrt((N - 1) / (N + 1)), near 1"},
+    {"adaxial_inner_end", "1",
+     "5 % quantile of rho over the nodes of adaxial veins from which all adaxial internodes lead outwards",
+     "built-in value of a phantom"},
+    {"adaxial_inner_end_least", "1", "the least of them", "built-in value of a phantom"},
+    {"adaxial_parts", "1", "connected parts of the adaxial veins", "b0"},
+    {"adaxial_loops", "1", "independent loops: internodes - nodes + parts",
+     "b1: tree 0; grid of n x m nodes (n - 1)(m - 1)"},
+    {"adaxial_segments", "1", "chains between nodes with one adaxial internode or three and more; rings count once",
+     "grid, tree"},
+    {"reticulation", "1", "adaxial_loops / adaxial_segments", "tree 0; grid"},
+    {"anastomoses_per_area", "1/LENGTH^2",
+     "adaxial_loops / area across the axis of the ring from the innermost to the outermost node of adaxial veins",
+     "grid"},
+    {"adaxial_nodes_degree_N", "1", "nodes of the adaxial section with N adaxial internodes", "grid, tree"},
+    {"stage_a", "1", "1 if there are abaxial veins, and no adaxial veins and no florets; else 0", "thesis, figure 5.3"},
+    {"stage_b", "1",
+     "1 if all three sections exist, florets are at the outer rim alone (rho >= 0.75), and nothing is connected; else "
+     "0",
+     "thesis, figure 5.3"},
+    {"stage_c", "1",
+     "1 if all three sections exist, florets reach further inwards, and florets are connected with abaxial veins at "
+     "the outer rim, and with nothing else; else 0",
+     "thesis, figure 5.3"},
+    {"stage_d", "1",
+     "1 if florets are connected with abaxial veins and, at a smaller median rho, with adaxial veins, and, if adaxial "
+     "veins leave the centre free (inner end > 0.2), with each other at a still smaller one; else 0",
+     "thesis, figure 5.3"},
+};
+
+}  // namespace shvr
