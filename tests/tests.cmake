@@ -202,6 +202,7 @@ set_tests_properties(release/trixie_slow PROPERTIES RUN_SERIAL ON)
 
 shvr_test(style layers 60 ${Python3_EXECUTABLE} tools/check_layers.py)
 shvr_test(style layers_self_test 60 ${Python3_EXECUTABLE} tools/check_layers.py --self-test)
+shvr_test(style loops 60 ${Python3_EXECUTABLE} tools/check_loops.py)
 shvr_test(style prose 60 ${Python3_EXECUTABLE} tools/check_prose.py)
 shvr_test(style changed_tests 60 ${Python3_EXECUTABLE} tools/changed_tests --self-test)
 shvr_test(style format 60 tools/check_format)

@@ -110,5 +110,55 @@ class Tools(unittest.TestCase):
                 self.assertRegex(name, r"^([a-z0-9][a-z0-9+.-]+|=|-)$", row)
 
 
+class Loops(unittest.TestCase):
+    """tools/check_loops.py: loops whose results a driver may lose."""
+    LOOP = """
+bool first_hit(const Line line)
+{
+    bool is_hit = false, goes_on = line.begin < line.end;
+    uint slot = 0u;
+    vec3 place = line.near;
+    if (goes_on) do {
+        const float to = place.x;
+        LINE
+        place += line.step;
+        goes_on = goes_on && !is_hit && to < line.end;
+    } while (goes_on);
+    return is_hit && slot > 0u;
+}
+"""
+
+    def refused(self, line, loop=LOOP):
+        with tempfile.NamedTemporaryFile("w", suffix=".comp") as kernel:
+            kernel.write(loop.replace("LINE", line))
+            kernel.flush()
+            done = subprocess.run([ROOT / "tools/check_loops.py", kernel.name], check=False, text=True, capture_output=True)
+        self.assertEqual(done.returncode, 1 if done.stderr else 0)
+        return done.stderr
+
+    # Kind (Drivers): a value that a loop assigns without carrying it
+    def test_a_value_that_a_loop_does_not_carry_is_refused(self):
+        for line in ("is_hit = is_set(place);", "if (is_set(place)) is_hit = true;",
+                     "if (is_set(place)) { is_hit = true; }", "const bool is_new = true;\nis_hit = is_new;",
+                     "for (uint i = 0u; i < 4u; ++i) is_hit = is_set(place + i);"):
+            with self.subTest(line=line):
+                self.assertIn("is_hit is assigned in a loop without its former value", self.refused(line))
+        self.assertIn(".comp:10: slot", self.refused("\nslot = slot_of(place);"))
+
+    def test_a_value_that_is_carried_or_not_read_is_accepted(self):
+        for line in ("is_hit = is_hit || (goes_on && is_set(place));", "slot = is_set(place) ? 1u : slot;", "slot += 1u;",
+                     "// is_hit = is_set(place);", "bool is_hit = is_set(place); slot |= uint(is_hit);",
+                     "is_hit = true;   // same again: it is never false", "place = line.near;"):
+            with self.subTest(line=line):
+                self.assertEqual(self.refused(line), "")
+
+    def test_a_loop_that_all_lanes_leave_together_is_accepted(self):
+        together = "float f()\n{\n    float v = 0.0;\n    for (uint i = 0u; i < COUNT; ++i) {\n        LINE\n    }\n    return v;\n}\n"
+        self.assertEqual(self.refused("v = at(i);", together), "")
+        self.assertEqual(self.refused("v = at(i);", together.replace("COUNT", "params.levels - 1u")), "")
+        self.assertIn("v is assigned", self.refused("v = at(i); if (v > 1.0) break;", together))
+        self.assertIn("v is assigned", self.refused("v = at(i);", together.replace("COUNT", "lane_count")))
+
+
 if __name__ == "__main__":
     unittest.main()
