@@ -1,44 +1,57 @@
-# Writes OUTPUT, a C++ file that holds the SPIR-V files BINARIES as arrays, so that `shvr` is one file that runs from
-# anywhere, and the macros that a kernel may be compiled with. Run by the build:
+# Writes OUTPUT, a C++ file with the SPIR-V files BINARIES in it, so that `shvr` is one file that runs from anywhere,
+# and with the macros that a kernel may be compiled with. Run by the build:
 # cmake -DOUTPUT=... -DBINARIES=a.spv;b.spv "-DVARIANTS=raycast PAGED MASKED;surfaces LISTED" -P embed_kernels.cmake
+#
+# The assembler reads the files: as lists of numbers they would be 50 MB of C++, half a minute of writing and compiling.
 set(arrays "")
 set(entries "")
 foreach(binary IN LISTS BINARIES)
     cmake_path(GET binary STEM name)
-    file(READ ${binary} bytes HEX)
-    # SPIR-V is a stream of 32-bit words, here little-endian, as glslang writes it on every machine we build on.
-    string(REGEX REPLACE "(..)(..)(..)(..)" "0x\\4\\3\\2\\1," words "${bytes}")
-    string(APPEND arrays "constexpr uint32_t ${name}_words[] = {${words}};\n")
-    string(APPEND entries "    {\"${name}\", ${name}_words, std::size(${name}_words)},\n")
+    # SPIR-V is a stream of 32-bit words in the byte order of the machine, as glslang writes it on every machine we
+    # build on.
+    file(SIZE ${binary} bytes)
+    math(EXPR words "${bytes} / 4")
+    string(APPEND arrays "EMBED(${name}, \"${binary}\")\n")
+    string(APPEND entries "    {\"${name}\", shvr_kernel_${name}, ${words}},\n")
 endforeach()
 set(variants "")
+set(tables "")
 foreach(line IN LISTS VARIANTS)
     string(REPLACE " " ";" macros "${line}")
     list(POP_FRONT macros name)
     list(TRANSFORM macros REPLACE "(.+)" "\"\\1\"")
     list(JOIN macros ", " macros)
-    string(APPEND arrays "constexpr std::string_view ${name}_macros[] = {${macros}};\n")
+    string(APPEND tables "constexpr std::string_view ${name}_macros[] = {${macros}};\n")
     string(APPEND variants "    {\"${name}\", ${name}_macros},\n")
 endforeach()
 set(kernel_variants "{}")
 if(variants)
-    string(APPEND arrays "constexpr KernelVariants variants[] = {\n${variants}};\n")
+    string(APPEND tables "constexpr KernelVariants variants[] = {\n${variants}};\n")
     set(kernel_variants "gpu::variants")
 endif()
 set(kernels "{}")
 if(entries)
-    string(APPEND arrays "constexpr EmbeddedKernel kernels[] = {\n${entries}};\n")
+    string(APPEND tables "constexpr EmbeddedKernel kernels[] = {\n${entries}};\n")
     set(kernels "kernels")
 endif()
 file(WRITE ${OUTPUT} "// Made by tools/embed_kernels.cmake.
 #include \"engine/gpu/embedded_kernels.h\"
 #include \"engine/graph/kernel_variants.h\"
 
-#include <iterator>
-
+// The words of a file as an array in read-only memory. Hidden: the address is a constant of the program.
+#define EMBED(name, file) \\
+    asm(\".pushsection .rodata\\n\" \\
+        \".balign 4\\n\" \\
+        \".globl shvr_kernel_\" #name \"\\n\" \\
+        \".hidden shvr_kernel_\" #name \"\\n\" \\
+        \"shvr_kernel_\" #name \":\\n\" \\
+        \".incbin \\\"\" file \"\\\"\\n\" \\
+        \".popsection\"); \\
+    extern \"C\" [[gnu::visibility(\"hidden\")]] const uint32_t shvr_kernel_##name[];
+${arrays}
 namespace shvr::gpu {
 namespace {
-${arrays}}  // namespace
+${tables}}  // namespace
 
 std::span<const EmbeddedKernel> embedded_kernels()
 {
