@@ -148,6 +148,7 @@ if(SHVR_IS_CHECKED)
     target_sources(shvr_checked_tests PRIVATE ${together} tests/support/bounds.cpp
         tests/support/doctest_main.cpp tests/support/random_annotation.cpp)
     target_link_libraries(shvr_checked_tests PRIVATE doctest::doctest shvr_checked)
+    set_target_properties(shvr_checked_tests PROPERTIES POSITION_INDEPENDENT_CODE OFF)
 endif()
 shvr_test_program(unit shvr_unit_tests 60 ${unit_tests})
 target_link_libraries(shvr_unit_tests PRIVATE shvr_test_support)
