@@ -62,7 +62,8 @@ MAY_INCLUDE = {
     "haptics/inverse3": "engine/base haptics",
     "haptics/openhaptics": "engine/base haptics",
     "haptics/devices": "engine/base haptics haptics/hid haptics/inverse3 haptics/openhaptics",
-    "engine/study": "engine/base engine/touch",
+    "engine/study": "engine/base engine/touch engine/volume engine/annotation engine/annotation/trace "
+    "engine/annotation/measures engine/annotation/files engine/annotation/work engine/live haptics",
     "engine/workbench/appearance": "engine/base",
     "engine/workbench/curves": "engine/look engine/session",
     "engine/workbench/touch": "engine/base engine/look engine/annotation/trace engine/annotation/work engine/session "
