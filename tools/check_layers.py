@@ -49,6 +49,7 @@ MAY_INCLUDE = {
     "engine/session": "engine/base engine/touch engine/volume engine/look engine/annotation engine/annotation/files "
     "engine/annotation/trace engine/formats engine/formats/zarr engine/projects",
     "engine/jobs": "engine/base",
+    "engine/pages": "engine/base",
     "engine/tasks": "engine/base engine/volume engine/look engine/components engine/formats/export engine/annotation "
     "engine/annotation/trace engine/annotation/measures engine/annotation/patterns engine/annotation/files "
     "engine/annotation/writers engine/projects engine/session engine/jobs",
@@ -64,6 +65,7 @@ MAY_INCLUDE = {
     "haptics/devices": "engine/base haptics haptics/hid haptics/inverse3 haptics/openhaptics",
     "engine/study": "engine/base engine/touch engine/volume engine/annotation engine/annotation/trace "
     "engine/annotation/measures engine/annotation/files engine/annotation/work engine/live haptics",
+    "engine/study/report": "engine/base engine/pages engine/study",
     "engine/workbench/appearance": "engine/base",
     "engine/workbench/curves": "engine/look engine/session",
     "engine/workbench/touch": "engine/base engine/look engine/annotation/trace engine/annotation/work engine/session "
@@ -105,11 +107,11 @@ MAY_INCLUDE = {
     "engine/workbench/edits engine/workbench/bindings ui/panels",
     "tests": "*",
     "tests/reference": "engine/annotation",
-    "tools/report": "engine/base",
-    "tools/bench": "engine/base engine/annotation engine/bricks engine/components engine/projects engine/session tests/reference "
-    "tools/golden tools/report",
-    "tools/golden": "engine/base engine/annotation/script engine/session engine/live shaders tools/report",
-    "tools": "engine/base engine/volume engine/graph engine/projects engine/annotation/script engine/annotation/trace "
+    "tools/report": "engine/base engine/pages",
+    "tools/bench": "engine/base engine/annotation engine/bricks engine/components engine/pages engine/projects engine/session "
+    "tests/reference tools/golden tools/report",
+    "tools/golden": "engine/base engine/annotation/script engine/session engine/live engine/pages shaders",
+    "tools": "engine/base engine/pages engine/volume engine/graph engine/projects engine/annotation/script engine/annotation/trace "
     "engine/annotation/work engine/annotation/writers engine/session engine/jobs engine/tasks engine/picture engine/live "
     "haptics haptics/devices haptics/hid ui engine/workbench "
     "engine/workbench/touch engine/workbench/bindings "

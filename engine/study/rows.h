@@ -64,6 +64,11 @@ enum class Outcome : uint8_t {
     force_mean,
     force_most,
 };
+/// The outcome by which a task is judged, named before any condition was compared. All others are exploratory.
+constexpr Outcome main_outcome(StudyTask task)
+{
+    return task == StudyTask::paint ? Outcome::dice_partial : Outcome::centreline_rms;
+}
 inline constexpr size_t OUTCOMES = size_t(Outcome::force_most) + 1;
 
 struct OutcomeColumn {

@@ -8,8 +8,8 @@
 
 #include "engine/base/image_file.h"
 #include "engine/base/image_metrics.h"
+#include "engine/pages/html.h"
 #include "tools/bench/insets.h"
-#include "tools/report/html.h"
 
 namespace shvr::bench {
 

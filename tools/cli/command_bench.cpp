@@ -6,10 +6,10 @@
 
 #include "engine/base/file.h"
 #include "engine/base/text.h"
+#include "engine/pages/html.h"
 #include "tools/bench/page.h"
 #include "tools/cli/cli.h"
 #include "tools/cli/haptics_report.h"
-#include "tools/report/html.h"
 
 namespace shvr::cli {
 

@@ -7,10 +7,10 @@
 
 #include <iostream>
 
+#include "engine/pages/html.h"
 #include "tools/cli/cli.h"
 #include "tools/golden/calibrate.h"
 #include "tools/golden/run.h"
-#include "tools/report/html.h"
 
 namespace shvr::cli {
 

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/base/flip.h"
+#include "engine/pages/html.h"
 #include "tools/golden/run.h"
-#include "tools/report/html.h"
 
 namespace shvr::golden {
 

@@ -7,7 +7,7 @@
 #include "engine/base/file.h"
 #include "engine/base/image_file.h"
 #include "engine/base/text.h"
-#include "tools/report/html.h"
+#include "engine/pages/html.h"
 
 namespace shvr::golden {
 

@@ -8,8 +8,8 @@
 #include <memory>
 
 #include "engine/base/error.h"
+#include "engine/pages/html.h"
 #include "tools/report/glyphs.h"
-#include "tools/report/html.h"
 
 namespace shvr::report {
 

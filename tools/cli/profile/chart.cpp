@@ -8,7 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/image.h"
-#include "tools/report/html.h"
+#include "engine/pages/html.h"
 
 namespace shvr::cli {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <iomanip>
 
+#include "engine/pages/html.h"
 #include "tools/cli/profile/chart.h"
 #include "tools/cli/profile/profile_report.h"
-#include "tools/report/html.h"
 
 namespace shvr::cli {
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "engine/pages/html.h"
 #include "tools/cli/profile/chart.h"
 #include "tools/cli/profile/profile_session.h"
-#include "tools/report/html.h"
 
 namespace shvr::cli {
 

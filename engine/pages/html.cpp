@@ -1,4 +1,4 @@
-#include "tools/report/html.h"
+#include "engine/pages/html.h"
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/error.h"
