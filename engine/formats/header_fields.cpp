@@ -120,6 +120,16 @@ VoxelType HeaderFields::type(const char* name) const
     return *type;
 }
 
+std::pair<VoxelType, StoredNumber> HeaderFields::type_or_wide(const char* name) const
+{
+    constexpr const char* EXPECTED = "integers of 8, 16, 32 or 64 bits, signed or unsigned, or floats of 32 or 64 bits";
+    const std::string& stated = required(name, EXPECTED);
+    if (const auto type = voxel_type_of(stated)) return {*type, StoredNumber::plain};
+    const std::optional<StoredNumber> number = wide_integer_of(stated);
+    if (!number) refuse(name, EXPECTED);
+    return {bits_type(*number), *number};
+}
+
 bool HeaderFields::flag(const char* name, bool fallback) const
 {
     const std::string* value = find(name);

@@ -7,9 +7,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/base/text.h"
+#include "engine/formats/stored_numbers.h"
 #include "engine/volume/volume.h"
 
 namespace shvr {
@@ -39,6 +41,8 @@ public:
     Size3 size(const char* name) const;                                ///< required, each 1 ... 2^20
     std::vector<int64_t> sizes(const char* name, size_t count) const;  ///< like `size`, for `count` axes
     VoxelType type(const char* name) const;                            ///< required
+    /// Like `type`, but may be an integer of 64 bits: then the type its bits are read as (stored_numbers.h), and which.
+    std::pair<VoxelType, StoredNumber> type_or_wide(const char* name) const;
     bool flag(const char* name, bool fallback) const;
     glm::dvec3 spacing(const char* name) const;  ///< three numbers, finite and above 0
 

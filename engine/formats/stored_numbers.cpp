@@ -1,5 +1,6 @@
 #include "engine/formats/stored_numbers.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 
 namespace shvr {
 namespace {
@@ -93,6 +95,28 @@ const char* name_of(StoredNumber number)
         case StoredNumber::float16: return "float16";
     }
     return "";
+}
+
+std::optional<StoredNumber> wide_integer_of(std::string_view name)
+{
+    // NRRD separates words by spaces, MetaImage by underscores, after "MET_".
+    std::string spaced = lower_case(std::string(name));
+    std::replace(spaced.begin(), spaced.end(), '_', ' ');
+    std::string plain;
+    for (const std::string_view word : words_of(spaced)) {
+        if (word == "met" && plain.empty()) continue;
+        plain += plain.empty() ? "" : " ";
+        plain += word;
+    }
+    for (const char* known :
+         {"longlong", "long long", "long long int", "signed long long", "signed long long int", "int64", "int64 t"}) {
+        if (plain == known) return StoredNumber::int64;
+    }
+    for (const char* known :
+         {"ulonglong", "ulong long", "unsigned long long", "unsigned long long int", "uint64", "uint64 t"}) {
+        if (plain == known) return StoredNumber::uint64;
+    }
+    return {};
 }
 
 VoxelType bits_type(StoredNumber number)

@@ -4,8 +4,10 @@
 // Any thread may call these.
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "engine/volume/source.h"
 
@@ -13,6 +15,8 @@ namespace shvr {
 
 enum class StoredNumber { plain, int64, uint64, float16 };
 const char* name_of(StoredNumber number);
+/// The 64-bit integer type that a text header names: "int64", "long long", "MET_ULONG_LONG"; null for other types.
+std::optional<StoredNumber> wide_integer_of(std::string_view name);
 
 /// The voxel type used to read a number's bits: float64 for integers of 64 bits, uint16 for float16. Not for `plain`.
 VoxelType bits_type(StoredNumber number);

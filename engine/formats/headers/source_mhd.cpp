@@ -154,14 +154,16 @@ std::unique_ptr<VolumeSource> open_mhd(const std::filesystem::path& path, const 
     refuse_what_is_not_supported(fields);
     VolumeInfo info{.name = path.filename().string(), .format = "mhd"};
     info.size = fields.size("DimSize");
-    info.type = fields.type("ElementType");
+    const auto [type, number] = fields.type_or_wide("ElementType");
+    info.type = type;
     read_spacing(fields, info);
     read_orientation(fields, info);
     RawVoxels voxels = place_voxels(header, info);
     voxels.channels = fields.whole("ElementNumberOfChannels", 1, 1, 65536);
     voxels.channel = chosen_channel(path.string(), options, voxels.channels, color_names(voxels.channels));
     const Rescale rescale = read_intensities(fields);
-    return rescaled(right_handed(open_raw_voxels(std::move(info), voxels)), rescale);
+    std::unique_ptr<VolumeSource> source = widened(open_raw_voxels(std::move(info), voxels), number, path.string());
+    return rescaled(right_handed(std::move(source)), rescale);
 }
 
 }  // namespace shvr

@@ -131,6 +131,19 @@ RawVoxels place_voxels(const NrrdHeader& header, const VolumeInfo& info)
     return voxels;
 }
 
+/// A writer that quantized the values may state their former range (teem's "unu quantize"). The stored numbers may be
+/// used as they are all the same, so the range is not applied.
+void warn_of_old_range(const HeaderFields& fields, VolumeInfo& info)
+{
+    for (const auto& [lower, upper] : {std::pair{"old min", "old max"}, std::pair{"oldmin", "oldmax"}}) {
+        if (!fields.has(lower) && !fields.has(upper)) continue;
+        const auto stated = [&](const char* name) { return fields.has(name) ? *fields.find(name) : "not stated"; };
+        info.warnings.push_back(sentence("its values were quantized: ", lower, " is ", printable(stated(lower)),
+                                         " and ", upper, " ", printable(stated(upper)),
+                                         "; intensities are those stored"));
+    }
+}
+
 /// Moves the start of the voxels to the chosen time point.
 void choose_frame(const HeaderFields& fields, int64_t frame, int64_t frames, const VolumeInfo& info, RawVoxels& voxels)
 {
@@ -162,14 +175,16 @@ std::unique_ptr<VolumeSource> open_nrrd(const std::filesystem::path& path, const
     VolumeInfo info{.name = path.filename().string(), .format = "nrrd"};
     const NrrdAxes axes = read_nrrd_axes(fields);
     info.size = axes.size;
-    info.type = fields.type("type");
+    const auto [type, number] = fields.type_or_wide("type");
+    info.type = type;
     read_nrrd_space(fields, axes, info);
+    warn_of_old_range(fields, info);
     RawVoxels voxels = place_voxels(header, info);
     voxels.channels = axes.channels;
     voxels.channel = chosen_channel(path.string(), options, axes.channels,
                                     axes.channels_are_colors ? color_names(axes.channels) : color_names(0));
     choose_frame(fields, chosen_frame(path.string(), options, axes.frames), axes.frames, info, voxels);
-    return right_handed(open_raw_voxels(std::move(info), voxels));
+    return right_handed(widened(open_raw_voxels(std::move(info), voxels), number, path.string()));
 }
 
 }  // namespace shvr

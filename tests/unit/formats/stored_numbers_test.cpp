@@ -1,4 +1,4 @@
-// Integers of 64 bits, bool and floats of 16 bits in Zarr, NIfTI and TIFF.
+// Integers of 64 bits, bool and floats of 16 bits in Zarr, NIfTI, TIFF, NRRD and MetaImage.
 
 #include "engine/formats/stored_numbers.h"
 
@@ -149,4 +149,51 @@ TEST_CASE("NIfTI and TIFF of int64 and uint64 are read exactly")
     const auto swapped =
         open_volume(write_tiff(folder.path / "b.tif", spec, {bytes_of_all(std::vector<uint64_t>{1, 2, 3, 4})}, "wb"));
     CHECK(doubles_of(*swapped) == std::vector<double>{1, 2, 3, 4});
+}
+
+// Kind (Types): int64 and uint64 in NRRD and MetaImage
+TEST_CASE("NRRD and MetaImage of int64 and uint64 are read exactly, or refused at the first value that is not exact")
+{
+    const TemporaryFolder folder;
+    const auto nrrd = [&](const std::string& type, const std::string& endian, const std::string& bytes) {
+        return open_volume(folder.write("a.nrrd", "NRRD0004\ntype: " + type + "\ndimension: 3\nsizes: 4 1 1\nendian: " +
+                                                      endian + "\nencoding: raw\n\n" + bytes));
+    };
+    const auto mha = [&](const std::string& type, const std::string& more, const std::string& bytes) {
+        return open_volume(folder.write("a.mha", "ObjectType = Image\nNDims = 3\nDimSize = 4 1 1\nBinaryData = True\n" +
+                                                     more + "ElementType = " + type + "\nElementDataFile = LOCAL\n" +
+                                                     bytes));
+    };
+    const std::string whole = bytes_of_all(std::vector<int64_t>{-3, 0, LARGEST, -LARGEST});
+    const std::vector<double> as_doubles{-3.0, 0.0, double(LARGEST), -double(LARGEST)};
+    const std::string natural = bytes_of_all(std::vector<uint64_t>{0, 255, 65536, uint64_t(LARGEST)});
+    const std::vector<double> natural_doubles{0.0, 255.0, 65536.0, double(LARGEST)};
+    for (const char* type : {"longlong", "long long int", "signed long long", "int64", "int64_t"}) {
+        CAPTURE(type);
+        const auto source = nrrd(type, "little", whole);
+        CHECK(source->info().type == VoxelType::float64);
+        CHECK(warns_of(*source, "its int64 values are read as float64"));
+        CHECK(doubles_of(*source) == as_doubles);
+    }
+    for (const char* type : {"ulonglong", "unsigned long long int", "uint64_t"})
+        CHECK(doubles_of(*nrrd(type, "little", natural)) == natural_doubles);
+    CHECK(doubles_of(*mha("MET_LONG_LONG", "BinaryDataByteOrderMSB = False\n", whole)) == as_doubles);
+    CHECK(doubles_of(*mha("MET_ULONG_LONG", "BinaryDataByteOrderMSB = False\n", natural)) == natural_doubles);
+
+    const std::string swapped("\0\0\0\0\0\0\1\5", 8);
+    CHECK(doubles_of(*nrrd("int64", "big", swapped + swapped + swapped + swapped)) ==
+          std::vector<double>{261.0, 261.0, 261.0, 261.0});
+
+    // The function of a MetaImage is applied to the values, not to their bits.
+    const std::string scaled =
+        "BinaryDataByteOrderMSB = False\nElementToIntensityFunctionSlope = 2\nElementToIntensityFunctionOffset = 1\n";
+    CHECK(doubles_of(*mha("MET_LONG_LONG", scaled, bytes_of_all(std::vector<int64_t>{-3, 0, 1, 100}))) ==
+          std::vector<double>{-5.0, 1.0, 3.0, 201.0});
+
+    const std::string large = bytes_of_all(std::vector<int64_t>{1, 2, LARGEST + 1, 3});
+    CHECK(contains(error_of([&] { doubles_of(*nrrd("int64", "little", large)); }),
+                   "a.nrrd: holds 9007199254740993 as int64; expected at most 9007199254740992, with either sign"));
+    CHECK(contains(error_of([&] { doubles_of(*mha("MET_ULONG_LONG", "BinaryDataByteOrderMSB = False\n", whole)); }),
+                   "a.mha: holds 18446744073709551613 as uint64; expected at most 9007199254740992 up to which"));
+    CHECK(contains(error_of([&] { nrrd("int64", "little", whole.substr(8)); }), "expected at least"));
 }

@@ -151,8 +151,8 @@ TEST_CASE("an NRRD that cannot be read says which field, what it found and what 
           at + ": dimension is \"5\"; expected a whole number from 3 to 4");
     CHECK(contains(folder.nrrd_refusal("dimension:", "dimension: 4"), "sizes is \"5 4 3\"; expected 4 whole numbers"));
     CHECK(folder.nrrd_refusal("dimension:", "") == at + ": dimension is missing; expected 3");
-    CHECK(contains(folder.nrrd_refusal("type:", "type: longlong"),
-                   ": type is \"longlong\"; expected integers of 8, 16 or 32 bits, signed or unsigned, or floats"));
+    CHECK(contains(folder.nrrd_refusal("type:", "type: float16"),
+                   ": type is \"float16\"; expected integers of 8, 16, 32 or 64 bits, signed or unsigned, or floats"));
     CHECK(folder.nrrd_refusal("type:", "type: short") == at + ": endian is missing; expected little or big");
     CHECK(contains(folder.nrrd_refusal("type:", "type: short\nendian: middle"), ": endian is \"middle\"; expected"));
     CHECK(folder.nrrd_refusal("data file:", "data file: LIST") ==
@@ -277,6 +277,17 @@ TEST_CASE("a colour picture in an NRRD is one slice with channels, and no grey v
     CHECK(green->info().size == Size3(5, 4, 1));
     CHECK(green->info().spacing == glm::dvec3(0.5, 0.25, 0.5));
     CHECK(green->info().unit == "mm");
+}
+
+// Kind (Headers): NRRD that states the range of its values before they were quantized
+TEST_CASE("an NRRD whose values were quantized is read as stored, with a warning of their former range")
+{
+    const Folder folder;
+    const auto source = folder.nrrd("encoding", "old min: -1000\nold max: 3000.5\nencoding: raw");
+    CHECK(measure(*source).maximum == 'v');
+    CHECK(warns_of(*source,
+                   "its values were quantized: old min is -1000 and old max 3000.5; intensities are those stored"));
+    CHECK(warns_of(*folder.nrrd("encoding", "oldmax: 7\nencoding: raw"), "oldmin is not stated and oldmax 7"));
 }
 
 // Kind (Headers): MetaImage with an intensity function
@@ -404,8 +415,8 @@ TEST_CASE("a MetaImage that cannot be read says which field, what it found and w
     CHECK(folder.mhd_refusal("NDims", "") == at + ": NDims is missing; expected 3");
     CHECK(contains(folder.mhd_refusal("NDims", "NDims = 3\nElementNumberOfChannels = 3"),
                    "a.mhd: holds 3 channels; expected channel to choose one: 1 to 3, red, green, blue"));
-    CHECK(contains(folder.mhd_refusal("ElementType", "ElementType = MET_LONG_LONG"),
-                   "ElementType is \"MET_LONG_LONG\"; expected"));
+    CHECK(contains(folder.mhd_refusal("ElementType", "ElementType = MET_LONG_DOUBLE"),
+                   "ElementType is \"MET_LONG_DOUBLE\"; expected"));
     CHECK(contains(folder.mhd_refusal("ElementType", ""), "ElementType is missing; expected"));
     CHECK(contains(folder.mhd_refusal("ElementDataFile", ""), "ElementDataFile is missing; expected"));
     CHECK(contains(folder.mhd_refusal("ElementDataFile", "ElementDataFile = LIST"),
