@@ -115,9 +115,11 @@ private:
                              : make_dense_pass(*preparation_, setup);
     }
 
+    /// Label images are never resumed: changes of their sources are not reflected in any file.
+    bool is_resumable() const { return !options_.label_image && options_.gaps == nullptr; }
     bool is_state_due() const
     {
-        return !options_.label_image && seconds_since(state_written_) >= STATE_INTERVAL * state_seconds_;
+        return is_resumable() && seconds_since(state_written_) >= STATE_INTERVAL * state_seconds_;
     }
     void keep_state()
     {
@@ -144,8 +146,7 @@ private:
         report_.warnings = warnings;
         std::error_code ignored;
         const bool is_begun = fs::exists(folder_.state(), ignored);
-        // Label images are never resumed: changes of their sources are not reflected in any file.
-        if (is_begun && !options_.label_image) {
+        if (is_begun && is_resumable()) {
             folder_.clear_temporary();
             try {
                 StateReader state(folder_.state());
@@ -200,6 +201,7 @@ private:
             write(ranges_path({}, level), to_bytes(pass_->ranges(level)));
             write(checksums_path({}, level), to_bytes(checksums(level)));
         }
+        note_gaps();
         ProjectRecord record{.info = info_, .levels = chunks_->levels()};
         // Types with too many values to count each are measured in the written project, without the source.
         const std::optional<VolumeStatistics> counted = pass_->statistics();
@@ -212,6 +214,15 @@ private:
         load_voxels(info_.type, plan_.fill.data(), std::span(&record.fill, 1));
         write_text(PROJECT_RECORD, to_text(record));
         write_text(PROJECT_SESSION, import_session());
+    }
+
+    void note_gaps()
+    {
+        if (options_.gaps == nullptr || options_.gaps->empty()) return;
+        report_.voxels_not_read = options_.gaps->voxels();
+        info_.warnings.push_back(sentence(options_.gaps->in_words(), " and have ",
+                                          is_float(info_.type) ? "no value" : "the lowest value of their type"));
+        report_.warnings.push_back(info_.warnings.back());
     }
 
     ProjectTable checksums(int level) const
@@ -328,14 +339,15 @@ ImportReport import_volume(const VolumeSource& source, const fs::path& origin, c
     if (options.halving == Halving::label) check_labels(source.info(), options.preparation);
     const ImportPlan plan = plan_import(source, project, options);
     Import job(source, origin, project, options, plan);
-    constexpr const char* GOES_ON = ", and the same command goes on from there; rm -r removes it";
+    const char* const goes_on = options.gaps == nullptr ? ", and the same command goes on from there; rm -r removes it"
+                                                        : ", and is of no further use; rm -r removes it";
     const fs::path part = job.folder();
     try {
         return job.run();
     } catch (const ImportStopped&) {
-        throw ImportStopped(sentence(job.folder().string(), ": the import was stopped; what is done is kept", GOES_ON));
+        throw ImportStopped(sentence(job.folder().string(), ": the import was stopped; what is done is kept", goes_on));
     } catch (const Error& error) {
-        fail(error.what(), "; what is done is kept in ", part.string(), GOES_ON);
+        fail(error.what(), "; what is done is kept in ", part.string(), goes_on);
     }
 }
 

@@ -18,6 +18,7 @@
 #include "engine/formats/zarr/metadata/zarr_metadata.h"
 #include "engine/formats/zarr/ome_zarr.h"
 #include "engine/projects/import_prepare.h"
+#include "engine/volume/gaps.h"
 #include "engine/volume/halving.h"
 #include "engine/volume/source.h"
 
@@ -73,6 +74,9 @@ struct ImportOptions {
     bool has_shards = false;  ///< OME-Zarr 0.5 only: stores up to 512 chunks in a file (import_files.h)
     std::function<void(const ImportProgress&)> progress{};  ///< called about every 100 ms, on the calling thread
     const std::atomic<bool>* cancel = nullptr;              ///< checked before every task; tasks take milliseconds
+    /// What the source, a GapSource, could not read; null: it fails there. The import reports it and the project states
+    /// it. Such an import continues no other run, since only this one knows what it could not read.
+    const Gaps* gaps = nullptr;
 };
 
 struct ImportReport {
@@ -84,6 +88,7 @@ struct ImportReport {
     int64_t bytes = 0;          ///< total size of all files
     bool was_resumed = false;
     std::vector<std::string> warnings;
+    int64_t voxels_not_read = 0;  ///< have the lowest value of their type, or NaN
 };
 
 /// `origin` is the file from which `source` was opened. Fails with one sentence; throws `ImportStopped` if cancelled.

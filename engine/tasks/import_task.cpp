@@ -124,6 +124,8 @@ void fields(Fields& f, ImportTask& task)
            {"of version 0.5: up to 512 chunks in a file, for storage that dislikes many small files"});
     f.flag("overwrite", task.overwrite,
            {"a project that is there is replaced, with all annotations in it, once the new one is complete"});
+    incomplete_field(f, task.allows_incomplete,
+                     "voxels that cannot be read are as low as their type allows, and the project states how many");
     threads_field(f, task.threads);
     f.whole("budget_host_mib", task.budget_host_mib, 0, MAX_BUDGET_MIB,
             {"memory that it may take, in MiB; 0: three quarters of the machine's"});
@@ -148,6 +150,13 @@ void check(const ImportTask& task)
             task.names == OptionNames::command_line
                 ? "--shards is given without --ome-zarr 0.5; expected both, since OME-Zarr 0.4 has no shards"
                 : "shards is true without ome_zarr 0.5; expected both, since OME-Zarr 0.4 has no shards");
+    if (task.allows_incomplete && (task.reverse || task.blur_voxels != glm::dvec3(0.0) || task.downscale != 1))
+        throw UsageError(sentence(name("allow_incomplete"), " is given with ",
+                                  name(task.reverse          ? "reverse"
+                                       : task.downscale != 1 ? "downscale"
+                                                             : "blur"),
+                                  "; expected no preparation but ", name("crop"),
+                                  ", since it would mix what cannot be read with the rest"));
     check_threads(task.threads, task.names);
     if (task.budget_host_mib < 0 || task.budget_host_mib > MAX_BUDGET_MIB)
         throw UsageError(sentence(name("budget_host_mib"), " is ", task.budget_host_mib, "; expected 0 to ",
@@ -170,6 +179,8 @@ ImportResult run(const ImportTask& task, ProgressReporter& reporter)
     if (task.overwrite) refuse_own_source(task);
     const Clock::time_point begin = Clock::now();
     const std::unique_ptr<VolumeSource> source = open_as_told(task);
+    Gaps gaps = gaps_of(task.allows_incomplete, task.names);
+    const GapSource readable(*source, gaps);
     ImportListener listener(task, source->info().type, reporter);
     const ImportOptions wanted{.preparation = {.crop = task.crop,
                                                .reverse = task.reverse,
@@ -177,17 +188,19 @@ ImportResult run(const ImportTask& task, ProgressReporter& reporter)
                                                .downscale = task.downscale},
                                .halving = task.labels ? Halving::label : Halving::mean,
                                .choice = sentence(task.choice.channel, "\n", task.choice.frame, "\n", task.raw,
-                                                  task.choice.level > 0 ? sentence("\nlevel ", task.choice.level) : ""),
+                                                  task.choice.level > 0 ? sentence("\nlevel ", task.choice.level) : "",
+                                                  task.allows_incomplete ? "\nincomplete" : ""),
                                .overwrites = task.overwrite,
                                .threads = task.threads,
                                .budget_host_bytes = task.budget_host_mib << 20,
                                .version = task.version,
                                .has_shards = task.shards,
                                .progress = [&](const ImportProgress& progress) { listener.take(progress); },
-                               .cancel = &reporter.stop_requested()};
+                               .cancel = &reporter.stop_requested(),
+                               .gaps = task.allows_incomplete ? &gaps : nullptr};
     ImportResult result;
     try {
-        result.report = import_volume(*source, task.volume, task.project, wanted);
+        result.report = import_volume(readable, task.volume, task.project, wanted);
     } catch (const ImportStopped& stopped) {
         throw Stopped(stopped.what());
     }

@@ -20,6 +20,7 @@ struct ImportTask {
     std::optional<OmeZarrVersion> version;
     bool shards = false;  ///< stores many chunks per file; version 0.5 only
     bool overwrite = false;
+    bool allows_incomplete = false;  ///< gives voxels that cannot be read the lowest value of their type, or NaN
     int threads = 0;
     int64_t budget_host_mib = 0;  ///< memory that the import may take; 0: three quarters of the machine's memory
 

@@ -164,6 +164,7 @@ class Usage(ErrorTest):
                            says=["--mask and --offset are both", "expected two names"])
         self.assertFalse(mask.exists())
 
+    # Kind (Slices): an export into the folder of slices that is read
     def test_no_output_replaces_what_is_read(self):
         volume = Volume.noise((8, 8, 8), seed=1)
         scan = self.folder / "scan.nrrd"

@@ -16,6 +16,85 @@ def voxels_of(chunk):
             if (x // CHUNK, y // CHUNK, z // CHUNK) == chunk]
 
 
+def write_aborted_ome_tiff(path, size, slices):
+    """An OME-TIFF of 8 bits that describes `size` voxels, but ends after `slices`: a page each."""
+    xml = (f'<?xml version="1.0"?><OME><Image><Pixels DimensionOrder="XYZCT" Type="uint8" SizeX="{size[0]}" '
+           f'SizeY="{size[1]}" SizeZ="{size[2]}" SizeC="1" SizeT="1" PhysicalSizeX="2" PhysicalSizeY="2" '
+           'PhysicalSizeZ="3"><TiffData/></Pixels></Image></OME>').encode() + b"\0"
+    content, link = bytearray(b"II*\0" + bytes(4) + xml + bytes(len(xml) % 2)), 4
+    for voxels in slices:
+        at = len(content)
+        content += voxels + bytes(len(voxels) % 2)
+        tags = [(256, 4, 1, size[0]), (257, 4, 1, size[1]), (258, 3, 1, 8), (259, 3, 1, 1), (262, 3, 1, 1)]
+        tags += [(270, 2, len(xml), 8)] if link == 4 else []
+        tags += [(273, 4, 1, at), (277, 3, 1, 1), (278, 4, 1, size[1]), (279, 4, 1, len(voxels))]
+        struct.pack_into("<I", content, link, len(content))
+        content += struct.pack("<H", len(tags)) + b"".join(struct.pack("<HHII", *tag) for tag in tags)
+        link = len(content)
+        content += bytes(4)
+    path.write_bytes(content)
+    return path
+
+
+class AbortedTiff(CliTest):
+    SIZE, THERE = (20, 16, 12), 7
+    REASON = "lacks the page of slice 8, which its OME-XML names; expected a complete file"
+    LOST = 20 * 16 * 5
+
+    def setUp(self):
+        super().setUp()
+        width, height, _ = self.SIZE
+        self.slices = [bytes(40 + (3 * x + 5 * y + 7 * z) % 160 for y in range(height) for x in range(width))
+                       for z in range(self.THERE)]
+        self.scan = write_aborted_ome_tiff(self.folder / "a.ome.tif", self.SIZE, self.slices)
+
+    def check_said(self, arguments, allowed=("--allow-incomplete",)):
+        """Refused with the reason and the option, and done with it; returns what is printed."""
+        self.check_refused(*arguments, says=[self.REASON, "--allow-incomplete"])
+        result = self.check(*arguments, *allowed, "--json")
+        self.assertIn(f"{self.LOST} voxels cannot be read", result.stderr)
+        report = json.loads(result.stdout)
+        self.assertEqual((report["complete"], report["voxels_not_read"]), (False, self.LOST))
+        return report
+
+    # Kind (TIFF): an aborted OME-TIFF, from description to annotation
+    def test_what_is_there_is_described_drawn_imported_and_annotated(self):
+        info = self.check_said(["info", self.scan])
+        self.assertEqual((info["min"], info["max"]), (min(min(s) for s in self.slices), max(max(s) for s in self.slices)))
+        self.check_said(["render", self.scan, "-o", self.folder / "a.png", "--size", "24x20"])
+        project = self.folder / "project"
+        imported = self.check_said(["import", self.scan, project])
+        self.assertTrue(any("have the lowest value" in warning for warning in imported["warnings"]))
+        # The project is readable, and remembers what it lacks.
+        info = self.check_json("info", project, "--exact")
+        self.assertIs(info["complete"], True)
+        self.assertTrue(any(f"{self.LOST} voxels cannot be read" in warning for warning in info["warnings"]))
+        self.assertEqual(info["size"], list(self.SIZE))
+        script = self.write_script("s.jsonl", [
+            {"op": "paint", "brush": "fill", "region": "box", "group": 2, "threshold": 1, "radius": 8,
+             "path": [[8.5, 8.5, 6.5]]}, {"op": "save"}])
+        session = self.write_session(volume={"path": self.scan.name})
+        self.check_refused("annotate", session, "--script", script,
+                           says=[self.REASON, "shvr import --allow-incomplete makes a project of what can be read"])
+        painted = self.check_json("annotate", project, "--script", script)
+        # The box has 17 x 16 x 11 voxels, since slices are half as far apart again; the rest of it cannot be read.
+        self.assertEqual(painted["voxels_changed"], 17 * 16 * (self.THERE - 1))
+
+    def test_an_import_of_a_part_is_never_taken_for_one_of_all(self):
+        project, part = self.folder / "p", self.folder / "p.part"
+        self.check_refused("import", self.scan, project, says=["what is done is kept"])
+        self.assertTrue(part.exists())
+        self.assertIs(self.check_json("import", self.scan, project, "--allow-incomplete")["resumed"], False)
+        self.assertFalse(part.exists())
+        # The readable part alone is a whole volume.
+        crop = self.check_json("import", self.scan, self.folder / "c", "--crop", f"0,0,0,20,16,{self.THERE}",
+                               "--allow-incomplete")
+        self.assertEqual((crop["complete"], crop["voxels_not_read"]), (True, 0))
+        self.check_refused("import", self.scan, self.folder / "d", "--allow-incomplete", "--blur", "1", status=2,
+                           says=["--allow-incomplete is given with --blur; expected no preparation but --crop"])
+        self.assertFalse((self.folder / "d").exists())
+
+
 class Incomplete(CliTest):
     def write_zarr(self, name, volume):
         """As another program writes it: zlib chunks, no statistics of ours."""

@@ -283,8 +283,9 @@ Opened open(const std::string& path, const Common& common, LongWork& work, Work:
             const CheckSession& check)
 {
     std::unique_ptr<Renderer> renderer;
-    std::shared_ptr<Gaps> gaps;
-    if (common.allows_incomplete) gaps.reset(new Gaps(gaps_of(*common.allows_incomplete, OptionNames::command_line)));
+    const std::shared_ptr<Gaps> gaps(new Gaps(
+        common.allows_incomplete ? gaps_of(*common.allows_incomplete, OptionNames::command_line)
+                                 : Gaps("shvr import --allow-incomplete makes a project of what can be read")));
     OpeningOptions options{.measure = {.progress = work.begin("opening " + path), .gaps = gaps.get()}};
     options.before_reading = [&](const Session& session, const VolumeSource& source) {
         if (check) check(session, source.info());
@@ -310,10 +311,8 @@ Opened open(const std::string& path, const Common& common, LongWork& work, Work:
     warn(opened.warnings, common);
     warn_of_losses(session.losses);
     if (opening.only_look) warn_of_holder(opened.session.journal_path, common);
-    if (gaps) {
-        const auto readable = std::make_shared<Readable>(opened.source, gaps);
-        opened.source = std::shared_ptr<const VolumeSource>(readable, &readable->source);
-    }
+    const auto readable = std::make_shared<Readable>(opened.source, gaps);
+    opened.source = std::shared_ptr<const VolumeSource>(readable, &readable->source);
     opened.renderer->load(opened.source, session.statistics, opened.session.render,
                           shows_occlusion(opened.session.light), work.begin("loading " + path));
     warn_of_gaps(opened, path, common);

@@ -84,12 +84,11 @@ struct Opened {
     std::unique_ptr<Renderer> renderer;
     std::unique_ptr<Annotator> annotator;
     std::filesystem::path project;     ///< path of its session's file; empty for a bare volume
-    std::shared_ptr<const Gaps> gaps;  ///< unreadable parts found so far, while bricks are read; null: the command
-                                       ///< needs every voxel
+    std::shared_ptr<const Gaps> gaps;  ///< unreadable parts found so far, while bricks are read
     std::string gaps_told{};           ///< already printed by `warn_of_gaps`
 
-    bool is_whole() const { return !gaps || gaps->empty(); }
-    int64_t voxels_not_read() const { return gaps ? gaps->voxels() : 0; }
+    bool is_whole() const { return gaps->empty(); }
+    int64_t voxels_not_read() const { return gaps->voxels(); }
 };
 /// Refuses volumes that are too large for the budgets before reading voxels, and unreadable ones unless
 /// `common.allows_incomplete`.

@@ -113,6 +113,8 @@ void run_import(const ImportCommandOptions& options)
            {"megabytes_per_second", result.megabytes_per_second},
            {"peak_rss_mib", peak_rss_mib()},
            {"resumed", report.was_resumed},
+           {"complete", report.voxels_not_read == 0},
+           {"voxels_not_read", report.voxels_not_read},
            {"warnings", report.warnings}});
 }
 
@@ -159,6 +161,9 @@ void add_import(CLI::App& program)
                       "With --ome-zarr 0.5: up to 512 chunks in a file, for storage that dislikes many small files");
     command->add_flag("--overwrite", options->task.overwrite,
                       "Replace the project PROJECT, with all annotations in it, once the new one is complete");
+    add_incomplete_option(*command, options->task.allows_incomplete,
+                          "Give voxels that cannot be read the lowest value of their type, or NaN, with a warning that "
+                          "the project keeps, instead of failing");
     command->add_option("--threads", options->common.threads, "Worker threads; 0: one per core")
         ->check(CLI::Range(0, 1024));
     add_host_budget_option(*command, options->common,
