@@ -42,6 +42,7 @@ MAY_INCLUDE = {
     "engine/annotation/patterns": "engine/base engine/annotation/trace engine/annotation/measures",
     "engine/annotation/files": "engine/base engine/volume engine/annotation engine/annotation/trace engine/formats "
     "engine/formats/export engine/formats/zarr engine/projects shaders",
+    "engine/annotation/operations": "engine/base engine/volume engine/components engine/annotation engine/annotation/trace",
     "engine/annotation/script": "engine/base engine/annotation engine/annotation/trace",
     "engine/annotation/writers": "engine/base",
     "engine/annotation/work": "engine/base engine/volume engine/annotation engine/annotation/files "
@@ -106,7 +107,7 @@ MAY_INCLUDE = {
     "ui": "engine/base engine/gpu engine/live haptics engine/workbench engine/workbench/models engine/workbench/sight "
     "engine/workbench/edits engine/workbench/bindings ui/panels",
     "tests": "*",
-    "tests/reference": "engine/annotation",
+    "tests/reference": "engine/annotation engine/annotation/operations",
     "tools/report": "engine/base engine/pages",
     "tools/bench": "engine/base engine/annotation engine/bricks engine/components engine/pages engine/projects engine/session "
     "tests/reference tools/golden tools/report",

@@ -1,0 +1,168 @@
+#include "engine/annotation/operations/mask_edit.h"
+
+#include <algorithm>
+
+#include "engine/base/error.h"
+#include "engine/base/text.h"
+#include "engine/volume/voxel_numbers.h"
+
+namespace shvr {
+
+namespace {
+
+constexpr MaskBrick UNPAINTED{};
+/// The journal takes records of 1 GiB.
+constexpr uint64_t MAX_BYTES = uint64_t{1} << 30;
+
+std::string named(uint8_t group, const GroupNames& name_of)
+{
+    if (group == 0) return "unpainted";
+    const std::string number = sentence("group ", int(group)), name = name_of ? name_of(group) : std::string();
+    return name.empty() || name == number ? number : sentence(number, " (", name, ')');
+}
+
+std::string voxels_in_words(int64_t voxels)
+{
+    return counted(voxels, "voxel");
+}
+
+std::string joined(const std::vector<std::string>& items)
+{
+    std::string list;
+    for (size_t i = 0; i < items.size(); ++i) list += (i == 0 ? "" : i + 1 < items.size() ? ", " : " and ") + items[i];
+    return list;
+}
+
+/// The most frequent changes of group, each with its number of voxels.
+std::string moved_in_words(const OperationResult& result, const GroupNames& name_of)
+{
+    constexpr size_t MOST = 4;
+    std::vector<std::pair<std::pair<uint8_t, uint8_t>, int64_t>> moved(result.moved.begin(), result.moved.end());
+    std::ranges::stable_sort(moved, std::ranges::greater(), [](const auto& each) { return each.second; });
+    std::vector<std::string> items;
+    int64_t rest = 0;
+    for (const auto& [groups, voxels] : moved) {
+        const auto& [before, after] = groups;
+        const std::string many = voxels_in_words(voxels);
+        if (items.size() == MOST)
+            rest += voxels;
+        else if (after == 0)
+            items.push_back(sentence(many, " of ", named(before, name_of), " erased"));
+        else if (before == 0)
+            items.push_back(sentence(many, " painted in ", named(after, name_of)));
+        else
+            items.push_back(sentence(many, " of ", named(before, name_of), " moved to ", named(after, name_of)));
+    }
+    if (rest > 0) items.push_back(sentence(rest, " more"));
+    return joined(items);
+}
+
+std::string kept_in_words(const OperationResult& result, const GroupNames& name_of)
+{
+    std::string words;
+    for (const auto& [group, voxels] : result.kept_locked)
+        words += sentence("; ", named(group, name_of), " is locked, so ", voxels_in_words(voxels), " stayed");
+    if (result.kept_by_limits > 0)
+        words += sentence("; the limits kept ", voxels_in_words(result.kept_by_limits), " as ",
+                          result.kept_by_limits == 1 ? "it was" : "they were");
+    return words;
+}
+
+}  // namespace
+
+std::string sentence_of(const OperationResult& result, const std::string& title, const GroupNames& name_of)
+{
+    const std::string note = result.note.empty() ? "" : "; " + result.note, kept = kept_in_words(result, name_of);
+    return sentence(title, ": ", result.voxels == 0 ? "nothing changed" : moved_in_words(result, name_of), note, kept);
+}
+
+MaskEdit::MaskEdit(const OperationInput& input, const OperationLimits& limits) : input_(input), limits_(limits)
+{
+    SHVR_CHECK(input.mask.size() == input.volume.size);
+}
+
+const VolumeSource& MaskEdit::source() const
+{
+    if (!input_.source) fail("the operation needs intensities, and there are none here");
+    return *input_.source;
+}
+
+const MaskBrick& MaskEdit::read(int64_t brick)
+{
+    ++result_.bricks_read;
+    const MaskBrick* const held = mask().brick(brick).get();
+    return held ? *held : UNPAINTED;
+}
+
+bool MaskEdit::may_change(int64_t brick) const
+{
+    return !limits_.box || meet(mask().box_of(brick), *limits_.box);
+}
+
+bool MaskEdit::is_within(int64_t brick, size_t index)
+{
+    const VoxelBox box = mask().box_of(brick);
+    const Size3 extent = box.size();
+    if (intensities_of_ != brick) {
+        const VoxelType type = input_.volume.type;
+        std::vector<std::byte> voxels(size_t(extent.x * extent.y * extent.z) * bytes_of(type));
+        source().read(box, voxels);
+        intensities_.resize(size_t(extent.x * extent.y * extent.z));
+        load_voxels(type, voxels.data(), intensities_);
+        intensities_of_ = brick;
+        ++result_.bricks_of_intensities;
+    }
+    const double value = intensities_[size_t(index_of(position_of(int64_t(index), Size3(BRICK_SIDE)), extent))];
+    return value >= limits_.within->x && value <= limits_.within->y;
+}
+
+bool MaskEdit::changes(int64_t brick, size_t index, uint8_t held, uint8_t wanted)
+{
+    if (input_.locked[held] || input_.locked[wanted]) {
+        ++result_.kept_locked[input_.locked[held] ? held : wanted];
+        return false;
+    }
+    if ((limits_.only_unpainted && held != 0) || (limits_.inside && *limits_.inside != held) ||
+        (limits_.within && !is_within(brick, index))) {
+        ++result_.kept_by_limits;
+        return false;
+    }
+    return true;
+}
+
+void MaskEdit::want(int64_t brick, const MaskBrick& wanted)
+{
+    const MaskBrick* const painted = mask().brick(brick).get();
+    const MaskBrick& held = painted ? *painted : UNPAINTED;
+    if (!may_change(brick) || held == wanted) return;
+    VoxelBox box = mask().box_of(brick);
+    const Size3 corner = box.lower;
+    if (limits_.box) box = {glm::max(box.lower, limits_.box->lower), glm::min(box.upper, limits_.box->upper)};
+    MaskBrickChange change{.brick = brick, .runs = {}};
+    for (int64_t z = box.lower.z; z < box.upper.z; ++z)
+        for (int64_t y = box.lower.y; y < box.upper.y; ++y) {
+            const size_t row = size_t(index_of(Size3(0, y - corner.y, z - corner.z), Size3(BRICK_SIDE)));
+            for (size_t i = row + size_t(box.lower.x - corner.x); i < row + size_t(box.upper.x - corner.x); ++i) {
+                if (held[i] == wanted[i] || !changes(brick, i, held[i], wanted[i])) continue;
+                append_run(change.runs, i, i, held[i], wanted[i]);
+                ++result_.moved[{held[i], wanted[i]}];
+                ++result_.voxels;
+            }
+        }
+    if (change.runs.empty()) return;
+    change.runs.shrink_to_fit();  // the history keeps it
+    bytes_ += change.runs.size() * sizeof(MaskRun);
+    if (bytes_ > MAX_BYTES)
+        fail("the operation changes more than one step can hold (", MAX_BYTES,
+             " bytes); expected less: limit it to a box");
+    ++result_.bricks_written;
+    result_.changes.push_back(std::move(change));
+}
+
+OperationResult MaskEdit::take()
+{
+    std::ranges::sort(result_.changes, {}, &MaskBrickChange::brick);
+    return std::move(result_);
+}
+
+}  // namespace shvr

@@ -1,0 +1,77 @@
+#pragma once
+// Collects what an operation wants to change, brick by brick, and decides which voxels may: locks, limits and the
+// volume's border apply here and nowhere else. The result is the records of one undoable step, and counts of the work.
+// One thread.
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/annotation/brush.h"
+#include "engine/annotation/mask.h"
+#include "engine/annotation/operations/operation_limits.h"
+#include "engine/annotation/stroke_result.h"
+#include "engine/annotation/trace/tracing.h"
+#include "engine/volume/source.h"
+
+namespace shvr {
+
+/// What operations read. Bricks of a mask are immutable, so a copy of a mask may be read on another thread.
+struct OperationInput {
+    const Mask& mask;
+    const VolumeInfo& volume;
+    const VolumeSource* source = nullptr;  ///< intensities, with density offsets; null: none can be read
+    const TraceGraph* trace = nullptr;     ///< null: there is none
+    GroupSet locked{};
+};
+
+struct OperationResult {
+    std::vector<MaskBrickChange> changes{};  ///< in ascending order of bricks
+    int64_t voxels = 0;                      ///< that change their group
+    /// Voxels by their groups before and after.
+    std::map<std::pair<uint8_t, uint8_t>, int64_t> moved{};
+    StrokeResult::ByGroup kept_locked{};  ///< voxels that stay, because their group or the new one (the key) is locked
+    int64_t kept_by_limits = 0;           ///< voxels that stay because of OperationLimits
+    std::string note{};                   ///< what the operation found, as in "3 holes"
+    /// Work: bricks of the mask looked at, each time that one is; bricks changed; bricks of intensities read.
+    int64_t bricks_read = 0, bricks_written = 0, bricks_of_intensities = 0;
+};
+
+/// "Fill holes: 120 voxels were painted in group 3 (wood); 7 voxels of group 2 are locked and stayed".
+std::string sentence_of(const OperationResult& result, const std::string& title, const GroupNames& name_of);
+
+class MaskEdit {
+public:
+    MaskEdit(const OperationInput& input, const OperationLimits& limits);
+
+    const Mask& mask() const { return input_.mask; }
+    const OperationInput& input() const { return input_; }
+    const OperationLimits& limits() const { return limits_; }
+    /// Fails if the input has none.
+    const VolumeSource& source() const;
+    void count_intensities(int64_t bricks) { result_.bricks_of_intensities += bricks; }
+    /// A brick of the mask, all zeros if unpainted; counted.
+    const MaskBrick& read(int64_t brick);
+    /// Whether any voxel of the brick lies in the limits' box; if not, wanting it has no effect.
+    bool may_change(int64_t brick) const;
+    /// Changes the voxels of a brick to `wanted`, as far as they may change. Each brick at most once.
+    void want(int64_t brick, const MaskBrick& wanted);
+    void note(std::string text) { result_.note = std::move(text); }
+    OperationResult take();
+
+private:
+    bool is_within(int64_t brick, size_t index);
+    bool changes(int64_t brick, size_t index, uint8_t held, uint8_t wanted);
+
+    const OperationInput& input_;
+    const OperationLimits& limits_;
+    OperationResult result_;
+    int64_t intensities_of_ = -1;  ///< the brick whose intensities are in `intensities_`
+    std::vector<double> intensities_;
+    uint64_t bytes_ = 0;
+};
+
+}  // namespace shvr

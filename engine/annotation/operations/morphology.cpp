@@ -1,0 +1,129 @@
+// Operations by distance: grow, shrink, open, close and hollow a group.
+
+#include "engine/annotation/operations/group_bricks.h"
+#include "engine/annotation/operations/run_operation.h"
+#include "engine/annotation/operations/voxels_near.h"
+
+namespace shvr {
+
+namespace {
+
+/// a with those of b, or without those.
+BrickSet united(BrickSet a, const BrickSet& b)
+{
+    for (const auto& [brick, bits] : b) {
+        BrickBits& sum = a[brick];
+        for (size_t row = 0; row < bits.size(); ++row) sum[row] |= bits[row];
+    }
+    return a;
+}
+BrickSet without(BrickSet a, const BrickSet& b)
+{
+    for (auto& [brick, bits] : a)
+        if (const auto found = b.find(brick); found != b.end())
+            for (size_t row = 0; row < bits.size(); ++row) bits[row] &= ~found->second[row];
+    std::erase_if(a, [](const auto& each) { return is_empty(each.second); });
+    return a;
+}
+
+std::vector<int64_t> bricks_of(const BrickSet& set)
+{
+    std::vector<int64_t> bricks;
+    for (const auto& [brick, bits] : set) bricks.push_back(brick);
+    return bricks;
+}
+
+BrickSet grown(const BrickSet& set, const Reach& reach, const Progress& progress)
+{
+    const std::vector<int64_t> bricks = bricks_near(set, reach);
+    return voxels_near(set, false, bricks, reach, progress);
+}
+
+/// The voxels of the set within reach of the volume outside it.
+BrickSet rim_of(const BrickSet& set, const Reach& reach, const Progress& progress)
+{
+    const BrickSet near = voxels_near(set, true, bricks_of(set), reach, progress);
+    return without(set, without(set, near));
+}
+
+BrickSet shrunk(const BrickSet& set, const Reach& reach, const Progress& progress)
+{
+    return without(set, rim_of(set, reach, progress));
+}
+
+/// A group as a set, changed by `change`, and wanted in place of what it was.
+template <class Change>
+void replace(int64_t group, MaskEdit& edit, const Progress& progress, const Change& change)
+{
+    BrickSet before;
+    for_each_brick(edit.mask(), part_of(progress, 0.0, 0.1), [&](int64_t brick) {
+        const BrickBits bits = bits_of(edit.read(brick), uint8_t(group));
+        if (!is_empty(bits)) before.emplace(brick, bits);
+    });
+    const BrickSet after = change(before, part_of(progress, 0.1, 0.8));
+    for_each_brick(bricks_of(united(before, after)), part_of(progress, 0.8, 1.0), [&](int64_t brick) {
+        if (!edit.may_change(brick)) return;
+        MaskBrick wanted = edit.read(brick);
+        const auto found = after.find(brick);
+        for (size_t i = 0; i < wanted.size(); ++i)
+            if (found != after.end() && (found->second[i / 32] >> (i % 32) & 1u) != 0)
+                wanted[i] = uint8_t(group);
+            else if (wanted[i] == group)
+                wanted[i] = 0;
+        edit.want(brick, wanted);
+    });
+}
+
+Reach reach_of(const MaskEdit& edit, double distance)
+{
+    return {edit.mask(), edit.input().volume.spacing, distance};
+}
+
+}  // namespace
+
+void perform(const GrowOp& op, MaskEdit& edit, const Progress& progress)
+{
+    const Reach reach = reach_of(edit, op.distance);
+    replace(op.group, edit, progress, [&](const BrickSet& group, const Progress& part) {
+        std::vector<int64_t> bricks = bricks_near(group, reach);
+        std::erase_if(bricks, [&](int64_t brick) { return !edit.may_change(brick); });
+        return united(group, voxels_near(group, false, bricks, reach, part));
+    });
+}
+
+void perform(const ShrinkOp& op, MaskEdit& edit, const Progress& progress)
+{
+    replace(op.group, edit, progress, [&](const BrickSet& group, const Progress& part) {
+        return shrunk(group, reach_of(edit, op.distance), part);
+    });
+}
+
+void perform(const OpenOp& op, MaskEdit& edit, const Progress& progress)
+{
+    const Reach reach = reach_of(edit, op.distance);
+    replace(op.group, edit, progress, [&](const BrickSet& group, const Progress& part) {
+        return grown(shrunk(group, reach, part_of(part, 0.0, 0.5)), reach, part_of(part, 0.5, 1.0));
+    });
+}
+
+void perform(const CloseOp& op, MaskEdit& edit, const Progress& progress)
+{
+    const Reach reach = reach_of(edit, op.distance);
+    replace(op.group, edit, progress, [&](const BrickSet& group, const Progress& part) {
+        return shrunk(grown(group, reach, part_of(part, 0.0, 0.5)), reach, part_of(part, 0.5, 1.0));
+    });
+}
+
+void perform(const HollowOp& op, MaskEdit& edit, const Progress& progress)
+{
+    const Reach reach = reach_of(edit, op.side == HollowOp::Side::both ? 0.5 * op.wall : op.wall);
+    replace(op.group, edit, progress, [&](const BrickSet& group, const Progress& part) {
+        BrickSet wall;
+        if (op.side != HollowOp::Side::out) wall = rim_of(group, reach, part_of(part, 0.0, 0.5));
+        if (op.side != HollowOp::Side::in)
+            wall = united(std::move(wall), without(grown(group, reach, part_of(part, 0.5, 1.0)), group));
+        return wall;
+    });
+}
+
+}  // namespace shvr

@@ -1,0 +1,221 @@
+#pragma once
+// The operations on whole groups: the parameters of each, and a table with one row for each. Scripts, actions, palette,
+// log and documentation follow from the table. How to add one: README.md.
+
+#include <array>
+#include <tuple>
+#include <type_traits>
+#include <variant>
+
+#include "engine/annotation/operations/operation_limits.h"
+
+namespace shvr {
+
+/// Set operations on two groups. A voxel has one group, so whatever `group` gains `with` loses, and two groups share
+/// no voxel.
+struct CombineOp {
+    enum class How { add, subtract, intersect, copy, move, swap };
+    int64_t group = 1;
+    int64_t with = 2;
+    How how = How::add;
+    OperationLimits limits{};
+};
+inline constexpr Spelling<CombineOp::How> COMBINATIONS[] = {
+    {CombineOp::How::add, "add"},   {CombineOp::How::subtract, "subtract"}, {CombineOp::How::intersect, "intersect"},
+    {CombineOp::How::copy, "copy"}, {CombineOp::How::move, "move"},         {CombineOp::How::swap, "swap"}};
+constexpr std::span<const Spelling<CombineOp::How>> spellings_of(CombineOp::How)
+{
+    return COMBINATIONS;
+}
+
+/// Connected parts of a group: keeps some and erases the others, or gives each part a group of its own, or both.
+struct IslandsOp {
+    enum class Keep { all, largest, at_least, at };
+    int64_t group = 1;
+    Keep keep = Keep::all;
+    std::optional<int64_t> voxels{};    ///< smallest size to keep, for `at_least`; or `mm3`
+    std::optional<double> mm3{};        ///< the same as a volume
+    std::optional<glm::dvec3> at{};     ///< position in the part to keep, in voxels
+    std::optional<int64_t> split_from;  ///< group of the largest part; the next gets the next group
+    int64_t connectivity = 6;           ///< 6 or 26
+    OperationLimits limits{};
+};
+inline constexpr Spelling<IslandsOp::Keep> ISLANDS_KEPT[] = {{IslandsOp::Keep::all, "all"},
+                                                             {IslandsOp::Keep::largest, "largest"},
+                                                             {IslandsOp::Keep::at_least, "at_least"},
+                                                             {IslandsOp::Keep::at, "at"}};
+constexpr std::span<const Spelling<IslandsOp::Keep>> spellings_of(IslandsOp::Keep)
+{
+    return ISLANDS_KEPT;
+}
+
+/// Fills what the group encloses: voxels from which no path over faces outside the group leads to the volume's border.
+struct FillHolesOp {
+    int64_t group = 1;
+    OperationLimits limits{};
+};
+
+/// Operations by distance, in the unit of the volume's spacing, between centres of voxels; a distance is exact and
+/// inclusive. Beyond the volume's border is neither the group nor anything else.
+struct GrowOp {  ///< gives the group all voxels within the distance
+    int64_t group = 1;
+    double distance = 0.0;
+    OperationLimits limits{};
+};
+struct ShrinkOp {  ///< erases the group's voxels within the distance of a voxel that is not in the group
+    int64_t group = 1;
+    double distance = 0.0;
+    OperationLimits limits{};
+};
+struct OpenOp {  ///< shrinks, then grows by the same distance
+    int64_t group = 1;
+    double distance = 0.0;
+    OperationLimits limits{};
+};
+struct CloseOp {  ///< grows, then shrinks by the same distance
+    int64_t group = 1;
+    double distance = 0.0;
+    OperationLimits limits{};
+};
+/// Leaves a wall: of the group's voxels those that shrinking by `wall` would erase (in), or those instead of the group
+/// that growing would add (out), or both, each with half of the thickness.
+struct HollowOp {
+    enum class Side { in, out, both };
+    int64_t group = 1;
+    double wall = 0.0;
+    Side side = Side::in;
+    OperationLimits limits{};
+};
+inline constexpr Spelling<HollowOp::Side> HOLLOW_SIDES[] = {
+    {HollowOp::Side::in, "in"}, {HollowOp::Side::out, "out"}, {HollowOp::Side::both, "both"}};
+constexpr std::span<const Spelling<HollowOp::Side>> spellings_of(HollowOp::Side)
+{
+    return HOLLOW_SIDES;
+}
+
+/// Gives the group all voxels whose intensities lie between two values, both inclusive; NaN lies in no range.
+struct ThresholdOp {
+    int64_t group = 1;
+    std::optional<double> from{};  ///< null: no lower bound
+    std::optional<double> to{};    ///< null: no upper bound
+    OperationLimits limits{};
+    static constexpr bool READS_INTENSITIES = true, PAINTS_ONLY = true;
+};
+
+/// The texts of an operation, and how its parameters are visited: `fields(f, op)`, f as in engine/session/fields.h.
+struct OperationRow {
+    const char* id = "";       ///< never changes: files refer to it
+    const char* title = "";    ///< "Fill holes"
+    const char* meaning = "";  ///< one sentence
+    const char* alias = "";    ///< another name in scripts: actions have that id for something else
+};
+template <class KindOfRow, class VisitFields>
+struct FullOperationRow : OperationRow {
+    using Kind = KindOfRow;
+    VisitFields fields;
+};
+template <class Kind, class VisitFields>
+constexpr auto operation(const OperationRow& texts, VisitFields fields)
+{
+    return FullOperationRow<Kind, VisitFields>{texts, fields};
+}
+
+inline constexpr auto GROUP_FIELD = [](auto& f, int64_t& group) {
+    f.whole("group", group, 1, 255, {.meaning = "the group", .is_required = true});
+};
+
+inline const NumberRange OPERATION_DISTANCE{1e-12, 1e12, "a number above 0, up to 1e12"};
+inline constexpr auto DISTANCE_FIELDS = [](auto& f, auto& op) {
+    GROUP_FIELD(f, op.group);
+    f.number("distance", op.distance, OPERATION_DISTANCE,
+             {.meaning = "in the unit of the volume's spacing, inclusive", .is_required = true});
+};
+
+inline constexpr auto OPERATIONS = std::tuple{
+    operation<CombineOp>(
+        {"combine", "Combine groups", "adds, subtracts, intersects, copies, moves or swaps the voxels of two groups"},
+        [](auto& f, CombineOp& op) {
+            GROUP_FIELD(f, op.group);
+            f.whole("with", op.with, 1, 255, {.meaning = "the other group", .is_required = true});
+            f.choice("how", op.how, {.meaning = "how they are combined", .is_required = true});
+            f.check("with", op.with != op.group, "another group than group");
+        }),
+    operation<IslandsOp>(
+        {"islands", "Islands", "keeps the largest, the large or one of a group's connected parts, or splits them"},
+        [](auto& f, IslandsOp& op) {
+            using Keep = IslandsOp::Keep;
+            GROUP_FIELD(f, op.group);
+            f.choice("keep", op.keep, {"the parts that stay; the others are erased"});
+            f.any_whole("voxels", op.voxels, 1, int64_t{1} << 53, {"fewest voxels of a part that at_least keeps"});
+            f.number("mm3", op.mm3, {0.0, 1e30}, {"smallest volume of a part that at_least keeps", "mm3"});
+            f.vector("at", op.at, {-1e12, 1e12}, {"position in the part to keep", "voxels"});
+            f.any_whole("split_from", op.split_from, 1, 255,
+                        {"group of the largest part; the next ones get the groups after it"});
+            f.whole("connectivity", op.connectivity, 6, 26, {"6 or 26"});
+            f.check("connectivity", op.connectivity == 6 || op.connectivity == 26, "6 or 26");
+            f.check("keep", op.keep != Keep::all || op.split_from.has_value(),
+                    "largest, at_least or at, unless split_from is given");
+            f.check("voxels",
+                    (op.keep == Keep::at_least) == (op.voxels.has_value() != op.mm3.has_value()) &&
+                        (op.keep == Keep::at_least || (!op.voxels && !op.mm3)),
+                    "either voxels or mm3 with \"keep\":\"at_least\", and neither without");
+            f.check("at", (op.keep == Keep::at) == op.at.has_value(), "a position with \"keep\":\"at\", and only then");
+        }),
+    operation<ThresholdOp>({"threshold", "Threshold", "gives a group all voxels of a range of intensities"},
+                           [](auto& f, ThresholdOp& op) {
+                               GROUP_FIELD(f, op.group);
+                               f.number("from", op.from, any_number(), {"lowest intensity"});
+                               f.number("to", op.to, any_number(), {"highest intensity"});
+                               f.check("from", op.from || op.to, "a number, unless to is given");
+                               f.check("to", !op.from || !op.to || *op.from <= *op.to, "from at most");
+                           }),
+    operation<FillHolesOp>({"fill_holes", "Fill holes", "fills what a group encloses on all sides"},
+                           [](auto& f, FillHolesOp& op) { GROUP_FIELD(f, op.group); }),
+    operation<GrowOp>({"grow", "Grow", "gives a group all voxels within a distance of it"}, DISTANCE_FIELDS),
+    operation<ShrinkOp>({"shrink", "Shrink", "erases what is within a distance of the outside of a group"},
+                        DISTANCE_FIELDS),
+    operation<OpenOp>({"open_group", "Open", "shrinks and grows a group again, which removes thin parts", "open"},
+                      DISTANCE_FIELDS),
+    operation<CloseOp>({"close", "Close", "grows and shrinks a group again, which closes gaps"}, DISTANCE_FIELDS),
+    operation<HollowOp>({"hollow", "Hollow", "leaves only a wall of a group"},
+                        [](auto& f, HollowOp& op) {
+                            GROUP_FIELD(f, op.group);
+                            f.number(
+                                "wall", op.wall, OPERATION_DISTANCE,
+                                {.meaning = "thickness, in the unit of the volume's spacing", .is_required = true});
+                            f.choice("side", op.side, {"on which side of the group's surface the wall lies"});
+                        }),
+};
+
+/// One of the rows' Kinds.
+using GroupOperation = decltype(std::apply(
+    [](const auto&... rows) { return std::variant<typename std::remove_cvref_t<decltype(rows)>::Kind...>(); },
+    OPERATIONS));
+
+template <class Kind>
+inline constexpr bool IS_GROUP_OPERATION = std::is_constructible_v<GroupOperation, Kind>;
+
+inline constexpr auto OPERATION_ROWS =
+    std::apply([](const auto&... rows) { return std::array{static_cast<const OperationRow&>(rows)...}; }, OPERATIONS);
+
+inline const OperationRow& row_of(const GroupOperation& operation)
+{
+    return OPERATION_ROWS[operation.index()];
+}
+
+/// Visits the keys of an operation: its own, then its limits.
+template <class Fields, class Kind>
+void operation_fields(Fields& f, Kind& op)
+{
+    std::apply(
+        [&](const auto&... rows) {
+            const auto visit = [&]<class Row>(const Row& row) {
+                if constexpr (std::is_same_v<typename Row::Kind, Kind>) row.fields(f, op);
+            };
+            (visit(rows), ...);
+        },
+        OPERATIONS);
+    limit_fields(f, op.limits);
+}
+
+}  // namespace shvr

@@ -1,0 +1,183 @@
+#include "tests/reference/group_operations.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace shvr::reference {
+
+std::vector<std::vector<Size3>> components_of(const DenseGroups& dense, const std::function<bool(uint8_t)>& is_in,
+                                              int64_t connectivity)
+{
+    std::vector<Size3> offsets;
+    for_each_voxel(Size3(3), [&](const Size3& step) {
+        const Size3 offset = step - int64_t{1};
+        const int64_t axes = offset.x * offset.x + offset.y * offset.y + offset.z * offset.z;
+        if (axes == 1 || (connectivity == 26 && axes > 1)) offsets.push_back(offset);
+    });
+    DenseGroups left{dense.size, {}};  // 1: in the set, and in no component yet
+    for (const uint8_t group : dense.groups) left.groups.push_back(is_in(group));
+    std::vector<std::vector<Size3>> components;
+    for_each_voxel(dense.size, [&](const Size3& start) {
+        if (left.at(start) == 0) return;
+        std::vector<Size3> voxels{start};
+        left.at(start) = 0;
+        for (size_t next = 0; next < voxels.size(); ++next)
+            for (const Size3& offset : offsets) {
+                const Size3 voxel = voxels[next] + offset;
+                if (!dense.contains(voxel) || left.at(voxel) == 0) continue;
+                left.at(voxel) = 0;
+                voxels.push_back(voxel);
+            }
+        components.push_back(std::move(voxels));
+    });
+    return components;
+}
+
+namespace {
+
+DenseGroups wanted_by(const CombineOp& op, DenseGroups dense, const DenseVolume&)
+{
+    using How = CombineOp::How;
+    for (uint8_t& voxel : dense.groups) {
+        const bool is_group = voxel == op.group, is_with = voxel == op.with;
+        if (is_with && (op.how == How::add || op.how == How::move || op.how == How::copy || op.how == How::swap))
+            voxel = uint8_t(op.group);
+        else if (is_group && (op.how == How::intersect || op.how == How::copy))
+            voxel = 0;
+        else if (is_group && op.how == How::swap)
+            voxel = uint8_t(op.with);
+    }
+    return dense;
+}
+
+DenseGroups wanted_by(const IslandsOp& op, DenseGroups dense, const DenseVolume& volume)
+{
+    using Keep = IslandsOp::Keep;
+    auto islands = components_of(
+        dense, [&](uint8_t group) { return group == op.group; }, op.connectivity);
+    std::ranges::stable_sort(islands, std::ranges::greater(), [](const auto& each) { return each.size(); });
+    int64_t next = op.split_from.value_or(op.group);
+    for (size_t i = 0; i < islands.size(); ++i) {
+        const auto voxels = double(islands[i].size());
+        bool stays = op.keep == Keep::all || (op.keep == Keep::largest && i == 0);
+        if (op.keep == Keep::at_least)
+            stays = op.voxels ? voxels >= double(*op.voxels)
+                              : voxels * volume.spacing.x * volume.spacing.y * volume.spacing.z >= *op.mm3;
+        if (op.keep == Keep::at) stays = std::ranges::find(islands[i], Size3(glm::floor(*op.at))) != islands[i].end();
+        for (const Size3& voxel : islands[i]) dense.at(voxel) = stays ? uint8_t(next) : uint8_t(0);
+        if (stays && op.split_from) ++next;
+    }
+    return dense;
+}
+
+DenseGroups wanted_by(const ThresholdOp& op, DenseGroups dense, const DenseVolume& volume)
+{
+    for (size_t i = 0; i < dense.groups.size(); ++i)
+        if (volume.intensities[i] >= op.from.value_or(-1e300) && volume.intensities[i] <= op.to.value_or(1e300))
+            dense.groups[i] = uint8_t(op.group);
+    return dense;
+}
+
+DenseGroups wanted_by(const FillHolesOp& op, DenseGroups dense, const DenseVolume&)
+{
+    const auto parts = components_of(
+        dense, [&](uint8_t group) { return group != op.group; }, 6);
+    for (const auto& part : parts) {
+        const bool reaches_border = std::ranges::any_of(part, [&](const Size3& voxel) {
+            return glm::any(glm::equal(voxel, Size3(0))) || glm::any(glm::equal(voxel, dense.size - int64_t{1}));
+        });
+        if (reaches_border) continue;
+        for (const Size3& voxel : part) dense.at(voxel) = uint8_t(op.group);
+    }
+    return dense;
+}
+
+using Set = std::vector<uint8_t>;
+
+Set set_of(const DenseGroups& dense, int64_t group)
+{
+    Set set;
+    for (const uint8_t voxel : dense.groups) set.push_back(voxel == group);
+    return set;
+}
+
+/// The voxels within the distance of a voxel whose entry is `of`.
+Set near(const Set& set, uint8_t of, const Size3& size, const glm::dvec3& spacing, double distance)
+{
+    const double most = distance * distance * (1.0 + 1e-9);
+    const Size3 reach(glm::floor(distance / spacing) + 1.0);
+    std::vector<Size3> offsets;
+    for_each_voxel(int64_t{2} * reach + int64_t{1}, [&](const Size3& step) {
+        const glm::dvec3 away = glm::dvec3(step - reach) * spacing;
+        if (glm::dot(away, away) <= most) offsets.push_back(step - reach);
+    });
+    const DenseGroups dense{size, set};
+    Set found(set.size());
+    size_t next = 0;
+    for_each_voxel(size, [&](const Size3& voxel) {
+        found[next++] = std::ranges::any_of(offsets, [&](const Size3& offset) {
+            return dense.contains(voxel + offset) && dense.at(voxel + offset) == of;
+        });
+    });
+    return found;
+}
+
+Set shrunk(Set set, const Size3& size, const glm::dvec3& spacing, double distance)
+{
+    const Set rim = near(set, 0, size, spacing, distance);
+    for (size_t i = 0; i < set.size(); ++i) set[i] = set[i] != 0 && rim[i] == 0;
+    return set;
+}
+
+DenseGroups replaced(DenseGroups dense, int64_t group, const Set& set)
+{
+    for (size_t i = 0; i < set.size(); ++i) {
+        uint8_t& voxel = dense.groups[i];
+        voxel = set[i] != 0 ? uint8_t(group) : voxel == group ? uint8_t(0) : voxel;
+    }
+    return dense;
+}
+
+DenseGroups wanted_by(const GrowOp& op, DenseGroups dense, const DenseVolume& volume)
+{
+    return replaced(dense, op.group, near(set_of(dense, op.group), 1, dense.size, volume.spacing, op.distance));
+}
+
+DenseGroups wanted_by(const ShrinkOp& op, DenseGroups dense, const DenseVolume& volume)
+{
+    return replaced(dense, op.group, shrunk(set_of(dense, op.group), dense.size, volume.spacing, op.distance));
+}
+
+DenseGroups wanted_by(const OpenOp& op, DenseGroups dense, const DenseVolume& volume)
+{
+    const Set small = shrunk(set_of(dense, op.group), dense.size, volume.spacing, op.distance);
+    return replaced(dense, op.group, near(small, 1, dense.size, volume.spacing, op.distance));
+}
+
+DenseGroups wanted_by(const CloseOp& op, DenseGroups dense, const DenseVolume& volume)
+{
+    const Set large = near(set_of(dense, op.group), 1, dense.size, volume.spacing, op.distance);
+    return replaced(dense, op.group, shrunk(large, dense.size, volume.spacing, op.distance));
+}
+
+DenseGroups wanted_by(const HollowOp& op, DenseGroups dense, const DenseVolume& volume)
+{
+    using Side = HollowOp::Side;
+    const double wall = op.side == Side::both ? op.wall / 2.0 : op.wall;
+    const Set group = set_of(dense, op.group), inner = shrunk(group, dense.size, volume.spacing, wall),
+              outer = near(group, 1, dense.size, volume.spacing, wall);
+    Set set(group.size());
+    for (size_t i = 0; i < set.size(); ++i)
+        set[i] = (op.side != Side::out && group[i] != 0 && inner[i] == 0) ||
+                 (op.side != Side::in && group[i] == 0 && outer[i] != 0);
+    return replaced(dense, op.group, set);
+}
+
+}  // namespace
+
+DenseGroups wanted(const GroupOperation& operation, const DenseGroups& before, const DenseVolume& volume)
+{
+    return std::visit([&](const auto& op) { return wanted_by(op, before, volume); }, operation);
+}
+
+}  // namespace shvr::reference
