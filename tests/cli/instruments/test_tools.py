@@ -160,5 +160,34 @@ bool first_hit(const Line line)
         self.assertIn("v is assigned", self.refused("v = at(i);", together.replace("COUNT", "lane_count")))
 
 
+class Kernels(unittest.TestCase):
+    """What shaders/compile_kernel keeps for other clones."""
+
+    def test_a_kernel_is_compiled_once_for_all_clones_and_again_for_other_sources(self):
+        folder = Path(tempfile.mkdtemp(prefix="shvr-kernels-"))
+        self.addCleanup(shutil.rmtree, folder)
+        tried = {}
+        for clone in ("one", "two", "changed"):
+            shaders = folder / clone / "shaders"
+            (shaders / "small").mkdir(parents=True)
+            shutil.copy2(ROOT / "shaders/compile_kernel", shaders)
+            (shaders / "value.h").write_text(f"const float VALUE = {3 if clone == 'changed' else 2}.0;\n")
+            kernel, made = shaders / "small/small.comp", folder / clone / "small.spv"
+            kernel.write_text("#version 460\n#extension GL_GOOGLE_include_directive : require\n#include \"../value.h\"\n"
+                              "layout(binding = 0) buffer B { float b; };\nvoid main() { b = VALUE; }\n")
+            subprocess.run([shaders / "compile_kernel", kernel, made, f"-I{shaders}", "--depfile", f"{made}.d"],
+                           check=True, env={**os.environ, "XDG_CACHE_HOME": str(folder / "cache")})
+            tried[clone] = made.read_bytes(), Path(f"{made}.d").read_text().replace(str(folder / clone), "CLONE")
+            self.assertIn("CLONE/shaders/small/small.comp", tried[clone][1])
+            self.assertIn("value.h", tried[clone][1])
+            if clone == "one":   # what the second one gets is what is kept
+                kept, = (folder / "cache/shvr-kernels").glob("*/*.spv")
+                self.assertEqual(kept.read_bytes(), tried["one"][0])
+                kept.write_bytes(b"kept")
+        self.assertEqual(tried["two"], (b"kept", tried["one"][1]))
+        self.assertNotEqual(tried["changed"][0], tried["one"][0])
+        self.assertEqual(len(list((folder / "cache/shvr-kernels").iterdir())), 2)
+
+
 if __name__ == "__main__":
     unittest.main()
