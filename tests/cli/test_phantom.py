@@ -23,7 +23,7 @@ class Phantom(CliTest):
 
     def test_every_kind_and_type(self):
         for kind in ("constant", "ramp", "sphere", "marschner_lobb", "tubes", "speckles", "fog", "checker",
-                     "chirality", "capitulum", "section"):
+                     "chirality", "capitulum", "section", "roots", "stem", "helix"):
             for voxel_type in ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"):
                 result = self.check_json("phantom", kind, "--size", 5, "--type", voxel_type, "-o", self.folder)
                 self.assertEqual(self.check_json("info", result["volume"])["type"], voxel_type)
@@ -84,6 +84,8 @@ class Phantom(CliTest):
 
     def test_truths_are_exact(self):
         for kind, options in (("tubes", ["--size", "40x30x36"]), ("speckles", ["--size", 30]),
+                              ("roots", ["--size", 48]), ("stem", ["--size", "40x40x60", "--double-tubes"]),
+                              ("helix", ["--size", 40]),
                               ("capitulum", ["--size", 40, "--florets", 34, "--gaps", 20, "--double-tubes"])):
             result = self.check_json("phantom", kind, *options, "-o", self.folder)
             _, groups = self.voxels(result["truth_mask"])
@@ -96,8 +98,14 @@ class Phantom(CliTest):
             self.assertEqual(scores["segments"][0], scores["segments"][1], kind)
 
     def test_the_section_scores_as_the_truth_of_the_thesis(self):
+        self.check_section()
+
+    def test_the_section_scores_so_with_double_tubes_too(self):
+        self.check_section("--double-tubes")
+
+    def check_section(self, *options):
         """Table 6.1, row "truth", within the tolerances of its specification."""
-        truth = self.check_json("phantom", "section", "--size", 128, "-o", self.folder)
+        truth = self.check_json("phantom", "section", "--size", 128, *options, "-o", self.folder)
         self.assertEqual(truth["sections"], {"adaxial": 2, "floret": 3, "separate": 4})
         scores = self.check_json("evaluate", "--truth-mask", truth["truth_mask"], "--mask", truth["truth_partial_mask"],
                                  "--truth-trace", truth["truth_trace"], "--trace", truth["truth_trace"])
@@ -107,11 +115,46 @@ class Phantom(CliTest):
         self.assertEqual((scores["node_out"], scores["internode_out"]), ([0, 70], [0, 71]))
         self.assertEqual((scores["segments"], scores["topological_errors"]), ([26, 26], 0))
 
+    def test_tissues_are_told_apart_so_that_paint_on_them_is_counted(self):
+        """Bleeding: painted voxels of dermal tissue, of all that are painted."""
+        stem = self.check_json("phantom", "stem", "--size", 40, "--noise", 0, "-o", self.folder)
+        self.assertEqual((stem["sections"], stem["tissues"]), ({"bundle": 1}, {"dermal": 10}))
+        size, voxels = self.voxels(stem["volume"])
+        _, bundles = self.voxels(stem["truth_mask"])
+        _, tissues = self.voxels(stem["truth_tissue_mask"])
+        self.assertEqual(sum(1 for bundle, tissue in zip(bundles, tissues) if bundle and tissue), 0)
+        for threshold, least, most in ((110, 0.3, 1), (185, 0, 0.001)):
+            painted = self.folder / "painted.mask"
+            painted.write_bytes(bytes(1 if voxel >= threshold else 0 for voxel in voxels))
+            scores = self.check_json("evaluate", "--truth-mask", stem["truth_tissue_mask"],
+                                     "--truth-group", "10=1", "--mask", painted)
+            both = scores["voxels_by_group"]
+            dermal = scores["dice"] * (both["truth"]["1"] + both["mask"]["1"]) / 2
+            counted = sum(1 for voxel, tissue in zip(voxels, tissues) if voxel >= threshold and tissue == 10)
+            self.assertAlmostEqual(dermal, counted, places=6)
+            bleeding = dermal / both["mask"]["1"]
+            self.assertTrue(least <= bleeding <= most, bleeding)
+
+    def test_a_kind_has_the_flaws_that_its_scans_usually_have(self):
+        volumes = set()
+        for options in ([], ["--gaps", 0], ["--gaps", 0, "--noise", 3]):
+            self.check("phantom", "roots", "--size", 24, *options, "-o", self.folder)
+            volumes.add((self.folder / "roots.raw").read_bytes())
+        self.assertEqual(len(volumes), 3)
+
+    def test_facts_are_written_for_machines(self):
+        head = self.check_json("phantom", "capitulum", "--size", 20, "--phyllotaxis", "lucas", "-o", self.folder)
+        self.assertAlmostEqual(head["facts"]["divergence_degrees"][0], 99.50155281, places=7)
+        helix = self.check_json("phantom", "helix", "--size", 20, "-o", self.folder)
+        self.assertEqual((helix["facts"]["turns"], helix["tissues"], helix["truth_tissue_mask"]), ([3], {}, None))
+
     def test_options_without_effect_are_refused(self):
         self.check_refused("phantom", "fog", "--noise", 5, "-o", self.folder, status=2,
                            says=["--noise does not apply to fog"])
         self.check_refused("phantom", "tubes", "--species", "bellis", "-o", self.folder, status=2,
                            says=["--species does not apply to tubes"])
+        self.check_refused("phantom", "helix", "--double-tubes", "-o", self.folder, status=2,
+                           says=["--double-tubes does not apply to helix; it is for capitulum, section and stem"])
         self.check_refused("phantom", "capitulum", "--specks", 5, "-o", self.folder, status=2, says=["specks"])
         self.assertEqual(list(self.folder.iterdir()), [])
 
@@ -120,7 +163,7 @@ class Phantom(CliTest):
         options = ([], ["--species", "bellis"], ["--species", "helianthus"], ["--stage", "b"], ["--noise", 9],
                    ["--phyllotaxis", "lucas"], ["--phyllotaxis", "bijugate"], ["--hand", "left"], ["--blur", 3],
                    ["--florets", 60], ["--double-tubes"], ["--rings", 20], ["--streaks", 20], ["--specks", 2],
-                   ["--gaps", 50], ["--falling", 50], ["--seed", 2])
+                   ["--gaps", 50], ["--falling", 50], ["--uneven", 30], ["--seed", 2])
         for given in options:
             self.check("phantom", "capitulum", "--size", 24, *given, "-o", self.folder)
             volumes.add((self.folder / "capitulum.raw").read_bytes())

@@ -28,6 +28,8 @@ struct PhantomCommandOptions {
     std::string hand = "right";
     PhantomSpec spec;
     std::vector<const CLI::Option*> of_capitulum, of_flaws;  ///< options refused for kinds without these parts
+    const CLI::Option* double_tubes = nullptr;
+    std::vector<std::pair<const CLI::Option*, double PhantomFlaws::*>> flaws;
 };
 
 /// "64" or "64x32x16"
@@ -121,6 +123,7 @@ void check_use(const PhantomCommandOptions& options)
                 throw UsageError(sentence(option->get_name(), " does not apply to ", kind, "; it is for ", of));
     };
     if (!has_flaws(kind)) refuse(options.of_flaws, "models of plants, such as capitulum");
+    if (!has_double_tubes(kind)) refuse({options.double_tubes}, "capitulum, section and stem");
     if (kind != "capitulum") refuse(options.of_capitulum, "capitulum");
 }
 
@@ -134,6 +137,9 @@ void run_phantom(const PhantomCommandOptions& options)
     spec.size = parse_volume_size(options.size);
     spec.type = *type;
     spec.left_handed = options.hand == "left";
+    const PhantomFlaws usual = usual_flaws(spec.kind);
+    for (const auto& [option, flaw] : options.flaws)
+        if (option->count() == 0) spec.flaws.*flaw = usual.*flaw;
     const Phantom phantom = make_phantom(spec);
     const VolumeInfo& info = phantom.volume->info();
 
@@ -145,10 +151,13 @@ void run_phantom(const PhantomCommandOptions& options)
     Json written = {{"volume", write_volume(folder, spec.kind, *phantom.volume, work)},
                     {"truth_mask", nullptr},
                     {"truth_partial_mask", nullptr},
+                    {"truth_tissue_mask", nullptr},
                     {"truth_trace", nullptr}};
     if (phantom.mask) written["truth_mask"] = write_volume(folder, spec.kind + "-mask", *phantom.mask, work);
     if (phantom.partial_mask)
         written["truth_partial_mask"] = write_volume(folder, spec.kind + "-partial-mask", *phantom.partial_mask, work);
+    if (phantom.tissue_mask)
+        written["truth_tissue_mask"] = write_volume(folder, spec.kind + "-tissue-mask", *phantom.tissue_mask, work);
     if (!phantom.nodes.empty()) {
         const std::filesystem::path trace = folder / (spec.kind + "-trace.graphml");
         save_trace(trace, trace_of(phantom, info), space_of(info));
@@ -163,8 +172,11 @@ void run_phantom(const PhantomCommandOptions& options)
     print({{"volume", written["volume"]},
            {"truth_mask", written["truth_mask"]},
            {"truth_partial_mask", written["truth_partial_mask"]},
+           {"truth_tissue_mask", written["truth_tissue_mask"]},
            {"truth_trace", written["truth_trace"]},
            {"sections", phantom.sections},
+           {"tissues", phantom.tissues},
+           {"facts", phantom.facts},
            {"size", {info.size.x, info.size.y, info.size.z}},
            {"type", name_of(*type)},
            {"kind", spec.kind},
@@ -194,31 +206,31 @@ void add_capitulum_options(CLI::App& command, PhantomCommandOptions& options)
     add(command.add_option("--hand", options.hand, "left: successive florets turn clockwise, seen from above"))
         ->check(CLI::IsMember({"left", "right"}));
     add(command.add_option("--florets", spec.florets, "Number of florets"))->check(CLI::Range(8, 1000));
-    options.of_capitulum.push_back(
-        command.add_flag("--double-tubes", spec.double_tubes, "Phloem next to each bundle's xylem, which is traced")
-            ->group("Flower heads (capitulum)"));
+    options.double_tubes = command.add_flag("--double-tubes", spec.double_tubes,
+                                            "Phloem next to each bundle's xylem, which is traced (capitulum, section, "
+                                            "stem)");
 }
 
 void add_flaw_options(CLI::App& command, PhantomCommandOptions& options)
 {
-    PhantomFlaws& flaws = options.spec.flaws;
-    const auto add = [&](const char* name, double& value, double most, const char* meaning) {
-        options.of_flaws.push_back(
-            command.add_option(name, value, meaning)
-                ->group("Flaws of models of plants; percent, of the contrast of veins unless stated")
-                ->check(CLI::Range(0.0, most))
-                ->capture_default_str());
+    const char* group = "Flaws of models of plants; percent, of the contrast of veins unless stated";
+    const auto add = [&](const char* name, double PhantomFlaws::*flaw, double least, double most, const char* meaning) {
+        const CLI::Option* option = command.add_option(name, options.spec.flaws.*flaw, meaning)
+                                        ->group(group)
+                                        ->check(CLI::Range(least, most))
+                                        ->capture_default_str();
+        options.of_flaws.push_back(option);
+        options.flaws.emplace_back(option, flaw);
     };
-    add("--noise", flaws.noise, 100.0, "Standard deviation of noise");
-    add("--rings", flaws.rings, 100.0, "Height of rings around the axis z");
-    add("--streaks", flaws.streaks, 100.0, "Height of straight streaks in slices");
-    add("--specks", flaws.specks, 4.0, "Voxels, of all, in bright specks");
-    add("--gaps", flaws.gaps, 100.0, "Pieces of veins, of all, with a gap, which the truth bridges");
-    add("--falling", flaws.falling, 100.0, "Intensity missing on the axis z");
-    options.of_flaws.push_back(command.add_option("--blur", flaws.blur, "Voxels over which surfaces are soft")
-                                   ->group("Flaws of models of plants; percent, of the contrast of veins unless stated")
-                                   ->check(CLI::Range(0.01, 16.0))
-                                   ->capture_default_str());
+    add("--noise", &PhantomFlaws::noise, 0.0, 100.0, "Standard deviation of noise (roots: 5)");
+    add("--rings", &PhantomFlaws::rings, 0.0, 100.0, "Height of rings around the axis z");
+    add("--streaks", &PhantomFlaws::streaks, 0.0, 100.0, "Height of straight streaks in slices");
+    add("--specks", &PhantomFlaws::specks, 0.0, 4.0, "Voxels, of all, in bright specks");
+    add("--gaps", &PhantomFlaws::gaps, 0.0, 100.0,
+        "Pieces of veins, of all, with a gap, which the truth bridges (roots: 15)");
+    add("--falling", &PhantomFlaws::falling, 0.0, 100.0, "Intensity missing on the axis z");
+    add("--uneven", &PhantomFlaws::uneven, 0.0, 100.0, "Intensity that comes and goes at most, of itself, smoothly");
+    add("--blur", &PhantomFlaws::blur, 0.01, 16.0, "Voxels over which surfaces are soft");
 }
 
 }  // namespace
@@ -235,10 +247,12 @@ void add_phantom(CLI::App& program)
         ->check(CLI::IsMember(type_names()))
         ->capture_default_str();
     command
-        ->add_option("-o,--output", options->folder,
-                     "Folder for KIND.nhdr and KIND.raw, and of a kind whose truth is known (capitulum, section, "
-                     "tubes, speckles, "
-                     "chirality) also KIND-mask.nhdr and KIND-trace.graphml; made where missing")
+        ->add_option(
+            "-o,--output", options->folder,
+            "Folder for KIND.nhdr and KIND.raw, and of a kind whose truth is known (capitulum, section, "
+            "roots, stem, helix, tubes, speckles, chirality) also KIND-mask.nhdr and KIND-trace.graphml, where "
+            "tissues have names KIND-tissue-mask.nhdr, and where bundles lie apart from the trace "
+            "KIND-partial-mask.nhdr; made where missing")
         ->required();
     add_capitulum_options(*command, *options);
     add_flaw_options(*command, *options);
@@ -246,6 +260,7 @@ void add_phantom(CLI::App& program)
     command->footer(
         "Example:\n  shvr phantom tubes --size 256 --seed 1 -o phantoms\n  shvr info phantoms/tubes.nhdr\n"
         "  shvr phantom capitulum --size 128 --species bellis --noise 5 -o phantoms\n"
+        "  shvr phantom roots --size 128 --gaps 30 -o phantoms\n"
         "  shvr phantom chirality -o phantoms    # a mark that no mirrored or exchanged axis leaves as it is");
     command->callback([options] { run_phantom(*options); });
 }

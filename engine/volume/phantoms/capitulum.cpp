@@ -37,9 +37,19 @@ public:
                 add_spokes();
         }
         add_florets();
-        if (spec_.double_tubes) add_phloem();
+        if (spec_.double_tubes) {
+            const glm::dvec3 top = middle_ + glm::dvec3(0.0, 0.0, scale_ * species_.rim);
+            for (const auto& [from, to] : std::vector(model_.links)) {
+                const ProceduralTruth::Node &a = model_.nodes[from], &b = model_.nodes[to];
+                add_phloem(model_,
+                           {.ends = {a.voxel, b.voxel}, .radii = {a.radius_voxels, b.radius_voxels}, .group = b.group},
+                           top);
+            }
+        }
         model_.sections = {{"abaxial", ABAXIAL}, {"adaxial", ADAXIAL}, {"floret", FLORET}};
+        model_.tissues = {{"dermal", DERMAL}, {"receptacle", RECEPTACLE}};
         model_.tissue = tissue();
+        model_.facts = facts();
         return std::move(model_);
     }
 
@@ -63,13 +73,14 @@ private:
     bool reaches_axis() const { return species_.adaxial_inner < 0.2; }
 
     void add_abaxial();
+    void add_bract(double turns, size_t base, size_t tip);
     void add_spokes();
     void add_joins(const std::vector<std::vector<Vein>>& spokes);
     void add_net();
     void add_florets();
     void add_floret(int k);
-    void add_phloem();
-    std::function<double(const glm::dvec3&)> tissue() const;
+    std::function<Tissue(const glm::dvec3&)> tissue() const;
+    std::map<std::string, std::vector<double>> facts() const;
 
     std::optional<size_t> nearest(const std::vector<Vein>& veins, const glm::dvec3& voxel) const
     {
@@ -107,9 +118,29 @@ void Capitulum::add_abaxial()
             node = model_.add_next(node, place(turns, rho, abaxial_height(species_, rho)), thick, ABAXIAL);
             if (rho > 0.85 && rho < 0.95) abaxial_rim_.push_back({node, rho});
         }
-        for (const glm::dvec2 bract : {glm::dvec2(1.05, 0.04), {1.10, 0.3}})
+        const size_t base = node;
+        for (const glm::dvec2& bract : stage_.bract)
             node = model_.add_next(node, place(turns, bract.x, species_.rim + bract.y), thick, ABAXIAL);
+        add_bract(turns, base, node);
     }
+}
+
+/// Adds the leaf around a bract's vein, from the vein's `base` to its `tip`: three flat strips in a row.
+void Capitulum::add_bract(double turns, size_t base, size_t tip)
+{
+    const glm::dvec2 out = direction_of(turns);
+    const glm::dvec3 across(-out.y, out.x, 0.0);
+    const double thick = radius(0.045), thin = radius(0.03);
+    for (const double side : {-1.0, 0.0, 1.0})
+        for (size_t node = base; node < tip; ++node) {
+            const auto edge = [&](size_t at) {
+                return model_.nodes[at].voxel + side * (at == tip ? 0.4 : 1.0) * 0.07 * scale_ * across;
+            };
+            model_.tubes.push_back({.ends = {edge(node), edge(node + 1)},
+                                    .radii = {thick, node + 1 == tip ? thin : thick},
+                                    .tissue = DERMAL,
+                                    .intensity = {DERMAL_TISSUE, DERMAL_TISSUE}});
+        }
 }
 
 /// Adds adaxial veins, each from its outer end inwards, along a radius or in waves around it.
@@ -226,28 +257,8 @@ void Capitulum::add_floret(int k)
     floret_roots_.push_back({root, rho});
 }
 
-/// Adds a tube next to each piece of a vein, on the side away from the receptacle's middle.
-void Capitulum::add_phloem()
-{
-    const glm::dvec3 top = middle_ + glm::dvec3(0.0, 0.0, scale_ * species_.rim);
-    for (const auto& [from, to] : model_.links) {
-        const ProceduralTruth::Node &a = model_.nodes[from], &b = model_.nodes[to];
-        const glm::dvec3 along = b.voxel - a.voxel;
-        glm::dvec3 away = 0.5 * (a.voxel + b.voxel) - top;
-        away -= along * (glm::dot(away, along) / glm::dot(along, along));
-        const double length = std::sqrt(glm::dot(away, away));
-        if (!(length > 1e-9)) continue;
-        const double beside = 2.0 * std::min(a.radius_voxels, b.radius_voxels);
-        away *= beside / length;
-        model_.tubes.push_back({.ends = {a.voxel + away, b.voxel + away},
-                                .radii = {0.35 * beside, 0.35 * beside},
-                                .group = b.group,
-                                .intensity = {0.85 * VEIN, 0.85 * VEIN}});
-    }
-}
-
 /// Returns the tissue: ground tissue between receptacle and bowl and in the stem, a dermal layer on it, air outside.
-std::function<double(const glm::dvec3&)> Capitulum::tissue() const
+std::function<Tissue(const glm::dvec3&)> Capitulum::tissue() const
 {
     return [species = species_, middle = middle_, scale = scale_, blur = spec_.flaws.blur](const glm::dvec3& voxel) {
         const glm::dvec3 p = (voxel - middle) / scale;
@@ -260,8 +271,25 @@ std::function<double(const glm::dvec3&)> Capitulum::tissue() const
         const double depth = std::max(head, stem);
         const double receptacle = depth == head && below_top < 0.045 ? RECEPTACLE_TISSUE : GROUND_TISSUE;
         const double inside = cover_of(scale * (0.02 - depth), blur);
-        return AIR + cover_of(-scale * depth, blur) * (DERMAL_TISSUE + inside * (receptacle - DERMAL_TISSUE) - AIR);
+        const bool is_receptacle = receptacle == RECEPTACLE_TISSUE;
+        return Tissue{
+            AIR + cover_of(-scale * depth, blur) * (DERMAL_TISSUE + inside * (receptacle - DERMAL_TISSUE) - AIR),
+            depth < 0.0     ? uint8_t{0}
+            : depth < 0.02  ? DERMAL
+            : is_receptacle ? RECEPTACLE
+                            : uint8_t{0}};
     };
+}
+
+std::map<std::string, std::vector<double>> Capitulum::facts() const
+{
+    return {{"axis_through_voxels", {middle_.x, middle_.y, middle_.z}},
+            {"axis_direction", {0.0, 0.0, 1.0}},
+            {"head_radius_voxels", {scale_}},
+            {"divergence_degrees", {360.0 * divergence_turns(spec_)}},
+            {"jugacy", {spec_.phyllotaxis == "bijugate" ? 2.0 : 1.0}},
+            {"handedness", {spec_.left_handed ? -1.0 : 1.0}},
+            {"florets", {double(spec_.florets)}}};
 }
 
 }  // namespace

@@ -21,6 +21,16 @@ Sequence sequence_of(const PhantomSpec& spec)
 
 }  // namespace
 
+double divergence_turns(const PhantomSpec& spec)
+{
+    switch (sequence_of(spec)) {
+        case Sequence::fibonacci: break;
+        case Sequence::lucas: return LUCAS_TURNS;
+        case Sequence::bijugate: return 0.5 * GOLDEN_TURNS;
+    }
+    return GOLDEN_TURNS;
+}
+
 FloretPlace floret_place(const PhantomSpec& spec, int k)
 {
     constexpr double OUTERMOST = 0.95;

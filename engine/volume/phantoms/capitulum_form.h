@@ -3,6 +3,7 @@
 // radius of the head. Heights are above the volume's middle; rho is the distance from the axis. Pure functions.
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -39,12 +40,14 @@ struct CapitulumStage {
     bool joins_rim;  ///< joins florets of the rim with abaxial veins
     /// Joins other florets with adaxial veins or, near the axis, with each other; and adaxial with abaxial veins.
     bool joins_between;
+    /// Middle and tip of bracts, which first cover the head, and grow outwards with it: rho, height above the rim.
+    std::array<glm::dvec2, 2> bract;
 };
 inline constexpr CapitulumStage CAPITULUM_STAGES[] = {
-    {'a', 0.0, 0.0, 2.0, false, false},
-    {'b', 0.44, 0.60, 0.84, false, false},
-    {'c', 0.28, 0.80, 0.55, true, false},
-    {'d', 0.0, 0.84, 0.0, true, true},
+    {'a', 0.0, 0.0, 2.0, false, false, {{{1.03, 0.12}, {0.90, 0.36}}}},
+    {'b', 0.44, 0.60, 0.84, false, false, {{{1.05, 0.08}, {1.06, 0.32}}}},
+    {'c', 0.28, 0.80, 0.55, true, false, {{{1.06, 0.05}, {1.12, 0.26}}}},
+    {'d', 0.0, 0.84, 0.0, true, true, {{{1.07, 0.03}, {1.17, 0.16}}}},
 };
 
 /// Outside it, florets join abaxial veins.
@@ -64,6 +67,8 @@ inline double adaxial_height(const CapitulumSpecies& species, double rho)
     return receptacle_height(species, rho) - species.depth - species.droop * (1.0 - rho);
 }
 
+/// The angle between successive florets, or successive pairs of opposite florets, in turns.
+double divergence_turns(const PhantomSpec& spec);
 struct FloretPlace {
     double turns, rho;
 };

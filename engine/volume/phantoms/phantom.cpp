@@ -18,7 +18,11 @@ struct NamedKind {
     const char* name;
     PhantomModel (*make)(const PhantomSpec& spec);
 };
-constexpr NamedKind KINDS[] = {{"capitulum", make_capitulum}, {"section", make_section}};
+constexpr NamedKind KINDS[] = {{"capitulum", make_capitulum},
+                               {"section", make_section},
+                               {"roots", make_roots},
+                               {"stem", make_stem},
+                               {"helix", make_helix}};
 
 VolumeInfo info_of(const PhantomSpec& spec, VoxelType type)
 {
@@ -44,7 +48,7 @@ void each_voxel(const VoxelBox& box, const Visit& visit)
 class PhantomVolume final : public VolumeSource {
 public:
     PhantomVolume(const PhantomSpec& spec, std::shared_ptr<const TubeScene> scene,
-                  std::function<double(const glm::dvec3&)> tissue)
+                  std::function<Tissue(const glm::dvec3&)> tissue)
         : VolumeSource(info_of(spec, spec.type)),
           scene_(std::move(scene)),
           tissue_(std::move(tissue)),
@@ -70,7 +74,7 @@ public:
 private:
     double intensity(const glm::dvec3& voxel) const
     {
-        const double around = tissue_(voxel);
+        const double around = tissue_(voxel).intensity;
         double most = around;
         for (const uint32_t i : scene_->near(voxel)) {
             const Tube& tube = scene_->tubes()[i];
@@ -86,7 +90,7 @@ private:
     }
 
     std::shared_ptr<const TubeScene> scene_;
-    std::function<double(const glm::dvec3&)> tissue_;
+    std::function<Tissue(const glm::dvec3&)> tissue_;
     double blur_;
     FlawedIntensity flawed_;
     double factor_, shift_;
@@ -108,6 +112,34 @@ private:
     std::shared_ptr<const TubeScene> scene_;
 };
 
+class PhantomTissueMask final : public VolumeSource {
+public:
+    PhantomTissueMask(const PhantomSpec& spec, std::shared_ptr<const TubeScene> scene,
+                      std::function<Tissue(const glm::dvec3&)> tissue)
+        : VolumeSource(info_of(spec, VoxelType::uint8)), scene_(std::move(scene)), tissue_(std::move(tissue))
+    {}
+
+    void read(const VoxelBox& box, std::span<std::byte> voxels) const override
+    {
+        size_t at = 0;
+        each_voxel(box, [&](const glm::dvec3& voxel) { voxels[at++] = std::byte(group(voxel)); });
+    }
+
+private:
+    uint8_t group(const glm::dvec3& voxel) const
+    {
+        if (scene_->group(voxel) != 0) return 0;
+        for (const uint32_t i : scene_->near(voxel)) {
+            const Tube& tube = scene_->tubes()[i];
+            if (tube.tissue != 0 && distance_from(tube, voxel).voxels <= 0.0) return tube.tissue;
+        }
+        return tissue_(voxel).group;
+    }
+
+    std::shared_ptr<const TubeScene> scene_;
+    std::function<Tissue(const glm::dvec3&)> tissue_;
+};
+
 void check_ranges(const PhantomSpec& spec)
 {
     const PhantomFlaws& flaws = spec.flaws;
@@ -115,7 +147,8 @@ void check_ranges(const PhantomSpec& spec)
         {"blur", flaws.blur, 0.01, 16.0},       {"noise", flaws.noise, 0.0, 100.0},
         {"rings", flaws.rings, 0.0, 100.0},     {"streaks", flaws.streaks, 0.0, 100.0},
         {"specks", flaws.specks, 0.0, 4.0},     {"gaps", flaws.gaps, 0.0, 100.0},
-        {"falling", flaws.falling, 0.0, 100.0}, {"florets", spec.florets, 8.0, 1000.0}};
+        {"falling", flaws.falling, 0.0, 100.0}, {"uneven", flaws.uneven, 0.0, 100.0},
+        {"florets", spec.florets, 8.0, 1000.0}};
     for (const auto& [name, value, least, most] : ranges)
         if (!(value >= least && value <= most))
             fail(spec.kind, ": ", name, " is ", value, "; expected ", least, " to ", most);
@@ -136,6 +169,32 @@ bool has_flaws(const std::string& kind)
     return std::ranges::find(KINDS, kind, &NamedKind::name) != std::end(KINDS);
 }
 
+PhantomFlaws usual_flaws(const std::string& kind)
+{
+    if (kind == "roots") return {.noise = 5.0, .gaps = 15.0};
+    return {};
+}
+
+bool has_double_tubes(const std::string& kind)
+{
+    return kind == "capitulum" || kind == "section" || kind == "stem";
+}
+
+void add_phloem(PhantomModel& model, const Tube& xylem, const glm::dvec3& middle)
+{
+    const glm::dvec3 along = xylem.ends[1] - xylem.ends[0];
+    glm::dvec3 away = 0.5 * (xylem.ends[0] + xylem.ends[1]) - middle;
+    away -= along * (glm::dot(away, along) / glm::dot(along, along));
+    const double length = std::sqrt(glm::dot(away, away));
+    if (!(length > 1e-9)) return;
+    const double beside = 2.0 * std::min(xylem.radii[0], xylem.radii[1]);
+    away *= beside / length;
+    model.tubes.push_back({.ends = {xylem.ends[0] + away, xylem.ends[1] + away},
+                           .radii = {0.35 * beside, 0.35 * beside},
+                           .group = xylem.group,
+                           .intensity = {0.85 * VEIN, 0.85 * VEIN}});
+}
+
 Phantom make_phantom(const PhantomSpec& spec)
 {
     const NamedKind* kind = std::ranges::find(KINDS, spec.kind, &NamedKind::name);
@@ -145,9 +204,10 @@ Phantom make_phantom(const PhantomSpec& spec)
     PhantomModel model = kind->make(spec);
     for (size_t i = 0; i < model.tubes.size(); ++i) {
         Tube& tube = model.tubes[i];
-        if (tube.group == 0 || 100.0 * random_unit(spec.seed, GAPS, uint32_t(i)) >= spec.flaws.gaps) continue;
-        tube.seen = 0.2;
-        tube.gap_intensity = GROUND_TISSUE;
+        const size_t run = i / model.pieces_in_gap;
+        if (tube.group == 0 || 100.0 * random_unit(spec.seed, GAPS, uint32_t(run)) >= spec.flaws.gaps) continue;
+        tube.seen = model.pieces_in_gap == 1 ? 0.2 : -1.0;
+        tube.gap_intensity = model.gap_intensity;
     }
     std::unique_ptr<VolumeSource> partial;
     if (model.group_of_separate != 0) {
@@ -157,12 +217,17 @@ Phantom make_phantom(const PhantomSpec& spec)
             spec, std::make_shared<const TubeScene>(std::move(joined), spec.size, 0.5 * spec.flaws.blur));
     }
     const auto scene = std::make_shared<const TubeScene>(std::move(model.tubes), spec.size, 0.5 * spec.flaws.blur);
+    std::unique_ptr<VolumeSource> tissue_mask;
+    if (!model.tissues.empty()) tissue_mask = std::make_unique<PhantomTissueMask>(spec, scene, model.tissue);
     return {.volume = std::make_unique<PhantomVolume>(spec, scene, std::move(model.tissue)),
             .mask = std::make_unique<PhantomMask>(spec, scene),
             .partial_mask = std::move(partial),
             .nodes = std::move(model.nodes),
             .links = std::move(model.links),
-            .sections = std::move(model.sections)};
+            .sections = std::move(model.sections),
+            .tissue_mask = std::move(tissue_mask),
+            .tissues = std::move(model.tissues),
+            .facts = std::move(model.facts)};
 }
 
 }  // namespace shvr

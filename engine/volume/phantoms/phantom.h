@@ -22,8 +22,11 @@ struct PhantomFlaws {
     double rings = 0.0;    ///< height of rings around the z axis, like those from unequal detector pixels
     double streaks = 0.0;  ///< height, straight across slices
     double specks = 0.0;   ///< percentage of voxels, at most 4, in bright balls of 1 to 2.5 voxels radius
-    double gaps = 0.0;     ///< percentage of a vein's pieces whose middle is invisible; the ground truth keeps them
+    /// Percentage of a vein's pieces whose middle is invisible (of roots: two pieces in a row, as a whole). The ground
+    /// truth keeps them.
+    double gaps = 0.0;
     double falling = 0.0;  ///< percentage of the intensity that is missing on the axis (cupping)
+    double uneven = 0.0;   ///< percentage by which intensities vary at most, smoothly, over a quarter of the volume
 };
 
 struct PhantomSpec {
@@ -40,7 +43,9 @@ struct PhantomSpec {
     std::string phyllotaxis = "fibonacci";  ///< "fibonacci", "lucas" or "bijugate"
     bool left_handed = false;               ///< mirrored: seen from above, successive florets turn clockwise
     int florets = 144;                      ///< 8 to 1000
-    bool double_tubes = false;              ///< adds a bundle's phloem next to its xylem; the xylem is traced
+
+    /// Of a capitulum, a section or a stem: adds a bundle's phloem next to its xylem; the xylem is traced.
+    bool double_tubes = false;
 };
 
 struct Phantom {
@@ -52,11 +57,23 @@ struct Phantom {
     std::vector<ProceduralTruth::Node> nodes{};
     std::vector<std::array<size_t, 2>> links{};
     std::map<std::string, uint8_t> sections{};  ///< the colour group of each named part
+    /// uint8: the group of the tissue at each voxel, 0 in bundles and in tissues without a name; null if none is named.
+    std::unique_ptr<VolumeSource> tissue_mask{};
+    std::map<std::string, uint8_t> tissues{};  ///< the group of each named tissue
+    /// Numbers known in closed form, in voxels, degrees and turns as their names say. A capitulum has
+    /// `axis_through_voxels` (the middle of the head; heights and rho are measured from it), `axis_direction`,
+    /// `head_radius_voxels` (rho is 1 there), `divergence_degrees`, `jugacy` (florets at one height), `handedness` (1:
+    /// successive florets turn counter-clockwise, seen against the axis's direction; -1: clockwise), `florets`.
+    std::map<std::string, std::vector<double>> facts{};
 };
 
 /// Returns the kinds defined in this folder, to which PhantomSpec::flaws applies, and those of `procedural_kinds()`.
 std::vector<std::string> phantom_kinds();
 bool has_flaws(const std::string& kind);
+/// The flaws that a scan of this kind of sample usually has.
+PhantomFlaws usual_flaws(const std::string& kind);
+/// True of kinds to which PhantomSpec::double_tubes applies.
+bool has_double_tubes(const std::string& kind);
 std::vector<std::string> capitulum_species();
 /// Fails with a sentence that names the field if a field of `spec` has a value that is not among those listed above.
 Phantom make_phantom(const PhantomSpec& spec);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/volume/phantoms/phantom_model.h"
+#include "engine/volume/phantoms/texture.h"
 #include "engine/volume/phantoms/turns.h"
 #include "engine/volume/procedural/procedural_hash.h"
 
@@ -11,7 +12,7 @@ namespace shvr {
 
 namespace {
 
-enum FlawRandom : uint32_t { NOISE = 11, SPECKS, RINGS, STREAKS };
+enum FlawRandom : uint32_t { NOISE = 11, SPECKS, RINGS, STREAKS, UNEVEN };
 constexpr double CONTRAST = VEIN - GROUND_TISSUE;
 constexpr uint32_t STREAK_COUNT = 12;
 
@@ -95,6 +96,10 @@ double FlawedIntensity::operator()(double intensity, const glm::dvec3& voxel) co
     if (flaws_.falling > 0.0) {
         const double dx = (voxel.x - centre_.x) / radius_, dy = (voxel.y - centre_.y) / radius_;
         intensity *= 1.0 - 0.01 * flaws_.falling * std::max(0.0, 1.0 - dx * dx - dy * dy);
+    }
+    if (flaws_.uneven > 0.0) {
+        const double varied = value_noise(mixed(seed_) ^ UNEVEN, (voxel - centre_) / (0.5 * radius_));
+        intensity *= 1.0 + 0.01 * flaws_.uneven * (2.0 * varied - 1.0);
     }
     double added = 0.0;
     if (flaws_.rings > 0.0) added += flaws_.rings * rings(voxel);

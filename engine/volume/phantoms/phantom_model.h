@@ -11,14 +11,29 @@ namespace shvr {
 /// Intensities of tissues.
 inline constexpr double AIR = 20.0, GROUND_TISSUE = 60.0, DERMAL_TISSUE = 105.0, RECEPTACLE_TISSUE = 90.0, VEIN = 200.0;
 
+/// Groups in the mask of tissues, of all kinds. They differ from those of bundles.
+inline constexpr uint8_t DERMAL = 10, RECEPTACLE = 11, STONE = 12, ORGANIC = 13, FLORET_BODY = 14;
+
+/// The tissue at a position outside all tubes.
+struct Tissue {
+    double intensity = GROUND_TISSUE;
+    uint8_t group = 0;  ///< 0: unnamed
+};
+
 struct PhantomModel {
     std::vector<Tube> tubes;
     std::vector<ProceduralTruth::Node> nodes;
     std::vector<std::array<size_t, 2>> links;
     std::map<std::string, uint8_t> sections;
     uint8_t group_of_separate = 0;  ///< group of the tubes that the partial mask leaves out; 0: no partial mask
-    /// Intensity outside all tubes, at voxel coordinates. It uses only sums, products, divisions and square roots.
-    std::function<double(const glm::dvec3& voxel)> tissue = [](const glm::dvec3&) { return GROUND_TISSUE; };
+    std::map<std::string, uint8_t> tissues;
+    std::map<std::string, std::vector<double>> facts;
+    /// Pieces in a row that a gap makes invisible. In one piece it leaves both ends; several pieces are invisible as a
+    /// whole, as their ends would hide it.
+    size_t pieces_in_gap = 1;
+    double gap_intensity = GROUND_TISSUE;  ///< in gaps; a brighter tissue around the tube shows instead
+    /// The tissue at voxel coordinates. It uses only sums, products, divisions and square roots.
+    std::function<Tissue(const glm::dvec3& voxel)> tissue = [](const glm::dvec3&) { return Tissue{}; };
 
     size_t add_node(const glm::dvec3& voxel, double radius, uint8_t group)
     {
@@ -43,11 +58,17 @@ struct PhantomModel {
     }
 };
 
+/// Adds a bundle's phloem next to its xylem, the tube `xylem`, on the side away from `middle`.
+void add_phloem(PhantomModel& model, const Tube& xylem, const glm::dvec3& middle);
+
 /// Of one of `procedural_kinds()`.
 Phantom make_procedural_phantom(const PhantomSpec& spec);
 
 PhantomModel make_section(const PhantomSpec& spec);
 PhantomModel make_capitulum(const PhantomSpec& spec);
+PhantomModel make_roots(const PhantomSpec& spec);
+PhantomModel make_stem(const PhantomSpec& spec);
+PhantomModel make_helix(const PhantomSpec& spec);
 
 /// Returns the fraction of a voxel that lies inside a flat surface at `distance`; the surface is `blur` voxels thick.
 inline double cover_of(double distance, double blur)

@@ -35,13 +35,20 @@ public:
         add_joins();
         add_florets();
         add_separate();
+        if (spec_.double_tubes) {
+            const glm::dvec3 above = corner_ + scale_ * glm::dvec3(0.5, 0.5, 5.0);
+            for (const Tube& tube : std::vector(model_.tubes))
+                if (tube.group != 0) add_phloem(model_, tube, above);
+        }
         model_.sections = {{"adaxial", SECTION_ADAXIAL}, {"floret", SECTION_FLORET}, {"separate", SECTION_SEPARATE}};
         model_.group_of_separate = SECTION_SEPARATE;
+        model_.tissues = {{"receptacle", RECEPTACLE}, {"floret body", FLORET_BODY}};
         model_.tissue = [corner = corner_, scale = scale_, blur = spec_.flaws.blur](const glm::dvec3& voxel) {
             const double above = (voxel.z - corner.z) - 0.86 * scale;
             const double air = (voxel.z - corner.z) - 0.92 * scale;
             const double tissue = GROUND_TISSUE + (RECEPTACLE_TISSUE - GROUND_TISSUE) * cover_of(-above, blur);
-            return tissue + (AIR - tissue) * cover_of(-air, blur);
+            return Tissue{tissue + (AIR - tissue) * cover_of(-air, blur),
+                          above >= 0.0 && air < 0.0 ? RECEPTACLE : uint8_t{0}};
         };
         return std::move(model_);
     }
@@ -140,6 +147,7 @@ void Section::add_florets()
         model_.tubes.push_back({.ends = {corner_ + scale_ * (top + glm::dvec3(0.0, 0.0, 0.06)),
                                          corner_ + scale_ * (top + glm::dvec3(0.0, 0.0, 0.14))},
                                 .radii = {0.028 * scale_, 0.022 * scale_},
+                                .tissue = FLORET_BODY,
                                 .intensity = {DERMAL_TISSUE, DERMAL_TISSUE}});
     }
 }

@@ -16,8 +16,10 @@ struct Tube {
     std::array<glm::dvec3, 2> ends{};       ///< voxel coordinates
     std::array<double, 2> radii{1.0, 1.0};  ///< voxels
     uint8_t group = 0;                      ///< colour group in the ground-truth mask; 0: not in the mask
+    uint8_t tissue = 0;                     ///< group in the mask of tissues, where `group` is 0
     std::array<double, 2> intensity{200.0, 200.0};
-    /// Visible fraction of the length, measured from each end; between is `gap_intensity`. 0.5: all is visible.
+    /// Visible fraction of the length, measured from each end; between is `gap_intensity`. 0.5: all is visible;
+    /// negative: nothing.
     double seen = 0.5;
     double gap_intensity = 0.0;
 };

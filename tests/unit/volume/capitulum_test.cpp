@@ -64,6 +64,29 @@ Range joins(const Phantom& phantom, uint8_t a, uint8_t b)
     return range;
 }
 
+/// rho of the tips of bracts: abaxial nodes above the receptacle's edge that no link leaves.
+Range tips(const Phantom& phantom)
+{
+    std::set<size_t> left;
+    for (const auto& link : phantom.links) left.insert(link[0]);
+    Range range;
+    for (size_t i = 0; i < phantom.nodes.size(); ++i)
+        if (phantom.nodes[i].group == ABAXIAL && !left.contains(i) && from_axis(phantom.nodes[i].voxel).z > 0.2)
+            range.add(rho_of(phantom.nodes[i].voxel));
+    return range;
+}
+
+/// Least distance between an adaxial and an abaxial vein's node, in radii of the head.
+double adaxial_from_abaxial(const Phantom& phantom)
+{
+    double least = 9.0;
+    for (const auto& a : phantom.nodes)
+        for (const auto& b : phantom.nodes)
+            if (a.group == ADAXIAL && b.group == ABAXIAL)
+                least = std::min(least, glm::length(a.voxel - b.voxel) / HEAD);
+    return least;
+}
+
 size_t parts(const Phantom& phantom)
 {
     std::vector<size_t> root(phantom.nodes.size());
@@ -144,6 +167,9 @@ TEST_CASE("stage b adds adaxial veins that are separate, and florets' veins at t
     CHECK(reach(b, FLORET).least > 0.8);
     for (const auto& [one, other] : {std::pair(ABAXIAL, ADAXIAL), {ABAXIAL, FLORET}, {ADAXIAL, FLORET}})
         CHECK(joins(b, one, other).count == 0);
+    // Abaxial veins have grown outwards with the head, and its bracts open.
+    CHECK(tips(head("gerbera", "a")).most < 0.95);
+    CHECK(tips(b).least > tips(head("gerbera", "a")).most + 0.1);
 }
 
 TEST_CASE("at stage c adaxial veins are longer, florets' veins reach further inwards, and join abaxial ones at the rim")
@@ -151,6 +177,8 @@ TEST_CASE("at stage c adaxial veins are longer, florets' veins reach further inw
     const Phantom b = head("gerbera", "b"), c = head("gerbera", "c");
     CHECK(reach(c, ADAXIAL).most > reach(b, ADAXIAL).most + 0.1);
     CHECK(reach(c, ADAXIAL).least < reach(b, ADAXIAL).least);
+    CHECK(adaxial_from_abaxial(c) < adaxial_from_abaxial(b) - 0.05);
+    CHECK(tips(c).least > tips(b).most);
     CHECK(reach(c, FLORET).least < reach(b, FLORET).least - 0.2);
     CHECK(joins(c, ABAXIAL, FLORET).count > 10);
     CHECK(joins(c, ABAXIAL, FLORET).least > 0.8);

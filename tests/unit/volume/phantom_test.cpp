@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <thread>
 
 #include <doctest/doctest.h>
 
@@ -117,12 +118,12 @@ TEST_CASE("a scene finds every tube that is near, and the group of the deepest")
 
 TEST_CASE("the graph of a phantom lies in its mask to the last voxel")
 {
-    for (const std::string kind : {"capitulum", "tubes", "speckles"})
+    for (const std::string kind : {"capitulum", "roots", "stem", "helix", "tubes", "speckles"})
         for (const int64_t side : {7, 33, 48}) {
             CAPTURE(kind);
             CAPTURE(side);
             const Phantom phantom = make_phantom({.kind = kind, .size = Size3(side), .seed = uint32_t(side)});
-            if (kind != "capitulum" || side > 16) CHECK(left_out(phantom) == 0);
+            if (!has_flaws(kind) || side > 16) CHECK(left_out(phantom) == 0);
             CHECK((side < 16 || phantom.nodes.size() > 8));
             for (const auto& node : phantom.nodes) CHECK(node.group != 0);
             CHECK(!phantom.sections.empty());
@@ -131,34 +132,41 @@ TEST_CASE("the graph of a phantom lies in its mask to the last voxel")
 
 TEST_CASE("a phantom's voxels do not depend on the box that is read")
 {
-    const Phantom phantom = make_phantom(flawed("capitulum", 40));
-    for (const VolumeSource* source : {phantom.volume.get(), phantom.mask.get()}) {
-        const std::vector<uint8_t> all = voxels_of<uint8_t>(*source);
-        const VoxelBox box{{5, 17, 12}, {33, 36, 29}};
-        const std::vector<uint8_t> part = voxels_in<uint8_t>(*source, box);
-        size_t at = 0;
-        int64_t different = 0;
-        for (int64_t z = box.lower.z; z < box.upper.z; ++z)
-            for (int64_t y = box.lower.y; y < box.upper.y; ++y)
-                for (int64_t x = box.lower.x; x < box.upper.x; ++x)
-                    different += part[at++] != all[size_t(x + 40 * (y + 40 * z))];
-        CHECK(different == 0);
+    for (const char* kind : {"capitulum", "section", "roots", "stem", "helix"}) {
+        CAPTURE(kind);
+        const Phantom phantom = make_phantom(flawed(kind, 40));
+        for (const VolumeSource* source : {phantom.volume.get(), phantom.mask.get(), phantom.tissue_mask.get()}) {
+            if (!source) continue;
+            const std::vector<uint8_t> all = voxels_of<uint8_t>(*source);
+            const VoxelBox box{{5, 17, 12}, {33, 36, 29}};
+            const std::vector<uint8_t> part = voxels_in<uint8_t>(*source, box);
+            size_t at = 0;
+            int64_t different = 0;
+            for (int64_t z = box.lower.z; z < box.upper.z; ++z)
+                for (int64_t y = box.lower.y; y < box.upper.y; ++y)
+                    for (int64_t x = box.lower.x; x < box.upper.x; ++x)
+                        different += part[at++] != all[size_t(x + 40 * (y + 40 * z))];
+            CHECK(different == 0);
+        }
     }
 }
 
 TEST_CASE("a box of a phantom of 4096 voxels a side is read by itself")
 {
-    PhantomSpec spec = flawed("capitulum", 4096);
-    spec.type = VoxelType::uint16;
-    const Phantom phantom = make_phantom(spec);
-    REQUIRE(!phantom.nodes.empty());
-    for (const size_t i : {size_t{0}, phantom.nodes.size() / 2, phantom.nodes.size() - 1}) {
-        const Size3 at(glm::floor(phantom.nodes[i].voxel));
-        const VoxelBox box{at - Size3(4), at + Size3(4)};
-        CHECK(std::ranges::count(voxels_in<uint8_t>(*phantom.mask, box), 0) == 0);
-        const std::vector<uint16_t> voxels = voxels_in<uint16_t>(*phantom.volume, box);
-        CHECK(voxels.back() > 0);
-        CHECK(voxels_in<uint16_t>(*phantom.volume, {at + Size3(3), at + Size3(4)}).front() == voxels.back());
+    for (const char* kind : {"capitulum", "roots", "stem", "helix"}) {
+        CAPTURE(kind);
+        PhantomSpec spec = flawed(kind, 4096);
+        spec.type = VoxelType::uint16;
+        const Phantom phantom = make_phantom(spec);
+        REQUIRE(!phantom.nodes.empty());
+        for (const size_t i : {size_t{0}, phantom.nodes.size() / 2, phantom.nodes.size() - 1}) {
+            const Size3 at(glm::floor(phantom.nodes[i].voxel));
+            const VoxelBox box{at - Size3(4), at + Size3(4)};
+            CHECK(std::ranges::count(voxels_in<uint8_t>(*phantom.mask, box), 0) == 0);
+            const std::vector<uint16_t> voxels = voxels_in<uint16_t>(*phantom.volume, box);
+            CHECK(voxels.back() > 0);
+            CHECK(voxels_in<uint16_t>(*phantom.volume, {at + Size3(3), at + Size3(4)}).front() == voxels.back());
+        }
     }
 }
 
@@ -187,8 +195,9 @@ TEST_CASE("flaws are as strong as they are said to be")
     const std::vector<double> plain = of({.noise = 0});
     const std::vector<double> noisy = of({.noise = 5}), ringed = of({.noise = 0, .rings = 10});
     const std::vector<double> specked = of({.noise = 0, .specks = 2}), fallen = of({.noise = 0, .falling = 40});
-    const std::vector<double> streaked = of({.noise = 0, .streaks = 10});
+    const std::vector<double> streaked = of({.noise = 0, .streaks = 10}), uneven = of({.noise = 0, .uneven = 25});
     double squares = 0.0, ring = 0.0, streak = 0.0;
+    double weakest = 1.0, strongest = 1.0;
     int64_t specks = 0, higher = 0;
     for (size_t i = 0; i < plain.size(); ++i) {
         squares += (noisy[i] - plain[i]) * (noisy[i] - plain[i]);
@@ -196,6 +205,8 @@ TEST_CASE("flaws are as strong as they are said to be")
         streak = std::max(streak, std::abs(streaked[i] - plain[i]));
         specks += plain[i] < 3000.0 && specked[i] > 13000.0;
         higher += fallen[i] > plain[i];
+        weakest = std::min(weakest, uneven[i] / plain[i]);
+        strongest = std::max(strongest, uneven[i] / plain[i]);
     }
     // 140 intensities between ground tissue and veins, a hundredfold.
     CHECK(std::sqrt(squares / double(plain.size())) == doctest::Approx(0.05 * 14000.0).epsilon(0.03));
@@ -205,6 +216,10 @@ TEST_CASE("flaws are as strong as they are said to be")
     CHECK(streak > 700.0);
     CHECK(double(specks) / double(plain.size()) == doctest::Approx(0.02).epsilon(0.5));
     CHECK(higher == 0);
+    CHECK(weakest >= 0.75);
+    CHECK(weakest < 0.85);
+    CHECK(strongest <= 1.25);
+    CHECK(strongest > 1.15);
     const size_t axis = 32 + 64 * (32 + 64 * 34), corner = 64 * 64 * 40;
     CHECK(fallen[axis] == doctest::Approx(0.6 * plain[axis]).epsilon(0.01));
     CHECK(fallen[corner] == plain[corner]);
@@ -212,12 +227,35 @@ TEST_CASE("flaws are as strong as they are said to be")
 
 TEST_CASE("equal seeds give equal phantoms, on every machine")
 {
-    const std::vector<uint8_t> once = voxels_of<uint8_t>(*make_phantom(flawed("capitulum", 40)).volume);
-    CHECK(once == voxels_of<uint8_t>(*make_phantom(flawed("capitulum", 40)).volume));
-    CHECK(phantom_hash(once) == 16231550836526738997u);
-    PhantomSpec other = flawed("capitulum", 40);
-    other.seed = 4;
-    CHECK(once != voxels_of<uint8_t>(*make_phantom(other).volume));
+    for (const auto& [kind, hash] : {std::pair("capitulum", 7487070715744241946u),
+                                     {"section", 6756486309683975201u},
+                                     {"roots", 13156248725099988103u},
+                                     {"stem", 2012790638558495900u},
+                                     {"helix", 11022273045698976639u}}) {
+        CAPTURE(kind);
+        PhantomSpec spec = flawed(kind, 40);
+        spec.flaws.uneven = std::string(kind) == "capitulum" ? 0.0 : 20.0;
+        const std::vector<uint8_t> once = voxels_of<uint8_t>(*make_phantom(spec).volume);
+        CHECK(once == voxels_of<uint8_t>(*make_phantom(spec).volume));
+        CHECK(phantom_hash(once) == hash);
+        spec.seed = 4;
+        CHECK(once != voxels_of<uint8_t>(*make_phantom(spec).volume));
+    }
+}
+
+TEST_CASE("threads that read one phantom at the same time get the voxels that one thread gets")
+{
+    const Phantom phantom = make_phantom(flawed("roots", 40));
+    const std::vector<uint8_t> once = voxels_of<uint8_t>(*phantom.volume);
+    std::vector<uint8_t> together(once.size());
+    std::vector<std::jthread> threads;
+    for (int64_t i = 0; i < 4; ++i)
+        threads.emplace_back([&, i] {
+            phantom.volume->read({{0, 0, 10 * i}, {40, 40, 10 * i + 10}},
+                                 std::as_writable_bytes(std::span(together).subspan(size_t(16000 * i), 16000)));
+        });
+    threads.clear();
+    CHECK(together == once);
 }
 
 TEST_CASE("a phantom that cannot be is refused in words")
