@@ -15,7 +15,7 @@ namespace {
 
 enum RootRandom : uint32_t { ROOT_PLACES = 91, ROOT_BRIGHTNESS, LATERALS, STONES, STONE_FACETS, BITS };
 constexpr uint8_t MAIN_ROOT = 1, LATERAL_ROOT = 2, FOREIGN_ROOT = 3;
-constexpr int MAIN_ROOTS = 5, PIECES = 12;
+constexpr int MAIN_ROOTS = 5, ROOT_PIECES = 12;
 constexpr double SOIL_SURFACE = 0.84;
 
 /// A mixture of grains, clods and pores; its brightest parts reach the intensity of the faintest roots.
@@ -114,8 +114,8 @@ void Roots::add_roots()
         const double reach = 0.26 + 0.14 * random(ROOT_PLACES, i, 1), depth = 0.60 + 0.16 * random(ROOT_PLACES, i, 2);
         const double phase = random(ROOT_PLACES, i, 3);
         main_[i].push_back(crown);
-        for (int piece = 1; piece <= PIECES; ++piece) {
-            const double t = double(piece) / PIECES;
+        for (int piece = 1; piece <= ROOT_PIECES; ++piece) {
+            const double t = double(piece) / ROOT_PIECES;
             const double rho = reach * t * (2.0 - t);
             const glm::dvec2 wander = 0.035 * t * direction_of(phase + 1.3 * t);
             const glm::dvec2 at = 0.5 + rho * direction_of(turns + 0.05 * wander.y) + wander;
