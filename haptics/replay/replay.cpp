@@ -35,6 +35,9 @@ ForceSettings chosen(const TraceSettings& settings, const ReplayOptions& options
     force.law = options.law.value_or(force.law);
     force.stiffness = options.stiffness.value_or(force.stiffness);
     force.damping = options.damping.value_or(force.damping);
+    force.probe_radius = options.probe_radius.value_or(force.probe_radius);
+    force.surface_share = options.surface_share.value_or(force.surface_share);
+    force.strength = options.strength.value_or(force.strength);
     return force;
 }
 
@@ -219,6 +222,8 @@ ReplayResult replay_trace(const Trace& trace, const ReplayOptions& options, cons
         player.write(step_now);
         tally.add(tick, state, step_now);
         if (keep_steps) result.steps.push_back(step_now);
+        if (options.note_tick)
+            options.note_tick({.now_ns = tick.now_ns, .read = read, .device = state, .step = step_now});
     }
     result.is_recorded = is_recorded;
     result.ticks = trace.ticks.size();

@@ -10,16 +10,27 @@
 
 namespace shvr {
 
+/// One tick of a replay, as passed to `ReplayOptions::note_tick`.
+struct ReplayedTick {
+    uint64_t now_ns = 0;  ///< the servo's clock
+    ReadResult read = ReadResult::fresh;
+    DeviceState device;
+    ForceStep step;
+};
+
 struct ReplayOptions {
     std::optional<TouchMode> mode;  ///< replaces the trace's
     std::optional<ProxyLaw> law;
     std::optional<double> stiffness, damping;
+    std::optional<double> probe_radius;  ///< physical units; recorded relevance may not cover a larger ball
+    std::optional<double> surface_share, strength;
     /// Device model that a modelled hand moves along the trace; null: the device's answers are those of the trace.
     std::optional<TouchModel> touch;
     bool relevance_anew = false;  ///< recomputes relevance even if the trace contains it
     /// Computed relevance is requested as in the window (engine/touch/region_wish.h) and felt after this delay.
     double relevance_latency_s = WINDOW_LATENCY_S;
     uint32_t relevance_every = 0;  ///< ticks between updates of relevance, each felt at once; 0: as in the window
+    std::function<void(const ReplayedTick& tick)> note_tick{};  ///< called after each tick, in order
 };
 
 struct ReplayResult {

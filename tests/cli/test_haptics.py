@@ -164,7 +164,84 @@ class Haptics(CliTest):
         self.assertEqual(self.replay(felt, "--device-model", "touch")["relevance"], "made")
         self.assertEqual(self.replay(trace)["relevance"], "made")
         said = self.check("haptics", "replay", felt, "--threshold", "20", status=1).stderr
-        self.assertIn("another threshold or device", said)
+        self.assertIn("another threshold, radius, choice of groups, latency or device", said)
+
+    # Kind (Touch): a table of ticks, with a position that is not a number among them
+    def test_the_ticks_are_a_table(self):
+        trace = self.trace(ticks=400, more=[{"at": ["nan", 0, 0]}])
+        table = self.folder / "ticks.csv"
+        result = self.replay(trace, "--csv", table)
+        self.assertEqual(result["forces_hash"], self.replay(trace)["forces_hash"])
+        with table.open(newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(list(rows[0])[:8], ["tick", "time_s", "read", "buttons", "hand_x_m", "hand_y_m", "hand_z_m",
+                                             "probe_x_um"])
+        self.assertEqual((len(rows), rows[-1]["hand_x_m"]), (401, ""))
+        forces = [math.hypot(*(float(row[f"force_{axis}_n"]) for axis in "xyz")) for row in rows]
+        self.assertAlmostEqual(max(forces), result["max_force_n"], places=12)
+        self.assertEqual(sum(int(row["in_contact"]) for row in rows), result["contact_ticks"])
+        squares = [sum((float(row[f"proxy_{axis}_um"]) - float(row[f"probe_{axis}_um"]))**2 for axis in "xyz")
+                   for row in rows if row["in_contact"] == "1"]
+        self.assertAlmostEqual(math.sqrt(sum(squares) / len(squares)), result["proxy_rms_um"], places=9)
+        self.assertAlmostEqual(float(rows[300]["time_s"]), 0.3)
+        # The hand begins at (-3 mm, 0, 0); 0.25 mm there are a voxel of 2 um, around (65, 65, 65) um.
+        self.assertAlmostEqual(float(rows[0]["probe_x_um"]), 65 - 24, places=9)
+        self.assertIn("engaging", rows[10]["flags"].split("|"))
+        self.assertIn("fault", rows[-1]["flags"].split("|"))
+
+        before = trace.read_bytes()
+        self.check_refused("haptics", "replay", trace, "--volume", self.volume, "--csv", self.folder / "t.txt",
+                           status=2, says=["--csv", ".csv"])
+        copied = self.folder / "trace.csv"
+        copied.write_bytes(before)
+        self.check_refused("haptics", "replay", copied, "--volume", self.volume, "--csv", copied, says=["trace.csv"])
+        self.assertEqual(copied.read_bytes(), before)
+
+    # Kind (Touch): each setting of a trace replaced
+    def test_settings_of_the_trace_are_replaced(self):
+        trace = self.trace(ticks=900)
+        as_is = self.replay(trace)
+        self.assertEqual((as_is["probe_radius"], as_is["surface_share"], as_is["strength"], as_is["latency_ms"]),
+                         (20, 0.4, 1, 24))
+        # The trace's own values: ten voxels of 2 um, and the window's latency.
+        self.assertEqual(self.replay(trace, "--radius", "10", "--strength", "1", "--latency", "24")["forces_hash"],
+                         as_is["forces_hash"])
+        self.assertLess(self.replay(trace, "--strength", "0.5")["max_force_n"], 0.75 * as_is["max_force_n"])
+        self.assertEqual(self.replay(trace, "--strength", "0")["max_force_n"], 0)
+        small = self.replay(trace, "--radius", "6")
+        self.assertEqual(small["probe_radius"], 12)
+        self.assertNotEqual(small["forces_hash"], as_is["forces_hash"])
+        self.assertEqual(self.replay(trace, "--groups", "5,7")["contact_ticks"], 0)
+        self.assertEqual(self.replay(trace, "--groups", "5,0")["contact_ticks"], as_is["contact_ticks"])
+        # Nothing is felt before the first answer.
+        late = self.replay(trace, "--latency", "300")
+        self.assertEqual(as_is["contact_ticks"] - late["contact_ticks"], 276)
+        surface = [self.replay(trace, "--mode", "surface", "--share", share) for share in ("0.05", "0.9")]
+        self.assertGreater(surface[0]["contact_ticks"], surface[1]["contact_ticks"])
+        self.check_refused("haptics", "replay", trace, "--volume", self.volume, "--strength", "2", status=2,
+                           says=["--strength"])
+        self.check_refused("haptics", "replay", trace, "--volume", self.volume, "--groups", "256", status=2,
+                           says=["--groups"])
+
+    # Kind (Touch): hands that differ from the model's default
+    def test_the_modelled_hand_is_chosen(self):
+        trace = self.trace(ticks=1500)
+
+        def away(*arguments):
+            """How far the hand is led from its path, at most, in metres."""
+            table = self.folder / "ticks.csv"
+            self.replay(trace, "--device-model", "touch", "--csv", table, *arguments)
+            with table.open(newline="") as file:
+                at = [float(row["hand_y_m"]) for row in csv.DictReader(file)]
+            path = [0.0012 * math.sin(i / 150) * min(i / 1500, 1) for i in range(1500)]
+            return max(abs(a - b) for a, b in zip(at, path))
+        loose, firm = away("--hand-stiffness", "50"), away("--hand-stiffness", "3000")
+        self.assertGreater(loose, 2 * firm)
+        result = self.replay(trace, "--device-model", "touch", "--hand-mass", "0.2", "--hand-damping", "6")
+        self.assertEqual(result["hand"], {"mass_kg": 0.2, "stiffness_n_per_m": 150, "damping_n_s_per_m": 6})
+        self.assertNotEqual(result["forces_hash"], self.replay(trace, "--device-model", "touch")["forces_hash"])
+        self.check_refused("haptics", "replay", trace, "--volume", self.volume, "--hand-mass", "0.2", status=2,
+                           says=["--hand-mass", "--device-model"])
 
     def test_what_cannot_be_replayed(self):
         bad = self.folder / "bad.trace"
