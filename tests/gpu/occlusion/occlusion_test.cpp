@@ -15,6 +15,7 @@
 #include "engine/volume/procedural/source_procedural.h"
 #include "tests/support/nap.h"
 #include "tests/support/occlusion.h"
+#include "tests/support/slow.h"
 
 using namespace shvr;
 using namespace shvr::test;
@@ -126,7 +127,7 @@ TEST_CASE_FIXTURE(OnDevice, "what a change makes anew is what making everything 
     Annotator annotator(renderer());
     std::mt19937 random(71);  // seed 71
     const auto below = [&](int end) { return int(random() % uint32_t(end)); };
-    for (int trial = 0; trial < 10; ++trial) {
+    for (int trial = 0; trial < repeats(5, 10); ++trial) {
         CAPTURE(trial);
         const uint64_t before = renderer().scene().occlusion().counts().values;
         switch (trial % 5) {
