@@ -74,6 +74,8 @@ private:
         TIFFSetField(tiff_, TIFFTAG_SAMPLESPERPIXEL, spec.samples);
         TIFFSetField(tiff_, TIFFTAG_PHOTOMETRIC, spec.photometric);
         TIFFSetField(tiff_, TIFFTAG_COMPRESSION, spec.compression);
+        // The default preset allocates 94 MB of tables for each strip.
+        if (spec.compression == COMPRESSION_LZMA) TIFFSetField(tiff_, TIFFTAG_LZMAPRESET, 0);
         TIFFSetField(tiff_, TIFFTAG_PLANARCONFIG, spec.is_planar ? PLANARCONFIG_SEPARATE : PLANARCONFIG_CONTIG);
         TIFFSetField(tiff_, TIFFTAG_ORIENTATION, spec.orientation);
         if (spec.predictor != 1) TIFFSetField(tiff_, TIFFTAG_PREDICTOR, spec.predictor);

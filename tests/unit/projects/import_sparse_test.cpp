@@ -106,12 +106,13 @@ TEST_CASE("a label image made of what is stored has the bytes of one made of eve
     std::mt19937 random(7);
     for (int round = 0; round < 4; ++round) {
         CAPTURE(round);
-        const Size3 size(300 + random() % 200, 300 + random() % 200, 300 + random() % 200);
+        const uint32_t more = repeats(80u, 200u);
+        const Size3 size(300 + random() % more, 300 + random() % more, 300 + random() % more);
         StoredBlocks stored{.block = round % 2 == 0 ? Size3(32) : Size3(48, 80, 20)};
         std::set<std::array<int, 3>> blocks;
         const Size3 last = (size - int64_t{1}) / stored.block;
         blocks.insert({int(last.z), int(last.y), int(last.x)});  // cut by the volume's end
-        for (int i = 0; i < 5; ++i)
+        for (int i = 0; i < repeats(2, 5); ++i)
             blocks.insert({int(random() % uint64_t(last.z + 1)), int(random() % uint64_t(last.y + 1)),
                            int(random() % uint64_t(last.x + 1))});
         for (const auto& [z, y, x] : blocks) stored.blocks.emplace_back(x, y, z);

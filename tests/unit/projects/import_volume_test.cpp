@@ -18,6 +18,7 @@
 #include "engine/formats/open_volume.h"
 #include "engine/formats/zarr/project.h"
 #include "engine/volume/content_hash.h"
+#include "tests/support/slow.h"
 #include "tests/support/volume_files.h"
 
 using namespace shvr;
@@ -225,6 +226,8 @@ TEST_CASE("an import that was stopped or failed anywhere goes on, and gives the 
     bool was_ever_resumed = false;
     for (const int reads : {1, 3, 7, 12}) {
         for (const bool fails : {true, false}) {
+            // Every day two of them fail, and the other two are stopped.
+            if (!is_slow() && fails != (reads == 1 || reads == 7)) continue;
             CAPTURE(reads);
             CAPTURE(fails);
             int runs = 0;
@@ -453,6 +456,7 @@ TEST_CASE("an import that is asked to stop begins nothing more, wherever it is")
                           {.preparation = {.blur_sigma_voxels = glm::dvec3(2.0)},
                            .threads = THREADS,
                            .cancel = &interrupted.stop});
+            break;  // it has ended before as many reads
         } catch (const ImportStopped&) {
             most_after = std::max(most_after, interrupted.reads() - reads);
             ++stopped;
