@@ -258,8 +258,10 @@ uint64_t digest_of(std::span<const std::byte> bytes)
 
 std::optional<uint64_t> file_digest(const fs::path& path)
 {
+    std::error_code ignored;
+    if (path.empty() || !fs::exists(path, ignored)) return std::nullopt;
     Checksum checksum(0);
-    std::vector<std::byte> buffer(size_t{1} << 20);
+    std::vector<std::byte> buffer(size_t{1} << 18);
     const auto add_file = [&](const fs::path& file_path) {
         const FileDescriptor file(::open(file_path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
         if (!file) fail(file_path.string(), ": cannot be opened: ", reason_of(errno));
@@ -270,8 +272,6 @@ std::optional<uint64_t> file_digest(const fs::path& path)
             at += count;
         }
     };
-    std::error_code ignored;
-    if (path.empty() || !fs::exists(path, ignored)) return std::nullopt;
     if (!fs::is_directory(path, ignored)) {
         add_file(path);
         return checksum.value();
