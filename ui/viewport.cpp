@@ -140,8 +140,9 @@ void Viewport::press_left(const ButtonEvent& event, const When& when, const Mode
     } else {
         gesture_ = Gesture::press;
         if (model.tool() == Tool::trace && pane_ < model.panes.size())
-            pressed_node_ =
-                trace_hit(model.trace, model.panes[pane_].pane, in_pane(event.at, model), model.volume).node;
+            pressed_node_ = trace_hit(model.trace, model.panes[pane_].pane, in_pane(event.at, model), model.volume,
+                                      groups_in_pane(model.session, model.panes[pane_].pane))
+                                .node;
         // In the turn tool a double click differs from two clicks, and acts at once.
         if (model.tool() == Tool::turn && is_second_) {
             click_.reset();

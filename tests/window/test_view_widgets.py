@@ -192,6 +192,24 @@ class Widgets(Seen):
         self.until(lambda: self.settings()[-1] == {"view": {"cut_box": True}}, "setting of the edges")
         self.finish()
 
+    def test_hidden_parts_are_felt_by_a_box_in_the_panel(self):
+        self.open_panel("touch")
+        for value in (True, False):
+            before = len(self.settings())
+            self.click_on("Feel hidden parts")
+            self.until(lambda: self.settings()[before:], "setting of what is felt")
+            self.assertEqual(self.settings()[before:], [{"probe": {"touch": {"feels_hidden": value}}}])
+        self.finish()
+
+    def test_exact_integrals_are_switched_where_sampling_is_exact(self):
+        self.open_panel("quality", render={"sampling": "exact"})
+        for value in (True, False):
+            before = len(self.settings())
+            self.click_on("Exact integral")
+            self.until(lambda: self.settings()[before:], "setting of the integral")
+            self.assertEqual(self.settings()[before:], [{"render": {"exact_integral": value}}])
+        self.finish()
+
     def test_hints_are_shown_once(self):
         session = self.write_ball()
         self.open_scan(session)

@@ -34,8 +34,8 @@ public:
         }
         if (op.near) {
             const glm::dvec3 near = at(*op.near);
-            selection =
-                op.is_internode ? nearest_internode_selection(trace_, near) : nearest_node_selection(trace_, near);
+            selection = op.is_internode ? nearest_internode_selection(trace_, near, defaults_.found)
+                                        : nearest_node_selection(trace_, near, defaults_.found);
             const double away = op.is_internode ? distance_to(trace_, trace_.internode(selection.internodes[0]), near)
                                                 : glm::length(trace_.node(selection.nodes[0]).position - near);
             check_distance(what, away, op.within_voxels);
@@ -50,8 +50,11 @@ public:
             fail("node ", *op.node, " does not exist; expected one of the trace");
         std::optional<uint32_t> to = op.node;
         if (!to) {
-            to = trace_.nearest_node(at(*op.near), trace_.selection().node());
-            if (!to) fail("the trace has no other node; expected one to link to");
+            to = nearest_node_of(trace_, defaults_.found, at(*op.near), std::numeric_limits<double>::infinity(),
+                                 trace_.selection().node());
+            if (!to)
+                fail("the trace has no other node", defaults_.found.all() ? "" : " in a group that is shown",
+                     "; expected one to link to");
             check_distance("other node", glm::length(trace_.node(*to).position - at(*op.near)), op.within_voxels);
         }
         return {"link", link_selected(trace_, *to), {}};

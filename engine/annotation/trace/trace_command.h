@@ -3,8 +3,10 @@
 // step of the history. Operations have positions in voxels and radii in voxels along x; records use the volume's unit.
 // Pure; any thread.
 
+#include <bitset>
 #include <string>
 
+#include "engine/annotation/trace/trace_edit.h"
 #include "engine/annotation/trace/trace_op.h"
 #include "engine/annotation/trace/tracing.h"
 #include "engine/volume/volume.h"
@@ -13,10 +15,11 @@ namespace shvr {
 
 /// Default values for parameters that an operation does not state.
 struct TraceDefaults {
-    glm::dvec3 spacing{1.0};     ///< the volume's
-    double radius_voxels = 6.0;  ///< the probe's
-    uint8_t group = 1;           ///< the group that the probe paints
-    Size3 size{0};               ///< the volume's size in voxels; 0: unknown, so nodes may lie anywhere
+    glm::dvec3 spacing{1.0};               ///< the volume's
+    double radius_voxels = 6.0;            ///< the probe's
+    uint8_t group = 1;                     ///< the group that the probe paints
+    Size3 size{0};                         ///< the volume's size in voxels; 0: unknown, so nodes may lie anywhere
+    std::bitset<256> found = EVERY_GROUP;  ///< groups whose nodes and internodes are found by a place near them
 };
 
 struct TraceEffect {

@@ -1,6 +1,7 @@
 #include "engine/annotation/trace/trace_edit.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -176,18 +177,52 @@ std::vector<TraceChange> set_internode_radius(const TraceGraph& trace, uint8_t g
     return {TraceSizeChange{group, before, radius}};
 }
 
-TraceSelection nearest_node_selection(const TraceGraph& trace, const glm::dvec3& position)
+std::optional<uint32_t> nearest_node_of(const TraceGraph& trace, const std::bitset<256>& groups,
+                                        const glm::dvec3& position, double reach, std::optional<uint32_t> except)
 {
-    const std::optional<uint32_t> node = trace.nearest_node(position);
+    const auto distance_of = [&](uint32_t node) { return glm::distance(trace.node(node).position, position); };
+    if (groups.all()) {
+        const std::optional<uint32_t> node = trace.nearest_node(position, except);
+        return node && distance_of(*node) <= reach ? node : std::nullopt;
+    }
+    std::optional<uint32_t> nearest;
+    double least = reach;
+    const auto take = [&](uint32_t number) {
+        const double away = distance_of(number);
+        if (number == except || !groups[trace.node(number).group] || away > least || (nearest && away == least)) return;
+        nearest = number;
+        least = away;
+    };
+    if (std::isfinite(reach)) {
+        for (const uint32_t number : trace.nodes_within(position, reach)) take(number);
+    } else {
+        for (const auto& [number, node] : trace.nodes()) take(number);
+    }
+    return nearest;
+}
+
+TraceSelection nearest_node_selection(const TraceGraph& trace, const glm::dvec3& position,
+                                      const std::bitset<256>& groups)
+{
+    const std::optional<uint32_t> node =
+        nearest_node_of(trace, groups, position, std::numeric_limits<double>::infinity());
+    if (!node && !trace.nodes().empty())
+        fail("all nodes of the trace are in hidden groups; expected one to select: show a group, or feel hidden parts");
     if (!node) fail("the trace has no nodes; expected one to select");
     return {{*node}, {}};
 }
 
-TraceSelection nearest_internode_selection(const TraceGraph& trace, const glm::dvec3& position)
+TraceSelection nearest_internode_selection(const TraceGraph& trace, const glm::dvec3& position,
+                                           const std::bitset<256>& groups)
 {
     const uint32_t node = selected_node(trace);
-    const std::span<const uint32_t> internodes = trace.internodes_of(node);
-    if (internodes.empty()) fail("node ", node, " has no internodes; expected one to select");
+    const std::span<const uint32_t> all = trace.internodes_of(node);
+    if (all.empty()) fail("node ", node, " has no internodes; expected one to select");
+    std::vector<uint32_t> internodes(all.begin(), all.end());
+    std::erase_if(internodes, [&](uint32_t number) { return !groups[trace.internode(number).group]; });
+    if (internodes.empty())
+        fail("all internodes of node ", node, " are in hidden groups; expected one to select: show a group, or feel ",
+             "hidden parts");
     const auto away = [&](uint32_t number) { return distance_to(trace, trace.internode(number), position); };
     return {{}, {*std::ranges::min_element(internodes, {}, away)}};
 }

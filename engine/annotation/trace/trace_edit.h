@@ -6,6 +6,9 @@
 // An edit that is not possible fails with a sentence ("nothing is selected; expected a node"). Any thread may call
 // these.
 
+#include <bitset>
+#include <limits>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -38,10 +41,19 @@ std::vector<TraceChange> set_node_radii(const TraceGraph& trace, uint8_t group, 
 /// Sets the radius of all internodes of a group; without a radius they taper from node to node.
 std::vector<TraceChange> set_internode_radius(const TraceGraph& trace, uint8_t group, std::optional<double> radius);
 
+inline const std::bitset<256> EVERY_GROUP = std::bitset<256>().set();
+/// The node of these groups that is nearest to a position and at most `reach` away; null if there is none. Without
+/// `reach`, it visits the whole trace, unless all groups count.
+std::optional<uint32_t> nearest_node_of(const TraceGraph& trace, const std::bitset<256>& groups,
+                                        const glm::dvec3& position,
+                                        double reach = std::numeric_limits<double>::infinity(),
+                                        std::optional<uint32_t> except = {});
 /// The argument of `TraceGraph::select`.
-TraceSelection nearest_node_selection(const TraceGraph& trace, const glm::dvec3& position);
+TraceSelection nearest_node_selection(const TraceGraph& trace, const glm::dvec3& position,
+                                      const std::bitset<256>& groups = EVERY_GROUP);
 /// Selects the nearest of the selected node's internodes, even if an internode of another node is nearer.
-TraceSelection nearest_internode_selection(const TraceGraph& trace, const glm::dvec3& position);
+TraceSelection nearest_internode_selection(const TraceGraph& trace, const glm::dvec3& position,
+                                           const std::bitset<256>& groups = EVERY_GROUP);
 /// The segment of the selected internode, or of the selected node if it lies on only one.
 TraceSelection segment_selection(const TraceGraph& trace);
 

@@ -294,16 +294,15 @@ TraceDefaults Document::trace_defaults() const
             .radius_voxels =
                 is_script_ ? brush().radius_voxels : session.probe.node_radius_voxels.value_or(brush().radius_voxels),
             .group = brush().group,
-            .size = volume().size};
+            .size = volume().size,
+            .found = is_script_ ? EVERY_GROUP : groups_found_nearby(session)};
 }
 
 std::optional<uint32_t> Document::nearby_node() const
 {
     const TraceGraph& trace = annotator.document().trace;
-    const std::optional<uint32_t> nearest = trace.nearest_node(touch.probe(), trace.selection().node());
-    if (!nearest || glm::distance(trace.node(*nearest).position, touch.probe()) > NEARBY_RADII * probe_radius())
-        return std::nullopt;
-    return nearest;
+    return nearest_node_of(trace, groups_found_nearby(session), touch.probe(), NEARBY_RADII * probe_radius(),
+                           trace.selection().node());
 }
 
 bool Document::is_cut() const

@@ -61,7 +61,8 @@ std::optional<Action> trace_op_at(const ToolPlace& place, const TraceGraph& trac
 SelectOp nearest_selection(const Model& model)
 {
     const std::optional<uint32_t> selected = model.trace.selection().node();
-    const bool is_nearest = selected && model.trace.nearest_node(model.probe_voxel * model.volume.spacing) == selected;
+    const bool is_nearest = selected && nearest_node_of(model.trace, groups_found_nearby(model.session),
+                                                        model.probe_voxel * model.volume.spacing) == selected;
     SelectOp op{.near = model.probe_voxel, .number = {}, .is_internode = false, .within_voxels = within_voxels(model)};
     if (is_nearest && !model.trace.internodes_of(*selected).empty()) {
         op.is_internode = true;

@@ -114,10 +114,7 @@ std::optional<uint32_t> Tracer::node_in_voxel(const glm::dvec3& voxel) const
 {
     const glm::dvec3& spacing = document_->volume().spacing;
     const TraceGraph& trace = document_->annotator.document().trace;
-    const std::optional<uint32_t> nearest = trace.nearest_node(voxel * spacing);
-    const bool is_there =
-        nearest && glm::distance(trace.node(*nearest).position, voxel * spacing) < 0.5 * glm::length(spacing);
-    return is_there ? nearest : std::nullopt;
+    return nearest_node_of(trace, groups_found_nearby(document_->session), voxel * spacing, 0.5 * glm::length(spacing));
 }
 
 /// Returns the point on the centre line drawn at a pixel, if lines attract tools; includes the selected node's lines.
@@ -125,7 +122,7 @@ std::optional<ToolPlace> Tracer::line_at(const Pane& seen, const glm::dvec2& pix
 {
     if (!document_->session.probe.touch.to_lines) return std::nullopt;
     const TraceGraph& trace = document_->annotator.document().trace;
-    const TraceHit hit = trace_hit(trace, seen, pixel, document_->volume());
+    const TraceHit hit = trace_hit(trace, seen, pixel, document_->volume(), groups_in_pane(document_->session, seen));
     if (!hit.internode || is_hidden(seen, pixel, hit)) return std::nullopt;
     const TraceInternode& internode = trace.internode(*hit.internode);
     const glm::dvec3 there = unproject(seen.shot.camera, seen.pixels(), pixel, hit.depth);
@@ -196,7 +193,8 @@ void Tracer::act(const SelectAt& action)
     if (document.annotator.stroke_is_running()) fail("Nothing can be selected while a stroke is being painted");
     const Pane seen = others_.pane(action.pane);
     const TraceGraph& trace = document.annotator.document().trace;
-    const TraceHit hit = trace_hit(trace, seen, action.pixel, document.volume());
+    const TraceHit hit =
+        trace_hit(trace, seen, action.pixel, document.volume(), groups_in_pane(document.session, seen));
     if ((hit.node || hit.internode) && !is_hidden(seen, action.pixel, hit)) {
         this->trace(SelectOp{
             .near = {}, .number = hit.node ? hit.node : hit.internode, .is_internode = !hit.node, .within_voxels = {}});

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/look/groups.h"
+
 namespace shvr::ui {
 
 namespace {
@@ -34,7 +36,18 @@ double behind_plane(const Camera& camera, const glm::dvec3& point)
     return glm::dot(point - camera.eye, axes_of(camera).forward) - 0.5 * (camera.near_distance + camera.far_distance);
 }
 
-TraceHit trace_hit(const TraceGraph& trace, const Pane& pane, const glm::dvec2& pixel, const VolumeInfo& volume)
+std::bitset<256> groups_in_pane(const Session& session, const Pane& pane)
+{
+    std::bitset<256> drawn;
+    if (pane.kind != Pane::Kind::slice && !session.view.meshes) return drawn;
+    drawn.set();
+    const Groups shown = session.shown_groups();
+    for (const auto& [group, settings] : shown) drawn[group] = group_of(shown, group).visible;
+    return drawn;
+}
+
+TraceHit trace_hit(const TraceGraph& trace, const Pane& pane, const glm::dvec2& pixel, const VolumeInfo& volume,
+                   const std::bitset<256>& drawn)
 {
     const Camera& camera = pane.shot.camera;
     const glm::uvec2 pixels = pane.pixels();
@@ -47,6 +60,7 @@ TraceHit trace_hit(const TraceGraph& trace, const Pane& pane, const glm::dvec2& 
     TraceHit hit;
     double nearest = std::numeric_limits<double>::infinity();
     for (const auto& [number, node] : trace.nodes()) {
+        if (!drawn[node.group]) continue;
         const auto at = project(camera, pixels, node.position);
         if (!at || at->depth >= nearest || !is_shown(node.position, at->depth, node.radius)) continue;
         const double reach = std::max(node.radius / pixel_size(camera, pixels, at->depth), NODE_PIXELS);
@@ -56,6 +70,7 @@ TraceHit trace_hit(const TraceGraph& trace, const Pane& pane, const glm::dvec2& 
     }
     if (hit.node) return hit;
     for (const auto& [number, internode] : trace.internodes()) {
+        if (!drawn[internode.group]) continue;
         const glm::dvec3 &a = trace.node(internode.a).position, &b = trace.node(internode.b).position;
         const auto from = project(camera, pixels, a), to = project(camera, pixels, b);
         if (!from || !to) continue;

@@ -130,7 +130,9 @@ private:
     {
         const Camera& camera = pane_.shot.camera;
         const double unit = pixel_size(camera, pixels_, 1.0);
+        const std::bitset<256> drawn = groups_in_pane(model_.session, pane_);
         for (const auto& [number, internode] : model_.trace.internodes()) {
+            if (!drawn[internode.group]) continue;
             glm::dvec3 a = model_.trace.node(internode.a).position, b = model_.trace.node(internode.b).position;
             const double from = behind_plane(camera, a), to = behind_plane(camera, b);
             const double reach = std::max(model_.trace.radius_of(internode, 0.5), voxel_along());
@@ -148,7 +150,7 @@ private:
         }
         for (const auto& [number, node] : model_.trace.nodes()) {
             const double away = behind_plane(camera, node.position), reach = std::max(node.radius, 0.5 * voxel_along());
-            if (std::abs(away) > reach) continue;
+            if (std::abs(away) > reach || !drawn[node.group]) continue;
             const auto at = pixel_of(node.position);
             if (!at || !is_near(*at, *at)) continue;
             const double section = std::sqrt(std::max(node.radius * node.radius - away * away, 0.0)) / unit;

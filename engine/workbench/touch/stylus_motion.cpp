@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+
+#include "engine/live/felt_limits.h"
 
 namespace shvr::ui {
 
@@ -67,36 +68,23 @@ std::optional<double> radius_from_overlap(double share, double ball_radius)
     return ball_radius * std::sqrt(1.0 - std::pow(1.0 - std::min(share, 1.0), 2.0 / 3.0));
 }
 
-namespace {
-
-std::optional<uint32_t> nearest_drawn_node(const TraceGraph& trace, const glm::dvec3& point, double reach,
-                                           const std::bitset<256>& drawn)
-{
-    const auto distance_of = [&](uint32_t node) { return glm::distance(trace.node(node).position, point); };
-    if (drawn.all()) {
-        const std::optional<uint32_t> node = trace.nearest_node(point);
-        return node && distance_of(*node) <= reach ? node : std::nullopt;
-    }
-    std::vector<uint32_t> nodes = trace.nodes_within(point, reach);
-    std::erase_if(nodes, [&](uint32_t node) { return !drawn[trace.node(node).group]; });
-    const auto nearest = std::ranges::min_element(nodes, {}, distance_of);
-    return nearest == nodes.end() ? std::nullopt : std::optional(*nearest);
-}
-
-}  // namespace
-
 ToolPlace tool_place(const FeelSettings& feel, const TraceGraph& trace, const glm::dvec3& point, double reach,
                      std::optional<uint32_t> except_of, const std::bitset<256>& drawn)
 {
     const auto at = [&](uint32_t node) { return ToolPlace{trace.node(node).position, node, {}}; };
     if (feel.to_nodes)
-        if (const auto node = nearest_drawn_node(trace, point, reach, drawn)) return at(*node);
+        if (const auto node = nearest_node_of(trace, drawn, point, reach)) return at(*node);
     const auto place = feel.to_lines ? nearest_place(trace, point, reach, except_of, drawn) : std::nullopt;
     if (!place) return {point, {}, {}};
     const TraceInternode& internode = trace.internode(place->internode);
     if (place->share <= 0.0) return at(internode.a);
     if (place->share >= 1.0) return at(internode.b);
     return {place->position, {}, place->internode};
+}
+
+std::bitset<256> groups_found_nearby(const Session& session)
+{
+    return session.probe.touch.feels_hidden ? EVERY_GROUP : drawn_groups(session.shown_groups(), false);
 }
 
 }  // namespace shvr::ui

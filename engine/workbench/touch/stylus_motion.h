@@ -2,9 +2,11 @@
 // Maps motion of a stylus to view, probe and tools. Pure; any thread. Lengths are physical units of the volume
 // unless stated otherwise.
 
+#include <bitset>
 #include <cstdint>
 #include <optional>
 
+#include "engine/annotation/trace/trace_edit.h"
 #include "engine/annotation/trace/trace_segments.h"
 #include "engine/annotation/work/work.h"
 #include "engine/look/camera_motion.h"
@@ -50,6 +52,9 @@ struct ToolPlace {
 /// nearest point of a centre line; if there is none, `point`. Internodes of `except_of`, the node from which the user
 /// continues, attract nothing, nor do parts of the trace in groups that are not `drawn`.
 ToolPlace tool_place(const FeelSettings& feel, const TraceGraph& trace, const glm::dvec3& point, double reach,
-                     std::optional<uint32_t> except_of, const std::bitset<256>& drawn = std::bitset<256>().set());
+                     std::optional<uint32_t> except_of, const std::bitset<256>& drawn = EVERY_GROUP);
+
+/// The groups of the trace that actions at the probe find: those that are shown, or all if hidden parts are felt.
+std::bitset<256> groups_found_nearby(const Session& session);
 
 }  // namespace shvr::ui

@@ -172,6 +172,44 @@ TEST_CASE_FIXTURE(OnDevice, "nodes of hidden groups draw no tool, unless hidden 
     CHECK(!bench.model().tool_node);
 }
 
+// Kind (Touch): selecting and linking the nearest of nodes that are not drawn
+TEST_CASE_FIXTURE(OnDevice, "nodes of hidden groups are neither selected nor linked, unless hidden parts are felt")
+{
+    TemporaryFolder folder;
+    Workbench bench(renderer(), {.has_servo = false});
+    bench.open(write_tubes_session(folder.path), {});
+    const auto add = [&](double x, uint8_t group) {
+        bench.perform(DeselectOp{});
+        bench.perform(NodeOp{.at = {x, 12.0, 14.0}, .radius_voxels = {}, .group = group});
+    };
+    add(10.0, 2);
+    add(13.0, 3);
+    add(17.0, 4);
+    bench.perform(DeselectOp{});
+    bench.perform(Set{R"({"probe":{"radius_voxels":6}})"});
+    bench.perform(PlaceProbe{{10.5, 12.0, 14.0}});
+    const TraceGraph& trace = bench.document().annotator.document().trace;
+    const auto press = [&](const char* id) { bench.perform(shortcut_named(id)->action(bench.model(), 1.0)); };
+    press("select_nearest");
+    CHECK(trace.selection().node() == 0u);
+    bench.perform(DeselectOp{});
+    bench.perform(Set{R"({"groups":{"2":{"visible":false}}})"});
+    CHECK(bench.model().nearby_node == 1u);
+    press("select_nearest");
+    CHECK(trace.selection().node() == 1u);
+    press("link_nearest");
+    CHECK(trace.internode_between(1, 2));
+    CHECK(!trace.internode_between(0, 1));
+    bench.perform(DeselectOp{});
+    bench.perform(Set{R"({"view":{"solo":9}})"});
+    CHECK(!bench.model().nearby_node);
+    CHECK(
+        contains(error_of([&] { press("select_nearest"); }), "all nodes of the trace are in hidden groups; expected"));
+    bench.perform(Set{R"({"probe":{"touch":{"feels_hidden":true}}})"});
+    press("select_nearest");
+    CHECK(trace.selection().node() == 0u);
+}
+
 // Kind (Touch): a segment that is dragged
 TEST_CASE_FIXTURE(OnDevice, "a selected segment follows the probe, or moves to it, and is replayed from the journal")
 {

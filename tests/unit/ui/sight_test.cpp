@@ -1,9 +1,11 @@
 // Text and drawings over pictures, and the effects of mouse motions.
 
+#include <bitset>
 #include <cmath>
 
 #include <doctest/doctest.h>
 
+#include "engine/annotation/trace/trace_edit.h"
 #include "engine/session/session.h"
 #include "engine/workbench/sight/gestures.h"
 #include "engine/workbench/sight/hits.h"
@@ -213,14 +215,39 @@ TEST_CASE("A click hits the nearest node under it, or else an internode, within 
     VolumeInfo info;
     info.size = {100, 100, 100};
     const Pane view = pane_of(Pane::Kind::main), slice = pane_of(Pane::Kind::slice);
-    CHECK(trace_hit(trace, view, {20.0, 55.0}, info).node == 0u);
-    CHECK(!trace_hit(trace, view, {20.0, 58.0}, info).node.has_value());
-    CHECK(trace_hit(trace, view, {60.0, 50.0}, info).node == 2u);   // before node 1
-    CHECK(trace_hit(trace, slice, {60.0, 50.0}, info).node == 1u);  // in the plane, where node 2 is not
-    CHECK(trace_hit(trace, view, {40.0, 53.0}, info).internode == 0u);
-    CHECK(!trace_hit(trace, view, {40.0, 57.0}, info).internode.has_value());
-    CHECK(trace_hit(trace, view, {40.0, 50.0}, info).depth == doctest::Approx(150.0));
-    CHECK(!trace_hit(TraceGraph(), view, {20.0, 50.0}, info).node.has_value());
+    CHECK(trace_hit(trace, view, {20.0, 55.0}, info, EVERY_GROUP).node == 0u);
+    CHECK(!trace_hit(trace, view, {20.0, 58.0}, info, EVERY_GROUP).node.has_value());
+    CHECK(trace_hit(trace, view, {60.0, 50.0}, info, EVERY_GROUP).node == 2u);   // before node 1
+    CHECK(trace_hit(trace, slice, {60.0, 50.0}, info, EVERY_GROUP).node == 1u);  // in the plane, where node 2 is not
+    CHECK(trace_hit(trace, view, {40.0, 53.0}, info, EVERY_GROUP).internode == 0u);
+    CHECK(!trace_hit(trace, view, {40.0, 57.0}, info, EVERY_GROUP).internode.has_value());
+    CHECK(trace_hit(trace, view, {40.0, 50.0}, info, EVERY_GROUP).depth == doctest::Approx(150.0));
+    CHECK(!trace_hit(TraceGraph(), view, {20.0, 50.0}, info, EVERY_GROUP).node.has_value());
+}
+
+// Kind (Touch): a click on nodes and internodes that are not drawn
+TEST_CASE("A click hits only what its pane draws of a trace")
+{
+    const TraceGraph trace = three_nodes();
+    VolumeInfo info;
+    info.size = {100, 100, 100};
+    const Pane view = pane_of(Pane::Kind::main), slice = pane_of(Pane::Kind::slice);
+    std::bitset<256> others = EVERY_GROUP;
+    for (const auto& [number, node] : trace.nodes()) others.reset(node.group);
+    for (const auto& [number, internode] : trace.internodes()) others.reset(internode.group);
+    CHECK(!trace_hit(trace, view, {20.0, 55.0}, info, others).node);
+    CHECK(!trace_hit(trace, view, {40.0, 50.0}, info, others).internode);
+    CHECK(!trace_hit(trace, slice, {60.0, 50.0}, info, others).node);
+
+    Session session;
+    CHECK(groups_in_pane(session, view).all());
+    session.groups[2].visible = false;
+    CHECK(groups_in_pane(session, view).count() == 255);
+    CHECK(!groups_in_pane(session, view)[2]);
+    session.view.meshes = false;
+    CHECK(groups_in_pane(session, view).none());
+    CHECK(groups_in_pane(session, slice).count() == 255);
+    CHECK(!groups_in_pane(session, slice)[2]);
 }
 
 TEST_CASE("a threshold is taken half-way between what is drawn at all and what is here")
