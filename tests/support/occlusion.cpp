@@ -36,14 +36,18 @@ TestVolume blobs(const glm::ivec3& size, const glm::dvec3& spacing)
 
 std::vector<double> occlusion_values(OnDevice& device)
 {
+    return occlusion_values(device.renderer(), device.volume().size);
+}
+
+std::vector<double> occlusion_values(Renderer& renderer, const glm::ivec3& size)
+{
     FrameGraph graph;
-    const OcclusionBinding binding = device.renderer().scene().occlusion().bring_up_to_date(graph);
+    const OcclusionBinding binding = renderer.scene().occlusion().bring_up_to_date(graph);
     const uint32_t back = graph.read_back(binding.values);
-    const gpu::FrameResult result = device.renderer().executor().run(graph, {.timestamps = false});
+    const gpu::FrameResult result = renderer.executor().run(graph, {.timestamps = false});
     const std::vector<std::byte>& bytes = result.read_backs[back];
-    const glm::ivec3 size = device.volume().size;
-    const glm::uvec3 texels = gpu::BRICK_TEXELS * device.renderer().volume().atlas_slots();
-    const RegionBricks bricks = *device.renderer().volume().region({Size3(0), Size3(size)}, true);
+    const glm::uvec3 texels = gpu::BRICK_TEXELS * renderer.volume().atlas_slots();
+    const RegionBricks bricks = *renderer.volume().region({Size3(0), Size3(size)}, true);
     std::vector<double> values;
     for (int z = 0; z < size.z; ++z)
         for (int y = 0; y < size.y; ++y)

@@ -15,6 +15,7 @@ Camera overview(const TestVolume& volume);
 TestVolume blobs(const glm::ivec3& size, const glm::dvec3& spacing = glm::dvec3(1.0));
 
 /// The device's values for all voxels of a resident volume, 0 ... 1.
+std::vector<double> occlusion_values(Renderer& renderer, const glm::ivec3& size);
 std::vector<double> occlusion_values(OnDevice& device);
 
 /// The reference's values for a volume whose intensities are codes. Copies neither.
