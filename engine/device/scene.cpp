@@ -22,7 +22,8 @@ constexpr uint64_t PICTURE_SIXTEENTHS = 1;
 constexpr uint64_t MIN_PICTURE_BYTES = uint64_t{4} << 20;
 /// Fifths of that memory for paged bricks; the rest is for pictures, mask and surfaces, which may grow.
 constexpr uint64_t PAGED_FIFTHS = 3;
-/// Fifths for paged bricks if there is ambient occlusion, which takes half as much memory as the bricks.
+/// Fifths for paged bricks if there is ambient occlusion, which takes 0.7 times as much memory as bricks of 16 bits and
+/// 1.3 times as much as those of 8 bits.
 constexpr uint64_t PAGED_FIFTHS_WITH_OCCLUSION = 2;
 /// Limit of the atlas on a CPU device, whose memory is shared with files and programs: 27 000 bricks, more than a view
 /// on a common screen needs.

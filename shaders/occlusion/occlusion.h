@@ -8,7 +8,8 @@
 //   surface   strength = g^2 / (g^2 + fade^2) for a gradient of g per voxel
 //   edge      the voxel is moved in that direction to where the medium ends: by the integral over 0 < s < 1.5 of the
 //             running minimum of e(s), minus the integral over -1.5 < s < 0 of 1 - the running maximum, where
-//             e = 1 - (1 - min(o / o', 1))^2. Rays begin 0.07 voxels in front. Strength scales all of this.
+//             e = 1 - (1 - min(o / o', 1))^2. Rays begin 0.07 voxels in front. Strength scales all of this. (The few
+//             samples of the device err least from OCCLUSION_LIFT on; occlusion_bake.h.)
 //   side      directions whose cosine with the normal is below strength - 1 are replaced by their mirror image in
 //             front of the surface, unless the full sphere is requested.
 //   itself    within its own voxel, a ray meets no more opacity than half a unit after leaving it.
