@@ -2,6 +2,7 @@
 import json
 import unittest
 
+from harness import Volume
 from seen import Seen, only_panel
 from window import WINDOW
 
@@ -209,6 +210,26 @@ class Widgets(Seen):
             self.until(lambda: self.settings()[before:], "setting of the integral")
             self.assertEqual(self.settings()[before:], [{"render": {"exact_integral": value}}])
         self.finish()
+
+    # Kind (Values): a spacing that no float holds, typed
+    def test_a_spacing_is_kept_as_it_was_typed(self):
+        scan = Volume.noise((16, 16, 16), seed=1).write(self.folder)
+        session = self.write_session(volume={"path": scan.name})
+        self.open_scan(session, preferences={"hints_seen": 3})
+        self.click_on("File", "##MainMenuBar")
+        self.click_on("Correct the spacing...", "##Menu_00")
+        self.click_on("1", "Correct the spacing")
+        self.do("key", "ctrl+a", "type", "--delay", 30, "0.1", pause_s=0.1)
+        self.do("key", "Tab", pause_s=0.1)
+        self.see("0.1", "Correct the spacing")
+        button = next(seen for seen in self.seen("Correct", "Correct the spacing") if seen["text"] == "Correct")
+        self.do("mousemove", *self.middle_of(button), pause_s=0.3)
+        self.do("mousedown", 1, "sleep", 0.2, "mouseup", 1, pause_s=0)
+        asked = self.until(lambda: [line for line in self.done() if line["op"] == "correct_spacing"], "correction")
+        self.assertIn(0.1, asked[0]["spacing"])
+        self.finish()
+        self.assertIn("0.1", session.read_text())
+        self.assertNotIn("0.10000000149", session.read_text())
 
     def test_hints_are_shown_once(self):
         session = self.write_ball()
