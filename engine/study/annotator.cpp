@@ -17,10 +17,10 @@ constexpr StudySkill SKILLS[STUDY_ANNOTATORS] = {
 };
 
 constexpr MistakeRate RATES[MISTAKES] = {
-    {Mistake::stops_early, "stops_early", 0.03},     {Mistake::receptacle, "receptacle", 0.06},
-    {Mistake::leaves_gaps, "leaves_gaps", 0.05},     {Mistake::adaxial_unpainted, "adaxial_unpainted", 0.02},
-    {Mistake::wrong_bundle, "wrong_bundle", 0.01},   {Mistake::joins_bundles, "joins_bundles", 0.02},
-    {Mistake::joins_distant, "joins_distant", 0.02}, {Mistake::joins_within, "joins_within", 0.02},
+    {Mistake::stops_early, "stops_early", 0.03},      {Mistake::receptacle, "receptacle", 0.06},
+    {Mistake::leaves_gaps, "leaves_gaps", 0.05},      {Mistake::adaxial_unpainted, "adaxial_unpainted", 0.02},
+    {Mistake::wrong_bundle, "wrong_bundle", 0.02},    {Mistake::joins_bundles, "joins_bundles", 0.012},
+    {Mistake::joins_distant, "joins_distant", 0.012}, {Mistake::joins_within, "joins_within", 0.012},
 };
 
 }  // namespace
@@ -47,12 +47,13 @@ std::span<const MistakeRate> mistake_rates()
 }
 
 StudyAnnotation annotate(const StudyScene& scene, const StudyCondition& condition, uint32_t annotator, uint32_t seed,
-                         const HandTraits& base)
+                         const HandTraits& base, uint32_t attempt)
 {
     StudyAnnotation made{.row = {.condition = condition, .annotator = annotator, .seed = seed, .values = {}}};
     made.row.values.fill(std::numeric_limits<double>::quiet_NaN());
     const StudySkill skill = skill_of(annotator);
-    const StudySessionInput input{scene, condition, skill, traits_of(skill, base), seed + 1000 * annotator};
+    const StudySessionInput input{scene, condition, skill, traits_of(skill, base),
+                                  seed + 1000 * annotator + 100'000 * attempt};
     const std::unique_ptr<StudySession> session =
         condition.task == StudyTask::trace ? make_tracing_session(input) : make_painting_session(input);
     session->run();

@@ -1,7 +1,7 @@
 #pragma once
 // Simulated annotators: each has a hand, an eye, a pace and a rate of mistakes, and annotates a scene under a condition
 // as the participants of the thesis's study did. Values are fixed by comparing ten annotators with table 6.1 of the
-// thesis, with object following alone, before any conditions are compared.
+// thesis, with object following alone, before any conditions are compared (CALIBRATION.md).
 //
 // Equal inputs give equal rows, bit for bit. Any thread.
 
@@ -28,7 +28,7 @@ struct StudyTimes {
     double mental = 1.35;   ///< a decision (likewise)
     double view = 4.0;      ///< another view: a decision, hand to the device and back, a motion (likewise: M + 2 H + P)
     double travel = 1.5;    ///< to another part of the section, with the force paused
-    double node = 8.0;      ///< before a node: finding where to go on. Calibrated: segments traced in ten minutes
+    double node = 6.4;      ///< before a node: finding where to go on. Calibrated: segments traced in ten minutes
     double stroke = 2.5;    ///< before a stroke. Calibrated: times of painting in the thesis, section 6.2
     double patience = 2.0;  ///< until a hand that does not settle acts anyway; a guess
 };
@@ -66,7 +66,8 @@ struct StudyAnnotation {
     Mask mask{Size3(0)};
 };
 /// `base`: traits before the factors of the annotator.
+/// `attempt`: another one by the same annotator differs by chance alone.
 StudyAnnotation annotate(const StudyScene& scene, const StudyCondition& condition, uint32_t annotator, uint32_t seed,
-                         const HandTraits& base = {});
+                         const HandTraits& base = {}, uint32_t attempt = 0);
 
 }  // namespace shvr
