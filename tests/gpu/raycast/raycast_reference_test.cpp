@@ -101,7 +101,7 @@ TEST_CASE("quality reference meets the reference in the bench's scenes")
     }
 }
 
-TEST_CASE("quality reference meets the reference where ambient light is occluded, but for the light at voxels")
+TEST_CASE("quality reference meets the reference where ambient light is occluded, except for the light at voxels")
 {
     golden::set_environment();
     const int64_t side = repeats<int64_t>(24, 32);
