@@ -162,7 +162,10 @@ void App::try_again_soon()
 /// Never loses work: saves it before the window closes, and if saving fails keeps the window open.
 bool App::closes()
 {
-    if (options_.stop && *options_.stop && !std::exchange(was_stopped_, true)) window_.close();
+    if (options_.stop && *options_.stop && !std::exchange(was_stopped_, true)) {
+        bench_->cancel_tasks();
+        window_.close();
+    }
     if (!window_.should_close()) return false;
     std::string why;
     switch (bench_->leave(why)) {

@@ -93,6 +93,8 @@ public:
     using Leave = ui::Leave;
     Leave leave(std::string& why) { return services_.saver.leave(why); }
     bool is_saving() const { return services_.saver.is_saving(); }
+    /// Cancels what would delay closing: opening, imports, exports, labelling, comparing. Saves continue.
+    void cancel_tasks() { services_.tasks.cancel_all(); }
     /// Returns whether any job is displayed.
     bool shows_jobs() const;
 

@@ -3,6 +3,7 @@
 //   SHVR_WAITS_LOG=FILE          "main CALL" or "other CALL" at the end of it for each call that does not return at
 //                                once: a wait for fences or semaphores, or for an image of the screen, that are not
 //                                there yet, and each wait for an idle queue or device
+//   SHVR_WAITS_HELD=FILE         while the file exists, the device hangs: no wait ends, and nothing is there yet
 //
 // "main" is the program's first thread. Calls with a time limit of 0 ask and do not wait. Any thread.
 
@@ -24,6 +25,17 @@ void note(const char* call)
         std::ofstream(path, std::ios::app) << (syscall(SYS_gettid) == getpid() ? "main " : "other ") << call << '\n';
 }
 
+bool is_held()
+{
+    const char* const path = std::getenv("SHVR_WAITS_HELD");
+    return path && access(path, F_OK) == 0;
+}
+
+void wait_while_held()
+{
+    while (is_held()) usleep(20'000);
+}
+
 struct Waits : layers::Unobtrusive {
     using Next = layers::Chain<Waits>;
 
@@ -31,6 +43,8 @@ struct Waits : layers::Unobtrusive {
                                                  uint64_t timeout_ns)
     {
         const auto wait = Next::next<PFN_vkWaitForFences>(device, "vkWaitForFences");
+        if (timeout_ns == 0 && is_held()) return VK_TIMEOUT;
+        wait_while_held();
         const VkResult now = wait(device, count, fences, all, 0);
         if (now != VK_TIMEOUT || timeout_ns == 0) return now;
         note("vkWaitForFences");
@@ -41,6 +55,8 @@ struct Waits : layers::Unobtrusive {
                                                      uint64_t timeout_ns)
     {
         const auto wait = Next::next<PFN_vkWaitSemaphores>(device, "vkWaitSemaphores");
+        if (timeout_ns == 0 && is_held()) return VK_TIMEOUT;
+        wait_while_held();
         const VkResult now = wait(device, info, 0);
         if (now != VK_TIMEOUT || timeout_ns == 0) return now;
         note("vkWaitSemaphores");
@@ -60,12 +76,14 @@ struct Waits : layers::Unobtrusive {
     static VKAPI_ATTR VkResult VKAPI_CALL queue_idle(VkQueue queue)
     {
         note("vkQueueWaitIdle");
+        wait_while_held();
         return Next::next<PFN_vkQueueWaitIdle>(queue, "vkQueueWaitIdle")(queue);
     }
 
     static VKAPI_ATTR VkResult VKAPI_CALL device_idle(VkDevice device)
     {
         note("vkDeviceWaitIdle");
+        wait_while_held();
         return Next::next<PFN_vkDeviceWaitIdle>(device, "vkDeviceWaitIdle")(device);
     }
 

@@ -33,10 +33,24 @@ class Export(Seen):
         self.finish()
         self.assertEqual(log.read_text() if log.exists() else "", "", "the main thread asked the disk")
 
-    def type_into(self, field, text):
+    def test_an_import_takes_at_most_the_memory_of_the_preferences(self):
+        scan = self.folder / "scan.nrrd"
+        scan.write_bytes(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nencoding: raw\n\n" + bytes(512))
+        self.view(preferences={"hints_seen": 3, "budget_host_mib": 16})   # less than any import takes
+        self.see("Open the example")
+        self.click_on("File", "##MainMenuBar")
+        self.click_on("Import as project...", "##Menu_00")
+        self.type_into("Volume", scan, "Import as project")
+        self.type_into("Project", self.folder / "project", "Import as project")
+        self.click_on("Import", "Import as project")
+        self.until(lambda: any("expected at most 16 MiB" in seen["text"] for seen in self.seen()), "refusal")
+        self.finish()
+        self.assertFalse((self.folder / "project").exists())
+
+    def type_into(self, field, text, window="Export annotation"):
         """Into the field beside that word, which begins right of it, in place of what it holds."""
-        x0, y0, x1, y1 = self.see_at_rest(field, "Export annotation")["box"]
-        others = [seen["box"] for seen in self.seen(window="Export annotation")]
+        x0, y0, x1, y1 = self.see_at_rest(field, window)["box"]
+        others = [seen["box"] for seen in self.seen(window=window)]
         left = min(box[0] for box in others if box[0] > x1 and box[1] < y1 and box[3] > y0)
         self.do("mousemove", round(left) + 20, round((y0 + y1) / 2), "sleep", 0.1, "mousedown", 1, "sleep", 0.1,
                 "mouseup", 1, pause_s=0.2)

@@ -6,6 +6,7 @@
 #include "engine/workbench/bindings/preferences_file.h"
 #include "tools/cli/cli.h"
 #include "tools/cli/stop.h"
+#include "tools/cli/stop_deadline.h"
 #include "ui/app.h"
 
 namespace shvr::cli {
@@ -91,7 +92,9 @@ void run_view(const ViewCommandOptions& options)
                           .screen_texts = screen_texts ? screen_texts : "",
                           .version = SHVR_VERSION};
     if (!options.size.empty()) wanted.window_size = parse_size(options.size);
+    constexpr std::chrono::milliseconds MOST{700};  // leaves time for the system to end a process within a second
     const StopRequest stop;
+    const StopDeadline deadline(MOST);
     wanted.stop = &stop.flag();
     ui::App app(wanted);
     app.run();

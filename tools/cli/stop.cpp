@@ -1,12 +1,15 @@
 #include "tools/cli/stop.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <cstring>
+#include <ctime>
 
 #include "engine/base/atomic_writer.h"
+#include "tools/cli/stop_deadline.h"
 
 namespace shvr::cli {
 
@@ -16,24 +19,65 @@ std::atomic<bool> command_listens = false, is_requested = false;
 std::atomic<int> first_signal = 0;
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
-/// After SIGPIPE, nothing is printed: the reader has left, and standard error may be the same pipe.
+/// Ends the process at a deadline after the request; without one, `deadline` is all zeros. A timer needs no thread, so
+/// it also works while the main thread waits for a driver that does not answer.
+timer_t overdue_timer;
+itimerspec deadline{};
+
+bool has_deadline()
+{
+    return deadline.it_value.tv_sec > 0 || deadline.it_value.tv_nsec > 0;
+}
+
 constexpr int HANDLED[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
+
+/// Skips the sentence if standard error is a pipe that is full: the end must not wait for it.
+void say(const char* text)
+{
+    pollfd standard_error{.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
+    if (::poll(&standard_error, 1, 0) == 1) static_cast<void>(::write(STDERR_FILENO, text, std::strlen(text)) > 0);
+}
+
+/// Ends the process by the signal itself, so that the parent process sees it and a shell's loop ends, too.
+void end_by(int signal_number)
+{
+    std::signal(signal_number, SIG_DFL);
+    sigset_t only_it;
+    sigemptyset(&only_it);
+    sigaddset(&only_it, signal_number);
+    ::pthread_sigmask(SIG_UNBLOCK, &only_it, nullptr);
+    ::raise(signal_number);
+}
 
 /// Calls only async-signal-safe functions.
 extern "C" void stop(int signal_number)
 {
     int none = 0;
     first_signal.compare_exchange_strong(none, signal_number);
-    if (signal_number != SIGPIPE && command_listens && !is_requested.exchange(true)) return;
+    if (signal_number != SIGPIPE && command_listens && !is_requested.exchange(true)) {
+        if (has_deadline()) ::timer_settime(overdue_timer, 0, &deadline, nullptr);
+        return;
+    }
     remove_temporary_files();
-    const char* const text = signal_number == SIGINT    ? "shvr: stopped by Ctrl-C; no file is left half written\n"
-                             : signal_number == SIGTERM ? "shvr: stopped by SIGTERM; no file is left half written\n"
-                             : signal_number == SIGHUP  ? "shvr: stopped by SIGHUP; no file is left half written\n"
-                                                        : "";
-    static_cast<void>(::write(STDERR_FILENO, text, std::strlen(text)) > 0);
-    // Ends the process by the signal itself, so that the parent process sees it and a shell's loop ends, too.
-    std::signal(signal_number, SIG_DFL);
-    ::raise(signal_number);
+    // After SIGPIPE, nothing is printed: the reader has left, and standard error may be the same pipe.
+    if (signal_number != SIGPIPE)
+        say(signal_number == SIGINT    ? "shvr: stopped by Ctrl-C; no file is left half written\n"
+            : signal_number == SIGTERM ? "shvr: stopped by SIGTERM; no file is left half written\n"
+                                       : "shvr: stopped by SIGHUP; no file is left half written\n");
+    end_by(signal_number);
+}
+
+/// Calls only async-signal-safe functions.
+extern "C" void end_overdue(int)
+{
+    remove_temporary_files();
+    const int signal_number = first_signal;
+    say(signal_number == SIGINT    ? "shvr: stopped by Ctrl-C"
+        : signal_number == SIGTERM ? "shvr: stopped by SIGTERM"
+                                   : "shvr: stopped by SIGHUP");
+    say(" before everything had ended; no file is left half written, and the next opening continues from the "
+        "journal\n");
+    end_by(signal_number);
 }
 
 }  // namespace
@@ -79,6 +123,23 @@ const char* StopRequest::in_words()
     return first_signal == SIGTERM  ? "stopped by SIGTERM"
            : first_signal == SIGHUP ? "stopped by SIGHUP"
                                     : "stopped by Ctrl-C";
+}
+
+StopDeadline::StopDeadline(std::chrono::milliseconds most)
+{
+    sigevent at_deadline{};
+    at_deadline.sigev_notify = SIGEV_SIGNAL;
+    at_deadline.sigev_signo = SIGALRM;
+    if (::timer_create(CLOCK_MONOTONIC, &at_deadline, &overdue_timer) != 0) return;  // then it may hang, as without
+    std::signal(SIGALRM, end_overdue);
+    deadline.it_value = {.tv_sec = most.count() / 1000, .tv_nsec = most.count() % 1000 * 1'000'000};
+}
+
+StopDeadline::~StopDeadline()
+{
+    if (!has_deadline()) return;
+    deadline = {};
+    ::timer_delete(overdue_timer);
 }
 
 }  // namespace shvr::cli

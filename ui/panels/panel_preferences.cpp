@@ -127,7 +127,9 @@ void preferences_window(const Model& model, Actions& actions)
         budget_row("GPU memory", "budget_device_mib", preferences.budget_device_mib, model.device_budget,
                    "Device memory for volumes, pictures and paint. Applies from the next start.", actions);
         budget_row("Memory", "budget_host_mib", preferences.budget_host_mib, uint64_t{1} << 30,
-                   "Main memory for bricks on their way to the device. Applies from the next start.", actions);
+                   "Main memory for bricks on their way to the device, from the next start; imports that need more are "
+                   "refused.",
+                   actions);
         buttons(actions);
         ImGui::TextDisabled("Kept for all scans. Double-click a slider to restore its default.");
     }

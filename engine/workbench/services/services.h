@@ -114,6 +114,7 @@ struct Services {
                        .note_edit = [this] { settings.note_edit(); },
                        .look_again = [this] { viewer.look_again(); }}};
     TaskRunner tasks{desk,
+                     keeper,
                      {.end_save = [this](const Jobs::Finished& job) { saver.end(job); },
                       .end_reading = [this](const Jobs::Finished& job) { return opener.end_reading(job); },
                       .cancel =

@@ -28,19 +28,46 @@ std::string sentence_about(const EvaluateResult& result)
 
 }  // namespace
 
-TaskRunner::TaskRunner(Desk& desk, Others others) : Service(desk), others_(std::move(others)) {}
+TaskRunner::TaskRunner(Desk& desk, const PreferenceKeeper& keeper, Others others)
+    : Service(desk), keeper_(keeper), others_(std::move(others))
+{}
 
 void TaskRunner::advance()
 {
     for (const Jobs::Finished& job : savers_.finish()) others_.end_save(job);
     for (const Jobs::Finished& job : jobs_.finish()) {
-        writers_.erase(job.number);
+        const auto writer = writers_.find(job.number);
+        const std::string kept = writer == writers_.end() || writer->second->empty() ? "" : "; " + *writer->second;
+        if (writer != writers_.end()) writers_.erase(writer);
         if (others_.end_reading(job)) continue;
         if (job.was_cancelled)
-            say("Cancelled: " + job.what, Weight::warning);
+            say("Cancelled: " + job.what + kept, Weight::warning);
         else if (!job.failure.empty())
             say(job.failure, Weight::error);
     }
+}
+
+/// Starts a job that writes files. One that is cancelled says what it keeps, as an import does that can be resumed.
+template <class Work>
+void TaskRunner::start_writing(const std::string& what, Work work)
+{
+    const auto kept = std::make_shared<std::string>();
+    const Jobs::Number number = jobs_.start(what, [work = std::move(work), what, kept](ProgressReporter& reporter) {
+        try {
+            return work(reporter);
+        } catch (const Error& error) {
+            const std::string words = error.what();
+            const bool is_reporter_s = words.starts_with(what + ": cancelled");  // which knows of nothing kept
+            if (reporter.stop_requested() && !is_reporter_s) *kept = words;
+            throw;
+        }
+    });
+    writers_.emplace(number, kept);
+}
+
+void TaskRunner::cancel_all()
+{
+    jobs_.cancel_all();
 }
 
 void TaskRunner::act(const CancelJob& action)
@@ -78,30 +105,32 @@ void TaskRunner::act(const ExportTask& task)
     for (const std::filesystem::path& path : {task.mask, task.offset, task.trace, task.mesh, task.metrics})
         if (!path.empty()) names.push_back(short_name(path));
     if (task.labels) names.emplace_back("labels");
-    writers_.insert(jobs_.start("exporting " + joined(names, ", "),
-                                [this, task, snapshot](ProgressReporter& reporter) -> Jobs::Completion {
-                                    ExportResult result = run(task, snapshot->view(), reporter);
-                                    return [this, result = std::move(result)] {
-                                        say("Exported " + joined(result.written, ", ") +
-                                                (result.left_out.empty() ? "" : "; " + joined(result.left_out, "; ")),
-                                            result.left_out.empty() ? Weight::done : Weight::warning);
-                                    };
-                                }));
+    start_writing("exporting " + joined(names, ", "),
+                  [this, task, snapshot](ProgressReporter& reporter) -> Jobs::Completion {
+                      ExportResult result = run(task, snapshot->view(), reporter);
+                      return [this, result = std::move(result)] {
+                          say("Exported " + joined(result.written, ", ") +
+                                  (result.left_out.empty() ? "" : "; " + joined(result.left_out, "; ")),
+                              result.left_out.empty() ? Weight::done : Weight::warning);
+                      };
+                  });
 }
 
 /// The project is opened once it exists.
 void TaskRunner::act(const ImportTask& task)
 {
-    const auto import = [this, task](ProgressReporter& reporter) -> Jobs::Completion {
-        ImportTask wanted = task;
-        wanted.program = "shvr view";
+    ImportTask wanted = task;
+    wanted.program = "shvr view";
+    if (wanted.budget_host_mib == 0)
+        wanted.budget_host_mib = int64_t(keeper_.preferences().budget_host_mib.value_or(0.0));
+    const auto import = [this, wanted](ProgressReporter& reporter) -> Jobs::Completion {
         const ImportResult result = run(wanted, reporter);
         return [this, project = result.report.project, warnings = result.report.warnings] {
             for (const std::string& warning : warnings) say(warning, Weight::warning);
             others_.open(project);
         };
     };
-    writers_.insert(jobs_.start("importing " + short_name(task.volume), import));
+    start_writing("importing " + short_name(task.volume), import);
 }
 
 void TaskRunner::act(const LabelTask& task)
@@ -120,7 +149,7 @@ void TaskRunner::act(const LabelTask& task)
                          task.output.empty() ? "" : "; labels are in " + task.output.string()));
         };
     };
-    writers_.insert(jobs_.start("labelling " + name, label));
+    start_writing("labelling " + name, label);
 }
 
 void TaskRunner::act(const EvaluateTask& task)

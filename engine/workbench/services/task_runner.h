@@ -2,8 +2,11 @@
 // Long work in the background: each job computes its result on a worker, and this service then uses the result. The job
 // also checks names and folders, since those checks need the disk.
 
-#include <set>
+#include <map>
+#include <memory>
+#include <string>
 
+#include "engine/workbench/desk/preference_keeper.h"
 #include "engine/workbench/desk/service.h"
 
 namespace shvr::ui {
@@ -20,12 +23,15 @@ public:
         Call<void(const std::filesystem::path&)> open;
         Call<void()> record_settings;
     };
-    TaskRunner(Desk& desk, Others others);
+    TaskRunner(Desk& desk, const PreferenceKeeper& keeper, Others others);
     void act(const ExportTask& task);
     void act(const ImportTask& task);
     void act(const LabelTask& task);
     void act(const EvaluateTask& task);
     void act(const CancelJob& action);
+
+    /// Cancels all jobs but saves and copies of the work.
+    void cancel_all();
 
     /// Handles jobs that have ended.
     void advance() override;
@@ -35,8 +41,13 @@ public:
     JobModel model() const;
 
 private:
+    template <class Work>
+    void start_writing(const std::string& what, Work work);
+
+    const PreferenceKeeper& keeper_;
     const Others others_;
-    std::set<Jobs::Number> writers_;
+    /// With what a cancelled job leaves on the disk; written by the worker before the job ends
+    std::map<Jobs::Number, std::shared_ptr<const std::string>> writers_;
 };
 
 }  // namespace shvr::ui

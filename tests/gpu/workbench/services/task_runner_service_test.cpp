@@ -15,6 +15,7 @@ struct TasksAlone : DeskWithScan {
     bool is_of_opening = false, is_of_another = false;
     std::filesystem::path opened;
     TaskRunner tasks{desk,
+                     keeper,
                      {.end_save = notes("end_save"),
                       .end_reading = [this](const Jobs::Finished&) { return is_of_opening; },
                       .cancel = [this](Jobs::Number) { return is_of_another; },

@@ -209,6 +209,7 @@ TEST_CASE("during a flood of pings the force is taken back, and that is shown")
         service.send_bytes(pings);
         return zero_after_ms(service.heard(), start) >= 0.0;
     }));
+    MESSAGE("zero force ", zero_after_ms(service.heard(), start), " ms after the last answer, among pings");
     CHECK(insists_until(*device, [&] {
         service.send_bytes(pings);
         return device->trouble() != std::string();
