@@ -51,6 +51,41 @@ class Info(CliTest):
         info = self.check_json("info", slices, "--raw", "5x4x12:uint8")
         self.assertEqual((info["size"], info["min"], info["max"]), ([5, 4, 12], 0, 11))
 
+    def test_control_characters_of_a_name_reach_no_terminal(self):
+        header = Volume((4, 4, 4), [1] * 64).write(self.folder)
+        for name in ("red\x1b[31m.nhdr", "bell\x07.nhdr", "two\nlines.nhdr", "c1\u009b31m.nhdr"):
+            with self.subTest(name=name):
+                odd = header.rename(self.folder / name)
+                result = run("info", odd)
+                header = odd.rename(header)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertFalse([c for c in result.stdout + result.stderr
+                                  if c != "\n" and (ord(c) < 32 or 127 <= ord(c) < 160)])
+                line = result.stdout.splitlines()[0]
+                self.assertTrue(line.startswith("name ") and line.endswith(".nhdr"), line)
+        self.assertEqual(self.check_json("info", header)["name"], header.name)
+
+    # Kind (Masks): a mask given as a scan
+    def test_a_mask_or_offsets_given_as_a_scan_are_told(self):
+        project = self.folder / "project"
+        self.check("import", Volume((8, 8, 8), [100] * 512).write(self.folder), project)
+        self.check("annotate", project, "--script", self.write_script("s.jsonl", [
+            {"op": "paint", "brush": "fill", "region": "ball", "group": 3, "threshold": 0, "radius": 2,
+             "path": [[4, 4, 4]]},
+            {"op": "density", "brush": "fill", "threshold": 0, "offset": 5, "radius": 2, "path": [[4, 4, 4]]},
+            {"op": "save"}]))
+        files = [self.folder / name for name in ("mask.nrrd", "mask.zarr", "offsets.nrrd")]
+        self.check("export", project, "--mask", files[0])
+        self.check("export", project, "--mask", files[1], "--offset", files[2])
+        for path, says in zip(files, ("holds groups of a mask", "holds labels", "holds density offsets")):
+            with self.subTest(file=path.name):
+                self.assertTrue([line for line in self.check_json("info", path)["warnings"] if says in line])
+                for command in (["render", path, "-o", self.folder / "a.png", "--size", "8x8"],
+                                ["label", path, "--threshold", "1"], ["import", path, self.folder / f"{path.name}.project"]):
+                    self.assertIn(says, self.check(*command).stderr)
+        # As annotation they are read without a word.
+        self.assertEqual(self.check("evaluate", "--truth-mask", files[0], "--mask", files[0]).stderr, "")
+
     def test_a_session_and_a_project_are_told_by_their_volume(self):
         header = Volume.noise((8, 8, 8), seed=2).write(self.folder)
         session = self.write_session(volume={"path": header.name})

@@ -117,7 +117,8 @@ bool has_file_header(const FileDescriptor& file, const fs::path& path, const Jou
     if (is_ours_in_part && !is_whole) return false;
     const size_t compared = std::min(there, sizeof MAGIC);
     if (std::memcmp(header.data(), ours.data(), compared) != 0)
-        fail(path.string(), ": does not begin with SHVRJRNL; expected a journal, or no such file");
+        fail(path.string(), ": does not begin with SHVRJRNL; expected a journal, or no such file: once it has ",
+             "another name, the project opens with its saved files");
     const uint64_t version = get(header.data() + sizeof MAGIC, 4);
     if (file_bytes >= FILE_HEADER_BYTES && version != VERSION)
         fail(path.string(), ": is a journal of version ", version, "; expected ", VERSION,

@@ -20,7 +20,16 @@ struct NrrdHeader {
     bool is_attached = false;
     int64_t voxels_at = 0;         ///< offset of the first byte after the empty line that ends the header
     std::string_view file_list{};  ///< the lines after "data file: LIST"
+    bool states_groups = false;    ///< a mask of this program, or segments of 3D Slicer
+    bool states_offsets = false;   ///< density offsets of this program
 };
+
+/// Notes key/value pairs that say that the file is no scan.
+void note_content(std::string_view pair, NrrdHeader& header)
+{
+    header.states_groups |= pair == "shvr_content:=mask" || pair.starts_with("Segment0_");
+    header.states_offsets |= pair == "shvr_content:=offsets";
+}
 
 NrrdHeader read_nrrd_header(const std::filesystem::path& path, const std::string& head)
 {
@@ -42,7 +51,10 @@ NrrdHeader read_nrrd_header(const std::filesystem::path& path, const std::string
         if (colon == std::string_view::npos) {
             fail(path.string(), ": line ", line_number, " is ", in_quotes(line), "; expected \"field: value\"");
         }
-        if (line.substr(colon).starts_with(":=")) continue;  // free key/value pairs
+        if (line.substr(colon).starts_with(":=")) {
+            note_content(trimmed(line), header);
+            continue;
+        }
         const std::string name = lower_case(trimmed(line.substr(0, colon)));
         header.fields.add(name, line.substr(colon + 1));
         if ((name == "data file" || name == "datafile") && is_list(line.substr(colon + 1))) {
@@ -179,6 +191,10 @@ std::unique_ptr<VolumeSource> open_nrrd(const std::filesystem::path& path, const
     info.type = type;
     read_nrrd_space(fields, axes, info);
     warn_of_old_range(fields, info);
+    if (header.states_groups)
+        info.warnings.emplace_back(
+            "the file holds groups of a mask, not a scan: pictures blend neighbours, and imports need --labels");
+    if (header.states_offsets) info.warnings.emplace_back("the file holds density offsets, not a scan");
     RawVoxels voxels = place_voxels(header, info);
     voxels.channels = axes.channels;
     voxels.channel = chosen_channel(path.string(), options, axes.channels,
