@@ -59,7 +59,7 @@ TEST_CASE("rows have the volume's unit, and a reason where there is no value")
 }
 
 // Kind (Traces): traces without an axis, without sections, at one place or on a line
-TEST_CASE("degenerate traces give reasons, and no number that is none")
+TEST_CASE("degenerate traces give reasons, and never NaN")
 {
     const auto reason = [](const HeadBuilder& head) {
         const PatternRows rows = head.measure();
