@@ -43,7 +43,8 @@ MAY_INCLUDE = {
     "engine/annotation/files": "engine/base engine/volume engine/annotation engine/annotation/trace engine/formats "
     "engine/formats/export engine/formats/zarr engine/projects shaders",
     "engine/annotation/operations": "engine/base engine/volume engine/components engine/annotation engine/annotation/trace",
-    "engine/annotation/script": "engine/base engine/annotation engine/annotation/trace",
+    "engine/annotation/script": "engine/base engine/annotation engine/annotation/trace engine/annotation/operations "
+    "engine/session",
     "engine/annotation/writers": "engine/base",
     "engine/annotation/work": "engine/base engine/volume engine/annotation engine/annotation/files "
     "engine/annotation/trace engine/annotation/writers engine/projects",
@@ -73,7 +74,7 @@ MAY_INCLUDE = {
     "engine/live haptics haptics/devices",
     "engine/workbench/models": "engine/base engine/volume engine/annotation/work engine/session engine/jobs engine/live "
     "haptics haptics/devices engine/workbench/appearance engine/workbench/touch",
-    "engine/workbench/actions": "engine/base engine/annotation/script engine/session engine/tasks engine/workbench/models",
+    "engine/workbench/actions": "engine/base engine/annotation/operations engine/annotation/script engine/session engine/tasks engine/workbench/models",
     "engine/workbench/lists": "engine/base engine/look engine/annotation/trace engine/session engine/live "
     "engine/workbench/models engine/workbench/actions",
     "engine/workbench/sight": "engine/base engine/look engine/annotation/trace engine/session engine/workbench/models "
@@ -89,7 +90,7 @@ MAY_INCLUDE = {
     "engine/workbench/desk": "engine/base engine/session engine/jobs engine/workbench/touch engine/workbench/models "
     "engine/workbench/actions engine/workbench/lists engine/workbench/sight engine/workbench/bindings "
     "engine/workbench/document",
-    "engine/workbench/services": "engine/base engine/look engine/annotation/work engine/session engine/tasks engine/live "
+    "engine/workbench/services": "engine/base engine/look engine/annotation/operations engine/annotation/work engine/session engine/tasks engine/live "
     "engine/workbench/models engine/workbench/actions engine/workbench/sight engine/workbench/edits "
     "engine/workbench/words engine/workbench/document engine/workbench/desk",
     "engine/workbench": "engine/base engine/workbench/actions engine/workbench/lists engine/workbench/desk "

@@ -79,6 +79,9 @@ public:
     std::string finish_stroke() { return services_.painter.finish_stroke(); }
     /// Waits for the save under way. Returns the written parts; fails with the reason if one could not be written.
     Work::Saved finish_save() { return services_.saver.finish_save(); }
+    /// Waits for the operation on groups under way; fails with the reason if it did not become a step. If `progress`
+    /// throws, the operation is cancelled.
+    const OperationResult& finish_operation(const Progress& progress = {}) { return services_.groups.finish(progress); }
     /// Waits until all changes are in the journal on disk; fails with the reason if that is not possible.
     void flush() { desk_.document->annotator.work().flush(); }
     /// Returns whether another step would find work at once.

@@ -235,5 +235,91 @@ class Stopped(CliTest):
         self.assertIn("shvr: stopped by Ctrl-C", errors)
 
 
+def fill_box(group, *at, radius=0.4):
+    """One voxel, or a box of them."""
+    return {"op": "paint", "brush": "fill", "region": "box", "group": group, "threshold": 0, "radius": radius,
+            "path": [[c + 0.5 for c in at]]}
+
+
+def expect_groups(**groups):
+    return {"op": "expect", "voxels_in_group": {name[1:]: voxels for name, voxels in groups.items()}}
+
+
+class OperationsOnGroups(CliTest):
+    def prepare(self, size=(40, 20, 20), **keys):
+        self.volume = Volume.noise(size, seed=4)
+        self.session = self.write_session(volume={"path": self.volume.write(self.folder).name}, **keys)
+
+    def annotate(self, operations):
+        return self.check_json("annotate", self.session, "--script", self.write_script("script.jsonl", operations))
+
+    def refused(self, line):
+        script = self.write_script("script.jsonl", [line])
+        return self.check("annotate", self.session, "--script", script, status=1).stderr.strip()
+
+    def test_lines_of_the_contract(self):
+        self.prepare()
+        shell = [fill_box(3, 10, 10, 10, radius=2.2), fill_box(0, 10, 10, 10), fill_box(3, 30, 3, 3), fill_box(4, 35, 3, 3)]
+        result = self.annotate(shell + [
+            expect_groups(_3=125, _4=1),
+            {"op": "fill_holes", "group": 3}, expect_groups(_3=126, _4=1),
+            {"op": "undo"}, expect_groups(_3=125), {"op": "redo"}, expect_groups(_3=126),
+            {"op": "islands", "group": 3, "split_from": 10}, expect_groups(_3=0, _10=125, _11=1),
+            {"op": "undo"}, {"op": "islands", "group": 3, "keep": "at_least", "voxels": 2}, expect_groups(_3=125),
+            {"op": "undo"}, {"op": "islands", "group": 3, "keep": "at", "at": [30.5, 3.5, 3.5]}, expect_groups(_3=1),
+            {"op": "undo"}, {"op": "islands", "group": 3, "keep": "largest"}, expect_groups(_3=125),
+            {"op": "combine", "group": 3, "with": 4, "how": "swap"}, expect_groups(_3=1, _4=125),
+            {"op": "combine", "group": 3, "with": 4, "how": "add", "box": [0, 0, 0, 11, 40, 40]}, expect_groups(_3=76, _4=50),
+            {"op": "undo"},
+            {"op": "combine", "group": 5, "with": 4, "how": "move", "within": [0, 300], "inside": 4},
+            expect_groups(_3=1, _5=125),
+            {"op": "save"}])
+        self.assertEqual(result["commands"], len(shell) + 26)
+        mask = (self.folder / "paint.mask").read_bytes()
+        self.assertEqual({group: mask.count(group) for group in set(mask)}, {0: 16000 - 126, 3: 1, 5: 125})
+        # The history goes on where it ended.
+        self.annotate([{"op": "undo", "count": 2}, expect_groups(_3=125, _4=1, _5=0)])
+
+    def test_lines_by_distance_and_threshold(self):
+        self.prepare()
+        self.annotate([
+            {"op": "threshold", "group": 7, "from": 0, "to": 255, "box": [0, 0, 0, 2, 2, 2]}, expect_groups(_7=8),
+            {"op": "grow", "group": 7, "distance": 1}, expect_groups(_7=20),
+            {"op": "shrink", "group": 7, "distance": 1}, expect_groups(_7=8),
+            {"op": "close", "group": 7, "distance": 1}, expect_groups(_7=8),
+            {"op": "open", "group": 7, "distance": 1}, expect_groups(_7=4),
+            {"op": "undo"}, {"op": "hollow", "group": 7, "wall": 1}, expect_groups(_7=7),
+            {"op": "undo"}, {"op": "hollow", "group": 7, "wall": 1, "side": "out"}, expect_groups(_7=12)])
+
+    def test_locks_are_heeded_and_counted(self):
+        self.prepare(groups={"4": {"locked": True, "name": "vein"}})
+        script = self.write_script("script.jsonl", [fill_box(3, 5, 5, 5), {"op": "save"}])
+        self.check("annotate", self.session, "--script", script)
+        script = self.write_script("script.jsonl", [{"op": "combine", "group": 4, "with": 3, "how": "add"}])
+        result = self.check("annotate", self.session, "--script", script)
+        self.assertIn("script.jsonl:1: Combine groups: nothing changed; group 4 (vein) is locked, so 1 voxel stayed",
+                      result.stderr)
+        keys = self.annotate([{"op": "combine", "group": 4, "with": 3, "how": "add"}])
+        self.assertEqual((keys["voxels_changed"], keys["voxels_kept_locked"]), (0, 1))
+
+    def test_lines_that_are_refused(self):
+        self.prepare()
+        for line, said in [
+                ({"op": "combine", "group": 3, "with": 3, "how": "add"}, "key with is 3; expected another group"),
+                ({"op": "combine", "group": 3, "with": 4, "how": "xor"}, 'expected one of "add", "subtract", "intersect"'),
+                ({"op": "combine", "group": 3, "with": 4}, "key how is missing"),
+                ({"op": "islands", "group": 3}, "expected largest, at_least or at, unless split_from is given"),
+                ({"op": "islands", "group": 3, "keep": "at_least"}, "expected either voxels or mm3"),
+                ({"op": "islands", "group": 3, "keep": "largest", "voxels": 3}, "expected either voxels or mm3"),
+                ({"op": "islands", "group": 3, "keep": "largest", "connectivity": 18}, "expected 6 or 26"),
+                ({"op": "fill_holes", "group": 0}, "key group is 0; expected a whole number from 1 to 255"),
+                ({"op": "fill_holes", "group": 3, "size": 3}, "unknown key size"),
+                ({"op": "fill_holes", "group": 3, "box": [0, 0, 0, 5, 5, 0]}, "expected six whole numbers"),
+                ({"op": "fill_holes", "group": 3, "within": [9, 1]}, "the lower one first"),
+                ({"op": "islands", "group": 3, "keep": "at", "at": [1, 1, 1]}, "where no voxel of group 3 is")]:
+            with self.subTest(line=line):
+                self.assertIn(said, self.refused(line))
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -24,10 +24,14 @@ struct AnnotateCommandOptions {
 /// Drives the workbench by a script, as the window drives it by input.
 class Replay {
 public:
-    Replay(ui::Workbench& workbench, const AnnotateCommandOptions& given) : bench(workbench), options(given) {}
+    Replay(ui::Workbench& workbench, const AnnotateCommandOptions& given, LongWork& long_work)
+        : bench(workbench), options(given), work(long_work)
+    {}
 
     ui::Workbench& bench;
     const AnnotateCommandOptions& options;
+    LongWork& work;
+    double done = 0.0, share = 0.0;  ///< shares of the script: before this line, and this line
     int64_t voxels_changed = 0;
     StrokeResult::ByGroup taken_from{};
     int64_t kept_locked = 0, kept_painted = 0;  ///< voxels
@@ -75,6 +79,27 @@ public:
         kept_painted += result.kept_painted;
         const std::string& said = bench.messages().last();
         if (result.kept_locked_out > 0)
+            warn({sentence(at, ": ", said)}, options.common);  // the line does not have its intended effect
+        else
+            tell(said);
+    }
+    template <class Op>
+    requires IS_GROUP_OPERATION<Op>
+    void operator()(const Op& op)
+    {
+        in_words([&] { bench.perform(op); });
+        const OperationResult& result = in_words([&]() -> const OperationResult& {
+            return bench.finish_operation([&](double fraction) {
+                work.show(done + share * fraction, {}, -1.0);
+                if (work.is_asked_to_stop()) throw Stopped("stopped; nothing of this line was done");
+            });
+        });
+        voxels_changed += result.voxels;
+        for (const auto& [groups, voxels] : result.moved)
+            if (groups.first != 0) taken_from[groups.first] += voxels;
+        for (const auto& [group, voxels] : result.kept_locked) kept_locked += voxels;
+        const std::string& said = bench.messages().last();
+        if (!result.kept_locked.empty())
             warn({sentence(at, ": ", said)}, options.common);  // the line does not have its intended effect
         else
             tell(said);
@@ -144,6 +169,11 @@ void check_radii(const std::vector<ScriptLine>& script, const std::string& name,
             }
 }
 
+bool is_group_operation(const ScriptOp& op)
+{
+    return std::visit([]<class Op>(const Op&) { return IS_GROUP_OPERATION<Op>; }, op);
+}
+
 /// Checks before anything is done whether a script that saves has files to save to.
 void check_names(const std::vector<ScriptLine>& script, const std::string& name, const std::string& project,
                  const Session& session)
@@ -153,7 +183,7 @@ void check_names(const std::vector<ScriptLine>& script, const std::string& name,
     for (const ScriptLine& line : script) {
         if (!save && std::holds_alternative<SaveOp>(line.op)) save = &line;
         const auto* const paint = std::get_if<PaintOp>(&line.op);
-        paints |= paint && paint->paints_group;
+        paints |= paint ? paint->paints_group : is_group_operation(line.op);
         raises |= paint && paint->density;
     }
     if (!save) return;
@@ -215,7 +245,7 @@ void run_annotate(const AnnotateCommandOptions& options)
                 .work = opened.annotator->take_work(),
                 .session_text = ui::text_of_session(session)});
     opened.annotator.reset();
-    Replay replay{bench, options};
+    Replay replay{bench, options, work};
     static_cast<void>(work.begin("replaying " + name));
     for (size_t done = 0; done < script.size(); ++done) {
         replay.at = sentence(name, ":", script[done].number);
@@ -223,7 +253,9 @@ void run_annotate(const AnnotateCommandOptions& options)
             bench.flush();
             fail(replay.at, ": stopped before this line; the ", done, " commands before it are kept");
         }
-        work.show(double(done) / double(script.size()), {}, -1.0);
+        replay.share = 1.0 / double(script.size());
+        replay.done = double(done) * replay.share;
+        work.show(replay.done, {}, -1.0);
         std::visit(replay, script[done].op);
     }
     bench.flush();

@@ -11,6 +11,7 @@
 
 #include "engine/base/file.h"
 #include "engine/base/json.h"
+#include "engine/session/fields.h"
 
 namespace shvr {
 
@@ -270,6 +271,25 @@ constexpr OpReader OPS[] = {
     {"expect", [](const JsonNode& line) -> ScriptOp { return read_expect(line); }},
 };
 
+/// An operation on groups, by the keys of its row.
+template <size_t INDEX = 0>
+ScriptOp read_operation(const JsonNode& line, std::string_view name)
+{
+    if constexpr (INDEX < std::variant_size_v<GroupOperation>) {
+        if (OPERATION_ROWS[INDEX].id != name && OPERATION_ROWS[INDEX].alias != name)
+            return read_operation<INDEX + 1>(line, name);
+        std::variant_alternative_t<INDEX, GroupOperation> op;
+        std::string id;
+        read_fields(line, {}, [&](Fields& f) {
+            f.text("op", id, {.is_required = true});
+            operation_fields(f, op);
+        });
+        return op;
+    } else {
+        line["op"].refuse("an operation");
+    }
+}
+
 /// Reads standard input ("-") or a pipe to its end.
 std::string read_stream(const std::filesystem::path& path, const std::string& name)
 {
@@ -294,13 +314,18 @@ std::vector<std::string_view> script_op_names()
 {
     std::vector<std::string_view> names;
     for (const OpReader& op : OPS) names.push_back(op.name);
+    for (const OperationRow& row : OPERATION_ROWS) names.emplace_back(row.id);
     return names;
 }
 
 ScriptOp read_script_op(const JsonNode& line)
 {
     if (!line.is_object()) line.refuse("an object such as {\"op\":\"save\"}");
-    return OPS[line["op"].choice(script_op_names())].read(line);
+    std::vector<std::string_view> names = script_op_names();
+    for (const OperationRow& row : OPERATION_ROWS)
+        if (*row.alias != 0) names.emplace_back(row.alias);
+    const size_t chosen = line["op"].choice(names);
+    return chosen < std::size(OPS) ? OPS[chosen].read(line) : read_operation(line, names[chosen]);
 }
 
 bool changes_work(const ScriptOp& op)

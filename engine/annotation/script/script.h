@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/annotation/brush.h"
+#include "engine/annotation/operations/operations.h"
 #include "engine/annotation/trace/trace_op.h"
 
 namespace shvr {
@@ -31,8 +32,16 @@ struct ExpectOp {
     std::optional<int64_t> nodes;
     std::optional<int64_t> internodes;
 };
-using ScriptOp = std::variant<PaintOp, NodeOp, SelectOp, SelectSegmentOp, DeselectOp, LinkOp, MoveOp, DeleteOp, GroupOp,
-                              RadiusOp, UndoOp, RedoOp, SaveOp, RevertOp, ExpectOp>;
+
+template <class Operations, class... Ops>
+struct WithOperations;
+template <class... Operations, class... Ops>
+struct WithOperations<std::variant<Operations...>, Ops...> {
+    using Type = std::variant<Ops..., Operations...>;
+};
+/// The operations on groups (engine/annotation/operations) follow from their table.
+using ScriptOp = WithOperations<GroupOperation, PaintOp, NodeOp, SelectOp, SelectSegmentOp, DeselectOp, LinkOp, MoveOp,
+                                DeleteOp, GroupOp, RadiusOp, UndoOp, RedoOp, SaveOp, RevertOp, ExpectOp>::Type;
 
 /// Whether the operation changes the work, or its files.
 bool changes_work(const ScriptOp& op);

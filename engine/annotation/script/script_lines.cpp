@@ -2,6 +2,7 @@
 
 #include "engine/annotation/script/script.h"
 #include "engine/base/text.h"
+#include "engine/session/fields.h"
 
 namespace shvr {
 
@@ -109,6 +110,17 @@ std::string line(const ExpectOp& op)
     if (op.nodes) line.whole("nodes", *op.nodes);
     if (op.internodes) line.whole("internodes", *op.internodes);
     return line;
+}
+
+/// Operations on groups are written by the keys of their rows.
+template <class Op>
+requires IS_GROUP_OPERATION<Op> std::string line(const Op& op)
+{
+    std::string id = row_of(GroupOperation(op)).id;
+    return write_fields({}, [&, written = op](Fields& f) mutable {
+        f.text("op", id, {});
+        operation_fields(f, written);
+    });
 }
 
 std::string line(const SelectSegmentOp&)

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/workbench/actions/group_actions.h"
 #include "engine/workbench/actions/hand_actions.h"
 #include "engine/workbench/actions/looking_actions.h"
 #include "engine/workbench/actions/measuring_actions.h"
@@ -30,9 +31,10 @@ struct JoinedRows<std::tuple<Joined...>, std::tuple<Rows...>, Tables...>
 using ActionRows =
     JoinedRows<std::tuple<>, std::remove_const_t<decltype(LOOKING_ACTIONS)>,
                std::remove_const_t<decltype(SETTINGS_ACTIONS)>, std::remove_const_t<decltype(PROBE_ACTIONS)>,
-               std::remove_const_t<decltype(PAINTING_ACTIONS)>, std::remove_const_t<decltype(TRACING_ACTIONS)>,
-               std::remove_const_t<decltype(MEASURING_ACTIONS)>, std::remove_const_t<decltype(WORK_ACTIONS)>,
-               std::remove_const_t<decltype(WINDOW_ACTIONS)>, std::remove_const_t<decltype(HAND_ACTIONS)>>::Type;
+               std::remove_const_t<decltype(PAINTING_ACTIONS)>, std::remove_const_t<decltype(GROUP_ACTIONS)>,
+               std::remove_const_t<decltype(TRACING_ACTIONS)>, std::remove_const_t<decltype(MEASURING_ACTIONS)>,
+               std::remove_const_t<decltype(WORK_ACTIONS)>, std::remove_const_t<decltype(WINDOW_ACTIONS)>,
+               std::remove_const_t<decltype(HAND_ACTIONS)>>::Type;
 
 template <class Rows>
 struct VariantOfRows;

@@ -37,6 +37,25 @@ std::string why_without_group(const Model& model, uint8_t group)
     return group == 0 ? "group 0 is the eraser; choose a group from 1 up" : why_not_traced(model);
 }
 
+std::string why_not_operated(const Model& model, const GroupOperation& operation)
+{
+    const std::string why = why_not_traced(model);
+    if (!why.empty()) return why;
+    return std::visit(
+        [&]<class Op>(const Op& op) -> std::string {
+            if constexpr (requires { Op::PAINTS_ONLY; })
+                return {};
+            else if constexpr (requires { op.with; })
+                return model.voxels_by_group[size_t(op.group)] + model.voxels_by_group[size_t(op.with)] == 0
+                           ? sentence("groups ", op.group, " and ", op.with, " have no voxels")
+                           : "";
+            else
+                return model.voxels_by_group[size_t(op.group)] == 0 ? sentence("group ", op.group, " has no voxels")
+                                                                    : "";
+        },
+        operation);
+}
+
 std::string why_not_own(const Model& model, const std::string& name)
 {
     const auto is_it = [&](const TransferPreset& preset) { return preset.is_own && preset.name == name; };

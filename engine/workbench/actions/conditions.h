@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "engine/annotation/operations/operations.h"
 #include "engine/base/text.h"
 
 namespace shvr::ui {
@@ -21,6 +22,8 @@ std::string why_without_selection(const Model& model);
 std::string why_without_node(const Model& model);
 /// `group`: group that the new nodes or internodes would have.
 std::string why_without_group(const Model& model, uint8_t group);
+/// Condition of an operation on groups.
+std::string why_not_operated(const Model& model, const GroupOperation& operation);
 /// `name`: name of a transfer function that the user has saved.
 std::string why_not_own(const Model& model, const std::string& name);
 

@@ -10,6 +10,7 @@
 #include "engine/workbench/services/file_taker.h"
 #include "engine/workbench/services/hand.h"
 #include "engine/workbench/services/opener.h"
+#include "engine/workbench/services/operations/group_editor.h"
 #include "engine/workbench/services/painter.h"
 #include "engine/workbench/services/photographer.h"
 #include "engine/workbench/services/prober.h"
@@ -63,6 +64,10 @@ struct Services {
                    .extend_stroke = [this] { painter.extend_stroke(); },
                    .note_edit = [this] { settings.note_edit(); },
                    .note_to_keep = [this] { settings.note_to_keep(); }}};
+    GroupEditor groups{desk,
+                       {.record_settings = [this] { settings.record_settings(); },
+                        .show_changes = [this](const Command& command) { settings.show_changes(command); },
+                        .advance_jobs = [this] { tasks.advance(); }}};
     Tracer tracer{desk,
                   keeper,
                   {.pane = [this](size_t index) { return viewer.pane(index); },
@@ -156,7 +161,7 @@ struct Services {
     Kind& of()
     {
         return std::get<Kind&>(std::tie(keeper, presets, window, photographer, viewer, settings, reader, painter,
-                                        prober, tracer, taker, opener, reloader, tasks, saver, hand));
+                                        prober, groups, tracer, taker, opener, reloader, tasks, saver, hand));
     }
 };
 

@@ -44,6 +44,9 @@ constexpr const char *NODE = R"({"op":"node","at":[10,12,14],"radius":2,"group":
                      *STROKE_5 =
                          R"({"op":"paint","brush":"fill","group":5,"threshold":90,"radius":4,"path":[[9,18,16]]})";
 
+constexpr const char
+    *HOLLOW_BALL = R"({"op":"paint","brush":"fill","group":3,"threshold":-9,"radius":4,"path":[[20.5,18.5,16.5]]})",
+    *HOLE = R"({"op":"paint","brush":"fill","group":0,"threshold":-9,"radius":1,"path":[[20.5,18.5,16.5]]})";
 constexpr const char *SLICES = R"({"op":"set","values":{"view":{"arrangement":"slices"}}})",
                      *CLOSER = R"({"op":"zoom","pane":1,"pixel":[10,12],"factor":3})";
 
@@ -108,6 +111,15 @@ const Row ROWS[] = {
     {STROKE, "saved, undo, voxels"},
     {R"({"op":"density","brush":"fill","region":"ball","threshold":60,"radius":4,"offset":30,"path":[[20,18,16]]})",
      "offsets, saved, undo"},
+    {R"({"op":"combine","group":7,"with":3,"how":"add"})", "saved, undo, voxels", {STROKE}},
+    {R"({"op":"islands","group":3,"keep":"at_least","voxels":100000})", "saved, undo, voxels", {STROKE}},
+    {R"({"op":"threshold","group":3,"from":60,"to":255,"box":[0,0,0,20,20,20]})", "saved, undo, voxels"},
+    {R"({"op":"fill_holes","group":3})", "saved, undo, voxels", {HOLLOW_BALL, HOLE}},
+    {R"({"op":"grow","group":3,"distance":2.5})", "saved, undo, voxels", {HOLLOW_BALL}},
+    {R"({"op":"shrink","group":3,"distance":2.5})", "saved, undo, voxels", {HOLLOW_BALL}},
+    {R"({"op":"open_group","group":3,"distance":2.5})", "saved, undo, voxels", {HOLLOW_BALL}},
+    {R"({"op":"close","group":3,"distance":2.5})", "saved, undo, voxels", {HOLLOW_BALL, HOLE}},
+    {R"({"op":"hollow","group":3,"wall":2,"side":"in"})", "saved, undo, voxels", {HOLLOW_BALL}},
     {R"({"op":"drag_node","on":true})", "drags", {NODE, NEXT_NODE}},
     {R"({"op":"drag_node","on":false})", "drags, saved, trace, undo", {NODE, NEXT_NODE, DRAG}},
     {R"({"op":"node","at":[10,12,14],"radius":2,"group":2})", "saved, selection, trace, undo"},

@@ -319,3 +319,29 @@ TEST_CASE("a script that cannot be read is refused with its path")
     CHECK(contains(error_of([&] { read_script(folder.path / "missing.jsonl"); }), "missing.jsonl"));
     CHECK(contains(error_of([&] { read_script(folder.path); }), folder.path.string()));
 }
+
+TEST_CASE("lines of operations on groups are read with every key, and written again")
+{
+    const char* const lines[] = {
+        R"({"op":"combine","group":3,"with":4,"how":"swap"})",
+        R"({"op":"islands","group":3,"keep":"at_least","mm3":0.25,"connectivity":26,"within":[-1.5,70],"inside":0,)"
+        R"("only_unpainted":true,"box":[-1,0,2,30,40,50]})",
+        R"({"op":"islands","group":3,"keep":"at","at":[1,2.5,3],"split_from":10,"connectivity":6,)"
+        R"("only_unpainted":false})",
+        R"({"op":"fill_holes","group":255})"};
+    for (const char* const text : lines) {
+        CAPTURE(text);
+        const std::vector<ScriptLine> script = script_of(text);
+        const std::string written = line_of(script.at(0).op);
+        CHECK(line_of(script_of(written).at(0).op) == written);
+        for (const char* const key : {"with", "how", "mm3", "at", "split_from", "within", "inside", "box"}) {
+            const std::string quoted = '"' + std::string(key) + '"';
+            CHECK((std::string(text).find(quoted) != std::string::npos) == (written.find(quoted) != std::string::npos));
+        }
+    }
+    const auto op = op_of<IslandsOp>(lines[1]);
+    CHECK(op.limits.box == VoxelBox{{-1, 0, 2}, {30, 40, 50}});
+    CHECK(op.limits.within == glm::dvec2(-1.5, 70));
+    CHECK(op.limits.inside == 0);
+    CHECK(op.limits.only_unpainted);
+}

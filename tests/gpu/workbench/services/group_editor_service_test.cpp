@@ -1,0 +1,81 @@
+// The editor of groups alone: an operation is one step, unless groups change while it is computed or it is cancelled.
+
+#include <doctest/doctest.h>
+
+#include "engine/workbench/services/operations/group_editor.h"
+#include "tests/gpu/workbench/services/desk_with_scan.h"
+
+using namespace shvr;
+using namespace shvr::test;
+using namespace shvr::ui;
+
+namespace {
+
+struct GroupsAlone : DeskWithScan {
+    GroupEditor groups{desk,
+                       {.record_settings = notes("record_settings"),
+                        .show_changes = notes("show_changes"),
+                        .advance_jobs = [this] { finish_jobs(); }}};
+    void finish_jobs()
+    {
+        for (const Jobs::Finished& job : desk.jobs.finish())
+            if (!job.failure.empty()) desk.say(job.failure, Weight::error);
+    }
+    void await_end()
+    {
+        until([&] { finish_jobs(); }, [&] { return desk.jobs.is_idle(); });
+    }
+    int64_t voxels(size_t group) { return document().annotator.document().mask.voxels_by_group()[group]; }
+    size_t steps() { return document().annotator.history().undoable(); }
+};
+
+}  // namespace
+
+TEST_CASE_FIXTURE(GroupsAlone, "groups: an operation is computed as a job, and becomes one step that undo takes back")
+{
+    paint();
+    const int64_t painted = voxels(1);
+    groups.act(CombineOp{.group = 7, .with = 1, .how = CombineOp::How::add});
+    CHECK(steps() == 1);
+    CHECK(take_calls() == "record_settings");
+    await_end();
+    CHECK(steps() == 2);
+    CHECK(voxels(7) == painted);
+    CHECK(take_calls() == "record_settings show_changes");
+    CHECK(says("Combine groups: " + std::to_string(painted) + " voxels of group 1 moved to group 7"));
+    CHECK(document().annotator.history().label_of(1) == "combine groups, group 7");
+    document().annotator.undo();
+    CHECK(voxels(1) == painted);
+}
+
+TEST_CASE_FIXTURE(GroupsAlone,
+                  "groups: what was painted while an operation was computed is kept, and its result dropped")
+{
+    paint();
+    groups.act(GrowOp{.group = 1, .distance = 2.0});
+    document().annotator.undo();
+    document().annotator.redo();
+    const int64_t painted = voxels(1);
+    await_end();
+    CHECK(says("Grow: the annotation was changed while this was computed, so nothing was done; repeat it"));
+    CHECK(voxels(1) == painted);
+    CHECK(steps() == 1);
+    groups.act(GrowOp{.group = 1, .distance = 2.0});
+    const int64_t grown = groups.finish({}).voxels;
+    CHECK(grown > 0);
+    CHECK(voxels(1) == painted + grown);
+}
+
+TEST_CASE_FIXTURE(GroupsAlone, "groups: an operation that is cancelled or fails changes nothing, and says so")
+{
+    paint();
+    groups.act(ShrinkOp{.group = 1, .distance = 1.0});
+    const auto stop = [](double) { throw Stopped("stopped"); };
+    CHECK_THROWS_AS(static_cast<void>(groups.finish(stop)), Stopped);
+    CHECK(desk.jobs.is_idle());
+    CHECK(steps() == 1);
+    groups.act(GrowOp{.group = 1, .distance = 1e9});
+    CHECK_THROWS_WITH_AS(static_cast<void>(groups.finish({})),
+                         "the distance is 1e+09, 1e+09 voxels along x; expected at most 512 voxels", Error);
+    CHECK(steps() == 1);
+}
