@@ -24,7 +24,7 @@ READS = {("info",): [], ("import",): ["project"], ("render",): ["-o", "a.png"], 
 NEEDS = {("info",): "INPUT", ("import",): "VOLUME", ("render",): "INPUT", ("annotate",): "PROJECT",
          ("export",): "PROJECT", ("evaluate",): "--truth-mask", ("label",): "VOLUME", ("compare",): "A",
          ("profile",): "INPUT", ("profile", "diff"): "A", ("golden", "bless"): "--reason", ("bench",): "--output",
-         ("phantom",): "KIND", ("haptics", "replay"): "TRACE"}
+         ("phantom",): "KIND", ("haptics", "replay"): "TRACE", ("study",): "--output"}
 
 
 class ErrorTest(CliTest):
@@ -34,6 +34,7 @@ class ErrorTest(CliTest):
         script = self.write_script("s.jsonl", [{"op": "expect", "nodes": 0}, {"op": "save"}])
         trace = self.write_script("t.trace", [{"shvr_stylus_trace": 1}, {"at": [0, 0, 0]}])
         (folder / "golden").mkdir()
+        (folder / "conditions.csv").write_text("task,touch,law,probe_radii,noise\ntrace,none,potential,1.5,10\n")
         self.write_json("golden/sphere.json", {"why": "the smallest", "session": "../session.json"})
         golden = ["--folder", folder / "golden"]
         return {("info",): [session], ("render",): [session, "-o", folder / "a.png"],
@@ -50,6 +51,8 @@ class ErrorTest(CliTest):
                 ("golden", "report"): [*golden, "-o", folder / "results"],
                 ("bench",): ["--scenes", session, "--quick", "--size", "8,8", "--rounds", "1", "--peer", "none", "-o",
                              folder / "bench"],
+                ("study",): ["--size", "small", "--seeds", "1", "--conditions", folder / "conditions.csv", "-o",
+                             folder / "study"],
                 ("haptics", "replay"): [trace, "--volume", session], ("haptics", "devices"): []}
 
 

@@ -121,6 +121,7 @@ void add_label(CLI::App& program);
 void add_compare(CLI::App& program);
 void add_profile(CLI::App& program);
 void add_phantom(CLI::App& program);
+void add_study(CLI::App& program);
 void add_golden(CLI::App& program);
 void add_bench(CLI::App& program);
 void add_view(CLI::App& program);

@@ -71,6 +71,7 @@ int run(int argc, char** argv)
     shvr::cli::add_golden(program);
     shvr::cli::add_bench(program);
     shvr::cli::add_phantom(program);
+    shvr::cli::add_study(program);
     shvr::cli::add_haptics(program);
     shvr::cli::add_view(program);
     for (CLI::App* command : program.get_subcommands({})) command->set_version_flag("--version", "shvr " SHVR_VERSION);

@@ -16,7 +16,7 @@ using shvr::test::repeats;
 
 namespace {
 
-const StudyScene& a_scene()
+const StudyScene& a_section()
 {
     static const StudyScene scene({.side = 80, .seed = 1, .noise = 10.0});
     return scene;
@@ -24,7 +24,7 @@ const StudyScene& a_scene()
 
 StudyAnnotation traced(StudyTouch touch, uint32_t annotator = 2, uint32_t seed = 1)
 {
-    return annotate(a_scene(), {.task = StudyTask::trace, .touch = touch}, annotator, seed);
+    return annotate(a_section(), {.task = StudyTask::trace, .touch = touch}, annotator, seed);
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ TEST_CASE("mistakes happen at their stated rates, and half of them are noticed a
         for (const StudyTask task : {StudyTask::trace, StudyTask::paint}) {
             const uint32_t annotator = 1 + seed % STUDY_ANNOTATORS;
             const MistakeTally tally =
-                annotate(a_scene(), {.task = task, .touch = StudyTouch::none}, annotator, seed).mistakes;
+                annotate(a_section(), {.task = task, .touch = StudyTouch::none}, annotator, seed).mistakes;
             for (const MistakeRate& rate : mistake_rates()) {
                 const auto i = size_t(rate.mistake);
                 const double p = rate.rate * skill_of(annotator).carelessness;
@@ -80,7 +80,7 @@ TEST_CASE("mistakes happen at their stated rates, and half of them are noticed a
 
 TEST_CASE("pauses and edits cost what they state, ticks a millisecond each")
 {
-    StudyDesk desk(a_scene(), {.touch = StudyTouch::none}, {}, 1);
+    StudyDesk desk(a_section(), {.touch = StudyTouch::none}, {}, 1);
     const double begin = desk.seconds();
     desk.spend(2.5);
     for (int i = 0; i < 100; ++i) desk.tick(glm::dvec3(40.0), 0.0);
@@ -95,7 +95,7 @@ TEST_CASE("pauses and edits cost what they state, ticks a millisecond each")
 
 TEST_CASE("edits of a study go through the work's history and can be undone")
 {
-    StudyDesk desk(a_scene(), {.touch = StudyTouch::none}, {}, 1);
+    StudyDesk desk(a_section(), {.touch = StudyTouch::none}, {}, 1);
     CHECK_FALSE(desk.edit_trace(SelectOp{.near = glm::dvec3(40.0), .number = {}}));
     CHECK(desk.edit_trace(NodeOp{.at = glm::dvec3(40.0), .radius_voxels = 2.0, .group = {}}));
     CHECK(desk.edit_trace(NodeOp{.at = glm::dvec3(44.0), .radius_voxels = 2.0, .group = {}}));
@@ -103,7 +103,7 @@ TEST_CASE("edits of a study go through the work's history and can be undone")
     desk.undo();
     CHECK(desk.document().trace.internodes().size() == 0);
     CHECK(desk.document().trace.nodes().size() == 1);
-    const glm::dvec3 vein = a_scene().trace().node(5).position;
+    const glm::dvec3 vein = a_section().trace().node(5).position;
     const int64_t painted = desk.paint({vein, vein + glm::dvec3(2.0, 0.0, 0.0)}, STUDY_THRESHOLD);
     CHECK(painted > 0);
     CHECK(desk.document().mask.voxels_by_group()[1] == painted);

@@ -1,0 +1,237 @@
+#include "engine/study/study.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "engine/annotation/measures/trace_score.h"
+#include "engine/base/atomic_file.h"
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/base/text.h"
+#include "engine/base/work_pool.h"
+
+namespace shvr {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double NO_SCORE = std::numeric_limits<double>::quiet_NaN();
+
+/// The begin of the names of the files with an item's row, and with those of the same hand.
+std::string file_stem(const StudyItem& item)
+{
+    if (item.trait >= hand_traits().size()) return "rows";
+    return sentence("hand-", hand_traits()[item.trait].name, "-", digits_of(item.factor));
+}
+
+bool is_row_of(const StudyItem& item, const StudyRow& row)
+{
+    return row.condition == item.condition && row.annotator == item.annotator && row.seed == item.seed;
+}
+
+std::set<size_t> found_segments(const StudyScene& scene, const TraceGraph& trace)
+{
+    std::set<size_t> found;
+    for (size_t i = 0; i < scene.segments().size(); ++i) {
+        TraceGraph alone;
+        const TraceSegment& segment = scene.segments()[i];
+        for (const uint32_t node : segment.nodes)
+            alone.apply(TraceNodeChange{node, {}, scene.trace().node(node)}, Direction::forwards);
+        for (const uint32_t internode : segment.internodes)
+            alone.apply(TraceInternodeChange{internode, {}, scene.trace().internode(internode)}, Direction::forwards);
+        if (compare(trace, alone, 1.0).segments_found == 1) found.insert(i);
+    }
+    return found;
+}
+
+StudyLikeness likeness_of(const StudyScene& scene, const StudyPair& pair)
+{
+    StudyLikeness likeness{pair, NO_SCORE, NO_SCORE, NO_SCORE};
+    const uint32_t attempt = pair.annotator == pair.other ? 1 : 0;
+    const StudyAnnotation a = annotate(scene, pair.condition, pair.annotator, pair.seed);
+    const StudyAnnotation b = annotate(scene, pair.condition, pair.other, pair.seed, {}, attempt);
+    if (pair.condition.task == StudyTask::paint) {
+        likeness.dice = dice_of(a.mask, b.mask).painted.value_or(NO_SCORE);
+        return likeness;
+    }
+    const std::set<size_t> in_a = found_segments(scene, a.trace), in_b = found_segments(scene, b.trace);
+    const auto both = std::ranges::count_if(in_a, [&](size_t segment) { return in_b.contains(segment); });
+    const auto either = std::ptrdiff_t(in_a.size() + in_b.size()) - both;
+    if (either > 0) likeness.segment_agreement = double(both) / double(either);
+    const std::optional<double> there = compare(a.trace, b.trace, 1.0).centreline_rms,
+                                back = compare(b.trace, a.trace, 1.0).centreline_rms;
+    if (there && back) likeness.distance_rms = std::sqrt(0.5 * (*there * *there + *back * *back));
+    return likeness;
+}
+
+/// The items and pairs of one phantom.
+struct Piece {
+    SceneSpec scene;
+    std::vector<size_t> items, pairs;
+};
+
+class Study {
+public:
+    Study(const StudyPlan& plan, const StudyRun& run) : plan_(plan), run_(run), rows_(plan.items.size())
+    {
+        likenesses_.resize(plan.pairs.size());
+        check_folder();
+        read_rows();
+        cut();
+    }
+
+    StudyResults make()
+    {
+        const int cores = std::max(int(std::thread::hardware_concurrency()), 1);
+        WorkPool pool(run_.threads > 0 ? run_.threads : cores, [&] { tell(run_.progress, share_done()); });
+        pool.run(int64_t(pieces_.size()), [&](int64_t piece, int) { make(pieces_[size_t(piece)]); });
+        return results();
+    }
+
+private:
+    fs::path note_path() const { return run_.folder / "phantoms.txt"; }
+    std::string note() const { return sentence("side ", plan_.side, "\n"); }
+
+    void check_folder() const
+    {
+        std::error_code error;
+        fs::create_directories(run_.folder, error);
+        if (error) fail(run_.folder.string(), ": cannot be created: ", error.message());
+        if (!fs::exists(note_path())) {
+            const std::string text = note();
+            write_file_atomically(note_path(), std::as_bytes(std::span(text)));
+            return;
+        }
+        const std::string found = read_text(note_path(), 1000);
+        if (found != note())
+            fail(note_path().string(), ": holds ", in_quotes(found.substr(0, found.find('\n'))), "; expected ",
+                 in_quotes(note().substr(0, note().size() - 1)), ", as this study's phantoms; choose another folder");
+    }
+
+    /// Takes rows that an earlier run, or another part, has written.
+    void read_rows()
+    {
+        for (const fs::directory_entry& entry : fs::directory_iterator(run_.folder)) {
+            const std::string name = entry.path().filename().string();
+            if (entry.path().extension() != ".csv" || (!name.starts_with("rows") && !name.starts_with("hand-")))
+                continue;
+            const std::vector<StudyRow> rows = read_study_rows(entry.path());
+            for (size_t i = 0; i < plan_.items.size(); ++i) {
+                const std::string stem = file_stem(plan_.items[i]);
+                if (name != stem + ".csv" && !name.starts_with(stem + "-part-")) continue;
+                for (const StudyRow& row : rows)
+                    if (is_row_of(plan_.items[i], row)) rows_[i] = row;
+            }
+        }
+    }
+
+    /// Cuts what is left of the plan into pieces, and keeps those of this part.
+    void cut()
+    {
+        std::map<std::pair<uint32_t, double>, Piece> pieces;
+        const auto piece_of = [&](uint32_t seed, double noise) -> Piece& {
+            Piece& piece = pieces[{seed, noise}];
+            piece.scene = {plan_.side, seed, noise};
+            return piece;
+        };
+        for (size_t i = 0; i < plan_.items.size(); ++i)
+            piece_of(plan_.items[i].seed, plan_.items[i].condition.noise).items.push_back(i);
+        for (size_t i = 0; i < plan_.pairs.size(); ++i)
+            piece_of(plan_.pairs[i].seed, plan_.pairs[i].condition.noise).pairs.push_back(i);
+        int64_t number = 0;
+        for (auto& [key, piece] : pieces) {
+            if (number++ % run_.of != run_.part) continue;
+            std::erase_if(piece.items, [&](size_t item) { return rows_[item].has_value(); });
+            if (!piece.items.empty() || !piece.pairs.empty()) pieces_.push_back(std::move(piece));
+        }
+        for (const Piece& piece : pieces_) to_make_ += piece.items.size() + piece.pairs.size();
+    }
+
+    double share_done()
+    {
+        const std::lock_guard lock(mutex_);
+        return to_make_ > 0 ? double(made_ + pairs_made_) / double(to_make_) : 1.0;
+    }
+
+    void make(const Piece& piece)
+    {
+        const StudyScene scene(piece.scene);
+        for (const size_t i : piece.items) {
+            const StudyItem& item = plan_.items[i];
+            HandTraits traits;
+            if (item.trait < hand_traits().size()) traits.*hand_traits()[item.trait].value *= item.factor;
+            StudyRow row = annotate(scene, item.condition, item.annotator, item.seed, traits).row;
+            const std::lock_guard lock(mutex_);
+            rows_[i] = row;
+            made_items_.insert(i);
+            ++made_;
+        }
+        for (const size_t i : piece.pairs) {
+            const StudyLikeness likeness = likeness_of(scene, plan_.pairs[i]);
+            const std::lock_guard lock(mutex_);
+            likenesses_[i] = likeness;
+            ++pairs_made_;
+        }
+        const std::lock_guard lock(mutex_);
+        write_rows();
+    }
+
+    /// Writes all files, in the order of the plan. A part writes only what it made itself, into files of its own.
+    void write_rows() const
+    {
+        std::map<std::string, std::vector<StudyRow>> files;
+        for (size_t i = 0; i < rows_.size(); ++i)
+            if (rows_[i] && (run_.of == 1 || made_items_.contains(i)))
+                files[file_stem(plan_.items[i])].push_back(*rows_[i]);
+        const std::string part = run_.of == 1 ? "" : sentence("-part-", run_.part, "-of-", run_.of);
+        for (const auto& [stem, rows] : files) {
+            const std::string csv = csv_of(rows);
+            write_file_atomically(run_.folder / (stem + part + ".csv"), std::as_bytes(std::span(csv)));
+        }
+    }
+
+    StudyResults results() const
+    {
+        StudyResults results;
+        std::map<std::pair<size_t, double>, std::vector<StudyRow>> varied;
+        for (size_t i = 0; i < rows_.size(); ++i) {
+            const StudyItem& item = plan_.items[i];
+            if (!rows_[i]) {
+                ++results.missing;
+            } else if (item.trait < hand_traits().size()) {
+                varied[{item.trait, item.factor}].push_back(*rows_[i]);
+            } else {
+                results.rows.push_back(*rows_[i]);
+            }
+        }
+        for (auto& [key, rows] : varied) results.variations.push_back({key.first, key.second, std::move(rows)});
+        for (const std::optional<StudyLikeness>& likeness : likenesses_)
+            if (likeness) results.likenesses.push_back(*likeness);
+        results.made_here = made_;
+        return results;
+    }
+
+    const StudyPlan& plan_;
+    const StudyRun& run_;
+    std::vector<std::optional<StudyRow>> rows_;  ///< of plan_.items
+    std::vector<std::optional<StudyLikeness>> likenesses_;
+    std::set<size_t> made_items_;
+    std::vector<Piece> pieces_;
+    size_t to_make_ = 0, made_ = 0, pairs_made_ = 0;
+    std::mutex mutex_;
+};
+
+}  // namespace
+
+StudyResults run_study(const StudyPlan& plan, const StudyRun& run)
+{
+    return Study(plan, run).make();
+}
+
+}  // namespace shvr

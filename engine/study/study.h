@@ -1,0 +1,91 @@
+#pragma once
+// The study: which annotations it consists of, and running them on several threads. Annotations of one phantom form a
+// piece of work; finished pieces are written at once, so a study that was interrupted continues where it was. Rows are
+// equal bit for bit at any number of threads, and however often the study was interrupted or split.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/progress.h"
+#include "engine/study/annotator.h"
+
+namespace shvr {
+
+enum class StudySize : uint8_t { small, standard, full };
+inline constexpr Spelling<StudySize> STUDY_SIZES[] = {
+    {StudySize::small, "small"}, {StudySize::standard, "standard"}, {StudySize::full, "full"}};
+constexpr std::span<const Spelling<StudySize>> spellings_of(StudySize)
+{
+    return STUDY_SIZES;
+}
+
+/// One annotation.
+struct StudyItem {
+    StudyCondition condition;
+    uint32_t annotator = 1, seed = 1;
+    size_t trait = SIZE_MAX;  ///< of hand_traits(), multiplied by `factor`; SIZE_MAX: none
+    double factor = 1.0;
+};
+/// Two annotations of one phantom, by one annotator twice or by two.
+struct StudyPair {
+    StudyCondition condition;
+    uint32_t annotator = 1, other = 1, seed = 1;
+};
+
+/// What `--conditions` and `--seeds` choose instead of a size's own.
+struct StudyChoice {
+    StudySize size = StudySize::standard;
+    std::optional<uint32_t> seeds{};
+    std::vector<StudyCondition> conditions{};  ///< empty: those of the size
+};
+
+struct StudyPlan {
+    int64_t side = 256;  ///< of the phantoms, voxels
+    std::vector<StudyItem> items;
+    std::vector<StudyPair> pairs;
+};
+/// The condition around which one factor at a time is varied.
+StudyCondition study_centre(StudyTask task);
+/// `standard`: `none` and the centre 30 times; each other touch, law, probe radius and noise 10 times; both, with
+/// each trait of the hand halved and doubled, 10 times; 10 pairs of each kind. `small`: a few of these, on
+/// small phantoms. `full`: all combinations, 30 times. Painting and tracing. Other probe radii and noises are compared
+/// with `none` under the same ones.
+StudyPlan plan_study(const StudyChoice& choice);
+/// Reads conditions: a CSV file with the columns task, touch, law, probe_radii, noise. Fails with a sentence that names
+/// file, line and column.
+std::vector<StudyCondition> read_study_conditions(const std::filesystem::path& file);
+
+/// How alike two annotations are.
+struct StudyLikeness {
+    StudyPair pair;
+    double dice;               ///< of both masks; NaN for tracing
+    double segment_agreement;  ///< segments found by both / by either; NaN for painting, or where neither found any
+    double distance_rms;       ///< of both traces from each other, voxels; NaN for painting
+};
+
+struct StudyRun {
+    std::filesystem::path folder;
+    int threads = 0;           ///< 0: one for each core
+    int64_t part = 0, of = 1;  ///< runs every `of`-th phantom, from number `part` on
+    Progress progress{};       ///< may throw, which ends the run after the phantoms in work
+};
+struct StudyVariation {
+    size_t trait = 0;
+    double factor = 1.0;
+    std::vector<StudyRow> rows;
+};
+/// In the order of the plan. A part, or an interrupted run, has fewer.
+struct StudyResults {
+    std::vector<StudyRow> rows;
+    std::vector<StudyVariation> variations;
+    std::vector<StudyLikeness> likenesses;
+    size_t missing = 0;    ///< annotations that no part has made yet
+    size_t made_here = 0;  ///< annotations that this run made
+};
+/// Writes rows*.csv and hand-TRAIT-FACTOR*.csv into the folder, and reads those that are there. Fails if the folder
+/// holds a study of another size of phantoms.
+StudyResults run_study(const StudyPlan& plan, const StudyRun& run);
+
+}  // namespace shvr
