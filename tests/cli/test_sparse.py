@@ -1,10 +1,11 @@
 """Sparse and huge volumes: work costs what is stored, sizes decide before voxels are read, and estimates are stated."""
 import json
 import os
+import re
 import shutil
 import unittest
 
-from harness import CliTest
+from harness import IS_SLOW, CliTest
 from test_large import read_png
 
 HUGE = 2 ** 20
@@ -160,6 +161,27 @@ class Sparse(CliTest):
         self.assertFalse(project.exists())
         report = self.check_json("import", volume, project, "--budget-host", "512", "--threads", "2")
         self.assertLess(report["peak_rss_mib"], 512)
+
+    def test_no_import_takes_more_memory_than_its_estimate(self):
+        """With the estimate --budget-host is compared; the message states it."""
+        spread = [(x * 37 % 128, x * 53 % 128, x * 91 % 128) for x in range(64)]
+        sources = {"sparse": (write_sparse(self.folder / "sparse", 4096, spread), [])}
+        for name, kind, size, voxel, options in (("fog", "fog", 160, "float32", []),
+                                                 ("blurred", "fog", 128, "uint16", ["--blur", "1.5"]),
+                                                 ("dense", "speckles", 512, "uint8", [])):
+            if name != "dense" or IS_SLOW:
+                self.check("phantom", kind, "--size", size, "--type", voxel, "-o", self.folder / name)
+                sources[name] = (self.folder / name / f"{kind}.nhdr", options)
+        for name, (volume, options) in sources.items():
+            for threads in (1, 2, 8) if IS_SLOW else (2,):
+                with self.subTest(source=name, threads=threads):
+                    project = self.folder / f"{name}{threads}"
+                    command = ["import", volume, project, "--threads", threads, *options]
+                    said = self.check_refused(*command, "--budget-host", "1", says=["takes up to "])
+                    estimate = int(re.search(r"takes up to ([0-9]+) MiB", said)[1])
+                    peak = self.check_json(*command, "--quiet")["peak_rss_mib"]
+                    self.assertLess(peak, estimate)
+                    self.assertGreater(peak, 10)
 
     # Kind (Sparse volumes): one chunk as large as the volume
     def test_a_chunk_as_large_as_the_volume_is_refused_by_its_size(self):
