@@ -9,18 +9,6 @@ namespace shvr {
 
 namespace {
 
-/// Follows a chain from its end to its other end, a branch or a connection.
-uint32_t other_end(const VeinGraph& graph, uint32_t end)
-{
-    uint32_t node = end;
-    for (uint32_t link = graph.links_of(end)[0];;) {
-        node = graph.links()[link].other(node);
-        const auto links = graph.links_of(node);
-        if (links.size() != 2 || node == end) return node;
-        link = links[0] == link ? links[1] : links[0];
-    }
-}
-
 std::vector<uint32_t> florets_of(const VeinGraph& graph, const HeadFrame& frame)
 {
     std::vector<uint32_t> florets;
@@ -62,6 +50,17 @@ std::optional<Receptacle> receptacle_of(const Head& head)
 }
 
 }  // namespace
+
+uint32_t other_end(const VeinGraph& graph, uint32_t end)
+{
+    uint32_t node = end;
+    for (uint32_t link = graph.links_of(end)[0];;) {
+        node = graph.links()[link].other(node);
+        const auto links = graph.links_of(node);
+        if (links.size() != 2 || node == end) return node;
+        link = links[0] == link ? links[1] : links[0];
+    }
+}
 
 double quantile(std::vector<double> values, double share)
 {
@@ -121,6 +120,8 @@ PatternRows measure_patterns(const TraceGraph& trace, const HeadSections& sectio
     rows.add("florets", double(head.florets.size()));
     measure_connections(head, rows);
     measure_veins(head, rows);
+    measure_phyllotaxis(head, rows);
+    measure_supply(head, rows);
     measure_stages(head, rows);
     return rows;
 }

@@ -33,12 +33,17 @@ struct FoundHead {
 };
 FoundHead find_head(VeinGraph graph);
 
+/// The other end of the chain that begins at a node with one internode: an end or a branch.
+uint32_t other_end(const VeinGraph& graph, uint32_t end);
+
 /// Quantile by linear interpolation between the sorted values (type 7 of Hyndman and Fan 1996). At least one value.
 double quantile(std::vector<double> values, double share);
 
 // The measures, in parts; each adds its rows.
 void measure_connections(const Head& head, PatternRows& rows);
 void measure_veins(const Head& head, PatternRows& rows);
+void measure_phyllotaxis(const Head& head, PatternRows& rows);
+void measure_supply(const Head& head, PatternRows& rows);
 void measure_stages(const Head& head, PatternRows& rows);
 
 /// All of them. A trace that has no axis gets one row with the reason.

@@ -156,8 +156,10 @@ std::optional<Axis> axis_of_abaxial(const std::vector<Piece>& pieces, const Eige
     double least = 0.0;
     for (const Axis& start : starts_of(pieces, principal)) {
         const Axis axis = refined(pieces, start);
-        if (!(one_sidedness(pieces, axis) < 0.9)) continue;
-        const double cost = cost_of(pieces, axis);
+        const double one_sided = one_sidedness(pieces, axis);
+        if (!(one_sided < 0.9)) continue;
+        // In a flat head any line across the axis meets all veins but those of the stem, most of them from two sides.
+        const double cost = cost_of(pieces, axis) + 2.0 * one_sided;
         if (best && !(cost < least - 1e-9)) continue;
         best = axis;
         least = cost;

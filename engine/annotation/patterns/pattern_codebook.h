@@ -64,6 +64,52 @@ inline constexpr PatternMeasure PATTERN_MEASURES[] = {
      "adaxial_loops / area across the axis of the ring from the innermost to the outermost node of adaxial veins",
      "grid"},
     {"adaxial_nodes_degree_N", "1", "nodes of the adaxial section with N adaxial internodes", "grid, tree"},
+    {"divergence_angle", "degree",
+     "azimuth from a floret, or whorl of florets, to the next further out: least squares over the lattice of florets "
+     "and its centre; 0 to 180 / jugacy",
+     "Vogel 1979; golden angle 137.508, Lucas 99.502, bijugate 68.754"},
+    {"divergence_angle_low", "degree",
+     "lower end of its 95 % interval: bootstrap over florets, 1000 samples (fewer beyond 20000 florets), percentiles",
+     "contains the built-in value"},
+    {"divergence_angle_high", "degree", "upper end of this interval", "contains the built-in value"},
+    {"handedness", "1",
+     "1 if, seen from above, florets further and further out turn counterclockwise by the divergence angle; -1 if "
+     "clockwise",
+     "mirrored phantoms"},
+    {"jugacy", "1", "florets of a whorl: greatest common divisor of the numbers of parastichies", "bijugate 2"},
+    {"lattice_share", "1",
+     "pairs of a floret and the nearest one further out, to each side, that agree with the lattice and each other, of "
+     "all; where fewer than 0.5 agree beyond chance there is no lattice",
+     "undisturbed spirals near 1; florets at random: no lattice"},
+    {"floret_centre_offset", "1", "distance of the lattice's fitted centre from the axis, in head radii", "phantoms 0"},
+    {"parastichies_M_rho_R", "1",
+     "visible parastichies at rho R, the smaller number: those along the shortest vectors of the lattice to both sides",
+     "van Iterson 1907; Jean 1994; consecutive Fibonacci or Lucas numbers, or twice Fibonacci numbers"},
+    {"parastichies_N_rho_R", "1", "the larger number", "as parastichies_M_rho_R"},
+    {"parastichies_share_rho_R", "1",
+     "pairs as in lattice_share within 0.1 of rho R that lie along these two families; less where another family "
+     "replaces it, or "
+     "where florets are irregular",
+     "1 away from transitions"},
+    {"parastichy_alignment", "1",
+     "mean of the absolute cosine between adaxial internodes, projected to the receptacle's tangent plane, and the "
+     "nearer of the two visible parastichies there, weighted by their projected lengths, at rho of florets",
+     "veins on the spirals 1"},
+    {"supply_bundles", "1", "stem bundles: abaxial ends that are lower than the other end of their segment",
+     "built-in number of a phantom"},
+    {"supplied_florets", "1", "florets that are joined with a stem bundle along veins of any section",
+     "built-in number of a phantom"},
+    {"supply_sector_width", "degree",
+     "mean, over the bundles that are the nearest of a floret along the veins, of the shortest arc of azimuth that "
+     "holds "
+     "9 of 10 of these florets",
+     "spokes 0; one bundle of all florets: near 324"},
+    {"supply_overlap_row_K", "1",
+     "mean Jaccard index of the K nearest bundles, along the veins, of florets that are among the 8 nearest of each "
+     "other and in one radial row (within 30 degrees)",
+     "spokes 1"},
+    {"supply_overlap_side_K", "1", "the same for florets side by side (within 30 degrees of the direction around)",
+     "spokes 0"},
     {"stage_a", "1", "1 if there are abaxial veins, and no adaxial veins and no florets; else 0", "thesis, figure 5.3"},
     {"stage_b", "1",
      "1 if all three sections exist, florets are at the outer rim alone (rho >= 0.75), and nothing is connected; else "

@@ -1,0 +1,201 @@
+#include "engine/annotation/patterns/lattice_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace shvr {
+
+namespace {
+
+constexpr double TURN = 2.0 * std::numbers::pi;
+
+/// Union and find, with the number of whorls from each floret to its root.
+class Numbers {
+public:
+    explicit Numbers(size_t count) : root_(count), from_root_(count) { std::iota(root_.begin(), root_.end(), 0U); }
+    std::pair<uint32_t, int> find(uint32_t floret) const
+    {
+        int whorls = 0;
+        for (; root_[floret] != floret; floret = root_[floret]) whorls += from_root_[floret];
+        return {floret, whorls};
+    }
+    /// Returns whether the step agrees with what is known; if nothing is, it is then.
+    bool join(uint32_t inner, uint32_t outer, int step)
+    {
+        const auto [a, from_a] = find(inner);
+        const auto [b, from_b] = find(outer);
+        if (a == b) return from_b - from_a == step;
+        const bool is_a_larger = size_[a] >= size_[b];  // keeps ways to roots short
+        const uint32_t to = is_a_larger ? a : b, moved = is_a_larger ? b : a;
+        root_[moved] = to;
+        from_root_[moved] = is_a_larger ? from_a + step - from_b : from_b - step - from_a;
+        size_[to] += size_[moved];
+        return true;
+    }
+    uint32_t largest() const { return uint32_t(std::ranges::max_element(size_) - size_.begin()); }
+
+private:
+    std::vector<uint32_t> root_;
+    std::vector<int> from_root_;
+    std::vector<size_t> size_ = std::vector<size_t>(root_.size(), 1);
+};
+
+/// One equation: unknowns are phase, correction of the divergence, and the centre.
+struct Equation {
+    glm::dvec4 terms;
+    double right;
+};
+
+std::vector<Equation> equations_of(const std::vector<glm::dvec3>& places, const FloretLattice& lattice)
+{
+    const double part = TURN / lattice.jugacy;
+    glm::dvec2 phase(0.0);
+    double middle = 0.0, count = 0.0;
+    const auto off = [&](size_t i) {
+        const glm::dvec2 p = glm::dvec2(places[i]) - lattice.centre;
+        return std::atan2(p.y, p.x) - lattice.divergence * *lattice.whorls[i];
+    };
+    for (size_t i = 0; i < places.size(); ++i) {
+        if (!lattice.whorls[i]) continue;
+        phase += glm::dvec2(std::cos(lattice.jugacy * off(i)), std::sin(lattice.jugacy * off(i)));
+        middle += *lattice.whorls[i];
+        count += 1.0;
+    }
+    const double mean = std::atan2(phase.y, phase.x) / lattice.jugacy;
+    std::vector<Equation> equations;
+    for (size_t i = 0; i < places.size(); ++i) {
+        if (!lattice.whorls[i]) continue;
+        const glm::dvec2 p = glm::dvec2(places[i]) - lattice.centre;
+        const double rho = glm::length(p);
+        if (!(rho > 1e-6)) continue;
+        // The whorls' middle as origin keeps phase and divergence apart.
+        equations.push_back({{rho, rho * (*lattice.whorls[i] - middle / count), -p.y / rho, p.x / rho},
+                             rho * std::remainder(off(i) - mean, part)});
+    }
+    return equations;
+}
+
+/// Collects the normal equations and solves them. `damping` holds the centre where florets do not determine it.
+class Normal {
+public:
+    void add(const Equation& equation)
+    {
+        matrix_ += glm::outerProduct(equation.terms, equation.terms);
+        right_ += equation.right * equation.terms;
+        count_ += 1.0;
+    }
+    glm::dvec4 solution() const
+    {
+        glm::dmat4 damped = matrix_;
+        damped[2][2] += 1e-3 * count_;
+        damped[3][3] += 1e-3 * count_;
+        damped[0][0] += 1e-12 * count_;
+        damped[1][1] += 1e-12 * count_;
+        return glm::inverse(damped) * right_;
+    }
+
+private:
+    glm::dmat4 matrix_{0.0};
+    glm::dvec4 right_{0.0};
+    double count_ = 0.0;
+};
+
+/// SplitMix64 (Steele et al. 2014): equal numbers on every machine.
+class Draws {
+public:
+    size_t below(size_t count)
+    {
+        uint64_t z = state_ += 0x9e3779b97f4a7c15ULL;
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+        return size_t((((z ^ (z >> 31)) >> 32) * uint64_t(count)) >> 32);
+    }
+
+private:
+    uint64_t state_ = 0;
+};
+
+void add_interval(const std::vector<Equation>& equations, FloretLattice& lattice)
+{
+    // The whole costs at most 2e7 equations beyond 20000 florets.
+    const size_t rounds = std::clamp<size_t>(20000000 / equations.size(), 100, 1000);
+    std::vector<double> found;
+    Draws draws;
+    for (size_t round = 0; round < rounds; ++round) {
+        Normal normal;
+        for (size_t i = 0; i < equations.size(); ++i) normal.add(equations[draws.below(equations.size())]);
+        const double by = normal.solution().y;
+        if (std::isfinite(by)) found.push_back(lattice.divergence + by);
+    }
+    std::ranges::sort(found);
+    if (found.empty()) found.push_back(lattice.divergence);
+    const auto at = [&](double share) { return found[size_t(share * double(found.size() - 1) + 0.5)]; };
+    lattice.divergence_low = at(0.025);
+    lattice.divergence_high = at(0.975);
+}
+
+/// Least squares of whorls over 1, rho^2 and rho^4.
+void fit_density(const std::vector<glm::dvec3>& places, FloretLattice& lattice)
+{
+    glm::dmat3 matrix(0.0);
+    glm::dvec3 right(0.0);
+    for (size_t i = 0; i < places.size(); ++i) {
+        if (!lattice.whorls[i]) continue;
+        const glm::dvec2 p = glm::dvec2(places[i]) - lattice.centre;
+        const double square = glm::dot(p, p);
+        const glm::dvec3 terms(1.0, square, square * square);
+        matrix += glm::outerProduct(terms, terms);
+        right += double(*lattice.whorls[i]) * terms;
+    }
+    const glm::dvec3 found = glm::inverse(matrix) * right;
+    if (!(std::abs(found.y) < 1e9 && std::abs(found.z) < 1e9)) return;
+    lattice.square = found.y;
+    lattice.fourth = found.z;
+}
+
+}  // namespace
+
+void number_whorls(size_t florets, FloretLattice& lattice)
+{
+    const double part = TURN / lattice.jugacy;
+    std::vector<std::pair<double, size_t>> sorted;
+    for (size_t i = 0; i < lattice.pairs.size(); ++i) {
+        const FloretPair& pair = lattice.pairs[i];
+        if (!pair.is_in_line) continue;
+        const double off = std::remainder(pair.azimuth - pair.step * lattice.divergence, part);
+        sorted.emplace_back(std::abs(off) * pair.rho / pair.length, i);
+    }
+    std::ranges::sort(sorted);
+    Numbers numbers(florets);
+    double agreeing = 0.0;
+    for (const auto& [error, i] : sorted) {
+        FloretPair& pair = lattice.pairs[i];
+        pair.is_in_line = numbers.join(pair.inner, pair.outer, pair.step);
+        agreeing += pair.is_in_line;
+    }
+    lattice.share = lattice.pairs.empty() ? 0.0 : agreeing / double(lattice.pairs.size());
+    const uint32_t largest = numbers.find(numbers.largest()).first;
+    lattice.whorls.assign(florets, {});
+    for (uint32_t i = 0; i < florets; ++i)
+        if (const auto [root, whorls] = numbers.find(i); root == largest) lattice.whorls[i] = whorls;
+}
+
+void fit_lattice(const std::vector<glm::dvec3>& places, FloretLattice& lattice)
+{
+    std::vector<Equation> equations;
+    for (int round = 0; round < 8; ++round) {
+        equations = equations_of(places, lattice);
+        Normal normal;
+        for (const Equation& equation : equations) normal.add(equation);
+        const glm::dvec4 by = normal.solution();
+        if (!(glm::length(by) < 0.2)) break;
+        lattice.divergence += by.y;
+        lattice.centre += glm::dvec2(by.z, by.w);
+    }
+    add_interval(equations, lattice);
+    fit_density(places, lattice);
+}
+
+}  // namespace shvr
