@@ -6,6 +6,8 @@
 
 namespace shvr {
 
+inline constexpr double DEGREES = 57.29577951308232;  ///< per radian
+
 /// Height of the surface on which the florets' ends lie, as an even polynomial of the distance from the axis.
 struct Receptacle {
     double constant = 0.0, square = 0.0, fourth = 0.0;  ///< of rho

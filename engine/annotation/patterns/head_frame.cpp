@@ -68,13 +68,13 @@ std::pair<glm::dvec3, glm::dvec3> across(const glm::dvec3& direction)
     return {x, glm::cross(direction, x)};
 }
 
-constexpr double PLAY = 0.05;  ///< in root mean square radii; veins that miss the axis by more count little
+constexpr double AXIS_PLAY = 0.05;  ///< in root mean square radii; veins that miss the axis by more count little
 
 double cost_of(const std::vector<Piece>& pieces, const Axis& axis)
 {
     double cost = 0.0, length = 0.0;
     for (const Piece& piece : pieces) {
-        const double e = glm::dot(piece.middle - axis.centre, glm::cross(piece.direction, axis.direction)) / PLAY;
+        const double e = glm::dot(piece.middle - axis.centre, glm::cross(piece.direction, axis.direction)) / AXIS_PLAY;
         cost += piece.length * std::log1p(e * e);
         length += piece.length;
     }
@@ -92,7 +92,7 @@ Axis refined(const std::vector<Piece>& pieces, Axis axis)
         for (const Piece& piece : pieces) {
             const glm::dvec3 p = piece.middle - axis.centre, out = glm::cross(piece.direction, axis.direction);
             const double e = glm::dot(p, out);
-            const double weight = piece.length / (1.0 + e * e / (PLAY * PLAY));
+            const double weight = piece.length / (1.0 + e * e / (AXIS_PLAY * AXIS_PLAY));
             const glm::dvec4 slope(glm::dot(p, glm::cross(piece.direction, x)),
                                    glm::dot(p, glm::cross(piece.direction, y)), -glm::dot(out, x), -glm::dot(out, y));
             normal += weight * glm::outerProduct(slope, slope);

@@ -13,7 +13,6 @@ namespace shvr {
 
 namespace {
 
-constexpr double TURN = 2.0 * std::numbers::pi;
 constexpr size_t MIN_FLORETS = 20;
 constexpr double MIN_AGREEMENT = 0.5;  ///< minimum; florets at random reach 0.05
 constexpr double PLAY = 0.2;           ///< greatest error of a pair in line, per length of the pair

@@ -13,6 +13,8 @@
 
 namespace shvr {
 
+inline constexpr double TURN = 6.283185307179586;
+
 /// A floret and a nearest one further out, to one side.
 struct FloretPair {
     uint32_t inner, outer;

@@ -9,8 +9,6 @@ namespace shvr {
 
 namespace {
 
-constexpr double TURN = 2.0 * std::numbers::pi;
-
 /// Union and find, with the number of whorls from each floret to its root.
 class Numbers {
 public:

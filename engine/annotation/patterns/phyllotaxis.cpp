@@ -12,8 +12,6 @@ namespace shvr {
 
 namespace {
 
-constexpr double TURN = 2.0 * std::numbers::pi;
-constexpr double DEGREES = 180.0 / std::numbers::pi;
 constexpr std::pair<double, const char*> RHOS[] = {{0.3, "0.3"}, {0.5, "0.5"}, {0.7, "0.7"}, {0.9, "0.9"}};
 
 /// Length along the receptacle's surface per distance from the axis.

@@ -13,7 +13,7 @@ namespace shvr {
 
 namespace {
 
-constexpr size_t MAX_BUNDLES = 3, MIN_FLORETS = 8;
+constexpr size_t MAX_BUNDLES = 3, MIN_SUPPLIED = 8;
 
 /// Lower ends of abaxial veins.
 std::vector<uint32_t> stem_bundles(const Head& head)
@@ -133,9 +133,9 @@ void measure_supply(const Head& head, PatternRows& rows)
     for (const uint32_t floret : head.florets)
         if (!supply[floret].empty()) florets.push_back(floret);
     rows.add("supplied_florets", double(florets.size()));
-    if (bundles.size() < 2 || florets.size() < MIN_FLORETS)
+    if (bundles.size() < 2 || florets.size() < MIN_SUPPLIED)
         return rows.miss("supply_sector_width",
-                         sentence("expected 2 bundles or more, joined with ", MIN_FLORETS, " florets or more"));
+                         sentence("expected 2 bundles or more, joined with ", MIN_SUPPLIED, " florets or more"));
     rows.add("supply_sector_width", sector_width(head, florets, supply));
     add_overlaps(head, florets, supply, rows);
 }

@@ -12,7 +12,6 @@ namespace shvr {
 
 namespace {
 
-constexpr double DEGREES = 180.0 / std::numbers::pi;
 constexpr double SECTOR_RHOS[] = {0.3, 0.5, 0.7};
 constexpr const char* SECTOR_NAMES[] = {"0.3", "0.5", "0.7"};
 

@@ -7,7 +7,7 @@ using namespace shvr::test;
 
 namespace {
 
-double number(const PatternRows& rows, const std::string& name)
+double supply_value(const PatternRows& rows, const std::string& name)
 {
     const std::optional<double> found = rows.value(name);
     REQUIRE_MESSAGE(found.has_value(), name << ": " << rows.reason(name));
@@ -45,14 +45,14 @@ TEST_CASE("florets on one spoke are supplied by one bundle, those beside each ot
 {
     for (const bool rings : {false, true}) {
         const PatternRows rows = spokes(rings);
-        CHECK(number(rows, "supply_bundles") == 12);
-        CHECK(number(rows, "supplied_florets") == 72);
-        CHECK(number(rows, "supply_overlap_row_1") == 1.0);
-        CHECK(number(rows, "supply_overlap_side_1") == 0.0);
-        CHECK(number(rows, "supply_sector_width") < 1e-9);
+        CHECK(supply_value(rows, "supply_bundles") == 12);
+        CHECK(supply_value(rows, "supplied_florets") == 72);
+        CHECK(supply_value(rows, "supply_overlap_row_1") == 1.0);
+        CHECK(supply_value(rows, "supply_overlap_side_1") == 0.0);
+        CHECK(supply_value(rows, "supply_sector_width") < 1e-9);
         // Without rings no second bundle is joined; with them the next spokes' are, on both sides.
-        CHECK((number(rows, "supply_overlap_side_3") > 0.1) == rings);
-        CHECK(number(rows, "supply_overlap_row_3") == 1.0);
+        CHECK((supply_value(rows, "supply_overlap_side_3") > 0.1) == rings);
+        CHECK(supply_value(rows, "supply_overlap_row_3") == 1.0);
     }
 }
 
@@ -62,10 +62,10 @@ TEST_CASE("phantoms of mature heads supply all florets; those of earlier stages 
         return head_of(make_phantom({.size = Size3(48), .stage = stage})).measure();
     };
     const PatternRows d = rows("d"), c = rows("c"), b = rows("b");
-    CHECK(number(d, "supply_bundles") == 13);
-    CHECK(number(d, "supplied_florets") == 144);
-    CHECK(number(d, "supply_overlap_row_1") > number(d, "supply_overlap_side_1"));
-    CHECK(number(c, "supplied_florets") == number(c, "connections_abaxial_floret"));
-    CHECK(number(b, "supplied_florets") == 0);
+    CHECK(supply_value(d, "supply_bundles") == 13);
+    CHECK(supply_value(d, "supplied_florets") == 144);
+    CHECK(supply_value(d, "supply_overlap_row_1") > supply_value(d, "supply_overlap_side_1"));
+    CHECK(supply_value(c, "supplied_florets") == supply_value(c, "connections_abaxial_floret"));
+    CHECK(supply_value(b, "supplied_florets") == 0);
     CHECK(b.reason("supply_sector_width") == "expected 2 bundles or more, joined with 8 florets or more");
 }
