@@ -62,7 +62,7 @@ App::App(const AppOptions& options) : options_(options), window_("SHVR", options
     if (!options.log.empty()) {
         log_ = std::make_unique<std::ofstream>(options.log);
         if (!*log_) fail(options.log.string(), ": cannot be written; expected a file for the log of actions");
-        bench_->log_to([this](const std::string& line) { *log_ << line << std::endl; });
+        bench_->log_to([this](const std::string& line) { *log_ << with_present_time(line) << std::endl; });
     }
     // Errors of opening are shown over the start page.
     if (!options.input.empty())

@@ -300,11 +300,11 @@ class Seen(Window):
     # ---- What was done
 
     def done(self, since=0):
-        """The actions of the log from one on, in short; the log holds those alone that could be applied."""
+        """The actions of the log from one on, without their times; it holds those alone that could be applied."""
         if not self.log.exists():
             return []
         lines = self.log.read_text().split("\n")[:-1]
-        return [json.loads(line) for line in lines[since:]]
+        return [{key: value for key, value in json.loads(line).items() if key != "time"} for line in lines[since:]]
 
     def what_follows(self, cause, wanted, patience_s=PATIENCE_S):
         """Calls `cause`, and waits until one of the actions that it leads to is `wanted`; returns what was logged."""

@@ -1,4 +1,5 @@
 """What is done in the window can be replayed without one, and comes back after the program was killed."""
+import datetime
 import json
 import signal
 import unittest
@@ -29,7 +30,11 @@ class Log(Seen):
         report = self.finish()
         self.assertEqual(sorted(report["voxels_in_group"]), ["3", "5"])
         lines = [json.loads(line) for line in log.read_text().splitlines()]
-        self.assertEqual([line for line in lines if line["op"] == "redo"], [{"op": "redo", "count": 1}])
+        self.assertEqual([line for line in self.done() if line["op"] == "redo"], [{"op": "redo", "count": 1}])
+        times = [datetime.datetime.fromisoformat(line["time"].replace("Z", "+00:00")) for line in lines]
+        now = datetime.datetime.now(datetime.timezone.utc)
+        for time in times:  # of this hour
+            self.assertLess(abs((now - time).total_seconds()), 3600)
         replayed = self.check_json("annotate", again, "--actions", log)
         self.assertEqual(replayed["voxels_in_group"], report["voxels_in_group"])
         self.assertEqual(replayed["nodes"], 2, (lines[-14:], report["messages"]))

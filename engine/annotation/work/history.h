@@ -42,6 +42,8 @@ public:
 
     /// The label of a step; steps count from 0, the oldest, to undoable() + redoable() - 1. Always in memory.
     const std::string& label_of(size_t step) const { return commands_[step].command.label; }
+    /// The step's first record in the journal; 0: it has none.
+    RecordNumber record_of(size_t step) const { return commands_[step].records.front(); }
     /// Passes the changes of a step to `visit`. Fetches the changes if they were dropped, and fails if that is
     /// impossible. The span is valid only during the call.
     void look_at(size_t step, const std::function<void(std::span<const Change>)>& visit) const;

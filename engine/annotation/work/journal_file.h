@@ -46,6 +46,9 @@ enum class RecordKind : uint32_t {
     space = 130,
     /// The second record: an uncompressed copy of all bytes before it. Older programs skip it.
     head = 131,
+    /// JournalTime: the time of day of the steps after it, up to the next such record. Nothing but a reader of times
+    /// uses it: equal work has equal documents and histories, whenever it was done. Older programs skip it.
+    time = 132,
 };
 constexpr RecordKind LAST_KIND = RecordKind::respaced;  ///< the last kind that is not an addition
 constexpr uint32_t FIRST_ADDITION = 128;

@@ -382,6 +382,21 @@ JournalSpace space_of(std::span<const std::byte> bytes)
     return space;
 }
 
+std::vector<std::byte> bytes_of(const JournalTime& time)
+{
+    Writer out;
+    out.fixed(uint64_t(time.time_ms), 8);
+    return out.take();
+}
+
+JournalTime time_of(std::span<const std::byte> bytes)
+{
+    Reader in(bytes);
+    const JournalTime time{int64_t(in.fixed(8))};
+    in.expect_end();
+    return time;
+}
+
 // ---- Saved files and settings ----
 
 namespace {

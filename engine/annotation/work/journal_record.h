@@ -38,8 +38,14 @@ struct SavedFiles {
     bool operator==(const SavedFiles&) const = default;
 };
 
+/// When steps were made.
+struct JournalTime {
+    int64_t time_ms = 0;  ///< since 1970-01-01 00:00 UTC, without leap seconds
+};
+
 std::vector<std::byte> bytes_of(const JournalSubject& subject);
 std::vector<std::byte> bytes_of(const JournalSpace& space);
+std::vector<std::byte> bytes_of(const JournalTime& time);
 std::vector<std::byte> bytes_of(const SavedFiles& files);
 std::vector<std::byte> bytes_of(const SettingValues& values);
 std::vector<std::byte> bytes_of(std::span<const Change> changes);
@@ -49,6 +55,7 @@ std::vector<std::byte> bytes_of(const Document& document);
 /// Functions that read a record's content. Their failures state the reason alone; callers add the file's name.
 JournalSubject subject_of(std::span<const std::byte> bytes);
 JournalSpace space_of(std::span<const std::byte> bytes);
+JournalTime time_of(std::span<const std::byte> bytes);
 SavedFiles saved_files_of(std::span<const std::byte> bytes);
 SettingValues setting_values_of(std::span<const std::byte> bytes);
 std::vector<Change> changes_of(std::span<const std::byte> bytes);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <utility>
 
 #include "engine/annotation/work/journal_head.h"
@@ -98,6 +99,7 @@ void Work::begin_records()
     space_to_note_.reset();
     journaled_kept_.clear();
     kept_from_outside_ = false;
+    times_.clear();
     std::vector<std::byte> subject = bytes_of(JournalSubject{size_, type_, files_.volume_hash});
     std::vector<std::byte> repeated = repeated_head(subject);
     journal_->append(RecordKind::subject, {}, std::move(subject));
@@ -132,9 +134,37 @@ void Work::continue_records()
 RecordNumber Work::record(RecordKind kind, std::string label, std::vector<std::byte> content)
 {
     if (!journal_) return 0;
+    note_time();
     since_state_bytes_ += content.size();
     ++since_state_steps_;
     return journal_->append(kind, std::move(label), std::move(content));
+}
+
+/// Notes the time of the record that follows, unless the last note is of the same tenth of a second: a stroke that goes
+/// on adds at most ten notes of 48 bytes a second.
+void Work::note_time()
+{
+    constexpr int64_t STEP_MS = 100;
+    using namespace std::chrono;
+    const int64_t now =
+        now_ms_ ? now_ms_() : duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count();
+    if (!times_.empty() && std::abs(now - times_.back().time_ms) < STEP_MS) return;
+    times_.push_back({journal_->append(RecordKind::time, {}, bytes_of(JournalTime{now})), now});
+}
+
+std::optional<int64_t> Work::time_of(size_t step) const
+{
+    const RecordNumber record = history_.record_of(step);
+    const auto after = std::ranges::upper_bound(times_, record, {}, [](const TimeSince& each) { return each.since; });
+    if (after != times_.begin()) return std::prev(after)->time_ms;
+    RecordNumber number = std::min<RecordNumber>(record, scan_.records.size());
+    while (number > 0 && scan_.records[number - 1].kind != RecordKind::time) --number;
+    if (number == 0) return std::nullopt;
+    try {
+        return shvr::time_of(content_of(number)).time_ms;
+    } catch (const Error& error) {
+        fail(files_.journal.string(), ": record ", number, " holds no time: ", error.what());
+    }
 }
 
 /// Records the known state of the saved files.

@@ -108,6 +108,11 @@ public:
     /// The settings that are restored on opening but are not part of the work, as last kept.
     const SettingValues& kept_settings() const { return kept_; }
     const History& history() const { return history_; }
+    /// When a step of the history was begun, in milliseconds since 1970 (UTC), to a tenth of a second; null in journals
+    /// of older programs, and without a journal.
+    std::optional<int64_t> time_of(size_t step) const;
+    /// Replaces the clock of the times that the journal notes, for annotators whose time is simulated.
+    void set_clock(std::function<int64_t()> now_ms) { now_ms_ = std::move(now_ms); }
 
     /// Like the functions of History, but write to the journal first. They fail without any effect if the journal
     /// cannot be started, is locked by another process, or does not accept the command.
@@ -256,6 +261,7 @@ private:
     void continue_records();
     RecordNumber record(RecordKind kind, std::string label = {}, std::vector<std::byte> content = {});
     void record_files(RecordKind kind, std::string label = {});
+    void note_time();
     void append_kept(const SettingValues& values, RecordNumber about);
     void write_kept();
     void touch(std::span<const Change> changes);
@@ -327,7 +333,14 @@ private:
     bool is_saving_as_ = false;  ///< `is_saving_` is then true, too
     size_t unsaved_since_saving_ = 0;
     std::array<bool, 3> touched_since_saving_{};
-    Progress opening_progress_;  ///< null except while opening
+    Progress opening_progress_;        ///< null except while opening
+    std::function<int64_t()> now_ms_;  ///< null: the time of day
+    /// Records of kind `time` that this process appended.
+    struct TimeSince {
+        RecordNumber since = 0;
+        int64_t time_ms = 0;
+    };
+    std::vector<TimeSince> times_;
     uint64_t since_state_bytes_ = 0, state_bytes_ = 0;
     size_t since_state_steps_ = 0;
     std::future<std::vector<std::byte>> state_;  ///< a state being encoded from a copy of the document

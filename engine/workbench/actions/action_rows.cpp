@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "engine/annotation/script/log_time.h"
 #include "engine/base/text.h"
 #include "engine/session/fields.h"
 #include "engine/session/session_patch.h"
@@ -46,6 +47,7 @@ Fields::Visit with_op(std::string& op, const Fields::Visit& arguments)
 {
     return [&op, arguments](Fields& f) {
         f.text("op", op, {.is_required = true});
+        f.retired("time");  // of a log's lines: replays ignore it
         arguments(f);
     };
 }
@@ -131,6 +133,11 @@ std::string line_of(const Action& action)
             }
         },
         action);
+}
+
+std::string with_present_time(const std::string& line)
+{
+    return with_time(line, wall_clock_ms());
 }
 
 Action read_action(const JsonNode& line)

@@ -21,6 +21,8 @@ const ActionRow& row_of(const Action& action);
 
 /// Returns a line of JSON that `read_action` parses as the same action.
 std::string line_of(const Action& action);
+/// Adds the key "time" with the time of day (engine/annotation/script/log_time.h), which `read_action` ignores.
+std::string with_present_time(const std::string& line);
 /// Fails for unknown ids, keys and values; the message names the expected ones.
 Action read_action(const JsonNode& line);
 /// `origin` names the text in messages.
