@@ -113,7 +113,7 @@ MAY_INCLUDE = {
     "tools/bench": "engine/base engine/annotation engine/bricks engine/components engine/pages engine/projects engine/session "
     "tests/reference tools/golden tools/report",
     "tools/golden": "engine/base engine/annotation/script engine/session engine/live engine/pages shaders",
-    "tools": "engine/base engine/pages engine/volume engine/graph engine/projects engine/annotation/script engine/annotation/trace "
+    "tools": "engine/base engine/pages engine/volume engine/graph engine/gpu engine/projects engine/annotation/script engine/annotation/trace "
     "engine/annotation/work engine/annotation/writers engine/session engine/jobs engine/tasks engine/picture engine/live "
     "haptics haptics/devices haptics/hid ui engine/study engine/workbench "
     "engine/workbench/touch engine/workbench/bindings "

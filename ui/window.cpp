@@ -7,8 +7,10 @@
 #include <imgui/imgui.h>
 
 #include "engine/gpu/live_trace.h"
+#include "ui/display_report.h"
 #include "ui/imgui_versions.h"
 #include "ui/mouse_feed.h"
+#include "ui/panels/font_files.h"
 #include "ui/swapchain.h"
 
 namespace shvr::ui {
@@ -136,6 +138,24 @@ struct Window::Input {
         glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { add(w, DamageEvent{}); });
     }
 };
+
+DisplayReport survey_display()
+{
+    DisplayReport report{.font = interface_font()};
+    if (!start_glfw()) {
+        report.why_no_window = glfw_error();
+        return report;
+    }
+    if (!glfwVulkanSupported()) report.why_no_window = "Vulkan cannot show pictures on this display";
+    int count = 0;
+    GLFWmonitor** const monitors = glfwGetMonitors(&count);
+    for (int i = 0; i < count; ++i)
+        if (const GLFWvidmode* const mode = glfwGetVideoMode(monitors[i]))
+            report.screens.push_back(
+                sentence(glfwGetMonitorName(monitors[i]), ", ", mode->width, " x ", mode->height, " pixels"));
+    glfwTerminate();
+    return report;
+}
 
 Window::Window(const std::string& title, const glm::uvec2& size) : input_(std::make_unique<Input>())
 {

@@ -6,6 +6,24 @@
 
 namespace shvr {
 
+namespace {
+
+/// Returns the absolute path in a variable; the specification says to ignore relative ones.
+std::filesystem::path folder_from(const char* variable)
+{
+    const char* const value = std::getenv(variable);
+    return value && *value == '/' ? std::filesystem::path(value) : std::filesystem::path();
+}
+
+std::filesystem::path user_folder(const char* variable, const char* below_home)
+{
+    if (const std::filesystem::path folder = folder_from(variable); !folder.empty()) return folder / "shvr";
+    const std::filesystem::path home = folder_from("HOME");
+    return home.empty() ? home : home / below_home / "shvr";
+}
+
+}  // namespace
+
 std::filesystem::path asset_folder(const std::string& name)
 {
     std::vector<std::filesystem::path> candidates;
@@ -17,6 +35,16 @@ std::filesystem::path asset_folder(const std::string& name)
     for (const std::filesystem::path& candidate : candidates)
         if (std::filesystem::is_directory(candidate / name, unknown)) return candidate / name;
     return {};
+}
+
+std::filesystem::path config_folder()
+{
+    return user_folder("XDG_CONFIG_HOME", ".config");
+}
+
+std::filesystem::path cache_folder()
+{
+    return user_folder("XDG_CACHE_HOME", ".cache");
 }
 
 }  // namespace shvr

@@ -8,13 +8,11 @@
 #include <thread>
 #include <utility>
 
-#include "engine/gpu/device_needs.h"
+#include "engine/gpu/device_survey.h"
 
 namespace shvr::gpu {
 
 namespace {
-
-const char* const VALIDATION_LAYER = "VK_LAYER_KHRONOS_validation";
 
 const char* name_of(VkResult result)
 {
@@ -35,14 +33,6 @@ const char* name_of(VkResult result)
     }
 }
 
-bool layer_is_installed(const char* name)
-{
-    const auto layers = enumerate<VkLayerProperties>(
-        [](uint32_t* count, VkLayerProperties* items) { return vkEnumerateInstanceLayerProperties(count, items); });
-    return std::any_of(layers.begin(), layers.end(),
-                       [&](const VkLayerProperties& layer) { return std::strcmp(layer.layerName, name) == 0; });
-}
-
 bool instance_extension_is_present(const char* name, const char* layer)
 {
     const auto extensions = enumerate<VkExtensionProperties>([&](uint32_t* count, VkExtensionProperties* items) {
@@ -52,69 +42,6 @@ bool instance_extension_is_present(const char* name, const char* layer)
         return std::strcmp(extension.extensionName, name) == 0;
     });
 }
-
-bool device_extension_is_present(VkPhysicalDevice physical, const char* name)
-{
-    const auto extensions = enumerate<VkExtensionProperties>([&](uint32_t* count, VkExtensionProperties* items) {
-        return vkEnumerateDeviceExtensionProperties(physical, nullptr, count, items);
-    });
-    return std::any_of(extensions.begin(), extensions.end(), [&](const VkExtensionProperties& extension) {
-        return std::strcmp(extension.extensionName, name) == 0;
-    });
-}
-
-/// A queue family that supports compute, with its further capabilities.
-struct Family {
-    uint32_t index = 0;
-    bool presents = false;
-};
-std::optional<Family> compute_family(VkInstance instance, VkPhysicalDevice physical, const DeviceOptions& options)
-{
-    const auto families = enumerate<VkQueueFamilyProperties>([&](uint32_t* count, VkQueueFamilyProperties* items) {
-        vkGetPhysicalDeviceQueueFamilyProperties(physical, count, items);
-    });
-    const auto worth = [&](uint32_t i) {
-        const bool presents = !options.can_present || options.can_present(instance, physical, i);
-        return std::pair(presents, (families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0);
-    };
-    std::optional<Family> best;
-    for (uint32_t i = 0; i < families.size(); ++i) {
-        if (!(families[i].queueFlags & VK_QUEUE_COMPUTE_BIT)) continue;
-        if (!best || worth(i) > worth(best->index)) best = Family{i, worth(i).first};
-    }
-    return best;
-}
-
-/// Returns why a device with Vulkan 1.3 cannot run the kernels; empty if it can.
-std::string why_it_cannot(VkPhysicalDevice physical)
-{
-    VkPhysicalDeviceVulkan12Features has12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
-    VkPhysicalDeviceFeatures2 has{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &has12};
-    vkGetPhysicalDeviceFeatures2(physical, &has);
-    // The shared headers need scalar layout. It is optional in 1.3, but all desktop drivers and lavapipe support it.
-    if (!has12.scalarBlockLayout)
-        return "the Vulkan feature scalarBlockLayout is missing; expected a driver that has it";
-    const auto features = [&](VkFormat format) {
-        VkFormatProperties found;
-        vkGetPhysicalDeviceFormatProperties(physical, format, &found);
-        return found.optimalTilingFeatures;
-    };
-    const bool stores_r16 = features(VK_FORMAT_R16_UNORM) & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
-    if (!stores_r16 || !has.features.shaderStorageImageExtendedFormats)
-        return "R16_UNORM storage images cannot be read; expected a driver that can read them";
-    VkPhysicalDeviceMaintenance4Properties buffers{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES};
-    VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &buffers};
-    vkGetPhysicalDeviceProperties2(physical, &properties);
-    return why_too_limited({.limits = properties.properties.limits,
-                            .max_buffer_bytes = buffers.maxBufferSize,
-                            .r8_uint = features(VK_FORMAT_R8_UINT),
-                            .r32_uint = features(VK_FORMAT_R32_UINT)})
-        .value_or("");
-}
-
-}  // namespace
-
-namespace {
 
 /// Throws DeviceLost. `fault`: the driver's report; may be empty.
 [[noreturn]] void fail_as_lost(const char* call, const std::string& fault)
@@ -228,7 +155,7 @@ void Device::create_instance(const DeviceOptions& options)
         extensions.push_back(name.c_str());
     }
     if (validation) {
-        if (!layer_is_installed(VALIDATION_LAYER))
+        if (!validation_is_installed())
             fail("Vulkan layer ", VALIDATION_LAYER,
                  " is not installed; expected it from the package vulkan-validationlayers");
         layers.push_back(VALIDATION_LAYER);
@@ -273,27 +200,14 @@ void Device::create_instance(const DeviceOptions& options)
 
 void Device::choose_physical(const DeviceOptions& options)
 {
-    const auto devices = enumerate<VkPhysicalDevice>(
-        [&](uint32_t* count, VkPhysicalDevice* items) { return vkEnumeratePhysicalDevices(instance_, count, items); });
+    const std::vector<FoundDevice> found = find_devices(instance_, options.can_present);
     std::vector<DeviceRow> rows;
-    std::vector<std::optional<Family>> families;
-    for (VkPhysicalDevice physical : devices) {
-        VkPhysicalDeviceProperties properties;
-        vkGetPhysicalDeviceProperties(physical, &properties);
-        families.push_back(compute_family(instance_, physical, options));
-        const bool has_1_3 = properties.apiVersion >= VK_API_VERSION_1_3;
-        rows.push_back({.name = properties.deviceName,
-                        .type = properties.deviceType,
-                        .has_1_3 = has_1_3,
-                        .computes = families.back().has_value(),
-                        .presents = families.back() && families.back()->presents,
-                        .lacks = has_1_3 ? why_it_cannot(physical) : ""});
-    }
+    for (const FoundDevice& device : found) rows.push_back(device.row);
     const char* const named = std::getenv("SHVR_DEVICE");
     const size_t best = options.device.empty() ? best_device(rows, named ? named : "", "SHVR_DEVICE")
                                                : best_device(rows, options.device);
-    physical_ = devices[best];
-    queue_family_ = families[best]->index;
+    physical_ = found[best].physical;
+    queue_family_ = *found[best].family;
     read_traits();
 }
 
@@ -316,9 +230,9 @@ void Device::read_traits()
     traits_.is_integrated = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
     traits_.max_allocation_bytes = maintenance.maxMemoryAllocationSize;
     traits_.max_buffer_bytes = buffers.maxBufferSize;
-    traits_.tells_faults = device_extension_is_present(physical_, VK_EXT_DEVICE_FAULT_EXTENSION_NAME);
-    traits_.tells_memory_left = device_extension_is_present(physical_, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
-    traits_.has_memory_priority = device_extension_is_present(physical_, VK_EXT_MEMORY_PRIORITY_EXTENSION_NAME);
+    traits_.tells_faults = has_extension(physical_, VK_EXT_DEVICE_FAULT_EXTENSION_NAME);
+    traits_.tells_memory_left = has_extension(physical_, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
+    traits_.has_memory_priority = has_extension(physical_, VK_EXT_MEMORY_PRIORITY_EXTENSION_NAME);
     const auto families = enumerate<VkQueueFamilyProperties>([&](uint32_t* count, VkQueueFamilyProperties* items) {
         vkGetPhysicalDeviceQueueFamilyProperties(physical_, count, items);
     });

@@ -5,25 +5,24 @@
 
 namespace shvr::gpu {
 
-std::optional<std::string> why_too_limited(const DeviceHas& has)
+std::vector<Need> needs_of(const DeviceHas& has)
 {
     const VkPhysicalDeviceLimits& limits = has.limits;
-    struct Need {
-        const char* what;
-        uint64_t has, needed;
-    };
-    const Need needs[] = {
-        {"storage images in a kernel", limits.maxPerStageDescriptorStorageImages, MAX_STORAGE_IMAGES},
-        {"storage buffers in a kernel", limits.maxPerStageDescriptorStorageBuffers, MAX_STORAGE_BUFFERS},
-        {"sampled images in a kernel", limits.maxPerStageDescriptorSampledImages, MAX_SAMPLED_IMAGES},
-        {"resources in a kernel", limits.maxPerStageResources,
-         MAX_STORAGE_IMAGES + MAX_STORAGE_BUFFERS + MAX_SAMPLED_IMAGES},
-        {"bytes of push constants", limits.maxPushConstantsSize, MAX_PUSH_BYTES},
-        {"threads in a group", limits.maxComputeWorkGroupInvocations, MAX_GROUP_THREADS},
-        {"bytes that a group shares", limits.maxComputeSharedMemorySize, MAX_SHARED_BYTES},
-        {"bytes in a storage buffer", limits.maxStorageBufferRange, MIN_BUFFER_BYTES},
-        {"bytes in a buffer", has.max_buffer_bytes, MIN_BUFFER_BYTES}};
-    for (const Need& need : needs)
+    return {{"storage images in a kernel", limits.maxPerStageDescriptorStorageImages, MAX_STORAGE_IMAGES},
+            {"storage buffers in a kernel", limits.maxPerStageDescriptorStorageBuffers, MAX_STORAGE_BUFFERS},
+            {"sampled images in a kernel", limits.maxPerStageDescriptorSampledImages, MAX_SAMPLED_IMAGES},
+            {"resources in a kernel", limits.maxPerStageResources,
+             MAX_STORAGE_IMAGES + MAX_STORAGE_BUFFERS + MAX_SAMPLED_IMAGES},
+            {"bytes of push constants", limits.maxPushConstantsSize, MAX_PUSH_BYTES},
+            {"threads in a group", limits.maxComputeWorkGroupInvocations, MAX_GROUP_THREADS},
+            {"bytes that a group shares", limits.maxComputeSharedMemorySize, MAX_SHARED_BYTES},
+            {"bytes in a storage buffer", limits.maxStorageBufferRange, MIN_BUFFER_BYTES},
+            {"bytes in a buffer", has.max_buffer_bytes, MIN_BUFFER_BYTES}};
+}
+
+std::optional<std::string> why_too_limited(const DeviceHas& has)
+{
+    for (const Need& need : needs_of(has))
         if (need.has < need.needed)
             return sentence("it allows ", need.has, " ", need.what, "; expected at least ", need.needed);
     constexpr VkFormatFeatureFlags STORED =
@@ -48,14 +47,13 @@ int rank(VkPhysicalDeviceType type)
     }
 }
 
-/// Returns why a device cannot be used, apart from presentation to a window; empty if it can.
+}  // namespace
+
 std::string why_unfit(const DeviceRow& row)
 {
     if (!row.has_1_3) return "it does not support Vulkan 1.3";
     return row.computes ? row.lacks : "it does not compute";
 }
-
-}  // namespace
 
 size_t best_device(const std::vector<DeviceRow>& rows, const std::string& wanted, const std::string& wanted_by)
 {

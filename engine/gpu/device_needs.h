@@ -24,6 +24,13 @@ struct DeviceHas {
     VkFormatFeatureFlags r8_uint = 0, r32_uint = 0;  ///< features of images with optimal tiling
 };
 
+/// One of the limits that the kernels depend on.
+struct Need {
+    const char* what;  ///< "storage images in a kernel"
+    uint64_t has, needed;
+};
+std::vector<Need> needs_of(const DeviceHas& has);
+
 /// Returns why such a device cannot run the kernels: a message with the value found and the value expected; null if it
 /// can.
 std::optional<std::string> why_too_limited(const DeviceHas& has);
@@ -41,6 +48,8 @@ struct DeviceRow {
     bool presents = true;  ///< whether it can present to the window, if there is one
     std::string lacks{};   ///< why it cannot run the kernels; empty if it can, or if this is unknown
 };
+/// Returns why a device cannot be used, apart from presentation to a window; empty if it can.
+std::string why_unfit(const DeviceRow& row);
 /// Returns the index of the device to use: among those that meet all requirements, hardware before software, discrete
 /// before integrated. `wanted`: part of a name, in upper or lower case, or an index; empty: any device. `wanted_by`:
 /// the option or variable that states it. The failure lists the devices found, and why each cannot be used.

@@ -1,11 +1,11 @@
 #include "engine/gpu/pipeline_cache.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <iomanip>
 #include <sstream>
 
+#include "engine/base/assets.h"
 #include "engine/base/atomic_file.h"
 #include "engine/base/file.h"
 
@@ -83,20 +83,6 @@ std::vector<KernelVariant> variants_of(const std::string& text)
         variants.push_back(std::move(variant));
     }
     return variants;
-}
-
-std::filesystem::path folder_from(const char* variable)
-{
-    const char* const value = std::getenv(variable);
-    return value && *value == '/' ? std::filesystem::path(value) : std::filesystem::path();
-}
-
-/// Returns the folder of cache files; empty if the environment does not give one.
-std::filesystem::path cache_folder()
-{
-    std::filesystem::path folder = folder_from("XDG_CACHE_HOME");
-    if (folder.empty() && !folder_from("HOME").empty()) folder = folder_from("HOME") / ".cache";
-    return folder.empty() ? folder : folder / "shvr";
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ class ErrorTest(CliTest):
                              folder / "bench"],
                 ("study",): ["--size", "small", "--seeds", "1", "--conditions", folder / "conditions.csv", "-o",
                              folder / "study"],
-                ("haptics", "replay"): [trace, "--volume", session], ("haptics", "devices"): []}
+                ("haptics", "replay"): [trace, "--volume", session], ("haptics", "devices"): [], ("doctor",): []}
 
 
 class Usage(ErrorTest):
@@ -117,7 +117,7 @@ class Usage(ErrorTest):
 
     def test_the_version_is_told(self):
         told = self.check("--version").stdout
-        self.assertRegex(told, r"^shvr \d+\.\d+\.\d+\n$")
+        self.assertRegex(told, r"^shvr \d+\.\d+\.\d+( \([0-9a-f]+\))?\n$")
         for command in PARTS:
             self.assertEqual(self.check(command, "--version").stdout, told)
 

@@ -16,6 +16,8 @@
 
 namespace shvr::cli {
 
+const char* built_commit();  // in the build folder, by tools/write_commit.cmake
+
 namespace {
 
 /// Maximum number of MiB: enough for any machine, and its product with 2^20 fits into 64 bits.
@@ -33,6 +35,12 @@ CLI::Validator whole_mib()
 }
 
 }  // namespace
+
+std::string version_in_words()
+{
+    const std::string commit = built_commit();
+    return commit.empty() ? SHVR_VERSION : SHVR_VERSION " (" + commit + ")";
+}
 
 void add_output_options(CLI::App& command, Common& common)
 {

@@ -22,6 +22,9 @@ namespace shvr::cli {
 
 using Json = nlohmann::ordered_json;
 
+/// "0.1.0 (f3c3aac1d2e4)", or "0.1.0" where the sources came without their history.
+std::string version_in_words();
+
 struct Common {
     std::string device;
     uint64_t budget_device_mib = 0;
@@ -111,7 +114,9 @@ Json counters_of(const std::vector<gpu::PassReport>& passes);
 /// If the Khronos validation layer is on (SHVR_VALIDATION=1) and has reported anything, fails with its first message.
 void check_validation(Opened& opened);
 
+void add_doctor(CLI::App& program);
 void add_info(CLI::App& program);
+void add_manual(CLI::App& program);  ///< not listed by --help
 void add_import(CLI::App& program);
 void add_render(CLI::App& program);
 void add_annotate(CLI::App& program);

@@ -31,7 +31,8 @@ std::string usage_error(const CLI::App& program, const CLI::ParseError& error)
 std::string no_command(const CLI::App& program, const std::string& found)
 {
     std::string known;
-    for (const CLI::App* command : program.get_subcommands({}))
+    for (const CLI::App* command :
+         program.get_subcommands([](const CLI::App* each) { return !each->get_group().empty(); }))
         known += (known.empty() ? "" : ", ") + command->get_name();
     return shvr::in_quotes(found) + (found.starts_with('-') ? " is an unknown option" : " is an unknown command") +
            "; expected one of " + known + "; see shvr --help";
@@ -57,7 +58,8 @@ int run(int argc, char** argv)
 {
     CLI::App program("SHVR: see, feel and annotate tubular structures in 3-D scans", "shvr");
     program.require_subcommand(1);
-    program.set_version_flag("--version", "shvr " SHVR_VERSION);
+    const std::string version = "shvr " + shvr::cli::version_in_words();
+    program.set_version_flag("--version", version);
     program.footer("shvr alone opens the window. shvr COMMAND --help shows options and an example.");
     shvr::cli::add_info(program);
     shvr::cli::add_import(program);
@@ -73,8 +75,10 @@ int run(int argc, char** argv)
     shvr::cli::add_phantom(program);
     shvr::cli::add_study(program);
     shvr::cli::add_haptics(program);
+    shvr::cli::add_doctor(program);
     shvr::cli::add_view(program);
-    for (CLI::App* command : program.get_subcommands({})) command->set_version_flag("--version", "shvr " SHVR_VERSION);
+    shvr::cli::add_manual(program);
+    for (CLI::App* command : program.get_subcommands({})) command->set_version_flag("--version", version);
     refuse_empty(argc, argv);
     try {
         char view[] = "view";

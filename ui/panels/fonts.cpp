@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/workbench/appearance/glyphs.h"
+#include "ui/panels/font_files.h"
 #include "ui/panels/style.h"
 
 namespace shvr::ui {
@@ -112,6 +113,14 @@ TextImage image_of(std::string_view text, const ImFont& font, const uint8_t* atl
 }
 
 }  // namespace
+
+std::string interface_font()
+{
+    std::error_code unknown;
+    for (const char* path : FONTS)
+        if (std::filesystem::is_regular_file(path, unknown)) return path;
+    return {};
+}
 
 void load_fonts(double pixels)
 {

@@ -1,8 +1,8 @@
 #include "engine/workbench/bindings/preferences_file.h"
 
 #include <algorithm>
-#include <cstdlib>
 
+#include "engine/base/assets.h"
 #include "engine/base/atomic_file.h"
 #include "engine/base/file.h"
 #include "engine/base/json.h"
@@ -122,12 +122,6 @@ void fields(Fields& f, Preferences& preferences)
     for (RecentFile& each : recent) preferences.recent.push_back(std::move(each.path));
 }
 
-std::filesystem::path folder_from(const char* variable)
-{
-    const char* const value = std::getenv(variable);
-    return value && *value == '/' ? std::filesystem::path(value) : std::filesystem::path();
-}
-
 }  // namespace
 
 Preferences patched(const Preferences& preferences, std::string_view patch)
@@ -168,13 +162,8 @@ std::string patch_of_window(const std::string& id, const glm::dvec2& at, const g
 
 std::filesystem::path preferences_file()
 {
-    std::filesystem::path folder = folder_from("XDG_CONFIG_HOME");
-    if (folder.empty()) {
-        folder = folder_from("HOME");
-        if (folder.empty()) return {};
-        folder /= ".config";
-    }
-    return folder / "shvr" / "preferences.json";
+    const std::filesystem::path folder = config_folder();
+    return folder.empty() ? folder : folder / "preferences.json";
 }
 
 Preferences load_preferences(const std::filesystem::path& file, std::vector<std::string>* complaints)
