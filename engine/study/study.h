@@ -42,7 +42,7 @@ struct StudyChoice {
 };
 
 struct StudyPlan {
-    int64_t side = 256;  ///< of the phantoms, voxels
+    int64_t side = 256;  ///< side of the phantoms, voxels
     std::vector<StudyItem> items;
     std::vector<StudyPair> pairs;
 };

@@ -16,7 +16,7 @@
 
 namespace shvr::cli {
 
-const char* built_commit();  // in the build folder, by tools/write_commit.cmake
+const char* built_commit();  // in the build folder, by tools/package/write_commit.cmake
 
 namespace {
 

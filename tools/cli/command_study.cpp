@@ -1,9 +1,13 @@
 // shvr study: the thesis's study, repeated by simulated annotators. Needs no device.
 
 #include <algorithm>
-#include <limits>
+#include <filesystem>
+#include <span>
 
+#include "engine/base/atomic_file.h"
 #include "engine/base/text.h"
+#include "engine/study/report/report.h"
+#include "engine/study/statistics.h"
 #include "engine/study/study.h"
 #include "tools/cli/cli.h"
 
@@ -36,28 +40,71 @@ StudySize size_named(const std::string& text)
     return StudySize::standard;
 }
 
-double mean_of(const std::vector<StudyRow>& rows, const StudyCondition& condition, Outcome outcome)
-{
-    double sum = 0.0;
-    int count = 0;
-    for (const StudyRow& row : rows)
-        if (row.condition == condition && row[outcome] == row[outcome]) sum += row[outcome], ++count;
-    return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
-}
-
 /// A line for each condition, with the mean of its main outcome.
 void say_means(const std::vector<StudyRow>& rows, const Common& common)
 {
-    std::vector<StudyCondition> said;
-    for (const StudyRow& row : rows) {
-        const StudyCondition& c = row.condition;
-        if (std::ranges::find(said, c) != said.end()) continue;
-        said.push_back(c);
-        const Outcome main = c.task == StudyTask::paint ? Outcome::dice_partial : Outcome::node_score;
-        say(common, sentence(spelled(c.task), ", touch ", spelled(c.touch), ", law ", spelled(c.law), ", probe ",
-                             c.probe_radii, " radii, noise ", c.noise, " %: ",
-                             c.task == StudyTask::paint ? "Dice score " : "node score ", mean_of(rows, c, main)));
+    for (const StudyCondition& condition : conditions_of(rows)) {
+        const OutcomeColumn& column = outcome_columns()[size_t(main_outcome(condition.task))];
+        const Summary summary = summary_of(values_of(rows, condition, column.outcome));
+        say(common, sentence(spelled(condition.task), ", ", words_of(condition), ": ", column.name, ' ', summary.mean,
+                             column.unit == "1" ? "" : sentence(' ', column.unit), " of ", summary.count));
     }
+}
+
+std::vector<StudyRepeat> repeats_of(const StudyResults& results)
+{
+    std::vector<StudyRepeat> repeats;
+    for (const StudyLikeness& each : results.likenesses)
+        repeats.push_back({.condition = each.pair.condition,
+                           .annotator = each.pair.annotator,
+                           .other = each.pair.other,
+                           .seed = each.pair.seed,
+                           .dice = each.dice,
+                           .segment_agreement = each.segment_agreement,
+                           .distance_rms = each.distance_rms});
+    return repeats;
+}
+
+StudyReport report_of(const StudyCommandOptions& options, const StudyPlan& plan, const StudyResults& results)
+{
+    StudyReport report{
+        .command = "shvr study --size " + options.size + " -o FOLDER",
+        .version = version_in_words(),
+        .phantom = sentence("The phantom of kind section (shvr phantom section): a part of a flower head in ",
+                            plan.side, " voxels a side, another one for each seed."),
+        .annotators =
+            "Ten annotators, models of a hand, an eye, a plan and a clock, calibrated against "
+            "table 6.1 of the thesis before conditions were compared "
+            "(engine/study/CALIBRATION.md). They are models, not people.",
+        .centre = study_centre(StudyTask::trace),
+        .rows = results.rows,
+        .hand = {},
+        .variations = {},
+        .repeats = repeats_of(results),
+        .baselines = {},
+        .no_baselines = {}};
+    if (options.seeds) report.command += sentence(" --seeds ", *options.seeds);
+    if (!options.conditions.empty()) report.command += " --conditions FILE";
+    const HandTraits traits;
+    for (const HandTrait& trait : hand_traits())
+        report.hand.push_back({.name = std::string(trait.name),
+                               .value = digits_of(traits.*trait.value),
+                               .unit = std::string(trait.unit),
+                               .source = std::string(trait.source)});
+    for (const StudyVariation& each : results.variations)
+        report.variations.push_back(
+            {.parameter = std::string(hand_traits()[each.trait].name), .factor = each.factor, .rows = each.rows});
+    const std::filesystem::path baselines = std::filesystem::path(options.folder) / "baselines.csv";
+    if (std::error_code unknown; std::filesystem::exists(baselines, unknown))
+        report.baselines = read_baselines(baselines);
+    else
+        report.no_baselines = "The folder holds no baselines.csv; tools/study/baselines.py writes it.";
+    return report;
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text)
+{
+    write_file_atomically(path, std::as_bytes(std::span(text)));
 }
 
 void run_study_command(const StudyCommandOptions& options)
@@ -74,9 +121,15 @@ void run_study_command(const StudyCommandOptions& options)
                        .progress = work.begin("annotating phantoms for " + options.folder)};
     const StudyResults results = run_study(plan, run);
     clear_progress();
-    const std::string csv = (std::filesystem::path(options.folder) / "rows.csv").string();
+    const std::filesystem::path folder = options.folder;
+    const std::string csv = (folder / "rows.csv").string(), report = (folder / "report.html").string();
+    const bool is_whole = results.missing == 0;
+    if (is_whole) {
+        write_text(folder / "repeats.csv", csv_of(repeats_of(results)));
+        write_text(report, page_of(report_of(options, plan, results)));
+    }
     if (options.common.json) {
-        print({{"report", nullptr},
+        print({{"report", is_whole ? Json(report) : Json(nullptr)},
                {"csv", csv},
                {"rows", results.rows.size()},
                {"made", results.made_here},
@@ -85,7 +138,7 @@ void run_study_command(const StudyCommandOptions& options)
     }
     say_means(results.rows, options.common);
     say(options.common, sentence(results.rows.size(), " rows by simulated annotators; made ", results.made_here,
-                                 ", missing ", results.missing, "; ", csv));
+                                 ", missing ", results.missing, "; ", is_whole ? report : csv));
 }
 
 }  // namespace

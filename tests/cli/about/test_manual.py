@@ -13,8 +13,8 @@ def every_command():
 
 
 def options_in_help(command):
-    """Long options as --help lists them."""
-    listed = run(*command, "--help").stdout.partition("\nOptions:\n")[2].partition("\n\n")[0]
+    """Long options as --help lists them, in one or several sections."""
+    listed = run(*command, "--help").stdout
     return set(re.findall(r"^  (?:-\w,)?(--[\w-]+)", listed, re.M)) | set(re.findall(r"^  (-h)", listed, re.M))
 
 

@@ -1,6 +1,7 @@
 """shvr study: simulated annotators, their rows, and a study that is split or continued."""
 import csv
 import unittest
+from pathlib import Path
 
 from harness import CliTest
 
@@ -25,6 +26,12 @@ class Study(CliTest):
         self.assert_keys(result, ["report", "csv", "rows", "made", "missing"])
         rows = self.rows("small")
         self.assertEqual((len(rows), result["missing"]), (result["rows"], 0))
+        page = Path(result["report"]).read_text()
+        for part in ("simulated annotators", "dice_partial", "baselines.csv", "CALIBRATION.md", "table 6.1"):
+            self.assertIn(part, page)
+        self.assertNotIn("http", page.replace("http://www.w3.org", ""))
+        # Two pairs for each task by one annotator, and two by two.
+        self.assertEqual(len(self.rows("small", "repeats.csv")), 8)
 
         def scores(task, touch, column):
             return {row["seed"]: float(row[column]) for row in rows

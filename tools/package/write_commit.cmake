@@ -1,6 +1,6 @@
 # Writes OUTPUT, a C++ source with the commit of the sources in SOURCE; keeps a file that says the same.
 #
-#   cmake -DSOURCE=... -DOUTPUT=... -P tools/write_commit.cmake
+#   cmake -DSOURCE=... -DOUTPUT=... -P tools/package/write_commit.cmake
 #
 # SHVR_COMMIT in the environment is used instead, where sources come without their history.
 
