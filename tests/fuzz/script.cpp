@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
     using namespace shvr::fuzz;
     const InputFolder& folder = input_folder();
     folder.clear();
-    const auto file = folder.write("a.jsonl", text_of({data, size}));
+    const auto file = folder.write("a.jsonl", fuzz::text_of({data, size}));
     accepts([&] {
         for (const ScriptLine& line : read_script(file)) {
             const auto* const paint = std::get_if<PaintOp>(&line.op);
