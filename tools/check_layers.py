@@ -39,7 +39,7 @@ MAY_INCLUDE = {
     "engine/projects": "engine/base engine/volume engine/formats engine/formats/zarr shaders",
     "engine/annotation/trace": "engine/base engine/volume engine/annotation",
     "engine/annotation/measures": "engine/base engine/volume engine/annotation engine/annotation/trace",
-    "engine/annotation/patterns": "engine/base engine/annotation/trace engine/annotation/measures",
+    "engine/annotation/patterns": "engine/base engine/volume engine/annotation/trace engine/annotation/measures",
     "engine/annotation/files": "engine/base engine/volume engine/annotation engine/annotation/trace engine/formats "
     "engine/formats/export engine/formats/zarr engine/projects shaders",
     "engine/annotation/operations": "engine/base engine/volume engine/components engine/annotation engine/annotation/trace",

@@ -33,18 +33,9 @@ std::span<const HandTrait> hand_traits()
     return TRAITS;
 }
 
-/// SplitMix64 (Steele, Lea and Flood 2014).
-uint64_t StudyRandom::bits()
-{
-    uint64_t z = state_ += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-}
-
 double StudyRandom::unit()
 {
-    return double(bits() >> 11) * 0x1p-53;
+    return double(random_.next() >> 11) * 0x1p-53;
 }
 
 double StudyRandom::normal()

@@ -14,6 +14,8 @@
 
 #include <glm/glm.hpp>
 
+#include "engine/volume/split_mix.h"
+
 namespace shvr {
 
 /// Width in the hand of the shown volume: at 256 voxels a voxel is 0.25 mm, as in tools/make_stylus_path.
@@ -43,15 +45,14 @@ std::span<const HandTrait> hand_traits();
 /// Random numbers of a study: equal on every machine.
 class StudyRandom {
 public:
-    explicit StudyRandom(uint64_t seed) : state_(seed) {}
-    uint64_t bits();
+    explicit StudyRandom(uint64_t seed) : random_(seed) {}
     double unit();    ///< 0 <= result < 1
     double normal();  ///< mean 0, standard deviation 1, within +-6: the sum of twelve uniform numbers
     bool happens(double probability) { return unit() < probability; }
     size_t below(size_t count) { return size_t(unit() * double(count)); }
 
 private:
-    uint64_t state_;
+    SplitMix64 random_;
 };
 
 /// How a hand strays from the place that it aims at: sines at three frequencies along three axes, with random phases.

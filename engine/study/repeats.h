@@ -14,7 +14,7 @@ struct StudyRepeat {
     uint32_t annotator = 0, other = 0;  ///< equal: the same annotator twice
     uint32_t seed = 0;                  ///< seed of the phantom
     double dice;                        ///< Dice score of both masks; NaN for tracing
-    double segment_agreement;           ///< segments found by both over those found by either; NaN for painting
+    double segment_agreement;           ///< segments found by both / by either; NaN for painting, or without any
     double distance_rms;                ///< root mean square distance between both traces, in voxels; NaN for painting
     bool is_within() const { return annotator == other; }
 };

@@ -50,21 +50,6 @@ Mask mask_of(const VolumeSource& groups)
     return mask;
 }
 
-TraceGraph trace_of(const Phantom& phantom)
-{
-    TraceGraph trace;
-    for (size_t i = 0; i < phantom.nodes.size(); ++i) {
-        const auto& [voxel, radius, group] = phantom.nodes[i];
-        trace.apply(TraceNodeChange{uint32_t(i), {}, TraceNode{voxel, radius, group}}, Direction::forwards);
-    }
-    for (size_t i = 0; i < phantom.links.size(); ++i) {
-        const auto& [from, to] = phantom.links[i];
-        const TraceInternode internode{uint32_t(from), uint32_t(to), phantom.nodes[to].group};
-        trace.apply(TraceInternodeChange{uint32_t(i), {}, internode}, Direction::forwards);
-    }
-    return trace;
-}
-
 /// Keeps the words' voxels that are connected through faces to `seed` within the region.
 class HostFlood {
 public:
@@ -105,6 +90,22 @@ private:
 
 }  // namespace
 
+TraceGraph trace_of(const Phantom& phantom, const glm::dvec3& spacing)
+{
+    TraceGraph trace;
+    for (size_t i = 0; i < phantom.nodes.size(); ++i) {
+        const auto& [voxel, radius, group] = phantom.nodes[i];
+        trace.apply(TraceNodeChange{uint32_t(i), {}, TraceNode{voxel * spacing, radius * spacing.x, group}},
+                    Direction::forwards);
+    }
+    for (size_t i = 0; i < phantom.links.size(); ++i) {
+        const auto& [from, to] = phantom.links[i];
+        const TraceInternode internode{uint32_t(from), uint32_t(to), phantom.nodes[to].group};
+        trace.apply(TraceInternodeChange{uint32_t(i), {}, internode}, Direction::forwards);
+    }
+    return trace;
+}
+
 StudyScene::StudyScene(const SceneSpec& spec) : spec_(spec), full_(Size3(spec.side)), partial_(Size3(spec.side))
 {
     const Phantom phantom =
@@ -113,7 +114,7 @@ StudyScene::StudyScene(const SceneSpec& spec) : spec_(spec), full_(Size3(spec.si
     volume_ = std::make_unique<HeldVolume>(phantom.volume->info(), voxels_);
     full_ = mask_of(*phantom.mask);
     partial_ = mask_of(*phantom.partial_mask);
-    trace_ = trace_of(phantom);
+    trace_ = trace_of(phantom, glm::dvec3(1.0));
     segments_ = segments_of(trace_);
     for (const auto& node : phantom.nodes) vein_radius_ += node.radius_voxels / double(phantom.nodes.size());
     note_bits();

@@ -20,6 +20,10 @@ inline constexpr double STUDY_THRESHOLD = 130.0;
 /// A threshold that lets receptacle tissue (90) be painted, which a mistaken annotator chooses.
 inline constexpr double MISTAKEN_THRESHOLD = 80.0;
 
+struct Phantom;
+/// The phantom's true trace, in physical units, for voxels of this size; names are the indices of its nodes and links.
+TraceGraph trace_of(const Phantom& phantom, const glm::dvec3& spacing);
+
 struct SceneSpec {
     int64_t side = 256;  ///< voxels
     uint32_t seed = 1;

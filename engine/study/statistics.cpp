@@ -6,6 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "engine/volume/split_mix.h"
+
 namespace shvr {
 
 namespace {
@@ -49,19 +51,6 @@ int better_sign_of(Outcome outcome)
 }
 
 }  // namespace
-
-uint64_t SplitMix64::next()
-{
-    uint64_t mixed = (state_ += 0x9e3779b97f4a7c15ull);
-    mixed = (mixed ^ (mixed >> 30)) * 0xbf58476d1ce4e5b9ull;
-    mixed = (mixed ^ (mixed >> 27)) * 0x94d049bb133111ebull;
-    return mixed ^ (mixed >> 31);
-}
-
-uint32_t SplitMix64::below(uint32_t count)
-{
-    return uint32_t(((next() >> 32) * count) >> 32);
-}
 
 Interval interval_of_mean(std::span<const double> values, uint64_t seed)
 {

@@ -11,18 +11,6 @@
 
 namespace shvr {
 
-/// SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014).
-class SplitMix64 {
-public:
-    explicit SplitMix64(uint64_t seed) : state_(seed) {}
-    uint64_t next();
-    /// A number below `count`, each as likely as the others up to 2^-32. `count` is at least 1 and below 2^32.
-    uint32_t below(uint32_t count);
-
-private:
-    uint64_t state_;
-};
-
 struct Interval {
     double low = 0.0, high = 0.0;
     bool holds(double value) const { return value >= low && value <= high; }

@@ -50,24 +50,30 @@ std::set<size_t> found_segments(const StudyScene& scene, const TraceGraph& trace
     return found;
 }
 
-StudyLikeness likeness_of(const StudyScene& scene, const StudyPair& pair)
+StudyRepeat repeat_of(const StudyScene& scene, const StudyPair& pair)
 {
-    StudyLikeness likeness{pair, NO_SCORE, NO_SCORE, NO_SCORE};
+    StudyRepeat repeat{.condition = pair.condition,
+                       .annotator = pair.annotator,
+                       .other = pair.other,
+                       .seed = pair.seed,
+                       .dice = NO_SCORE,
+                       .segment_agreement = NO_SCORE,
+                       .distance_rms = NO_SCORE};
     const uint32_t attempt = pair.annotator == pair.other ? 1 : 0;
     const StudyAnnotation a = annotate(scene, pair.condition, pair.annotator, pair.seed);
     const StudyAnnotation b = annotate(scene, pair.condition, pair.other, pair.seed, {}, attempt);
     if (pair.condition.task == StudyTask::paint) {
-        likeness.dice = dice_of(a.mask, b.mask).painted.value_or(NO_SCORE);
-        return likeness;
+        repeat.dice = dice_of(a.mask, b.mask).painted.value_or(NO_SCORE);
+        return repeat;
     }
     const std::set<size_t> in_a = found_segments(scene, a.trace), in_b = found_segments(scene, b.trace);
     const auto both = std::ranges::count_if(in_a, [&](size_t segment) { return in_b.contains(segment); });
     const auto either = std::ptrdiff_t(in_a.size() + in_b.size()) - both;
-    if (either > 0) likeness.segment_agreement = double(both) / double(either);
+    if (either > 0) repeat.segment_agreement = double(both) / double(either);
     const std::optional<double> there = compare(a.trace, b.trace, 1.0).centreline_rms,
                                 back = compare(b.trace, a.trace, 1.0).centreline_rms;
-    if (there && back) likeness.distance_rms = std::sqrt(0.5 * (*there * *there + *back * *back));
-    return likeness;
+    if (there && back) repeat.distance_rms = std::sqrt(0.5 * (*there * *there + *back * *back));
+    return repeat;
 }
 
 /// The items and pairs of one phantom.
@@ -80,7 +86,7 @@ class Study {
 public:
     Study(const StudyPlan& plan, const StudyRun& run) : plan_(plan), run_(run), rows_(plan.items.size())
     {
-        likenesses_.resize(plan.pairs.size());
+        repeats_.resize(plan.pairs.size());
         check_folder();
         read_rows();
         cut();
@@ -173,9 +179,9 @@ private:
             ++made_;
         }
         for (const size_t i : piece.pairs) {
-            const StudyLikeness likeness = likeness_of(scene, plan_.pairs[i]);
+            const StudyRepeat repeat = repeat_of(scene, plan_.pairs[i]);
             const std::lock_guard lock(mutex_);
-            likenesses_[i] = likeness;
+            repeats_[i] = repeat;
             ++pairs_made_;
         }
         const std::lock_guard lock(mutex_);
@@ -211,8 +217,8 @@ private:
             }
         }
         for (auto& [key, rows] : varied) results.variations.push_back({key.first, key.second, std::move(rows)});
-        for (const std::optional<StudyLikeness>& likeness : likenesses_)
-            if (likeness) results.likenesses.push_back(*likeness);
+        for (const std::optional<StudyRepeat>& repeat : repeats_)
+            if (repeat) results.repeats.push_back(*repeat);
         results.made_here = made_;
         return results;
     }
@@ -220,7 +226,7 @@ private:
     const StudyPlan& plan_;
     const StudyRun& run_;
     std::vector<std::optional<StudyRow>> rows_;  ///< of plan_.items
-    std::vector<std::optional<StudyLikeness>> likenesses_;
+    std::vector<std::optional<StudyRepeat>> repeats_;
     std::set<size_t> made_items_;
     std::vector<Piece> pieces_;
     size_t to_make_ = 0, made_ = 0, pairs_made_ = 0;

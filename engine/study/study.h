@@ -10,6 +10,7 @@
 
 #include "engine/base/progress.h"
 #include "engine/study/annotator.h"
+#include "engine/study/repeats.h"
 
 namespace shvr {
 
@@ -57,14 +58,6 @@ StudyPlan plan_study(const StudyChoice& choice);
 /// file, line and column.
 std::vector<StudyCondition> read_study_conditions(const std::filesystem::path& file);
 
-/// How alike two annotations are.
-struct StudyLikeness {
-    StudyPair pair;
-    double dice;               ///< of both masks; NaN for tracing
-    double segment_agreement;  ///< segments found by both / by either; NaN for painting, or where neither found any
-    double distance_rms;       ///< of both traces from each other, voxels; NaN for painting
-};
-
 struct StudyRun {
     std::filesystem::path folder;
     int threads = 0;           ///< 0: one for each core
@@ -80,7 +73,7 @@ struct StudyVariation {
 struct StudyResults {
     std::vector<StudyRow> rows;
     std::vector<StudyVariation> variations;
-    std::vector<StudyLikeness> likenesses;
+    std::vector<StudyRepeat> repeats;
     size_t missing = 0;    ///< annotations that no part has made yet
     size_t made_here = 0;  ///< annotations that this run made
 };

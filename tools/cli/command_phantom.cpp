@@ -8,6 +8,7 @@
 #include "engine/annotation/trace/trace_file.h"
 #include "engine/base/atomic_writer.h"
 #include "engine/base/text.h"
+#include "engine/study/scene.h"
 #include "engine/volume/grid.h"
 #include "engine/volume/phantoms/phantom.h"
 #include "engine/volume/voxel_walk.h"
@@ -77,28 +78,6 @@ void write_voxels(const std::filesystem::path& path, const VolumeSource& volume,
     writer.commit();
 }
 
-TraceGraph trace_of(const Phantom& truth, const VolumeInfo& volume)
-{
-    TraceGraph trace;
-    for (size_t i = 0; i < truth.nodes.size(); ++i) {
-        const ProceduralTruth::Node& node = truth.nodes[i];
-        trace.apply(TraceNodeChange{.node = uint32_t(i),
-                                    .before = {},
-                                    .after = TraceNode{.position = node.voxel * volume.spacing,
-                                                       .radius = node.radius_voxels * volume.spacing.x,
-                                                       .group = node.group}},
-                    Direction::forwards);
-    }
-    for (size_t i = 0; i < truth.links.size(); ++i) {
-        const auto [from, to] = truth.links[i];
-        trace.apply(TraceInternodeChange{.internode = uint32_t(i),
-                                         .before = {},
-                                         .after = TraceInternode{uint32_t(from), uint32_t(to), truth.nodes[to].group}},
-                    Direction::forwards);
-    }
-    return trace;
-}
-
 /// Writes FOLDER/NAME.nhdr and NAME.raw. Opens the header first, so that an unwritable name fails before the long work,
 /// and commits it last, so that no header describes voxels not yet written.
 std::string write_volume(const std::filesystem::path& folder, const std::string& name, const VolumeSource& volume,
@@ -160,7 +139,7 @@ void run_phantom(const PhantomCommandOptions& options)
         written["truth_tissue_mask"] = write_volume(folder, spec.kind + "-tissue-mask", *phantom.tissue_mask, work);
     if (!phantom.nodes.empty()) {
         const std::filesystem::path trace = folder / (spec.kind + "-trace.graphml");
-        save_trace(trace, trace_of(phantom, info), space_of(info));
+        save_trace(trace, trace_of(phantom, info.spacing), space_of(info));
         written["truth_trace"] = trace.string();
     }
 

@@ -51,20 +51,6 @@ void say_means(const std::vector<StudyRow>& rows, const Common& common)
     }
 }
 
-std::vector<StudyRepeat> repeats_of(const StudyResults& results)
-{
-    std::vector<StudyRepeat> repeats;
-    for (const StudyLikeness& each : results.likenesses)
-        repeats.push_back({.condition = each.pair.condition,
-                           .annotator = each.pair.annotator,
-                           .other = each.pair.other,
-                           .seed = each.pair.seed,
-                           .dice = each.dice,
-                           .segment_agreement = each.segment_agreement,
-                           .distance_rms = each.distance_rms});
-    return repeats;
-}
-
 StudyReport report_of(const StudyCommandOptions& options, const StudyPlan& plan, const StudyResults& results)
 {
     StudyReport report{
@@ -80,7 +66,7 @@ StudyReport report_of(const StudyCommandOptions& options, const StudyPlan& plan,
         .rows = results.rows,
         .hand = {},
         .variations = {},
-        .repeats = repeats_of(results),
+        .repeats = results.repeats,
         .baselines = {},
         .no_baselines = {}};
     if (options.seeds) report.command += sentence(" --seeds ", *options.seeds);
@@ -125,7 +111,7 @@ void run_study_command(const StudyCommandOptions& options)
     const std::string csv = (folder / "rows.csv").string(), report = (folder / "report.html").string();
     const bool is_whole = results.missing == 0;
     if (is_whole) {
-        write_text(folder / "repeats.csv", csv_of(repeats_of(results)));
+        write_text(folder / "repeats.csv", csv_of(results.repeats));
         write_text(report, page_of(report_of(options, plan, results)));
     }
     if (options.common.json) {

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "engine/volume/split_mix.h"
+
 namespace shvr {
 
 namespace {
@@ -100,30 +102,15 @@ private:
     double count_ = 0.0;
 };
 
-/// SplitMix64 (Steele et al. 2014): equal numbers on every machine.
-class Draws {
-public:
-    size_t below(size_t count)
-    {
-        uint64_t z = state_ += 0x9e3779b97f4a7c15ULL;
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-        return size_t((((z ^ (z >> 31)) >> 32) * uint64_t(count)) >> 32);
-    }
-
-private:
-    uint64_t state_ = 0;
-};
-
 void add_interval(const std::vector<Equation>& equations, FloretLattice& lattice)
 {
     // The whole costs at most 2e7 equations beyond 20000 florets.
     const size_t rounds = std::clamp<size_t>(20000000 / equations.size(), 100, 1000);
     std::vector<double> found;
-    Draws draws;
+    SplitMix64 random(0);
     for (size_t round = 0; round < rounds; ++round) {
         Normal normal;
-        for (size_t i = 0; i < equations.size(); ++i) normal.add(equations[draws.below(equations.size())]);
+        for (size_t i = 0; i < equations.size(); ++i) normal.add(equations[random.below(uint32_t(equations.size()))]);
         const double by = normal.solution().y;
         if (std::isfinite(by)) found.push_back(lattice.divergence + by);
     }

@@ -115,7 +115,7 @@ TEST_CASE_FIXTURE(OnDevice, "what is off costs no pass and no byte, and what is 
     CHECK(renderer().memory().bytes_by_name().count("occlusion scratch") == 0);
 }
 
-TEST_CASE_FIXTURE(OnDevice, "what a change makes anew is what making everything gives, bit for bit")
+TEST_CASE_FIXTURE(OnDevice, "a change rebuilds what rebuilding everything gives, bit for bit")
 {
     const TestVolume scene = blobs({110, 70, 66});
     load(scene);

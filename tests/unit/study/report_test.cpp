@@ -11,6 +11,7 @@
 #include "engine/study/report/report_tables.h"
 #include "engine/study/report/thesis_table.h"
 #include "engine/study/statistics.h"
+#include "engine/volume/split_mix.h"
 #include "tests/support/volume_files.h"
 
 using namespace shvr;

@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "engine/study/statistics.h"
+#include "engine/volume/split_mix.h"
 #include "tests/support/slow.h"
 
 using namespace shvr;
