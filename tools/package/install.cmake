@@ -1,6 +1,7 @@
 # What `cmake --install` and the packages put where. Files are found relative to the program (engine/base/assets.h), so
 # that the tree can be moved.
 
+set(CMAKE_INSTALL_DOCDIR share/doc/shvr CACHE PATH "Folder of README, changes and copyright")
 include(GNUInstallDirs)
 set(shared ${CMAKE_INSTALL_DATADIR})
 
@@ -18,11 +19,16 @@ install(FILES tools/package/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # Manual pages and completions, written by the program itself, and the icon's sizes. Only releases need them.
 if(CMAKE_BUILD_TYPE STREQUAL "Release")
     set(made ${CMAKE_BINARY_DIR}/package)
+    file(MAKE_DIRECTORY ${made})
     add_custom_command(OUTPUT ${made}/manual.done
         COMMAND ${CMAKE_COMMAND} -E rm -rf ${made}/share
         COMMAND shvr manual ${made}/share
+        COMMAND sh -c "gzip -9n share/man/man1/*.1"
+        COMMAND ${CMAKE_COMMAND} -E make_directory ${made}/share/doc/shvr
+        COMMAND sh -c "gzip -9nc ${CMAKE_SOURCE_DIR}/tools/package/changelog > share/doc/shvr/changelog.Debian.gz"
         COMMAND ${CMAKE_COMMAND} -E touch ${made}/manual.done
-        DEPENDS shvr VERBATIM COMMENT "Writing manual pages and completions")
+        DEPENDS shvr tools/package/changelog WORKING_DIRECTORY ${made} VERBATIM
+        COMMENT "Writing manual pages and completions")
     set(products ${made}/manual.done)
     find_program(RSVG_CONVERT rsvg-convert)
     if(RSVG_CONVERT)
@@ -46,14 +52,14 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME shvr)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "see, feel and annotate tubular structures in 3-D scans")
-set(CPACK_PACKAGE_DESCRIPTION "SHVR draws micro-CT volumes by ray casting on any Vulkan device, lets a haptic stylus
-feel them, and annotates vascular bundles: by painting voxels and by tracing a
-network along centre lines. It opens TIFF, DICOM, NRRD, NIfTI, OME-Zarr and other
-formats, works on volumes that are larger than memory, and is scriptable.")
+set(CPACK_PACKAGE_DESCRIPTION "SHVR draws micro-CT volumes by ray casting on any Vulkan device, lets a
+haptic stylus feel them, and annotates vascular bundles: by painting voxels
+and by tracing a network along centre lines. It opens TIFF, DICOM, NRRD,
+NIfTI, OME-Zarr and other formats, works on volumes that are larger than
+memory, and is scriptable.")
 set(CPACK_PACKAGE_VENDOR "The SHVR authors")
 set(CPACK_PACKAGE_CONTACT "The SHVR authors <shvr@localhost>")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
-set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_PACKAGE_RELEASE "1${SHVR_PACKAGE_SUFFIX}")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
