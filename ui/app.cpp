@@ -299,7 +299,7 @@ bool App::decides_who_has_keys(const KeyEvent& event, bool is_for_ui) const
     if (!event.pressed) return false;
     const bool ends = event.key == GLFW_KEY_ENTER || event.key == GLFW_KEY_KP_ENTER || event.key == GLFW_KEY_ESCAPE;
     return (ends && is_for_ui) || std::ranges::any_of(actions_, [](const Action& action) {
-               return std::holds_alternative<AskOpen>(action) || std::holds_alternative<ShowPalette>(action);
+               return action.is<AskOpen>() || action.is<ShowPalette>();
            });
 }
 
@@ -340,7 +340,7 @@ void App::handle_events(double timeout_s)
 void App::apply_all()
 {
     for (const Action& action : std::exchange(actions_, {})) {
-        was_asked_to_close_ &= std::holds_alternative<Quit>(action);
+        was_asked_to_close_ &= action.is<Quit>();
         // If nothing is open, such actions are ignored: an error for each key would cover the hint.
         if (!bench_->is_open() && !bench_->why_not(action).empty()) continue;
         static_cast<void>(bench_->apply(action));

@@ -44,12 +44,10 @@ void Workbench::perform(const Action& action)
 /// Calls the service that the action's row names.
 void Workbench::carry_out(const Action& action)
 {
-    std::visit(
-        [&]<class Kind>(const Kind& each) {
-            using Row = std::tuple_element_t<INDEX_OF_KIND<Kind>, ActionRows>;
-            services_.of<typename Row::Service>().act(each);
-        },
-        action);
+    action.visit([&]<class Kind>(const Kind& each) {
+        using Row = std::tuple_element_t<INDEX_OF_KIND<Kind>, ActionRows>;
+        services_.of<typename Row::Service>().act(each);
+    });
 }
 
 bool Workbench::apply(const Action& action)

@@ -1,9 +1,10 @@
 #pragma once
 // The actions of the user. Keys, mouse, menus, panels, the stylus and scripts only create actions; the workbench
 // carries them out in one place, in order. Each action has a stable id, and arguments as JSON (action_rows.h), so it
-// can be logged, replayed and written in a script. Plain data; any thread.
+// can be logged, replayed and written in a script. Immutable data; any thread.
 
-#include <variant>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "engine/workbench/actions/group_actions.h"
@@ -36,16 +37,13 @@ using ActionRows =
                std::remove_const_t<decltype(WORK_ACTIONS)>, std::remove_const_t<decltype(WINDOW_ACTIONS)>,
                std::remove_const_t<decltype(HAND_ACTIONS)>>::Type;
 
-template <class Rows>
-struct VariantOfRows;
-template <class... Rows>
-struct VariantOfRows<std::tuple<Rows...>> {
-    using Type = std::variant<typename Rows::Kind...>;
-};
-using Action = VariantOfRows<ActionRows>::Type;
-using Actions = std::vector<Action>;
+/// Whether a table has a row for the struct.
+template <class Kind, class Rows = ActionRows>
+inline constexpr bool IS_ACTION = false;
+template <class Kind, class... Rows>
+inline constexpr bool IS_ACTION<Kind, std::tuple<Rows...>> = (std::is_same_v<Kind, typename Rows::Kind> || ...);
 
-/// Index of an alternative of Action, and of its row in the tables.
+/// Index of the row of a kind of action.
 template <class Kind, class Rows = ActionRows>
 inline constexpr size_t INDEX_OF_KIND = 0;
 template <class Kind, class... Rows>
@@ -55,5 +53,55 @@ inline constexpr size_t INDEX_OF_KIND<Kind, std::tuple<Rows...>> = [] {
     while (!IS_IT[index]) ++index;
     return index;
 }();
+
+/// One of the structs that the tables list. Copies share it. Not a std::variant: its type would name every kind in
+/// every symbol, and a file that made one action took 8 s and 35 MB of object file more than now (g++ 12, -O2).
+class Action {
+public:
+    template <class Kind>
+    requires IS_ACTION<Kind> Action(Kind kind)
+        : index_(INDEX_OF_KIND<Kind>), kind_(std::make_shared<const Kind>(std::move(kind)))
+    {}
+
+    /// The index of its row.
+    size_t index() const { return index_; }
+    template <class Kind>
+    bool is() const
+    {
+        return index_ == INDEX_OF_KIND<Kind>;
+    }
+    /// Returns null for an action of another kind.
+    template <class Kind>
+    const Kind* as() const
+    {
+        return is<Kind>() ? static_cast<const Kind*>(kind_.get()) : nullptr;
+    }
+    /// Calls `visitor` with the struct; `visitor` accepts each kind and returns the same type for all.
+    template <class Visitor>
+    auto visit(const Visitor& visitor) const
+    {
+        return visit_rows(visitor, static_cast<ActionRows*>(nullptr));
+    }
+
+private:
+    template <class Visitor, class First, class... Rest>
+    auto visit_rows(const Visitor& visitor, std::tuple<First, Rest...>*) const
+    {
+        using Result = decltype(visitor(std::declval<const typename First::Kind&>()));
+        using Call = Result (*)(const Visitor&, const void*);
+        static constexpr Call CALLS[] = {&call<Visitor, Result, typename First::Kind>,
+                                         &call<Visitor, Result, typename Rest::Kind>...};
+        return CALLS[index_](visitor, kind_.get());
+    }
+    template <class Visitor, class Result, class Kind>
+    static Result call(const Visitor& visitor, const void* kind)
+    {
+        return visitor(*static_cast<const Kind*>(kind));
+    }
+
+    size_t index_;
+    std::shared_ptr<const void> kind_;
+};
+using Actions = std::vector<Action>;
 
 }  // namespace shvr::ui

@@ -1,7 +1,7 @@
 #pragma once
 // A row of the tables of actions. A table stands below the structs of its actions. Each row is one action: id, name,
 // group, meaning, arguments, condition, and the service whose `act` carries it out. Everything else follows from the
-// tables: the variant Action (action.h), lines of JSON and text (action_rows.h), dispatch (workbench.cpp).
+// tables: Action (action.h), lines of JSON and text (action_rows.h), dispatch (workbench.cpp).
 //
 // Arguments and conditions are generic functions, so that headers with tables need neither Fields nor Model:
 // action_rows.cpp instantiates them.

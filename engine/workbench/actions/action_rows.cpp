@@ -21,7 +21,7 @@ constexpr ActionRows TABLE =
 constexpr auto ROWS =
     std::apply([](const auto&... rows) { return std::array{static_cast<const ActionRow&>(rows)...}; }, TABLE);
 
-/// The row of an alternative of Action.
+/// The row of a kind of action.
 template <class Kind>
 constexpr const auto& full_row()
 {
@@ -33,15 +33,6 @@ constexpr const auto& full_row()
 template <class Kind>
 constexpr bool IS_SCRIPT_OP = std::is_constructible_v<ScriptOp, Kind>;
 
-/// Returns a default-constructed action of the alternative with index `index`.
-template <size_t INDEX = 0>
-Action default_action(size_t index)
-{
-    if constexpr (INDEX + 1 < std::variant_size_v<Action>)
-        if (index != INDEX) return default_action<INDEX + 1>(index);
-    return Action(std::in_place_index<INDEX>);
-}
-
 /// Visits the key "op", whose value names the action, and then the action's arguments.
 Fields::Visit with_op(std::string& op, const Fields::Visit& arguments)
 {
@@ -50,6 +41,18 @@ Fields::Visit with_op(std::string& op, const Fields::Visit& arguments)
         f.retired("time");  // of a log's lines: replays ignore it
         arguments(f);
     };
+}
+
+/// Returns the action with index `index` and the arguments of the line.
+template <size_t INDEX = 0>
+Action read_kind(size_t index, std::string& id, const JsonNode& line)
+{
+    if constexpr (INDEX + 1 < std::tuple_size_v<ActionRows>)
+        if (index != INDEX) return read_kind<INDEX + 1>(index, id, line);
+    typename std::tuple_element_t<INDEX, ActionRows>::Kind kind{};
+    if constexpr (!IS_SCRIPT_OP<decltype(kind)>)
+        read_fields(line, {}, with_op(id, [&](Fields& f) { std::get<INDEX>(TABLE).fields(f, kind); }));
+    return kind;
 }
 
 /// Returns the ids of the registry and the names of scripts' operations, each once.
@@ -123,16 +126,14 @@ const ActionRow& row_of(const Action& action)
 
 std::string line_of(const Action& action)
 {
-    return std::visit(
-        [&]<class Kind>(Kind kind) -> std::string {
-            if constexpr (IS_SCRIPT_OP<Kind>) {
-                return line_of(ScriptOp(kind));
-            } else {
-                std::string id = row_of(action).id;
-                return write_fields({}, with_op(id, [&](Fields& f) { full_row<Kind>().fields(f, kind); }));
-            }
-        },
-        action);
+    return action.visit([&]<class Kind>(Kind kind) -> std::string {
+        if constexpr (IS_SCRIPT_OP<Kind>) {
+            return line_of(ScriptOp(kind));
+        } else {
+            std::string id = row_of(action).id;
+            return write_fields({}, with_op(id, [&](Fields& f) { full_row<Kind>().fields(f, kind); }));
+        }
+    });
 }
 
 std::string with_present_time(const std::string& line)
@@ -148,14 +149,7 @@ Action read_action(const JsonNode& line)
     const auto names = script_op_names();
     if (std::ranges::find(names, id) != names.end()) return of_script(read_script_op(line), line);
     const auto row = std::ranges::find_if(ROWS, [&](const ActionRow& each) { return each.id == id; });
-    Action action = default_action(size_t(row - std::begin(ROWS)));
-    std::visit(
-        [&]<class Kind>(Kind& kind) {
-            if constexpr (!IS_SCRIPT_OP<Kind>)
-                read_fields(line, {}, with_op(id, [&](Fields& f) { full_row<Kind>().fields(f, kind); }));
-        },
-        action);
-    return action;
+    return read_kind(size_t(row - std::begin(ROWS)), id, line);
 }
 
 Action read_action(std::string_view line, const std::string& origin)
@@ -195,12 +189,10 @@ bool waits_for_strokes(const Model& model, const Action& action)
 
 std::string why_not(const Model& model, const Action& action)
 {
-    return std::visit(
-        [&]<class Kind>(const Kind& kind) -> std::string {
-            if (full_row<Kind>().needs == Needs::document && !model.is_open) return "nothing is open";
-            return full_row<Kind>().why_not(model, kind);
-        },
-        action);
+    return action.visit([&]<class Kind>(const Kind& kind) -> std::string {
+        if (full_row<Kind>().needs == Needs::document && !model.is_open) return "nothing is open";
+        return full_row<Kind>().why_not(model, kind);
+    });
 }
 
 }  // namespace shvr::ui

@@ -15,7 +15,7 @@
 
 namespace shvr::ui {
 
-/// Returns the rows in the order of the alternatives of Action.
+/// Returns the rows in the order of their indices.
 std::span<const ActionRow> action_rows();
 const ActionRow& row_of(const Action& action);
 

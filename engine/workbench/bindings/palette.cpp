@@ -38,7 +38,7 @@ PaletteEntry typed(const Model& model, std::string_view text, const char* group,
     try {
         entry.action = make();
         entry.why_not = why_not(model, *entry.action);
-        if (const Set* const set = std::get_if<Set>(&*entry.action); set && entry.why_not.empty())
+        if (const Set* const set = entry.action->as<Set>(); set && entry.why_not.empty())
             static_cast<void>(patched(model.session, set->patch));
     } catch (const Error& error) {
         entry.why_not = error.what();

@@ -10,14 +10,9 @@ namespace {
 /// Returns whether the action follows the mouse or a held key.
 bool comes_in_runs(const Action& action)
 {
-    return std::visit(
-        []<class Kind>(const Kind&) {
-            return std::is_same_v<Kind, Orbit> || std::is_same_v<Kind, Roll> || std::is_same_v<Kind, Move> ||
-                   std::is_same_v<Kind, Zoom> || std::is_same_v<Kind, DragInMap> || std::is_same_v<Kind, MoveCut> ||
-                   std::is_same_v<Kind, MoveClip> || std::is_same_v<Kind, ProbeTo> || std::is_same_v<Kind, PushProbe> ||
-                   std::is_same_v<Kind, ScaleProbe>;
-        },
-        action);
+    return action.is<Orbit>() || action.is<Roll>() || action.is<Move>() || action.is<Zoom>() ||
+           action.is<DragInMap>() || action.is<MoveCut>() || action.is<MoveClip>() || action.is<ProbeTo>() ||
+           action.is<PushProbe>() || action.is<ScaleProbe>();
 }
 
 }  // namespace

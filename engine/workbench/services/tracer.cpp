@@ -292,16 +292,16 @@ void Tracer::add_node_here()
 /// Returns what was done.
 Actions Tracer::add_node_at(const Action& action)
 {
-    if (const auto* node = std::get_if<NodeOp>(&action)) {
+    if (const auto* node = action.as<NodeOp>()) {
         trace(*node);
         return {action};
     }
     Actions done{action};
-    if (const auto* link = std::get_if<LinkOp>(&action)) {
+    if (const auto* link = action.as<LinkOp>()) {
         trace(*link);
         done.push_back(SelectOp{.near = {}, .number = link->node, .within_voxels = {}});
     }
-    trace(std::get<SelectOp>(done.back()));
+    trace(*done.back().as<SelectOp>());
     return done;
 }
 

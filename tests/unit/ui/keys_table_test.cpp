@@ -30,7 +30,7 @@ void name_settings(const nlohmann::json& patch, const std::string& prefix, std::
 std::string in_short(const Action& action)
 {
     std::string text = row_of(action).id;
-    if (const auto* const set = std::get_if<Set>(&action)) {
+    if (const auto* const set = action.as<Set>()) {
         std::string names;
         if (!set->patch.empty()) name_settings(nlohmann::json::parse(set->patch), "", names);
         text += ' ' + names;

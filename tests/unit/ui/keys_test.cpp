@@ -73,8 +73,8 @@ template <class Expected>
 Expected only(const Actions& actions)
 {
     REQUIRE(actions.size() == 1);
-    REQUIRE(std::holds_alternative<Expected>(actions[0]));
-    return std::get<Expected>(actions[0]);
+    REQUIRE(actions[0].is<Expected>());
+    return *actions[0].as<Expected>();
 }
 
 /// The session as the key's setting leaves it.
@@ -238,8 +238,8 @@ TEST_CASE("F paints and M moves a node until they are released, whatever has the
         keyboard.handle({.key = key}, world.model, true, actions);
         REQUIRE(actions.size() == 2);
         const bool is_paint = key == 'F';
-        CHECK((is_paint ? std::get<Paint>(actions[0]).on : std::get<DragNode>(actions[0]).on));
-        CHECK_FALSE((is_paint ? std::get<Paint>(actions[1]).on : std::get<DragNode>(actions[1]).on));
+        CHECK((is_paint ? actions[0].as<Paint>()->on : actions[0].as<DragNode>()->on));
+        CHECK_FALSE((is_paint ? actions[1].as<Paint>()->on : actions[1].as<DragNode>()->on));
         // A key whose release was never seen, since the window was left.
         keyboard.handle({.key = key, .pressed = true}, world.model, false, actions);
         keyboard.hold(
@@ -494,7 +494,7 @@ TEST_CASE("the palette finds shortcuts by words, actions by their text and setti
     CHECK(text_of(*first(" look_from camera=top").action) == text_of(LookFrom{"top"}));
     CHECK(first("look_from").why_not.find("camera") != std::string::npos);
     CHECK(first("orbit right_degrees=x").why_not.find("right_degrees") != std::string::npos);
-    CHECK(std::get<Set>(*first("light.ambient=0.4").action).patch == R"({"light":{"ambient":0.4}})");
+    CHECK(first("light.ambient=0.4").action->as<Set>()->patch == R"({"light":{"ambient":0.4}})");
     CHECK(first("light.ambient=0.4").why_not.empty());
     CHECK(first("light.ambient=70").why_not.find("ambient") != std::string::npos);
     CHECK(first("light.ambiance=0.4").why_not.find("ambiance") != std::string::npos);

@@ -39,10 +39,10 @@ glm::dvec3 in_view(const Camera& camera, const glm::dvec3& point)
 Camera after(const Actions& actions, Camera camera, double height)
 {
     for (const Action& action : actions) {
-        if (const auto* move = std::get_if<Move>(&action)) camera = moved(camera, height * move->heights);
-        if (const auto* orbit = std::get_if<Orbit>(&action))
+        if (const auto* move = action.as<Move>()) camera = moved(camera, height * move->heights);
+        if (const auto* orbit = action.as<Orbit>())
             camera = orbited(camera, camera.target, orbit->right_degrees, orbit->up_degrees);
-        if (const auto* roll = std::get_if<Roll>(&action)) camera = rolled(camera, roll->degrees);
+        if (const auto* roll = action.as<Roll>()) camera = rolled(camera, roll->degrees);
     }
     return camera;
 }

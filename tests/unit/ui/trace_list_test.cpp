@@ -87,13 +87,13 @@ TEST_CASE("a row selects its segment or node, and says where to look")
     list.update(trace, TraceOrder::number, false);
     const Actions selects = select_segment(list.segments()[0]);
     REQUIRE(selects.size() == 2);
-    const SelectOp op = std::get<SelectOp>(selects[0]);
+    const SelectOp op = *selects[0].as<SelectOp>();
     CHECK(op.is_internode);
     CHECK(op.number == 0u);
-    CHECK(std::holds_alternative<SelectSegmentOp>(selects[1]));
-    CHECK(std::get<GoTo>(go_to(list.segments()[0], {0.5, 1, 1})).voxel == glm::dvec3(4, 0, 0));
-    CHECK(std::get<SelectOp>(select_node(list.nodes()[5])[0]).number == 5u);
-    CHECK(std::get<GoTo>(go_to(list.nodes()[5], trace, {1, 1, 2})).voxel == glm::dvec3(5, 0, 3));
+    CHECK(selects[1].is<SelectSegmentOp>());
+    CHECK(go_to(list.segments()[0], {0.5, 1, 1}).as<GoTo>()->voxel == glm::dvec3(4, 0, 0));
+    CHECK(select_node(list.nodes()[5])[0].as<SelectOp>()->number == 5u);
+    CHECK(go_to(list.nodes()[5], trace, {1, 1, 2}).as<GoTo>()->voxel == glm::dvec3(5, 0, 3));
     CHECK(is_selected(list.segments()[0], {.nodes = {}, .internodes = {0, 1}}));
     CHECK_FALSE(is_selected(list.segments()[1], {.nodes = {2}, .internodes = {}}));
 }

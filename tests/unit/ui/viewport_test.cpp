@@ -169,7 +169,7 @@ TEST_CASE("Clicks trace, select and measure; a press that moves is none")
     trace.said.clear();
     trace.click(200.0, 152.0);  // on the node
     CHECK(trace.said == "select");
-    CHECK(std::get<SelectOp>(trace.last[0]).number == 0u);
+    CHECK(trace.last[0].as<SelectOp>()->number == 0u);
     CHECK(trace.drag(LEFT, 200.0, 152.0) == "select place_probe drag_node probe_to drag_node");
     // A node of a selected segment takes the segment along.
     TraceGraph& graph = trace.world.trace;
@@ -182,10 +182,10 @@ TEST_CASE("Clicks trace, select and measure; a press that moves is none")
     Mouse select(Tool::select);
     select.click(40.0, 40.0);
     CHECK(select.said == "select_at");
-    CHECK(!std::get<SelectAt>(select.last[0]).whole_segment);
+    CHECK(!select.last[0].as<SelectAt>()->whole_segment);
     select.now_s += 0.1;
     select.click(40.0, 40.0);
-    CHECK(std::get<SelectAt>(select.last[0]).whole_segment);
+    CHECK(select.last[0].as<SelectAt>()->whole_segment);
 
     Mouse measure(Tool::measure);
     measure.click(40.0, 40.0);
@@ -208,7 +208,7 @@ TEST_CASE("The probe follows what is seen in tools that work there, and its plan
 TEST_CASE("A motion that no hand makes lifts the brush, and so does the first after the pointer was elsewhere")
 {
     Mouse mouse(Tool::turn);
-    const auto jumps = [&] { return std::get<ProbeTo>(mouse.last.at(0)).jumps; };
+    const auto jumps = [&] { return mouse.last.at(0).as<ProbeTo>()->jumps; };
     mouse.move(40.0, 40.0);
     CHECK(jumps());  // its last position is unknown
     mouse.move(60.0, 40.0);
@@ -244,7 +244,7 @@ TEST_CASE("In a slice the cross is dragged, and the contrast with Ctrl or the ri
     CHECK(mouse.drag(LEFT, 300.0, 40.0, CONTROL) == "set set");
     mouse.press(LEFT, 300.0, 40.0, CONTROL);
     mouse.move(300.0, 190.0);  // half a height down: darker by half the window
-    const Session after = patched(mouse.world.session, std::get<Set>(mouse.last.at(0)).patch);
+    const Session after = patched(mouse.world.session, mouse.last.at(0).as<Set>()->patch);
     CHECK(*after.view.slices.black == doctest::Approx(500.0));
     CHECK(*after.view.slices.white == doctest::Approx(1500.0));
     // Tools that point leave the other slices where they are.
