@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/live/annotator.h"
 #include "tests/gpu/parts.h"
 #include "tests/support/gpu.h"
 
