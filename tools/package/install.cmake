@@ -43,6 +43,20 @@ if(CMAKE_BUILD_TYPE STREQUAL "Release")
         endforeach()
     endif()
     add_custom_target(package_files ALL DEPENDS ${products})
+    # The user manual: its steps are carried out for its pictures, which takes a Vulkan device and a minute, so it is
+    # made on demand:  cmake --build build/release --target manual
+    execute_process(COMMAND /usr/bin/python3 -c "import markdown" RESULT_VARIABLE has_no_markdown ERROR_QUIET)
+    if(has_no_markdown)
+        message(STATUS "No target manual: python3-markdown is missing")
+    else()
+        file(GLOB manual_pages CONFIGURE_DEPENDS assets/manual/*.md)
+        add_custom_command(OUTPUT ${made}/pages.done
+            COMMAND ${CMAKE_SOURCE_DIR}/tools/package/make_manual $<TARGET_FILE:shvr> ${made}/share/doc/shvr/manual
+            COMMAND ${CMAKE_COMMAND} -E touch ${made}/pages.done
+            DEPENDS shvr ${made}/manual.done tools/package/make_manual ${manual_pages} VERBATIM
+            COMMENT "Carrying out the steps of the user manual")
+        add_custom_target(manual DEPENDS ${made}/pages.done)
+    endif()
     install(DIRECTORY ${made}/share/ DESTINATION ${shared})
 endif()
 
