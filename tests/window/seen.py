@@ -263,6 +263,10 @@ class Seen(Window):
             self.do(step, button, pause_s=0)
             self.until(lambda: self.program.poll() is not None or self.frame()["frame"] > before, "a frame")
 
+    def window_named(self, title):
+        """The window's number, for xdotool. A search ends without an answer where another window goes away meanwhile."""
+        return self.until(lambda: self.display.do("search", "--name", title), f"window named {title}").split()[-1]
+
     def pixels(self):
         """Width, height and rows of the screen."""
         return read_xwd(subprocess.run(["xwd", "-root", "-silent", "-display", self.display.name], capture_output=True,

@@ -13,7 +13,7 @@ KEPT = {"note": "Kept by hand.", "extends": False,
 
 class Drop(Seen):
     def drop(self, *paths):
-        window = int(self.display.do("search", "--name", "SHVR").split()[-1])
+        window = int(self.window_named("SHVR"))
         source = Source(self.display.name, window)
         self.addCleanup(source.close)
         source.drop(paths, self.middle())

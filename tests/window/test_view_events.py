@@ -52,7 +52,7 @@ class Events(Seen):
         self.open_with("probe")
         x, y = self.middle()
         self.check_probe(x, y)
-        window = self.display.do("search", "--name", "sphere.* - SHVR").split()[0]
+        window = self.window_named("sphere.* - SHVR")
         for _ in range(3):
             self.do("windowunmap", window, pause_s=0.4)
             self.do("windowmap", window, pause_s=0.4)

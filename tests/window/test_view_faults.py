@@ -93,7 +93,7 @@ class Faults(Seen):
     def test_nothing_waits_for_the_device_while_the_window_is_painted_in_turned_and_resized(self):
         session = self.write_ball()
         x, y = self.start_with_faults(session)
-        window = self.display.do("search", "--name", "sphere.* - SHVR").split()[-1]
+        window = self.window_named("sphere.* - SHVR")
 
         def work(step):
             self.display.do("windowsize", window, WINDOW[0] - 9 * step, WINDOW[1] - 7 * step)
@@ -170,7 +170,7 @@ class Faults(Seen):
         self.check_photograph(session, photograph)
 
     def window(self):
-        return self.display.do("search", "--name", "sphere.* - SHVR").split()[0]
+        return self.window_named("sphere.* - SHVR")
 
     def test_a_window_that_is_resized_and_hidden_while_calls_fail_goes_on(self):
         session = self.write_ball()
