@@ -29,7 +29,7 @@ struct SelectAt {
     bool whole_segment = false;
 };
 
-/// Selects the node with the next number and looks at it.
+/// Selects the node with the next number, of those that clicks and keys find, and looks at it.
 struct StepNode {
     bool back = false;
 };
@@ -109,7 +109,7 @@ inline constexpr auto TRACING_ACTIONS = std::tuple{
         },
         [](const auto& model, const SelectAt&) -> std::string { return model.is_painting ? IS_PAINTING : ""; }),
     row<StepNode, Tracer>(
-        {"step_node", "Next node", TRACING_GROUP, "selects the next or previous node, and looks at it"},
+        {"step_node", "Next node", TRACING_GROUP, "selects the next or previous node that is shown, and looks at it"},
         [](auto& f, StepNode& a) { f.flag("back", a.back, {}); },
         [](const auto& model, const StepNode&) -> std::string {
             if (model.is_painting) return IS_PAINTING;

@@ -251,13 +251,17 @@ void Tracer::act(const StepNode& action)
     const TraceGraph& trace = document.annotator.document().trace;
     if (trace.nodes().empty()) fail("there is no node; expected one to look at");
     const std::optional<uint32_t> selected = trace.selection().node();
-    auto at = selected ? trace.nodes().find(*selected) : trace.nodes().end();
-    if (action.back) {
-        at = std::prev(at == trace.nodes().begin() ? trace.nodes().end() : at);
-    } else {
-        if (at != trace.nodes().end()) ++at;
-        if (at == trace.nodes().end()) at = trace.nodes().begin();
-    }
+    const std::bitset<256> groups = document.trace_defaults().found;
+    const auto step = [&](auto from) {
+        if (action.back) return std::prev(from == trace.nodes().begin() ? trace.nodes().end() : from);
+        if (from != trace.nodes().end()) ++from;
+        return from == trace.nodes().end() ? trace.nodes().begin() : from;
+    };
+    auto at = step(selected ? trace.nodes().find(*selected) : trace.nodes().end());
+    for (size_t tried = 1; !groups[at->second.group] && tried < trace.nodes().size(); ++tried) at = step(at);
+    if (!groups[at->second.group])
+        fail(
+            "all nodes of the trace are in hidden groups; expected one to look at: show a group, or feel hidden parts");
     const glm::dvec3 position = at->second.position;
     this->trace(SelectOp{.near = {}, .number = at->first, .within_voxels = {}});
     Camera camera = document.camera;

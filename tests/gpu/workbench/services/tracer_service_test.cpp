@@ -61,6 +61,29 @@ TEST_CASE_FIXTURE(TracerAlone, "tracer: stepping from node to node looks at each
     CHECK(moved_to == std::prev(trace().nodes().end())->second.position);
 }
 
+// Kind (Touch): stepping through nodes of hidden groups
+TEST_CASE_FIXTURE(TracerAlone, "tracer: stepping passes over nodes of hidden groups, unless hidden parts are felt")
+{
+    for (const uint8_t group : {uint8_t(1), uint8_t(2), uint8_t(2), uint8_t(3)})
+        tracer.act(NodeOp{.at = {8.0 + 4.0 * double(group), 18, 16}, .radius_voxels = 1.0, .group = group});
+    const auto group_after = [&](bool back) {
+        tracer.act(StepNode{back});
+        return int(trace().node(trace().selection().node().value()).group);
+    };
+    document().session.groups[2].visible = false;
+    for (const int group : {1, 3, 1}) CHECK(group_after(false) == group);
+    for (const int group : {3, 1, 3}) CHECK(group_after(true) == group);
+    document().session.groups[3].visible = false;
+    CHECK(group_after(false) == 1);
+    CHECK(group_after(true) == 1);
+    document().session.groups[1].visible = false;
+    moved_to = {};
+    CHECK(contains(error_of([&] { tracer.act(StepNode{}); }), "all nodes of the trace are in hidden groups"));
+    CHECK(moved_to == glm::dvec3(0.0));
+    document().session.probe.touch.feels_hidden = true;
+    CHECK(group_after(false) == 2);
+}
+
 TEST_CASE_FIXTURE(TracerAlone, "tracer: a dragged node moves to the probe when it is let go")
 {
     CHECK(contains(error_of([&] { tracer.act(DragNode{true}); }), "is selected; select a node"));
