@@ -4,13 +4,29 @@
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/study/study_lines.h"
 
 namespace shvr {
 
+namespace {
+
+constexpr std::string_view NAMES[] = {"task",
+                                      "touch",
+                                      "law",
+                                      "probe_radii",
+                                      "noise",
+                                      "annotator",
+                                      "other",
+                                      "seed",
+                                      "dice",
+                                      "segment_agreement",
+                                      "distance_rms_voxel"};
+
+}  // namespace
+
 std::string csv_of(std::span<const StudyRepeat> repeats)
 {
-    std::string csv =
-        "task,touch,law,probe_radii,noise,annotator,other,seed,dice,segment_agreement,distance_rms_voxel\n";
+    std::string csv = study_header(NAMES);
     for (const StudyRepeat& each : repeats) {
         const StudyCondition& c = each.condition;
         csv += sentence(spelled(c.task), ',', spelled(c.touch), ',', spelled(c.law), ',', digits_of(c.probe_radii), ',',
@@ -20,6 +36,21 @@ std::string csv_of(std::span<const StudyRepeat> repeats)
         csv += '\n';
     }
     return csv;
+}
+
+std::vector<StudyRepeat> read_study_repeats(const std::filesystem::path& file)
+{
+    std::vector<StudyRepeat> repeats;
+    read_study_lines(file, NAMES, [&](const StudyLine& line) {
+        repeats.push_back({.condition = line.condition(),
+                           .annotator = line.whole(5),
+                           .other = line.whole(6),
+                           .seed = line.whole(7),
+                           .dice = line.number_or_nan(8),
+                           .segment_agreement = line.number_or_nan(9),
+                           .distance_rms = line.number_or_nan(10)});
+    });
+    return repeats;
 }
 
 }  // namespace shvr

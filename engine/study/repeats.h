@@ -1,6 +1,7 @@
 #pragma once
 // Repeatability: pairs of annotations of the same phantom, by one annotator twice or by two. Any thread.
 
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,5 +22,7 @@ struct StudyRepeat {
 
 /// A CSV file (RFC 4180) with a header; NaN is an empty field.
 std::string csv_of(std::span<const StudyRepeat> repeats);
+/// Fails with a sentence that names file, line and column.
+std::vector<StudyRepeat> read_study_repeats(const std::filesystem::path& file);
 
 }  // namespace shvr

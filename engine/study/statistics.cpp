@@ -119,14 +119,18 @@ PairedDifference paired_difference(std::span<const StudyRow> rows, const StudyCo
         if (row.condition == base && !std::isnan(row[outcome])) of_base[{row.annotator, row.seed}] = row[outcome];
     const int sign = better_sign_of(outcome);
     PairedDifference paired;
-    std::vector<double> differences;
+    std::vector<double> befores, afters, differences;
     for (const StudyRow& row : rows) {
         const auto before = of_base.find({row.annotator, row.seed});
         if (row.condition != condition || std::isnan(row[outcome]) || before == of_base.end()) continue;
         const double difference = row[outcome] - before->second;
+        befores.push_back(before->second);
+        afters.push_back(row[outcome]);
         differences.push_back(difference);
         ++(difference * sign > 0.0 ? paired.better : difference * sign < 0.0 ? paired.worse : paired.equal);
     }
+    paired.before = summary_of(befores);
+    paired.after = summary_of(afters);
     paired.difference = summary_of(differences);
     return paired;
 }

@@ -47,6 +47,7 @@ std::vector<double> values_of(std::span<const StudyRow> rows, const StudyConditi
 
 /// `condition` minus `base`, for each annotator and seed that has a value under both.
 struct PairedDifference {
+    Summary before, after;  ///< values of `base` and of `condition`, in these pairs alone
     Summary difference;
     size_t better = 0, worse = 0, equal = 0;  ///< pairs, by OutcomeColumn::better; all equal if that is 0
     /// Whether the interval excludes 0 on the better, or on the worse side.

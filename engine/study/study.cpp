@@ -35,6 +35,12 @@ bool is_row_of(const StudyItem& item, const StudyRow& row)
     return row.condition == item.condition && row.annotator == item.annotator && row.seed == item.seed;
 }
 
+bool is_repeat_of(const StudyPair& pair, const StudyRepeat& repeat)
+{
+    return repeat.condition == pair.condition && repeat.annotator == pair.annotator && repeat.other == pair.other &&
+           repeat.seed == pair.seed;
+}
+
 std::set<size_t> found_segments(const StudyScene& scene, const TraceGraph& trace)
 {
     std::set<size_t> found;
@@ -120,11 +126,12 @@ private:
                  in_quotes(note().substr(0, note().size() - 1)), ", as this study's phantoms; choose another folder");
     }
 
-    /// Takes rows that an earlier run, or another part, has written.
+    /// Takes rows and repeats that an earlier run, or another part, has written.
     void read_rows()
     {
         for (const fs::directory_entry& entry : fs::directory_iterator(run_.folder)) {
             const std::string name = entry.path().filename().string();
+            if (entry.path().extension() == ".csv" && name.starts_with("repeats")) read_repeats(entry.path());
             if (entry.path().extension() != ".csv" || (!name.starts_with("rows") && !name.starts_with("hand-")))
                 continue;
             const std::vector<StudyRow> rows = read_study_rows(entry.path());
@@ -135,6 +142,14 @@ private:
                     if (is_row_of(plan_.items[i], row)) rows_[i] = row;
             }
         }
+    }
+
+    void read_repeats(const fs::path& file)
+    {
+        const std::vector<StudyRepeat> repeats = read_study_repeats(file);
+        for (size_t i = 0; i < plan_.pairs.size(); ++i)
+            for (const StudyRepeat& repeat : repeats)
+                if (is_repeat_of(plan_.pairs[i], repeat)) repeats_[i] = repeat;
     }
 
     /// Cuts what is left of the plan into pieces, and keeps those of this part.
@@ -154,6 +169,7 @@ private:
         for (auto& [key, piece] : pieces) {
             if (number++ % run_.of != run_.part) continue;
             std::erase_if(piece.items, [&](size_t item) { return rows_[item].has_value(); });
+            std::erase_if(piece.pairs, [&](size_t pair) { return repeats_[pair].has_value(); });
             if (!piece.items.empty() || !piece.pairs.empty()) pieces_.push_back(std::move(piece));
         }
         for (const Piece& piece : pieces_) to_make_ += piece.items.size() + piece.pairs.size();
@@ -162,7 +178,7 @@ private:
     double share_done()
     {
         const std::lock_guard lock(mutex_);
-        return to_make_ > 0 ? double(made_ + pairs_made_) / double(to_make_) : 1.0;
+        return to_make_ > 0 ? double(made_ + made_pairs_.size()) / double(to_make_) : 1.0;
     }
 
     void make(const Piece& piece)
@@ -182,7 +198,7 @@ private:
             const StudyRepeat repeat = repeat_of(scene, plan_.pairs[i]);
             const std::lock_guard lock(mutex_);
             repeats_[i] = repeat;
-            ++pairs_made_;
+            made_pairs_.insert(i);
         }
         const std::lock_guard lock(mutex_);
         write_rows();
@@ -200,6 +216,12 @@ private:
             const std::string csv = csv_of(rows);
             write_file_atomically(run_.folder / (stem + part + ".csv"), std::as_bytes(std::span(csv)));
         }
+        std::vector<StudyRepeat> repeats;
+        for (size_t i = 0; i < repeats_.size(); ++i)
+            if (repeats_[i] && (run_.of == 1 || made_pairs_.contains(i))) repeats.push_back(*repeats_[i]);
+        if (repeats.empty()) return;
+        const std::string csv = csv_of(repeats);
+        write_file_atomically(run_.folder / ("repeats" + part + ".csv"), std::as_bytes(std::span(csv)));
     }
 
     StudyResults results() const
@@ -217,8 +239,10 @@ private:
             }
         }
         for (auto& [key, rows] : varied) results.variations.push_back({key.first, key.second, std::move(rows)});
-        for (const std::optional<StudyRepeat>& repeat : repeats_)
+        for (const std::optional<StudyRepeat>& repeat : repeats_) {
             if (repeat) results.repeats.push_back(*repeat);
+            results.missing += !repeat;
+        }
         results.made_here = made_;
         return results;
     }
@@ -227,9 +251,9 @@ private:
     const StudyRun& run_;
     std::vector<std::optional<StudyRow>> rows_;  ///< of plan_.items
     std::vector<std::optional<StudyRepeat>> repeats_;
-    std::set<size_t> made_items_;
+    std::set<size_t> made_items_, made_pairs_;
     std::vector<Piece> pieces_;
-    size_t to_make_ = 0, made_ = 0, pairs_made_ = 0;
+    size_t to_make_ = 0, made_ = 0;
     std::mutex mutex_;
 };
 

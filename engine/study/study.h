@@ -74,11 +74,11 @@ struct StudyResults {
     std::vector<StudyRow> rows;
     std::vector<StudyVariation> variations;
     std::vector<StudyRepeat> repeats;
-    size_t missing = 0;    ///< annotations that no part has made yet
+    size_t missing = 0;    ///< annotations, and pairs of them, that no part has made yet
     size_t made_here = 0;  ///< annotations that this run made
 };
-/// Writes rows*.csv and hand-TRAIT-FACTOR*.csv into the folder, and reads those that are there. Fails if the folder
-/// holds a study of another size of phantoms.
+/// Writes rows*.csv, hand-TRAIT-FACTOR*.csv and repeats*.csv into the folder, and reads those that are there. Fails if
+/// the folder holds a study of another size of phantoms.
 StudyResults run_study(const StudyPlan& plan, const StudyRun& run);
 
 }  // namespace shvr

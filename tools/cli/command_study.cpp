@@ -6,6 +6,7 @@
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/text.h"
+#include "engine/study/report/plots.h"
 #include "engine/study/report/report.h"
 #include "engine/study/statistics.h"
 #include "engine/study/study.h"
@@ -57,7 +58,9 @@ StudyReport report_of(const StudyCommandOptions& options, const StudyPlan& plan,
         .command = "shvr study --size " + options.size + " -o FOLDER",
         .version = version_in_words(),
         .phantom = sentence("The phantom of kind section (shvr phantom section): a part of a flower head in ",
-                            plan.side, " voxels a side, another one for each seed."),
+                            plan.side, " voxels a side, another one for each seed; its veins have radii of ",
+                            short_digits(0.013 * double(plan.side)), " to ", short_digits(0.021 * double(plan.side)),
+                            " voxels."),
         .annotators =
             "Ten annotators, models of a hand, an eye, a plan and a clock, calibrated against "
             "table 6.1 of the thesis before conditions were compared "
@@ -111,7 +114,7 @@ void run_study_command(const StudyCommandOptions& options)
     const std::string csv = (folder / "rows.csv").string(), report = (folder / "report.html").string();
     const bool is_whole = results.missing == 0;
     if (is_whole) {
-        write_text(folder / "repeats.csv", csv_of(results.repeats));
+        if (!results.repeats.empty()) write_text(folder / "repeats.csv", csv_of(results.repeats));
         write_text(report, page_of(report_of(options, plan, results)));
     }
     if (options.common.json) {

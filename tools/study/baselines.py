@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Annotations that common algorithms make without a hand, scored like those of a study (README.md next to this file).
 
-tools/study/baselines.py -o F.csv [--size 128] [--seeds 1,2,3] [--noise 10] [--methods A,B] [--shvr PROGRAM]
+tools/study/baselines.py -o F.csv [--size 256] [--seeds 1,2,3] [--noise 10] [--methods A,B] [--shvr PROGRAM]
 
 Each phantom section is written by `shvr phantom`, annotated by each method, and scored by `shvr evaluate`. Needs
 python3-numpy, python3-scipy and python3-skimage; where one is missing, the file names it in place of results.
@@ -285,11 +285,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("-o", "--output", type=Path, required=True, help="CSV file to write")
     parser.add_argument("--shvr", type=Path, default=os.environ.get("SHVR", ROOT / "build/release/shvr"))
-    parser.add_argument("--size", type=int, default=128, help="voxels a side")
+    parser.add_argument("--size", type=int, default=256, help="voxels a side, as of the standard study")
     parser.add_argument("--seeds", type=listed(int), default=[1, 2, 3])
     parser.add_argument("--noise", type=listed(float), default=[10.0], help="percent, as of `shvr phantom`")
     parser.add_argument("--methods", type=listed(method), default=list(METHODS), help=", ".join(METHODS))
     options = parser.parse_args()
+    options.output.parent.mkdir(parents=True, exist_ok=True)
     partial = options.output.with_name(options.output.name + ".part")
     try:
         with partial.open("w", newline="") as file:

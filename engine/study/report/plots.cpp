@@ -107,10 +107,11 @@ std::vector<double> ticks_of(double low, double high, int most)
     double step = 1.0;
     while (step < span) step *= 10.0;
     while (step >= span) step /= 10.0;
-    // The step is a power of ten below the span: at most ten steps, plus one at each end.
-    for (const double factor : {1.0, 2.0, 5.0, 10.0}) {
+    step /= 10.0;
+    // Ten to a hundred of these steps cover the span; a hundred times as long a step covers it in one, or two.
+    for (const double factor : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0}) {
         const double first = std::floor(low / (step * factor)), last = std::ceil(high / (step * factor));
-        if (last - first > most - 1 && factor < 10.0) continue;
+        if (last - first > most - 1 && factor < 100.0) continue;
         std::vector<double> ticks;
         for (double tick = first; tick <= std::max(last, first + 1.0); tick += 1.0)
             ticks.push_back(tick * step * factor);

@@ -6,6 +6,8 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/pages/html.h"
+#include "engine/study/report/cells.h"
+#include "engine/study/report/comparisons.h"
 #include "engine/study/report/plots.h"
 #include "engine/study/report/report_tables.h"
 #include "engine/study/report/thesis_table.h"
@@ -30,27 +32,11 @@ td.bad{color:var(--bad)}tr.sum td{font-weight:bold}
 pre{overflow-x:auto;font-size:11px;background:var(--field);padding:.5em}
 )";
 
-std::string name_of(StudyTask task)
-{
-    return task == StudyTask::paint ? "Painting" : "Tracing";
-}
-
-const OutcomeColumn& main_column(StudyTask task)
-{
-    return outcome_columns()[size_t(main_outcome(task))];
-}
-
-std::string axis_of(const OutcomeColumn& column)
-{
-    return column.unit == "1" ? std::string(column.name) : sentence(column.name, ", ", column.unit);
-}
-
 std::string values_plot(const StudyReport& report, StudyTask task)
 {
-    const OutcomeColumn& column = main_column(task);
-    IntervalPlot plot{.title = name_of(task) + ": " + std::string(column.name) +
-                               (column.better > 0 ? " (more is better)" : " (less is better)"),
-                      .axis = axis_of(column),
+    const OutcomeColumn& column = column_of(main_outcome(task));
+    IntervalPlot plot{.title = name_of(task) + (column.better > 0 ? " (more is better)" : " (less is better)"),
+                      .axis = main_outcome_in_words(task),
                       .lines = {},
                       .reference = std::nullopt,
                       .reference_label = {}};
@@ -82,10 +68,10 @@ std::vector<double> differences_of(const StudyReport& report, const StudyConditi
 
 std::string differences_plot(const StudyReport& report, StudyTask task)
 {
-    const OutcomeColumn& column = main_column(task);
+    const OutcomeColumn& column = column_of(main_outcome(task));
     const std::vector<StudyCondition> conditions = conditions_of(report.rows);
     IntervalPlot plot{.title = name_of(task) + ": difference from the same annotator and seed without touch",
-                      .axis = "difference of " + axis_of(column),
+                      .axis = "difference of the " + main_outcome_in_words(task),
                       .lines = {},
                       .reference = 0.0,
                       .reference_label = "no difference"};
@@ -109,13 +95,14 @@ std::string beginning(const StudyReport& report)
         "<h1>Does touch help? The thesis's study, repeated by simulated annotators</h1>\n<p class=\"note\">No person "
         "took part. Every number of this page is from a model of a person, except where it says <em>person</em> or "
         "<em>people</em>.</p>\n",
-        claims, "<p>Made by <code>", report::escaped(report.command), "</code>, SHVR ", report::escaped(report.version),
-        ". The same command makes the same page, byte for byte.</p>\n");
+        claims, "<p>Made by <code>", report::escaped(report.command), "</code>; this page by SHVR ",
+        report::escaped(report.version),
+        " from the rows in the folder. The same rows make the same page, byte for "
+        "byte.</p>\n");
 }
 
 std::string method_of(const StudyReport& report)
 {
-    StudyCondition centre = report.centre;
     return sentence(
         "<h2>What was simulated, and what was not</h2>\n<p>", report::escaped(report.phantom), "</p>\n<p>",
         report::escaped(report.annotators), R"(</p>
@@ -123,9 +110,11 @@ std::string method_of(const StudyReport& report)
 views, opinions (the thesis's questionnaire), and whatever a model of a hand leaves out. A difference on this page is a
 prediction about people, not an observation of them.</p>
 <p>One factor at a time is varied around one centre: )",
-        report::escaped(words_of(centre)),
-        R"(. The main outcomes were named before any condition was compared: painting )",
-        main_column(StudyTask::paint).name, ", tracing ", main_column(StudyTask::trace).name,
+        report::escaped(words_of(report.centre)),
+        R"(. A ball of 1.5 radii: the radius of the probe, in mean radii of the phantom's veins. Surface: the force holds
+the probe where bright voxels begin; proximity: it pulls the probe to the middle of the bright voxels in the ball;
+object: likewise, of those alone that are connected to what the probe touched first. The main outcomes were named before any condition was compared: painting )",
+        main_outcome_in_words(StudyTask::paint), ", tracing ", main_outcome_in_words(StudyTask::trace),
         R"(. All others are exploratory: no interval is corrected for their number, and one in twenty that excludes 0 does
 so by chance.</p>
 <p>Brackets are 95 % intervals of the mean, by the expanded percentile bootstrap ()",
@@ -142,7 +131,8 @@ std::string results_of(const StudyReport& report)
         const std::string plot = values_plot(report, task);
         if (plot.empty()) continue;
         markup += sentence("<h2>", name_of(task), "</h2>\n", plot, differences_plot(report, task),
-                           "<details><summary>All outcomes</summary>\n", means_table_of(report, task), "</details>\n");
+                           main_table_of(report, task), "<details><summary>All outcomes</summary>\n",
+                           means_table_of(report, task), "</details>\n");
     }
     return markup;
 }
@@ -172,24 +162,22 @@ std::string words_of(const StudyCondition& condition)
 
 std::string claim_of(const StudyReport& report, StudyTask task)
 {
-    StudyCondition centre = report.centre;
-    centre.task = task;
+    const StudyCondition centre = centre_of(report, task);
     const std::vector<StudyCondition> conditions = conditions_of(report.rows);
     const StudyCondition* const base = base_of(centre, conditions);
     if (!base) return {};
-    const OutcomeColumn& column = main_column(task);
-    const PairedDifference paired = paired_difference(report.rows, centre, *base, column.outcome);
+    const int better = column_of(main_outcome(task)).better;
+    const PairedDifference paired = paired_difference(report.rows, centre, *base, main_outcome(task));
     if (paired.difference.count == 0) return {};
-    const char* const verdict = paired.is_better(column.better)  ? "helps"
-                                : paired.is_worse(column.better) ? "harms"
-                                                                 : "makes no difference that this study can see";
-    const Summary before = summary_of(values_of(report.rows, *base, column.outcome));
-    const Summary after = summary_of(values_of(report.rows, centre, column.outcome));
-    return sentence(name_of(task), ": touch (", words_of(centre), ") ", verdict, " simulated annotators; ",
-                    axis_of(column), " ", short_digits(before.mean), " without it, ", short_digits(after.mean),
-                    " with it, difference ", short_digits(paired.difference.mean), " [",
-                    short_digits(paired.difference.interval.low), ", ", short_digits(paired.difference.interval.high),
-                    "], ", paired.difference.count, " pairs.");
+    const char* const verdict = paired.is_better(better)  ? "helps"
+                                : paired.is_worse(better) ? "harms"
+                                                          : "makes no difference that this study can see for";
+    return sentence(name_of(task), ": touch (", words_of(centre), ") ", verdict, " simulated annotators; mean ",
+                    main_outcome_in_words(task), ' ', short_digits(paired.before.mean), " without it, ",
+                    short_digits(paired.after.mean), " with it; difference ", short_digits(paired.difference.mean),
+                    " [", short_digits(paired.difference.interval.low), ", ",
+                    short_digits(paired.difference.interval.high), "] in ", paired.difference.count, " pairs, ",
+                    paired.better, " better and ", paired.worse, " worse.");
 }
 
 std::string page_of(const StudyReport& report)
@@ -198,19 +186,23 @@ std::string page_of(const StudyReport& report)
     const auto section = [&](const char* title, const std::string& words, const std::string& markup) {
         body += sentence("<h2>", title, "</h2>\n", words.empty() ? "" : "<p>" + words + "</p>\n", markup);
     };
-    section("Where touch makes results worse",
-            "Outcomes whose difference from the same annotators and seeds without touch lies, with its whole interval, "
-            "on the worse side.",
-            worse_table_of(report));
+    section("Where touch makes results worse, or no better",
+            "Results that are not better with touch, first of the main outcomes, then all outcomes whose difference "
+            "from the same annotators and phantoms without touch lies, with its whole interval, on the worse side.",
+            limits_of(report) + worse_table_of(report));
     section("Next to the thesis", sentence(THESIS_SOURCE, " Simulated annotators had the centre's mode throughout."),
             "<div class=\"wide\">" + thesis_table_of(report) + "</div>\n");
     section("Does the answer depend on the modelled hand?",
             "The central comparison, with each parameter of the hand halved and doubled. The answer is better or worse "
-            "where the interval of the difference excludes 0, else undecided.",
+            "where the interval of the difference excludes 0, else undecided; fewer pairs have wider intervals. "
+            "Reversed: better turned into worse, or worse into better. Not "
+            "confirmed: undecided here only.",
             robustness_table_of(report));
     section("Repeatability", "", repeat_table_of(report));
     section("Without a hand",
-            "Algorithms that a user would pick (tools/study/baselines.py). They do not know which bundles are wanted.",
+            "Algorithms that a user would pick (tools/study/baselines.py), above simulated annotators and people. They "
+            "do not "
+            "know which bundles are wanted, and take no one's ten minutes.",
             "<div class=\"wide\">" + baseline_table_of(report) + "</div>\n");
     section("The modelled hand", "", hand_table_of(report));
     section("Columns", "", codebook());

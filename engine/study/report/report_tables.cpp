@@ -7,6 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/pages/html.h"
+#include "engine/study/report/cells.h"
 #include "engine/study/report/plots.h"
 #include "engine/study/report/thesis_table.h"
 
@@ -17,38 +18,13 @@ namespace {
 using enum Outcome;
 constexpr Outcome TABLE_6_1[] = {dice_partial,    dice_full,      node_score, nodes_out,      nodes,
                                  internode_score, internodes_out, internodes, segments_found, topological_errors};
-
-std::string cell(std::string_view words, const char* look = "")
+constexpr Outcome TABLE_6_1_AND_DISTANCE[] = {dice_partial,   dice_full,          node_score,     nodes_out,
+                                              nodes,          internode_score,    internodes_out, internodes,
+                                              segments_found, topological_errors, centreline_rms};
+/// The task that has an outcome of table 6.1.
+StudyTask task_of(Outcome outcome)
 {
-    return sentence("<td", look, ">", report::escaped(words), "</td>");
-}
-
-std::string head(std::initializer_list<std::string_view> names)
-{
-    std::string markup = "<table><thead><tr>";
-    for (const std::string_view name : names) markup += sentence("<th>", report::escaped(name), "</th>");
-    return markup + "</tr></thead><tbody>\n";
-}
-
-constexpr const char* END = "</tbody></table>\n";
-
-std::string with_interval(const Summary& summary)
-{
-    if (summary.count == 0) return "-";
-    const std::string mean = short_digits(summary.mean);
-    if (summary.count == 1) return mean;
-    return mean + " [" + short_digits(summary.interval.low) + ", " + short_digits(summary.interval.high) + "]";
-}
-
-const OutcomeColumn& column_of(Outcome outcome)
-{
-    return outcome_columns()[size_t(outcome)];
-}
-
-std::string heading_of(Outcome outcome)
-{
-    const OutcomeColumn& column = column_of(outcome);
-    return column.unit == "1" ? std::string(column.name) : sentence(column.name, ", ", column.unit);
+    return outcome == dice_partial || outcome == dice_full ? StudyTask::paint : StudyTask::trace;
 }
 
 /// Values of one outcome of one annotator at the centre, over its seeds; the outcome's own task has it.
@@ -58,8 +34,7 @@ Summary of_annotator(const StudyReport& report, uint32_t annotator, Outcome outc
     for (const StudyRow& row : report.rows) {
         StudyCondition centre = report.centre;
         centre.task = row.condition.task;
-        const bool is_painted = outcome == dice_partial || outcome == dice_full;
-        const bool is_of_task = is_painted == (row.condition.task == StudyTask::paint);
+        const bool is_of_task = row.condition.task == task_of(outcome);
         if (row.annotator == annotator && row.condition == centre && is_of_task) values.push_back(row[outcome]);
     }
     return summary_of(values);
@@ -94,40 +69,31 @@ std::string thesis_part()
     return markup + mean_and_sd("people", columns);
 }
 
-std::vector<Outcome> outcomes_of(const StudyReport& report, StudyTask task)
+/// For comparison with algorithms: simulated annotators without touch and at the centre, and the thesis's people.
+std::string rows_of_hands(const StudyReport& report)
 {
-    std::vector<Outcome> outcomes;
-    for (const OutcomeColumn& column : outcome_columns()) {
-        const bool has_any = std::ranges::any_of(report.rows, [&](const StudyRow& row) {
-            return row.condition.task == task && !std::isnan(row[column.outcome]);
-        });
-        if (has_any) outcomes.push_back(column.outcome);
+    std::string markup;
+    const std::vector<StudyCondition> conditions = conditions_of(report.rows);
+    const StudyCondition* const base = base_of(report.centre, conditions);
+    for (StudyCondition condition : {base ? *base : report.centre, report.centre}) {
+        if (condition == report.centre && !base) break;
+        std::string values;
+        size_t most = 0;
+        for (const Outcome outcome : TABLE_6_1_AND_DISTANCE) {
+            condition.task = task_of(outcome);
+            const Summary summary = summary_of(values_of(report.rows, condition, outcome));
+            most = std::max(most, summary.count);
+            values += cell(with_interval(summary));
+        }
+        markup += "<tr class=\"sum\">" + cell("simulated, " + words_of(condition)) +
+                  cell(short_digits(condition.noise)) + cell(sentence(most)) + values + "</tr>\n";
     }
-    return outcomes;
-}
-
-std::string verdict_of(const PairedDifference& paired, int better)
-{
-    if (paired.difference.count == 0) return "no pair";
-    return paired.is_better(better) ? "better" : paired.is_worse(better) ? "worse" : "undecided";
-}
-
-std::string robustness_row(const std::string& hand, std::span<const StudyRow> rows, const StudyReport& report,
-                           std::map<StudyTask, std::string>& at_centre)
-{
-    std::string markup = "<tr>" + cell(hand);
-    for (const StudyTask task : {StudyTask::paint, StudyTask::trace}) {
-        StudyCondition centre = report.centre;
-        centre.task = task;
-        const std::vector<StudyCondition> conditions = conditions_of(rows);
-        const StudyCondition* const base = base_of(centre, conditions);
-        const Outcome outcome = main_outcome(task);
-        const PairedDifference paired = base ? paired_difference(rows, centre, *base, outcome) : PairedDifference{};
-        const std::string verdict = verdict_of(paired, column_of(outcome).better);
-        const bool is_first = at_centre.try_emplace(task, verdict).second;
-        const bool differs = !is_first && verdict != at_centre[task];
-        markup += cell(base ? with_interval(paired.difference) : "-");
-        markup += cell(verdict + (differs ? ", differs" : ""), differs ? " class=\"bad\"" : "");
+    markup += "<tr class=\"sum\">" + cell("people of the thesis") + cell("-") + cell("1");
+    for (const Outcome outcome : TABLE_6_1_AND_DISTANCE) {
+        std::vector<double> people;
+        for (const ThesisRow& row : thesis_rows())
+            if (row.participant != 0) people.push_back(row.value(outcome).value_or(NAN));
+        markup += cell(with_interval(summary_of(people)));
     }
     return markup + "</tr>\n";
 }
@@ -173,41 +139,6 @@ std::string means_table_of(const StudyReport& report, StudyTask task)
         markup += "</tr>\n";
     }
     return markup + END + "</div>\n";
-}
-
-std::string worse_table_of(const StudyReport& report)
-{
-    const std::vector<StudyCondition> conditions = conditions_of(report.rows);
-    std::string lines;
-    for (const StudyCondition& condition : conditions) {
-        const StudyCondition* const base = base_of(condition, conditions);
-        if (condition.touch == StudyTouch::none || !base) continue;
-        for (const Outcome outcome : outcomes_of(report, condition.task)) {
-            const int better = column_of(outcome).better;
-            const PairedDifference paired = paired_difference(report.rows, condition, *base, outcome);
-            if (better == 0 || !paired.is_worse(better)) continue;
-            lines += "<tr>" + cell(spelled(condition.task)) + cell(words_of(condition)) + cell(heading_of(outcome)) +
-                     cell(with_interval(summary_of(values_of(report.rows, *base, outcome)))) +
-                     cell(with_interval(summary_of(values_of(report.rows, condition, outcome)))) +
-                     cell(with_interval(paired.difference), " class=\"bad\"") +
-                     cell(sentence(paired.worse, " of ", paired.difference.count)) + "</tr>\n";
-        }
-    }
-    if (lines.empty()) return "<p>No outcome of any condition is worse than without touch beyond its interval.</p>\n";
-    return head({"task", "condition", "outcome", "without touch", "with it", "difference", "pairs that are worse"}) +
-           lines + END;
-}
-
-std::string robustness_table_of(const StudyReport& report)
-{
-    if (report.variations.empty()) return "<p>Not run.</p>\n";
-    std::string markup = head({"hand", "painting: difference", "answer", "tracing: difference", "answer"});
-    std::map<StudyTask, std::string> at_centre;
-    markup += robustness_row("as stated", report.rows, report, at_centre);
-    for (const HandVariation& each : report.variations)
-        markup +=
-            robustness_row(sentence(each.parameter, " x ", short_digits(each.factor)), each.rows, report, at_centre);
-    return markup + END;
 }
 
 std::string repeat_table_of(const StudyReport& report)
@@ -269,7 +200,7 @@ std::string baseline_table_of(const StudyReport& report)
         for (const Outcome outcome : TABLE_6_1) markup += cell(with_interval(summary_of(columns[outcome])));
         markup += cell(with_interval(summary_of(columns[centreline_rms]))) + "</tr>\n";
     }
-    return markup + END;
+    return markup + rows_of_hands(report) + END;
 }
 
 std::string hand_table_of(const StudyReport& report)

@@ -11,10 +11,6 @@ namespace shvr {
 std::string thesis_table_of(const StudyReport& report);
 /// Means with intervals: a line for each condition, a column for each outcome that the task has.
 std::string means_table_of(const StudyReport& report, StudyTask task);
-/// Differences from no touch whose interval lies on the worse side.
-std::string worse_table_of(const StudyReport& report);
-/// Whether the central comparison has the same answer with each parameter of the hand halved and doubled.
-std::string robustness_table_of(const StudyReport& report);
 std::string repeat_table_of(const StudyReport& report);
 std::string baseline_table_of(const StudyReport& report);
 std::string hand_table_of(const StudyReport& report);

@@ -82,6 +82,25 @@ class Baselines(CliTest):
         with (self.folder / "b.csv").open(newline="") as file:
             return list(csv.DictReader(file))
 
+    # Kind (Study): annotations whose scores are known, without any package
+    def test_annotations_are_scored_against_both_truths(self):
+        baselines = script()
+        phantom = self.check_json("phantom", "section", "--size", 48, "--seed", 2, "-o", self.folder / "phantom")
+        partial = baselines.scores(SHVR, phantom, phantom["truth_partial_mask"], phantom["truth_trace"])
+        self.assertEqual((partial["dice_partial"], partial["segments_found"], partial["segments_total"],
+                          partial["topological_errors"]), (1.0, 26, 26, 0))
+        self.assertLess(partial["centreline_rms"], 1e-6)
+        full = baselines.scores(SHVR, phantom, phantom["truth_mask"], None)
+        self.assertEqual(full["dice_full"], 1.0)
+        # The partial truth is a part of the full one: either scores the other alike.
+        self.assertEqual(full["dice_partial"], partial["dice_full"])
+        self.assertNotIn("segments_found", full)
+        # A skeleton's graph, written as a trace, has its nodes and no segment of the truth.
+        nodes, edges = graph([(5, 5, x) for x in range(21)])
+        baselines.write_trace(nodes, edges, (48, 48, 48), self.folder / "line.graphml")
+        line = baselines.scores(SHVR, phantom, phantom["truth_mask"], self.folder / "line.graphml")
+        self.assertEqual((line["nodes"], line["internodes"], line["segments_found"]), (len(nodes), len(edges), 0))
+
     @unittest.skipUnless(has_packages(), "python3-scipy or python3-skimage is not installed")
     def test_methods_are_scored_on_the_same_phantoms(self):
         ran = self.run_script("--size", "48", "--seeds", "2", "--methods", "threshold_largest,sato_skeleton")

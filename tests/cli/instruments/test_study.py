@@ -33,6 +33,17 @@ class Study(CliTest):
         # Two pairs for each task by one annotator, and two by two.
         self.assertEqual(len(self.rows("small", "repeats.csv")), 8)
 
+        # The report is made again from the folder alone, with results of algorithms that came later.
+        (self.folder / "small" / "baselines.csv").write_text(
+            "method,noise,seed,skipped,dice_partial\nflood,10,1,,0.12345\n")
+        marked = (self.folder / "small" / "repeats.csv").read_text().splitlines()
+        marked[1] = ",".join([*marked[1].split(",")[:8], "", "0.4321", "2"])
+        (self.folder / "small" / "repeats.csv").write_text("\n".join(marked) + "\n")
+        again = self.study("small")
+        self.assertEqual((again["made"], again["missing"]), (0, 0))
+        self.assertEqual(self.rows("small", "repeats.csv")[0]["segment_agreement"], "0.4321")  # read, not made again
+        self.assertIn("<td>0.123</td>", Path(result["report"]).read_text())
+
         def scores(task, touch, column):
             return {row["seed"]: float(row[column]) for row in rows
                     if (row["task"], row["touch"], row["law"]) == (task, touch, "potential")

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "engine/pages/html.h"
+#include "engine/study/report/comparisons.h"
 #include "engine/study/report/plots.h"
 #include "engine/study/report/report.h"
 #include "engine/study/report/report_tables.h"
@@ -149,9 +150,9 @@ TEST_CASE("a report states the answer, its interval, and where touch makes resul
 {
     const StudyReport report = a_report();
     const std::string painting = claim_of(report, StudyTask::paint), tracing = claim_of(report, StudyTask::trace);
-    CHECK(painting.find("helps simulated annotators; dice_partial") != std::string::npos);
-    CHECK(painting.find("30 pairs") != std::string::npos);
-    CHECK(tracing.find("helps simulated annotators; centreline_rms, voxel") != std::string::npos);
+    CHECK(painting.find("helps simulated annotators; mean Dice score") != std::string::npos);
+    CHECK(painting.find("30 pairs, 30 better and 0 worse") != std::string::npos);
+    CHECK(tracing.find("in voxels (centreline_rms)") != std::string::npos);
     CHECK(tracing.find("difference -2.50 [-2.50, -2.50]") != std::string::npos);
 
     const std::string worse = worse_table_of(report);
@@ -161,11 +162,70 @@ TEST_CASE("a report states the answer, its interval, and where touch makes resul
     CHECK(worse.find("30 of 30") != std::string::npos);
 
     const std::string robust = robustness_table_of(report);
-    CHECK(count_of("worse, differs", robust) == 1);
-    CHECK(count_of(">better<", robust) == 5);
+    CHECK(count_of("worse, reversed", robust) == 1);
+    CHECK(count_of(">better<", robust) == 7);
+    CHECK(robust.find("Tracing, 2 changed hands: 1 better, 0 undecided, 1 worse.") != std::string::npos);
     const std::string repeats = repeat_table_of(report);
     CHECK(count_of("one annotator twice", repeats) == 1);
     CHECK(count_of(">two annotators<", repeats) == 1);
+}
+
+/// Keeps the rows of the first seeds for which `drops` holds.
+template <class Drops>
+void keep_seeds(uint32_t seeds, std::vector<StudyRow>& rows, Drops&& drops)
+{
+    std::erase_if(rows, [&](const StudyRow& row) { return row.seed > seeds && drops(row); });
+}
+
+// Kind (Study): conditions with fewer pairs than the free hand that they are compared with
+TEST_CASE("means next to a difference are of its pairs, not of all rows")
+{
+    StudyReport report = a_report();
+    keep_seeds(5, report.rows, [](const StudyRow& row) { return row.condition.touch == StudyTouch::surface; });
+    // Later seeds paint worse by 0.4 without touch: in all rows the mean is far from that of the five pairs.
+    for (StudyRow& row : report.rows)
+        if (row.seed > 5 && row.condition.touch == StudyTouch::none) row.values[size_t(Outcome::dice_partial)] -= 0.4;
+    const StudyCondition surface{.task = StudyTask::paint, .touch = StudyTouch::surface};
+    const StudyCondition none{.task = StudyTask::paint, .touch = StudyTouch::none};
+    const PairedDifference paired = paired_difference(report.rows, surface, none, Outcome::dice_partial);
+    CHECK(paired.difference.count == 5);
+    CHECK(paired.before.count == 5);
+    CHECK(std::abs(paired.after.mean - paired.before.mean - paired.difference.mean) < 1e-12);
+    CHECK(std::abs(summary_of(values_of(report.rows, none, Outcome::dice_partial)).mean - paired.before.mean) > 0.2);
+    CHECK(worse_table_of(report).find("<td>" + short_digits(paired.before.mean) + " [") != std::string::npos);
+    CHECK(main_table_of(report, StudyTask::paint).find("<td>" + short_digits(paired.before.mean) + " [") !=
+          std::string::npos);
+}
+
+TEST_CASE("a report names conditions that do not help, and a free hand that is as good")
+{
+    StudyReport report = a_report();
+    // A larger ball without touch paints as well as touch does at the centre.
+    for (const StudyRow& row : std::vector(report.rows)) {
+        if (row.condition != StudyCondition{.task = StudyTask::paint, .touch = StudyTouch::object}) continue;
+        StudyRow free = row;
+        free.condition.touch = StudyTouch::none;
+        free.condition.probe_radii = 2.5;
+        free.values[size_t(Outcome::dice_partial)] += row.seed % 2 ? 0.001 : -0.001;
+        report.rows.push_back(free);
+    }
+    const std::string limits = limits_of(report);
+    CHECK(limits.find("At the centre 0 of 30 pairs are worse.") != std::string::npos);
+    CHECK(limits.find("No gain with surface, default law, ball of 1.5 radii, noise 10 %: difference -0.0") !=
+          std::string::npos);
+    CHECK(limits.find("without touch at this noise is: no touch, ball of 2.5 radii") != std::string::npos);
+    CHECK(limits.find(", undecided.") != std::string::npos);
+    CHECK(page_of(report).find(limits) != std::string::npos);
+}
+
+TEST_CASE("hands of fewer seeds are shown next to the stated hand in the same pairs")
+{
+    StudyReport report = a_report();
+    for (HandVariation& each : report.variations) keep_seeds(5, each.rows, [](const StudyRow&) { return true; });
+    const std::string robust = robustness_table_of(report);
+    CHECK(count_of("<td>as stated", robust) == 2);
+    CHECK(count_of("<td>30</td>", robust) == 2);
+    CHECK(count_of("<td>5</td>", robust) == 6);
 }
 
 TEST_CASE("a page is whole, holds everything itself, and says what it is of")
@@ -233,12 +293,21 @@ TEST_CASE("a condition is compared with no touch at the same noise and ball")
 
 TEST_CASE("ticks are round, few, and cover the values")
 {
-    for (const auto& [low, high] :
-         {std::pair(0.0, 1.0), {0.87, 0.993}, {-2.5, 0.0}, {0.0, 612.0}, {3.0, 3.0}, {-1e-9, 1e-9}, {0.0, 0.0}}) {
+    for (const auto& [low, high] : {std::pair(0.0, 1.0),
+                                    {0.87, 0.993},
+                                    {-2.5, 0.0},
+                                    {0.0, 612.0},
+                                    {3.0, 3.0},
+                                    {-1e-9, 1e-9},
+                                    {0.0, 0.0},
+                                    {0.8, 12.0},
+                                    {-11.0, 6.3},
+                                    {0.0, 1.01}}) {
         const std::vector<double> ticks = ticks_of(low, high);
         CAPTURE(low);
         CHECK(ticks.size() >= 2);
         CHECK(ticks.size() <= 9);
+        CHECK(ticks.back() - ticks.front() <= std::max(2.0 * (high - low), 0.002));  // no plot that is mostly empty
         CHECK(ticks.front() <= low + 1e-12);
         CHECK(ticks.back() >= high - 1e-12);
     }

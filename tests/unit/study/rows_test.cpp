@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "engine/base/error.h"
+#include "engine/study/repeats.h"
 #include "engine/study/rows.h"
 #include "tests/support/volume_files.h"
 
@@ -81,4 +82,48 @@ TEST_CASE("broken rows are refused with line, column and value")
           std::string::npos);
     CHECK(failure_of(with(",3,", ",")).find("line 2 has 27 fields, not 28") != std::string::npos);
     CHECK(failure_of("").find("line 1 is \"\"") != std::string::npos);
+}
+
+// Kind (Study): repeats in a file that is broken, or of another study
+TEST_CASE("repeats of a study read back as the same bits, and broken ones are refused by line and column")
+{
+    const TemporaryFolder folder;
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const StudyRepeat repeats[] = {{.condition = a_row().condition,
+                                    .annotator = 3,
+                                    .other = 4,
+                                    .seed = 7,
+                                    .dice = 0.1 + 0.2,
+                                    .segment_agreement = nan,
+                                    .distance_rms = nan},
+                                   {.condition = {},
+                                    .annotator = 1,
+                                    .other = 1,
+                                    .seed = 1,
+                                    .dice = nan,
+                                    .segment_agreement = 1e-300,
+                                    .distance_rms = 20.73841936846918}};
+    const std::string csv = csv_of(repeats);
+    const std::vector<StudyRepeat> read = read_study_repeats(folder.write("repeats.csv", csv));
+    REQUIRE(read.size() == 2);
+    CHECK(read[0].condition == repeats[0].condition);
+    CHECK(read[0].dice == 0.1 + 0.2);
+    CHECK(std::isnan(read[0].distance_rms));
+    CHECK(read[1].distance_rms == 20.73841936846918);
+    CHECK(csv_of(read) == csv);
+
+    const auto refusal = [&](const std::string& text) {
+        try {
+            read_study_repeats(folder.write("broken.csv", text));
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    const std::string head = csv.substr(0, csv.find('\n') + 1);
+    CHECK(refusal(head + "trace,none,potential,1.5,10,1,1,1,,0.5\n").find("line 2 has 10 fields, not 11") !=
+          std::string::npos);
+    CHECK(refusal(head + "trace,none,potential,1.5,10,1,one,1,,0.5,2\n").find("column other: \"one\" is not") !=
+          std::string::npos);
+    CHECK(refusal("task,touch\n").find("line 1 is") != std::string::npos);
 }
