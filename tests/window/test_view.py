@@ -106,7 +106,9 @@ class View(Seen):
         self.check_key("PageUp", "scale_probe")
         self.check_key("End", "set probe.brush")
         self.check_key("Home", "fit_view")
-        self.see_frames()   # not a sharp picture: on a busy machine the guided probe comes to rest late
+        # A sharp picture is not awaited: with twelve other processes on two cores there was none within a minute, and
+        # why is not known yet.
+        self.see_frames()
         report = self.finish()
         self.assertGreater(report["servo"]["ticks"], 300)
         self.assertGreater(report["servo"]["relevance_age"]["count"], 100)
