@@ -12,9 +12,13 @@ tools/check_loops.py FILES      checks these files
 
 A loop that all lanes leave together (`for` with bounds of constants and parameters, no `break`, `continue` or `return`)
 loses nothing and is not looked at. An assignment that gives a lane which has left the same value again is accepted with
-a comment `same again: REASON` on its line or the line before. Functions are not followed: what a function that is
-called in a loop assigns to its `inout` parameters is not seen.
+a comment `same again: REASON` on its line or the line before.
+
+Functions that a loop calls are followed, through the files that theirs includes: what they assign to `inout` and `out`
+parameters, the loop assigns. Of several functions of one name, all with that number of parameters count, since macros
+choose between them. A parameter that is `inout` or `out` counts as read after every loop.
 """
+from functools import cache
 import re
 import sys
 from pathlib import Path
@@ -61,14 +65,110 @@ def statement_end(text, at):
     return len(text)
 
 
+class Function:
+    """A function of a file; [begin, end) is its body, and `written` names its `inout` and `out` parameters."""
+    def __init__(self, name, parameters, begin, end):
+        self.name, self.begin, self.end = name, begin, end
+        self.parameters = [part.replace("[]", "").split()[-1] for part in split(parameters)]
+        self.written = {words[-1] for part in split(parameters) if {"inout", "out"} & set(words := part.split())}
+
+
+def split(text):
+    """The parts between the commas that no bracket encloses."""
+    parts, depth, first = [], 0, 0
+    for i, letter in enumerate(text):
+        depth += letter in "({["
+        depth -= letter in ")}]"
+        if letter == "," and depth == 0:
+            parts.append(text[first:i].strip())
+            first = i + 1
+    return [part for part in [*parts, text[first:].strip()] if part]
+
+
 def functions(text):
-    """(begin, end) of every block at the outermost level that follows a ')'."""
+    """Every function that has a body."""
     at = 0
     while (brace := text.find("{", at)) >= 0:
         end = closing(text, brace)
-        if text[:brace].rstrip().endswith(")"):
-            yield brace, end
+        head = re.compile(rf"({NAME})\s*\(([^()]*)\)\s*$").search(text[at:brace])
+        if head:
+            yield Function(head.group(1), head.group(2), brace, end)
         at = end + 1
+
+
+@cache
+def parsed(path):
+    """(lines, plain text, functions) of a file."""
+    source = path.read_text(encoding="utf-8")
+    text = plain(source)
+    return source.splitlines(), text, list(functions(text))
+
+
+@cache
+def seen_from(path):
+    """[(file, function)] of a file and all that it includes."""
+    files, waiting = [], [path.resolve()]
+    while waiting:
+        file = waiting.pop()
+        if file not in files and file.is_file():
+            files.append(file)
+            included = re.findall(r'(?m)^[ \t]*#[ \t]*include[ \t]+"([^"]+)"', file.read_text(encoding="utf-8"))
+            waiting += [(file.parent / name).resolve() for name in included]
+    return [(file, function) for file in files for function in parsed(file)[2]]
+
+
+def calls(text, begin, end, found):
+    """(position, file, function, arguments) of each call of a function of `found` that writes parameters."""
+    by_name = {}
+    for file, function in found:
+        if function.written:
+            by_name.setdefault(function.name, []).append((file, function))
+    for match in re.compile(rf"(?<![\w.])({NAME})\s*\(").finditer(text, begin, end):
+        for file, function in by_name.get(match.group(1), []):
+            arguments = split(text[match.end():closing(text, match.end() - 1)])
+            if len(arguments) == len(function.parameters):
+                yield match.start(), file, function, arguments
+
+
+def carriers(text, begin, end, name):
+    """`name`, and the constants of [begin, end) that are computed from all of it, not from a member alone."""
+    names = {name}
+    for match in re.compile(rf"\bconst\s+\w+\s+({NAME})\s*=").finditer(text, begin, end):
+        value = text[match.end():assignment_ends(text, match.end())]
+        if any(re.search(rf"(?<![\w.]){one}\b(?!\s*\.|\()", value) for one in names):
+            names.add(match.group(1))
+    return names
+
+
+def base_of(argument):
+    return re.match(rf"({NAME})|", argument).group(1)
+
+
+def is_excused(lines, line):
+    return any("same again:" in lines[i] for i in (line - 1, line) if 0 <= i < len(lines))
+
+
+def written_by(kernel, file, function, parameter, on_the_way=()):
+    """{(file, line, name)} of the assignments to a parameter that do without its former value, also in functions that
+    this one calls."""
+    if (file, function.begin, parameter) in on_the_way:
+        return set()
+    lines, text, _ = parsed(file)
+    result = set()
+    for match in ASSIGNED.finditer(text, function.begin, function.end):
+        value = text[match.end():assignment_ends(text, match.end())]
+        line = text.count("\n", 0, match.start())
+        is_carried = any(re.search(rf"(?<![\w.]){one}\b", value)
+                         for one in carriers(text, function.begin, match.start(), parameter))
+        if match.group(1) == parameter and not is_carried and not is_excused(lines, line):
+            result.add((file, line + 1, parameter))
+    for at, callee_file, callee, arguments in calls(text, function.begin, function.end, seen_from(kernel)):
+        for given, name in zip(arguments, callee.parameters):
+            if name in callee.written and base_of(given) == parameter and \
+                    not is_excused(lines, text.count("\n", 0, at)):
+                result |= written_by(kernel, callee_file, callee, name,
+                                     (*on_the_way, (file, function.begin, parameter)))
+    return result
 
 
 def loops(text, begin, end):
@@ -119,42 +219,59 @@ def assignment_ends(text, at):
     return len(text)
 
 
-def lost_in(text):
-    """[(line, name)] of the assignments whose values a lane may lose."""
-    lines = text.splitlines()
-    text = plain(text)
-    found = set()
-    for begin, end in functions(text):
-        counters = set()
-        for start, head, (body_begin, body_end), loop_end in loops(text, begin, end):
-            body = text[body_begin:body_end]
-            counter = counter_of_all(head, body, counters)
-            if counter:
-                counters.add(counter)
-                continue
-            inside = set(DECLARED.findall(body)) | set(DECLARED.findall(head))
-            for match in ASSIGNED.finditer(text, body_begin, body_end):
+def is_read_after(function, text, name, loop_end):
+    return name in function.written or re.search(rf"(?<![\w.]){name}\b(?!\s*=[^=])", text[loop_end:function.end])
+
+
+def diverging_loops(text, function):
+    """(begin, (first, last) of the body, end, names declared inside) of the loops that lanes leave one by one."""
+    counters = set()
+    for start, head, (first, last), loop_end in loops(text, function.begin, function.end):
+        counter = counter_of_all(head, text[first:last], counters)
+        if counter:
+            counters.add(counter)
+        else:
+            yield start, (first, last), loop_end, set(DECLARED.findall(text[first:last])) | set(DECLARED.findall(head))
+
+
+def lost_in(kernel, path):
+    """{(file, line, name)} of the assignments in loops of a file whose values a lane may lose; `kernel` includes it."""
+    lines, text, found = parsed(path)
+    lost = set()
+    for function in found:
+        for start, (first, last), loop_end, inside in diverging_loops(text, function):
+            def is_outer(name, function=function, start=start, inside=inside):
+                before = text[function.begin:start]
+                return name not in inside and (name in function.parameters or
+                                               re.search(rf"(?<![\w.]){name}\b", before))  # no global or shared one
+            for match in ASSIGNED.finditer(text, first, last):
                 name = match.group(1)
                 value = text[match.end():assignment_ends(text, match.end())]
-                before = text[max(begin, match.start() - 40):match.start()]
-                if name in inside or re.search(rf"[\w\]]\s+$", before) or re.search(rf"(?<![\w.]){name}\b", value):
-                    continue
-                if not re.search(rf"(?<![\w.]){name}\b", text[begin:start]):
-                    continue  # a global or shared variable
                 line = text.count("\n", 0, match.start())
-                if any("same again:" in lines[i] for i in (line - 1, line)):
-                    continue
-                if re.search(rf"(?<![\w.]){name}\b(?!\s*=[^=])", text[loop_end:end]):
-                    found.add((line + 1, name))
-    return sorted(found)
+                is_declaration = re.search(r"[\w\]]\s+$", text[max(function.begin, match.start() - 40):match.start()])
+                if is_outer(name) and not is_declaration and not re.search(rf"(?<![\w.]){name}\b", value) and \
+                        not is_excused(lines, line) and is_read_after(function, text, name, loop_end):
+                    lost.add((path, line + 1, name))
+            for at, file, callee, arguments in calls(text, first, last, seen_from(kernel)):
+                for given, name in zip(arguments, callee.parameters):
+                    base = base_of(given)
+                    if name in callee.written and base and is_outer(base) and \
+                            not is_excused(lines, text.count("\n", 0, at)) and \
+                            is_read_after(function, text, base, loop_end):
+                        lost |= written_by(kernel, file, callee, name)
+    return lost
 
 
 def main():
-    files = [Path(name) for name in sys.argv[1:]] or \
+    files = [Path(name).resolve() for name in sys.argv[1:]] or \
         sorted(path for path in (ROOT / "shaders").rglob("*") if path.suffix in (".comp", ".glsl", ".h"))
+    lost = set()
+    for kernel in files:
+        for file in {kernel, *(file for file, _ in seen_from(kernel))}:
+            lost |= lost_in(kernel, file)
     lines = [f"{path}:{line}: {name} is assigned in a loop without its former value, and read after it; expected "
              f"'{name} = ... {name} ...', since lanes that have left keep nothing else (shaders/README.md)"
-             for path in files for line, name in lost_in(path.read_text())]
+             for path, line, name in sorted(lost)]
     for line in lines:
         print(line.replace(str(ROOT) + "/", ""), file=sys.stderr)
     sys.exit(1 if lines else 0)

@@ -11,19 +11,17 @@ struct Rises {
 // Slight noise does not end a run.
 void note_rise(inout Rises rises, float added, float opacity, float at)
 {
-    if (rises.trough < 0.25 * rises.peak && opacity > 2.0 * rises.trough) {
-        rises.run = rises.steepest = 0.0;
-        rises.peak = opacity;
-    }
+    const bool begins = rises.trough < 0.25 * rises.peak && opacity > 2.0 * rises.trough;
+    rises.run = begins ? 0.0 : rises.run;
+    rises.steepest = begins ? 0.0 : rises.steepest;
+    rises.peak = begins ? opacity : rises.peak;
     rises.trough = opacity >= rises.peak ? opacity : min(rises.trough, opacity);
     rises.peak = max(rises.peak, opacity);
     rises.run += added;
-    if (added > rises.steepest) {
-        rises.steepest = added;
-        rises.steepest_at = at;
-    }
-    if (rises.run > rises.most) {
-        rises.most = rises.run;
-        rises.most_at = rises.steepest_at;
-    }
+    const bool is_steeper = added > rises.steepest;
+    rises.steepest = is_steeper ? added : rises.steepest;
+    rises.steepest_at = is_steeper ? at : rises.steepest_at;
+    const bool is_most = rises.run > rises.most;
+    rises.most = is_most ? rises.run : rises.most;
+    rises.most_at = is_most ? rises.steepest_at : rises.most_at;
 }

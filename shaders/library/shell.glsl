@@ -170,7 +170,7 @@ void pass_clear_cells(const RaycastParams params, const Ray ray, inout Shell she
 // Finds the next crossing. Sets `next` to NO_SHELL if the region, or the search range, ends first.
 void search_shell(const RaycastParams params, const Ray ray, inout Shell shell)
 {
-    shell.next = NO_SHELL;
+    shell.next = shell.waits ? shell.next : NO_SHELL;
     bool searches = shell.from < shell.limit && !shell.waits && shell.turns < MAX_TURNS;
     if (searches) do {
         ++shell.turns;
@@ -301,7 +301,7 @@ void add_shells(const RaycastParams params, const Ray ray, float s, inout Shell 
         if (shell.next != NO_SHELL) {
             const vec3 position = position_at(params, ray, shell.next);
             const Cell cell = cell_at(params, ray, position);
-            shell.waits = cell.is_missing;
+            shell.waits = shell.waits || cell.is_missing;
             if (!cell.is_missing) accumulate(sum, shell_look(params, ray, cell, position));
         }
         if (!shell.waits) search_shell(params, ray, shell);

@@ -38,7 +38,7 @@ const float MIN_PIECE = 0.002;    // reference lengths
 // A piece is halved if the normal turns by more than this along it, or if light or highlight begins or ends in it.
 const float MIN_COSINE = 0.98;
 const uint HALVINGS = 6u;
-const float MIN_PART = 1e-3;      // of a stretch: shorter pieces are not halved, so that each piece advances
+const float MIN_PART = 1e-3;      // of a stretch: shorter pieces are not halved, so that each one advances
 
 // -ln(1 - opacity), the optical depth of a reference length.
 float depth_of_opacity(float opacity)
@@ -183,7 +183,7 @@ vec4 light_of(const RaycastParams params, const Ray ray, const Stretch stretch, 
 void end_at(const RaycastParams params, const Ray ray, const Stretch stretch, float x, vec3 color, inout March march)
 {
     add(vec4(shaded_at(params, ray, stretch, x, color), 1.0), 0.0, march);
-    march.sum.a = 1.0;
+    march.sum.a = max(march.sum.a, 1.0);
 }
 
 // The next border of half a voxel along the ray. Rounding may put a border just reached ahead of, or behind, `s`.

@@ -182,10 +182,11 @@ void take_sample(const RaycastParams params, const Ray ray, const Lattice lattic
     const float part = is_rest ? lattice.part : 1.0;
     const Sample found = sample_at(params, ray, position, part, place, ends);
     if (COUNT_WORK != 0u) note_taken(place, work);
-    if (is_rest) {
-        march.rest = found;
-        march.has_rest = true;
-    } else {
+    march.has_rest = march.has_rest || is_rest;
+    march.rest.look = is_rest ? found.look : march.rest.look;
+    march.rest.density = is_rest ? found.density : march.rest.density;
+    march.rest.group = is_rest ? found.group : march.rest.group;
+    if (!is_rest) {
         add(found.look, middle_of(params, lattice, march.i), march);
         march.unseen = found.look.a > 0.0 ? 0u : march.unseen + 1u;
     }
@@ -209,9 +210,9 @@ void take_samples(const RaycastParams params, const Ray ray, const Lattice latti
         search_sample(params, ray, lattice.begin, min(end_step, lattice.whole), march.i, march.unseen, work);
         const uint patience = march.unseen >= AWAY_FROM_SEEN ? LITTLE_PATIENCE : MUCH_PATIENCE;
 #ifdef PICKS
-        if (march.i > step_before) march.rises.trough = 0.0;
+        march.rises.trough = march.i > step_before ? 0.0 : march.rises.trough;
 #endif
-        march.unseen = 0u;
+        march.unseen = searches_on ? 0u : march.unseen;
         // A step begins with the density at the previous step's end, if that end is in a brick of the same level.
         const uint run = march.i;
         float front = PREINTEGRATED != 0u ? value_at_begin(params, ray, lattice, run) : 0.0;

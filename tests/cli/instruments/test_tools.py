@@ -159,6 +159,70 @@ bool first_hit(const Line line)
         self.assertIn("v is assigned", self.refused("v = at(i); if (v > 1.0) break;", together))
         self.assertIn("v is assigned", self.refused("v = at(i);", together.replace("COUNT", "lane_count")))
 
+    CALLING = """
+struct March { bool waits; float sum; };
+FUNCTIONS
+bool march_on(float end, inout March march)
+{
+    float x = 0.0;
+    bool goes_on = x < end;
+    if (goes_on) do {
+        x += 1.0;
+        CALL
+        goes_on = x < end && !march.waits;
+    } while (goes_on);
+    return march.waits;
+}
+"""
+
+    def refused_call(self, functions, call="step_on(x, march);"):
+        return self.refused("", self.CALLING.replace("FUNCTIONS", functions).replace("CALL", call))
+
+    # Kind (Drivers): a value that a function in a loop assigns without carrying it
+    def test_what_a_function_assigns_in_a_loop_that_calls_it_is_refused(self):
+        step = "void step_on(float x, inout March march)\n{\n    BODY\n}\n"
+        for body in ("march.waits = is_set(x);", "if (is_set(x)) march.waits = true;",
+                     "const bool is_new = is_set(x); march.waits = is_new;",
+                     "for (uint i = 0u; i < 4u; ++i) march.waits = is_set(x + i);"):
+            with self.subTest(body=body):
+                self.assertIn(".comp:5: march is assigned in a loop", self.refused_call(step.replace("BODY", body)))
+        self.assertIn("march is assigned", self.refused_call("", "march.waits = is_set(x);"))
+        wait = "void wait(inout bool waits)\n{\n    waits = BODY;\n}\n"
+        through = wait + step.replace("BODY", "wait(march.waits);")
+        self.assertIn(".comp:5: waits is assigned", self.refused_call(through.replace("BODY", "is_set(1.0)", 1)))
+        self.assertEqual(self.refused_call(through.replace("BODY", "waits || is_set(1.0)", 1)), "")
+        self.assertIn("waits is assigned", self.refused_call("void is_there(out bool waits)\n{\n    waits = true;\n}\n",
+                                                             "is_there(march.waits);"))
+
+    def test_what_a_function_carries_or_the_loop_does_not_keep_is_accepted(self):
+        step = "void step_on(float x, inout March march)\n{\n    BODY\n}\n"
+        for body in ("march.waits = march.waits || is_set(x);", "march.sum += x;", "const bool w = is_set(x);",
+                     "march.waits = true;   // same again: it is never false", "x = 1.0;"):
+            with self.subTest(body=body):
+                self.assertEqual(self.refused_call(step.replace("BODY", body)), "")
+        compensated = "void step_on(float x, inout float sum)\n{\n    const float next = sum + x;\n    sum = next;\n}\n"
+        self.assertEqual(self.refused_call(compensated, "step_on(x, march.sum);"), "")
+        lost = step.replace("BODY", "march.waits = is_set(x);")
+        self.assertEqual(self.refused_call(lost, "March other = march; step_on(x, other);"), "")
+        self.assertEqual(self.refused_call(lost, "step_on(x, march);   // same again: all lanes wait"), "")
+        self.assertEqual(self.refused_call(lost, "step_on(march);"), "", "another number of parameters")
+        itself = step.replace("BODY", "if (x > 1.0) step_on(x - 1.0, march);")
+        self.assertEqual(self.refused_call(itself), "")
+
+    def test_functions_of_included_files_are_followed(self):
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "library").mkdir()
+            library = Path(folder) / "library/step.glsl"
+            library.write_text("void step_on(float x, inout March march)\n{\n    march.waits = is_set(x);\n}\n",
+                               encoding="utf-8")
+            (Path(folder) / "middle.glsl").write_text('#include "library/step.glsl"\n', encoding="utf-8")
+            kernel = Path(folder) / "kernel.comp"
+            kernel.write_text(self.CALLING.replace("FUNCTIONS", '#include "middle.glsl"')
+                              .replace("CALL", "step_on(x, march);"), encoding="utf-8")
+            done = subprocess.run([ROOT / "tools/check_loops.py", kernel], check=False, text=True, capture_output=True)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("library/step.glsl:3: march is assigned in a loop", done.stderr)
+
 
 class Kernels(unittest.TestCase):
     """What shaders/compile_kernel keeps for other clones."""
