@@ -149,6 +149,21 @@ TEST_CASE_FIXTURE(OnDevice, "quality reference resolves forty narrow peaks of th
     }
 }
 
+// With the light at the eye it begins and ends where the density turns: a piece would be halved until nothing is left
+// of it, and devices that end long loops would lose the rest.
+// Kind (Light): light that ends at an extremum of the density along a ray
+TEST_CASE_FIXTURE(OnDevice, "an exact integral advances where light ends within rounding of an extremum of density")
+{
+    load(volume_of({16, 16, 16},
+                   [](const glm::dvec3& voxel) { return 32768.0 + 380.0 * (voxel.x - 7.3) * (voxel.y - 8.8); }));
+    const Camera camera = camera_along(volume(), {1.0, -0.7, 0.3}, 14.0);
+    Session session = reference_session(busy_points(0.1));
+    session.light.shaded = true;
+    session.light.direction = {0.0, 0.0, 1.0};
+    const Pixels truth = expected(session, camera, reference::ExactOptions{.tolerance = 1e-8});
+    check_below("RMSE", rms_difference(pixels_of(draw(session, camera)), truth), MAX_RMSE);
+}
+
 TEST_CASE("an exact integral has the same bits at every budget, with skipping and without")
 {
     const Source source = tubes({150, 131, 170});
