@@ -22,7 +22,8 @@ constexpr Quality QUALITIES[] = {
      .step_voxels = 0.125,
      .opacity_limit = 1.0 - 1.0 / 1024},
     {.name = "reference",
-     .note = "To compare with: light is integrated to about 1e-5, exact sampling, rays end where nothing is left.",
+     .note = "To compare with: light is integrated to about 1e-5 (measured without iso-surfaces, smooth borders and "
+             "occlusion), exact sampling, rays end where nothing is left.",
      .step_voxels = 1.0,  // the longest pieces; errors do not depend on the step
      .opacity_limit = 1.0,
      .sampling = Sampling::exact,
