@@ -10,7 +10,8 @@
 
 TRACE is the GraphML file of `shvr phantom`. A real scan has no such file: there a person does the same in the window,
 and `shvr view --log FILE` writes it down. Strokes follow each chain of the section, from branch to branch. Positions
-are those of the phantom, less --crop, divided by --shrink, as `shvr import` was told to crop and to downscale.
+are those of the phantom, less --crop, divided by --shrink, as `shvr import` was told to crop and to downscale; with
+--to, the upper corner of the crop, nodes outside it are left out.
 """
 
 import argparse
@@ -51,6 +52,17 @@ def chains(links):
                 done.add((chain[0], chain[1]))
                 found.append(chain)
     return found
+
+
+def runs_inside(chain, nodes, lower, upper):
+    """The parts of a chain whose nodes lie inside the crop: a person places none outside the volume."""
+    runs = [[]]
+    for node in chain:
+        if all(low <= at <= high for low, at, high in zip(lower, nodes[node][0], upper)):
+            runs[-1].append(node)
+        elif runs[-1]:
+            runs.append([])
+    return [run for run in runs if len(run) > 1]
 
 
 def paint(nodes, found, options):
@@ -143,6 +155,9 @@ def main():
     if options.section is not None:
         links = [link for link in links if nodes[link[1]][1] == options.section]
     found = [chain[:-1:options.skip] + chain[-1:] for chain in chains(links)]
+    if options.to:
+        upper = [int(x) for x in options.to.split(",")]
+        found = [run for chain in found for run in runs_inside(chain, nodes, options.crop, upper)]
     found = found[:options.chains] if options.chain is None else found[options.chain:options.chain + 1]
     {"paint": paint, "trace": trace, "stylus": stylus}[options.what](nodes, found, options)
 

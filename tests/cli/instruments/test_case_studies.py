@@ -1,4 +1,5 @@
 """The case studies of assets/case_studies, with small scans: they run from scan to figures, and assistance helps."""
+import json
 import re
 import subprocess
 import unittest
@@ -25,6 +26,21 @@ class CaseStudies(CliTest):
         self.assertGreater(bleeding[0], 0.1)
         self.assertLess(bleeding[1], 0.02)
         self.assertEqual(pictures, {"5.6", "5.6-scan", "5.6-bled"})
+
+    # Kind (Study): veins that leave the cropped scan, and come back
+    def test_a_hand_places_no_node_outside_the_crop(self):
+        keys = "".join(f'<key id="{key}" for="node" attr.name="{key}"/>' for key in ("x", "y", "z", "group"))
+        places = [(4, 9), (8, 9), (30, 9), (12, 9), (16, 9), (40, 9)]
+        nodes = "".join(f'<node id="n{i}"><data key="x">{x}</data><data key="y">{y}</data><data key="z">5</data>'
+                        '<data key="group">1</data></node>' for i, (x, y) in enumerate(places))
+        edges = "".join(f'<edge source="n{i}" target="n{i + 1}"/>' for i in range(len(places) - 1))
+        path = self.folder / "vein.graphml"
+        path.write_text(f"<graphml>{keys}<graph>{nodes}{edges}</graph></graphml>")
+        done = subprocess.run([STUDIES / "hand.py", "trace", path, "--crop", "2,2,2", "--to", "20,20,20",
+                               "--shrink", "2"], capture_output=True, text=True, check=True)
+        lines = [json.loads(line) for line in done.stdout.splitlines()]
+        self.assertEqual([line["at"][0] for line in lines if line["op"] == "node"], [1, 3, 5, 7])
+        self.assertEqual(len([line for line in lines if line["op"] == "deselect"]), 2)  # two pieces, not joined
 
     @unittest.skipUnless(IS_SLOW, "slow")
     def test_proximity_following_keeps_a_trace_in_roots(self):
