@@ -78,7 +78,7 @@ foreach(SHVR_LAYER IN LISTS layers)
 endforeach()
 
 # Libraries in place of those that are loaded at run time (tests/stubs/README.md).
-foreach(stub hd_stub hd_partial hung_disk no_locks short_memory)
+foreach(stub hd_stub hd_partial hung_disk no_locks short_memory stop_in_save)
     add_library(shvr_${stub} MODULE tests/stubs/${stub}.cpp)
     target_compile_features(shvr_${stub} PRIVATE cxx_std_20)
     target_include_directories(shvr_${stub} PRIVATE ${CMAKE_SOURCE_DIR})

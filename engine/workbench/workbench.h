@@ -77,8 +77,11 @@ public:
     void advance();
     /// Runs steps until the current stroke is painted. Returns why part of it was not painted; empty if all of it was.
     std::string finish_stroke() { return services_.painter.finish_stroke(); }
-    /// Waits for the save under way. Returns the written parts; fails with the reason if one could not be written.
-    Work::Saved finish_save() { return services_.saver.finish_save(); }
+    /// Waits for the save under way. Returns the written parts; fails with the reason if one could not be written. If
+    /// `progress` throws, the save is cancelled.
+    Work::Saved finish_save(const Progress& progress = {}) { return services_.saver.finish_save(progress); }
+    /// The save under way, if any, ends at its next step; files that are not complete by then stay as they were.
+    void cancel_save() { services_.saver.cancel_save(); }
     /// Waits for the operation on groups under way; fails with the reason if it did not become a step. If `progress`
     /// throws, the operation is cancelled.
     const OperationResult& finish_operation(const Progress& progress = {}) { return services_.groups.finish(progress); }

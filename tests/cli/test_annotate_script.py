@@ -8,10 +8,11 @@ import time
 import unittest
 from pathlib import Path
 
-from harness import ENVIRONMENT, PROGRESS, SHVR, CliTest, Volume
+from harness import ENVIRONMENT, PROGRESS, SHVR, CliTest, Volume, run
 from test_annotate import paint
 
 PATIENCE_S = 60
+STOP_IN_SAVE = Path(SHVR).resolve().parent / "stubs" / "libstop_in_save.so"
 
 
 class Script(CliTest):
@@ -225,6 +226,33 @@ class Stopped(CliTest):
         said = self.check("annotate", session, "--script", self.write_script("s.jsonl", [])).stderr
         self.assertNotIn("are an incomplete or damaged record", said)
         self.assertEqual(len(set((self.folder / "paint.mask").read_bytes())), 1)
+
+    # Kind (annotation files): Ctrl-C or SIGTERM while a dense mask or dense offsets are being saved.
+    def test_a_dense_save_is_cut_off_and_leaves_the_old_file(self):
+        (self.folder / "stopped").mkdir()
+        raised = {"op": "density", "brush": "fill", "offset": 9, "radius": 3, "threshold": 0, "path": [[9, 9, 9]]}
+        for name, key, stroke in (("a.mask", "mask", paint("fill", "box", 1, 0, 3, [[9, 9, 9]])),
+                                  ("b.nrrd", "mask", paint("fill", "box", 2, 0, 3, [[9, 9, 9]])),
+                                  ("c.tif", "mask", paint("fill", "box", 3, 0, 3, [[9, 9, 9]])),
+                                  ("d.offset", "density", raised)):
+            number = signal.SIGTERM if name == "b.nrrd" else signal.SIGINT
+            with self.subTest(name=name):
+                session = self.write_session(name + ".json", {"procedural": "constant", "size": [200, 200, 8]},
+                                             annotation={"mask": name + ".labels.zarr", key: "stopped/" + name})
+                save = self.write_script("save.jsonl", [{"op": "save"}])
+                self.check("annotate", session, "--script", save)
+                old = {path: path.read_bytes() for path in (self.folder / "stopped").iterdir()}
+                both = self.write_script("both.jsonl", [stroke, {"op": "save"}])
+                result = run("annotate", session, "--script", both, environment={
+                    "LD_PRELOAD": str(STOP_IN_SAVE), "SHVR_STOP_SIGNAL": str(int(number)),
+                    "ASAN_OPTIONS": "verify_asan_link_order=0"})
+                self.assertEqual(result.returncode, 1, result.stderr)
+                self.assertIn("both.jsonl:2: stopped during this save; no file is left half written, and the journal "
+                              "has all commands", result.stderr)
+                self.assertEqual({path: path.read_bytes() for path in (self.folder / "stopped").iterdir()}, old)
+                self.check("annotate", session, "--script", save)  # which has the stroke, from the journal
+                self.assertNotEqual((self.folder / "stopped" / name).read_bytes(),
+                                    old.get(self.folder / "stopped" / name))
 
     def test_a_script_that_is_waited_for(self):
         session = self.write_session()

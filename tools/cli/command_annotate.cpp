@@ -128,7 +128,13 @@ public:
     {
         const Work::Saved saved = in_words([&] {
             bench.perform(op);
-            return bench.finish_save();
+            return bench.finish_save([&](double fraction) {
+                work.show(done + share * fraction, {}, -1.0);
+                if (!work.is_asked_to_stop()) return;
+                bench.flush();
+                throw Stopped("stopped during this save; no file is left half written, and the journal has all "
+                              "commands");
+            });
         });
         warn(saved.notices, options.common);
         for (const std::filesystem::path& path : saved.files)
@@ -281,13 +287,14 @@ void run_annotate(const AnnotateCommandOptions& options)
 
 /// Performs an action and waits until everything that the action starts is done. Conditions that the window would
 /// merely report are failures here.
-void perform_to_end(ui::Workbench& bench, const ui::Action& action)
+void perform_to_end(ui::Workbench& bench, const ui::Action& action, const LongWork& work)
 {
     const uint64_t told_before = bench.messages().count();
     bench.perform(action);
     if (!bench.document().annotator.stroke_is_open()) {
         if (const std::string unpainted = bench.finish_stroke(); !unpainted.empty()) fail(unpainted);
         for (uint64_t turn = 0; bench.has_work(); ++turn) {
+            if (work.is_asked_to_stop()) bench.cancel_save();
             rest(turn);
             bench.advance();
         }
@@ -321,7 +328,7 @@ void run_actions(const AnnotateCommandOptions& options)
     for (const auto& [number, action] : actions) {
         work.show(double(done++) / double(actions.size()), {}, -1.0);
         try {
-            perform_to_end(bench, action);
+            perform_to_end(bench, action, work);
         } catch (const Error& error) {
             fail(name, ":", number, ": ", error.what());
         }

@@ -101,16 +101,16 @@ std::filesystem::path saved_mask_path(const std::filesystem::path& mask)
 }
 
 std::string save_mask_as(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
-                         const LabelImage& image, Foreign foreign)
+                         const LabelImage& image, Foreign foreign, const Progress& progress)
 {
     if (is_in_archive(path))
         fail(path.string(),
              ": lies in an archive, which is only read; expected a path outside it that ends in .mask, .nrrd, .tif or "
              ".zarr");
-    if (is_mask_export(path)) return export_mask(path, mask, volume, image, {}, {}, foreign);
+    if (is_mask_export(path)) return export_mask(path, mask, volume, image, {}, progress, foreign);
     if (states_its_size(path))
         fail(path.string(), ": has a format in which masks are only read; expected .mask, .nrrd, .tif or .zarr");
-    save_mask(path, mask);
+    save_mask(path, mask, progress);
     return {};
 }
 

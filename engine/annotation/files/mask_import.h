@@ -31,6 +31,7 @@ std::filesystem::path saved_mask_path(const std::filesystem::path& mask);
 /// Saves in the format that the path names, or as raw bytes if `export_mask` does not support that format. Fails for
 /// read-only formats. `image`, `foreign` and the returned sentence are as for `export_mask`.
 std::string save_mask_as(const std::filesystem::path& path, const Mask& mask, const VolumeInfo& volume,
-                         const LabelImage& image = {}, Foreign foreign = Foreign::refused);
+                         const LabelImage& image = {}, Foreign foreign = Foreign::refused,
+                         const Progress& progress = {});
 
 }  // namespace shvr

@@ -79,12 +79,12 @@ DensityField import_offsets(const std::filesystem::path& path, const TraceSpace&
 }
 
 std::string save_offsets_as(const std::filesystem::path& path, const DensityField& field, const VolumeInfo& volume,
-                            Foreign foreign)
+                            Foreign foreign, const Progress& progress)
 {
-    if (is_offset_export(path)) return export_offsets(path, field, volume, {}, foreign);
+    if (is_offset_export(path)) return export_offsets(path, field, volume, progress, foreign);
     if (states_its_size(path))
         fail(path.string(), ": has a format in which offsets are only read; expected .offset, .nrrd, .tif or .zarr");
-    save_offsets(path, field);
+    save_offsets(path, field, progress);
     return {};
 }
 

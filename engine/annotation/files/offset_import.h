@@ -18,6 +18,6 @@ DensityField import_offsets(const std::filesystem::path& path, const TraceSpace&
 /// Saves in the format that the path names, or as raw numbers if `export_offsets` does not support that format. Fails
 /// for read-only formats. `foreign` and the returned sentence are as for `export_mask`.
 std::string save_offsets_as(const std::filesystem::path& path, const DensityField& field, const VolumeInfo& volume,
-                            Foreign foreign = Foreign::refused);
+                            Foreign foreign = Foreign::refused, const Progress& progress = {});
 
 }  // namespace shvr

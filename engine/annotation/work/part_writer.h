@@ -11,8 +11,10 @@
 namespace shvr {
 
 /// `journal`: its name (from `files`) and its last durable record are recorded with the mask; null if there is none.
-/// Returns a sentence if the old image is kept under another name because `foreign` demands it.
+/// Returns a sentence if the old image is kept under another name because `foreign` demands it. If `progress` throws,
+/// the file (or image) stays as it was.
 std::string write_part(Part part, const Document& document, const WorkFiles& files,
-                       const std::vector<LabelImage::Color>& looks, const Journal* journal, Foreign foreign);
+                       const std::vector<LabelImage::Color>& looks, const Journal* journal, Foreign foreign,
+                       const Progress& progress = {});
 
 }  // namespace shvr

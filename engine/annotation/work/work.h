@@ -281,7 +281,8 @@ private:
     std::vector<Change> settings_since_save(const Document& saved) const;
     void expect_names(const WorkFiles& files) const;
     static void write(Part part, const Document& document, const WorkFiles& files,
-                      const std::vector<LabelImage::Color>& looks, const Journal* journal);
+                      const std::vector<LabelImage::Color>& looks, const Journal* journal,
+                      const Progress& progress = {});
     void note_file(Part part);
 
     Size3 size_;
@@ -362,7 +363,7 @@ private:
     Saving() = default;
     bool is_to_write(Part part) const;
     bool is_foreign(Part part) const;
-    void write(Part part);
+    void write(Part part, const Progress& progress);
 
     WorkFiles files_;
     Document document_{.mask = Mask(Size3(0)), .trace = {}};

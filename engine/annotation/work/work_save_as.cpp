@@ -84,8 +84,9 @@ void Work::SavingAs::write(const std::function<void()>& save_session, const Prog
                                     in_words(hold->doubtful().front()), "; expected this name to be free"));
     expect_free(files_, session_);  // checked again
     Made made;
+    constexpr double SHARE = 1.0 / double(PARTS.size() + 2);
     double done = 0.0;
-    const auto tell_step = [&] { tell(progress, done++ / double(PARTS.size() + 2)); };
+    const auto tell_step = [&] { tell(progress, std::exchange(done, done + SHARE)); };
     tell_step();
     std::unique_ptr<Journal> journal;
     if (before_) {
@@ -106,7 +107,7 @@ void Work::SavingAs::write(const std::function<void()>& save_session, const Prog
         if (file.empty() || (part != Part::mask && !holds_any(document_, part))) continue;
         made.add(file);
         if (part == Part::mask) made.add(mask_image_path(file));
-        Work::write(part, document_, files_, looks_, journal.get());
+        Work::write(part, document_, files_, looks_, journal.get(), part_of(progress, done - SHARE, done));
         seen_[size_t(part)] = seen_at(file);
         digest_of(known_, part) = seen_[size_t(part)].digest;
         saved_.files.push_back(file);

@@ -54,7 +54,8 @@ void Work::note_file(const fs::path& file, Seen& seen)
 }
 
 std::string write_part(Part part, const Document& document, const WorkFiles& files,
-                       const std::vector<LabelImage::Color>& looks, const Journal* journal, Foreign foreign)
+                       const std::vector<LabelImage::Color>& looks, const Journal* journal, Foreign foreign,
+                       const Progress& progress)
 {
     switch (part) {
         case Part::mask: {
@@ -64,21 +65,21 @@ std::string write_part(Part part, const Document& document, const WorkFiles& fil
                 named = {files.journal.filename().string(), number, checksum};
             std::string kept =
                 save_mask_as(files.mask, document.mask, files.volume,
-                             {.colors = looks, .painted_on = files.volume_hash, .journal = named}, foreign);
+                             {.colors = looks, .painted_on = files.volume_hash, .journal = named}, foreign, progress);
             save_mask_image(files.mask, files.volume_hash, named);
             return kept;
         }
         case Part::trace: save_trace(files.trace, document.trace, space_of(files.volume)); return {};
-        case Part::offsets: return save_offsets_as(files.density, document.density, files.volume, foreign);
+        case Part::offsets: return save_offsets_as(files.density, document.density, files.volume, foreign, progress);
     }
     return {};
 }
 
 /// Writes a part to a file that does not exist yet.
 void Work::write(Part part, const Document& document, const WorkFiles& files,
-                 const std::vector<LabelImage::Color>& looks, const Journal* journal)
+                 const std::vector<LabelImage::Color>& looks, const Journal* journal, const Progress& progress)
 {
-    write_part(part, document, files, looks, journal, Foreign::refused);
+    write_part(part, document, files, looks, journal, Foreign::refused, progress);
 }
 
 std::function<void(const WorkFiles&)> Work::copier(std::vector<LabelImage::Color> looks) const
@@ -143,7 +144,7 @@ bool Work::Saving::is_foreign(Part part) const
     }
 }
 
-void Work::Saving::write(Part part)
+void Work::Saving::write(Part part, const Progress& progress)
 {
     const fs::path& file = file_of(files_, part);
     Seen& seen = seen_[size_t(part)];
@@ -160,10 +161,11 @@ void Work::Saving::write(Part part)
     const bool is_last_save = seen.digest && seen.digest == digest_of(known_, part);
     try {
         std::string kept = write_part(part, document_, files_, looks_, journal_.get(),
-                                      is_last_save ? Foreign::excluded : Foreign::kept);
+                                      is_last_save ? Foreign::excluded : Foreign::kept, progress);
         if (!kept.empty()) saved_.notices.push_back({std::move(kept), true});
     } catch (const Error&) {
-        note_file(file, seen);  // even a partial write is this process's
+        // Even a partial write is this process's. An untouched file is not read again, which could take long.
+        if (const std::optional<FileStamp> stamp = stamp_of(file); !stamp || stamp != seen.stamp) note_file(file, seen);
         throw;
     }
     note_file(file, seen);
@@ -176,12 +178,14 @@ void Work::Saving::write(const std::function<void()>& save_session, const Progre
 {
     SHVR_CHECK(!is_written_, "a save is written once");
     if (journal_) journal_->flush();
+    constexpr double SHARE = 1.0 / double(PARTS.size() + 1);
     double done = 0.0;
     for (const Part part : PARTS) {
-        tell(progress, done++ / double(PARTS.size() + 1));
-        if (is_to_write(part)) write(part);
+        tell(progress, done);
+        if (is_to_write(part)) write(part, part_of(progress, done, done + SHARE));
+        done += SHARE;
     }
-    tell(progress, done / double(PARTS.size() + 1));
+    tell(progress, done);
     if (save_session) {
         save_session();
         known_.settings = document_.settings.values();

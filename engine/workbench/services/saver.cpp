@@ -1,6 +1,8 @@
 #include "engine/workbench/services/saver.h"
 
+#include <algorithm>
 #include <chrono>
+#include <exception>
 #include <thread>
 
 #include "engine/look/camera_motion.h"
@@ -198,15 +200,29 @@ Leave Saver::leave(std::string& why)
     return Leave::later;
 }
 
-Work::Saved Saver::finish_save()
+Work::Saved Saver::finish_save(const Progress& progress)
 {
+    std::exception_ptr stop;
     while (is_saving()) {
         others_.advance_jobs();
         follow_save();
+        try {
+            for (const Jobs::State& job : savers_.states())
+                if (save_ && job.number == save_->number && !stop) tell(progress, std::max(job.fraction, 0.0));
+        } catch (...) {
+            stop = std::current_exception();
+            cancel_save();
+        }
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
+    if (stop && !save_failure_.empty()) std::rethrow_exception(stop);
     if (!save_failure_.empty()) fail(save_failure_);
     return saved_;
+}
+
+void Saver::cancel_save()
+{
+    if (save_) savers_.cancel(save_->number);
 }
 
 void Saver::act(const Quit& action)

@@ -48,7 +48,10 @@ public:
     void end(const Jobs::Finished& job);
     Leave leave(std::string& why);
     /// Waits for the save under way. Returns the written parts; fails with the reason if a part could not be written.
-    Work::Saved finish_save();
+    /// If `progress` throws, the save is cancelled.
+    Work::Saved finish_save(const Progress& progress = {});
+    /// The save under way, if any, ends at its next step; files that are not complete by then stay as they were.
+    void cancel_save();
     /// Returns whether Quit was requested, and clears the request.
     bool take_quit() { return std::exchange(quits_, false); }
     SaveModel model() const;
