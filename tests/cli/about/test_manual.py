@@ -1,5 +1,6 @@
 """Manual pages and shell completions against --help, from whose tables both come."""
 import re
+import shutil
 import subprocess
 import unittest
 
@@ -71,6 +72,23 @@ class Manual(CliTest):
                 self.assertIn(f"'{option}[", body, command)
                 flag = f" -l {option[2:]} " if option.startswith("--") else f" -s {option[1:]} "
                 self.assertTrue(any(flag in line for line in lines), (command, option))
+
+    @unittest.skipUnless(shutil.which("fish"), "fish is not installed")
+    def test_fish_completes_commands_options_and_values(self):
+        script = self.share / "fish/vendor_completions.d/shvr.fish"
+        for line, wanted in [("shvr rend", {"render"}), ("shvr render --cam", {"--camera"}),
+                             ("shvr haptics rep", {"replay"}), ("shvr render a.json --believe ", {"files", "journal"})]:
+            result = subprocess.run(["fish", "--no-config", "-c", 'source $argv[1]; complete -C $argv[2]', script, line],
+                                    capture_output=True, text=True, check=True)
+            self.assertEqual({word.partition("\t")[0] for word in result.stdout.splitlines()}, wanted, line)
+
+    @unittest.skipUnless(shutil.which("zsh"), "zsh is not installed")
+    def test_zsh_finds_the_completion_and_parses_it(self):
+        folder = self.share / "zsh/site-functions"
+        subprocess.run(["zsh", "-n", folder / "_shvr"], check=True)
+        script = 'fpath=("$1" $fpath); autoload -U compinit; compinit -D -u; print ${_comps[shvr]}; autoload +X _shvr'
+        result = subprocess.run(["zsh", "-fc", script, "zsh", folder], capture_output=True, text=True, check=True)
+        self.assertEqual((result.stdout, result.stderr), ("_shvr\n", ""))
 
     def test_a_second_run_gives_equal_files_and_refuses_no_folder(self):
         self.check("manual", self.folder / "again")
