@@ -82,7 +82,7 @@ MAY_INCLUDE = {
     "engine/workbench/edits": "engine/session haptics engine/workbench/touch engine/workbench/models "
     "engine/workbench/actions",
     "engine/workbench/bindings": "engine/base engine/session engine/workbench/models engine/workbench/actions "
-    "engine/workbench/sight engine/workbench/edits",
+    "engine/workbench/sight engine/workbench/edits engine/workbench/appearance",
     "engine/workbench/words": "engine/annotation/trace engine/annotation/work engine/session engine/workbench/bindings",
     "engine/workbench/document": "engine/base engine/annotation/trace engine/annotation/work engine/session engine/jobs "
     "engine/picture engine/live haptics engine/workbench/touch engine/workbench/models engine/workbench/actions "

@@ -265,7 +265,7 @@ bool App::ui_has_mouse(const InputEvent& event) const
 /// popup is open, the panels or the popup get the keys that navigate, and all other keys act as usual.
 bool App::ui_has_key(const KeyEvent& event) const
 {
-    if (field_has_keys() || choosers_have_keys()) return true;
+    if (field_has_keys() || choosers_have_keys() || bench_->model().shows_palette) return true;
     if (!bench_->model().awaits_key.empty()) return false;  // any key may be the one to be bound
     return panels_have_keyboard() && moves_in_panels(event);
 }
@@ -274,7 +274,8 @@ bool App::ui_has_key(const KeyEvent& event) const
 bool App::panels_have_keyboard() const
 {
     const bool has_popup = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
-    return ImGui::GetIO().NavVisible || has_popup || field_has_keys() || choosers_have_keys();
+    return ImGui::GetIO().NavVisible || has_popup || field_has_keys() || choosers_have_keys() ||
+           bench_->model().shows_palette;
 }
 
 /// Holds back input after a key that may have opened or closed a field, until a frame shows where the input goes.
@@ -330,7 +331,7 @@ void App::handle_events(double timeout_s)
     viewport_.wait(window_.now_s(), actions_);
     apply_all();
     const double now = window_.now_s();
-    if (!field_has_keys() && !choosers_have_keys())
+    if (!field_has_keys() && !choosers_have_keys() && !model().shows_palette)
         keyboard_.hold(
             std::min(now - last_keys_s_, 0.1), mods_held(window_), [this](int key) { return window_.is_down(key); },
             model(), actions_);

@@ -47,6 +47,29 @@ class Export(Seen):
         self.finish()
         self.assertFalse((self.folder / "project").exists())
 
+    def test_text_typed_as_a_dialog_appears_is_kept_and_enter_confirms_it(self):
+        scan = self.folder / "scan.nrrd"
+        scan.write_bytes(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nencoding: raw\n\n" + bytes(range(256)) * 2)
+        self.view(preferences={"hints_seen": 3})
+        self.see("Open the example")
+        self.click_on("File", "##MainMenuBar")
+        self.click_on("Import as project...", "##Menu_00")
+        self.see("Volume", "Import as project")
+        self.do("type", "--delay", 40, scan, pause_s=0)   # at once, without a click
+        self.see(str(scan), "Import as project")
+        self.press("Return")                              # refused: the project has no name yet
+        self.type_into("Project", self.folder / "project", "Import as project")
+        self.press("Return")
+        self.see_no_more("", "Import as project")
+        self.see("Transfer function", "Side panel")
+        self.click_on("File", "##MainMenuBar")
+        self.click_on("Correct the spacing...", "##Menu_00")
+        self.see("Cancel", "Correct the spacing")
+        self.check_follows(lambda: self.press("Return"), "correct_spacing")
+        self.see_no_more("", "Correct the spacing")
+        self.finish()
+        self.assertTrue((self.folder / "project").is_dir())
+
     def type_into(self, field, text, window="Export annotation"):
         """Into the field beside that word, which begins right of it, in place of what it holds."""
         x0, y0, x1, y1 = self.see_at_rest(field, window)["box"]

@@ -64,6 +64,42 @@ class Panels(Seen):
         # The light is a step, so two are undone: it and the third dab.
         self.assertEqual((report["undoable"], report["redoable"]), (3, 1), report["messages"])
 
+    def look_in_palette(self, text):
+        self.press("Ctrl+Shift+P")
+        self.see("", PALETTE)
+        self.next_frames()
+        self.do("type", "--delay", 40, text, pause_s=0)
+        self.see(text, PALETTE)
+
+    def test_no_key_typed_into_the_palette_reaches_the_scene(self):
+        self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
+        self.do("mousemove", *self.middle())
+        before = len(self.done())
+        self.look_in_palette("zzz")
+        self.press_and_look("Return")      # finds nothing, and keeps the keyboard
+        self.do("type", "--delay", 40, "n1", pause_s=0)
+        self.see("zzzn1", PALETTE)
+        self.press_and_look("Right")
+        self.press_and_look("Escape")
+        self.see_no_more("", PALETTE)
+        self.look_in_palette("ambient")
+        self.do("mousemove", *self.middle(), "mousemove_relative", 0, 160, "sleep", 0.1, "mousedown", 1, "sleep", 0.1,
+                "mouseup", 1, pause_s=0)   # a click elsewhere ends it
+        self.see_no_more("", PALETTE)
+        by_mouse = {"show_palette", "select_at", "probe_to", "probe_onto", "probe_along", "resize"}
+        self.assertLessEqual({line["op"] for line in self.done(before)}, by_mouse)
+        self.finish()
+
+    def test_the_palette_sets_a_value_behind_words_and_opens_panels(self):
+        self.open_scan(self.write_ball(), preferences={"hints_seen": 3})
+        self.do("mousemove", *self.middle())
+        self.type_in_palette("ambient 0.4")                      # the first that has the word and takes the value
+        self.until(lambda: {"op": "set", "values": {"light": {"ambient": 0.4}}} in self.done(), "ambient light")
+        self.look_in_palette("soft shade in hollows")            # a panel, by what it is for
+        self.check_follows(lambda: self.press("Return"), "prefer")
+        self.assertEqual(self.done()[-1]["values"]["layout"]["panels"], {"occlusion": {"folded": False, "place": "side"}})
+        self.finish()
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -1,4 +1,4 @@
-// A search box for actions and settings: finds them by name, or by the text of the action or setting.
+// A search box for everything a person can do or open (engine/workbench/bindings/palette.h).
 
 #include <algorithm>
 #include <string>
@@ -17,6 +17,8 @@ namespace shvr::ui {
 namespace {
 
 constexpr int MAX_PALETTE_LINES = 16;
+constexpr ImGuiHoveredFlags HOVERED_AT_ALL =
+    ImGuiHoveredFlags_ChildWindows | ImGuiHoveredFlags_AllowWhenBlockedByActiveItem;
 
 struct Palette {
     std::string text;
@@ -43,6 +45,7 @@ void choose(const PaletteEntry& entry, Actions& actions)
     } else if (entry.action && entry.why_not.empty()) {
         actions.push_back(ShowPalette{false});
         actions.push_back(*entry.action);
+        if (entry.then) actions.push_back(*entry.then);
     } else {
         palette.takes_keys = palette.ends_at_end = true;
     }
@@ -107,9 +110,10 @@ void palette_window(const Model& model, Actions& actions)
     ImGui::SetNextItemWidth(-1.0f);
     const std::string before = palette.text;
     const bool is_entered = ImGui::InputTextWithHint(
-        "##text", "a name, an action (look_from camera=top) or a setting (light.ambient=0.4)", &palette.text,
-        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackAlways, put_cursor_behind);
+        "##text", "words of anything: an action, a panel, a file, a group, or a setting and its value (ambient 0.4)",
+        &palette.text, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackAlways, put_cursor_behind);
     keys.after_field();
+    const bool field_is_active = ImGui::IsItemActive();
     if (before != palette.text) palette.chosen = 0;
     const std::vector<PaletteEntry> entries = palette_entries(model, palette.text);
     if (was_pressed(ImGuiKey_DownArrow)) ++palette.chosen;
@@ -119,7 +123,12 @@ void palette_window(const Model& model, Actions& actions)
     if (entries.empty()) ImGui::TextDisabled("No entry has these words in its name.");
     if (!entries.empty() && !entries[size_t(palette.chosen)].why_not.empty())
         ImGui::TextWrapped("%s", entries[size_t(palette.chosen)].why_not.c_str());
+    if (is_entered && entries.empty()) palette.takes_keys = true;  // Enter has taken the keyboard from the field
     if (is_entered && !entries.empty()) choose(entries[size_t(palette.chosen)], actions);
+    // No key reaches the picture while this is shown, so a click elsewhere ends it.
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !ImGui::IsWindowHovered(HOVERED_AT_ALL))
+        actions.push_back(ShowPalette{false});
+    if (!keys.are_awaited() && !field_is_active && !ImGui::IsAnyItemActive()) palette.takes_keys = true;
     if (was_pressed(ImGuiKey_Escape)) actions.push_back(ShowPalette{false});
     ImGui::End();
 }

@@ -8,12 +8,13 @@
 #include "engine/session/session_patch.h"
 #include "engine/workbench/actions/action_rows.h"
 #include "engine/workbench/bindings/keymap.h"
+#include "engine/workbench/bindings/palette_lists.h"
 
 namespace shvr::ui {
 
 namespace {
 
-constexpr size_t MAX_COMPLETIONS = 20;
+constexpr size_t MAX_COMPLETIONS = 40, MAX_VALUES = 6;
 
 bool is_action_id(std::string_view word)
 {
@@ -28,6 +29,27 @@ const std::vector<SessionKey>& keys_of_settings()
         setting_fields(f, session);
     });
     return KEYS;
+}
+
+/// Returns whether a setting's name or meaning has all the words. One of many, "points.N", is not found by words.
+bool is_found(const SessionKey& key, std::string_view words)
+{
+    std::string where = key.name + ' ' + key.meaning;
+    std::ranges::replace_if(
+        where, [](char each) { return each == '.' || each == '_'; }, ' ');
+    const bool is_one_of_many = key.name.find(".N") != std::string::npos || key.name.find("NAME") != std::string::npos;
+    return !is_one_of_many && has_words(where, words);
+}
+
+/// Returns whether an action does not stand alone: its text goes on with arguments.
+bool takes_arguments(const std::string& id)
+{
+    try {
+        static_cast<void>(action_of_text(id));
+        return false;
+    } catch (const Error&) {
+        return true;
+    }
 }
 
 /// Returns an entry for a typed action, with the reason if the text is not a valid action or the action is unavailable.
@@ -67,22 +89,46 @@ void add_shortcuts(std::vector<PaletteEntry>& entries, const Model& model, std::
                            .group = shortcut.group,
                            .keys = keys,
                            .why_not = is_held ? "goes on while its key is held" : why_not(model, shortcut),
-                           .action = shortcut.action(model, 1.0)});
+                           .action = shortcut.action(model, 1.0),
+                           .shortcut = shortcut.id});
     }
 }
 
+/// Adds settings found by the words in front of a value: "ambient 0.4".
+void add_values(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
+{
+    const size_t space = text.rfind(' ');
+    if (space == std::string_view::npos) return;
+    const std::string_view words = trimmed(text.substr(0, space)), value = text.substr(space + 1);
+    size_t left = MAX_VALUES;
+    for (const SessionKey& key : keys_of_settings()) {
+        if (!is_found(key, words)) continue;
+        PaletteEntry entry = typed(model, sentence(key.name, '=', value), "",
+                                   [&]() -> Action { return Set{patch_of(sentence(key.name, '=', value))}; });
+        if (!entry.why_not.empty()) continue;
+        entry.group = "Setting: " + key.meaning;
+        entries.push_back(std::move(entry));
+        if (--left == 0) return;
+    }
+}
+
+/// Adds actions found by the beginning of their id, and settings found by words or by the beginning of their key.
 void add_completions(std::vector<PaletteEntry>& entries, std::string_view text)
 {
-    if (text.empty() || text.find_first_of(" =") != std::string_view::npos) return;
+    if (text.empty() || text.find('=') != std::string_view::npos) return;
     size_t left = MAX_COMPLETIONS;
     const auto add = [&](const std::string& name, const std::string& says, char next) {
-        if (left == 0 || !name.starts_with(text)) return;
+        if (left == 0) return;
         --left;
         entries.push_back({.name = name, .group = says, .completion = name + next});
     };
     for (const ActionRow& row : action_rows())
-        if (text != row.id) add(row.id, row.meaning, ' ');
-    for (const SessionKey& key : keys_of_settings()) add(key.name, sentence(key.meaning, "; ", key.allowed), '=');
+        if (std::string_view(row.id).starts_with(text) && (text != row.id || takes_arguments(row.id)))
+            add(row.id, row.meaning, ' ');
+    const bool is_key = text.find('.') != std::string_view::npos;
+    for (const SessionKey& key : keys_of_settings())
+        if ((is_key && key.name.starts_with(text)) || is_found(key, text))
+            add(key.name, sentence(key.meaning, "; ", key.allowed), '=');
 }
 
 }  // namespace
@@ -103,6 +149,12 @@ std::vector<PaletteEntry> palette_entries(const Model& model, std::string_view t
     const bool is_done = !as_typed.empty() && as_typed.front().why_not.empty();
     if (is_done) entries = as_typed;
     add_shortcuts(entries, model, text);
+    if (!text.empty() && !is_done) {
+        add_values(entries, model, text);
+        add_listed(entries, model, text);
+    }
+    // The bare name of an action lacks its arguments: it is completed, not refused, if words find something else.
+    if (!entries.empty() && text.find_first_of(" =") == text.npos) as_typed.clear();
     if (!is_done) entries.insert(entries.end(), as_typed.begin(), as_typed.end());
     add_completions(entries, text);
     return entries;

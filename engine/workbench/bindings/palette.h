@@ -1,6 +1,7 @@
 #pragma once
-// Interprets text typed into the palette: shortcuts by words, an action as text ("look_from camera=top"), a setting
-// ("light.ambient=0.4"), or the beginning of one of these. Pure; main thread only.
+// Interprets text typed into the palette: shortcuts, panels, settings, recent files, groups, views, nodes and transfer
+// functions by words, an action as text ("look_from camera=top"), a setting with its value ("light.ambient=0.4" or
+// "ambient 0.4"), or the beginning of one of these. Pure; main thread only.
 
 #include <optional>
 #include <string>
@@ -18,9 +19,12 @@ struct PaletteEntry {
     std::string why_not{};           ///< reason why the entry is unavailable now; empty: available
     std::optional<Action> action{};  ///< action that the entry performs
     std::string completion{};        ///< text that continues the input; if set, the entry has no action
+    std::string shortcut{};          ///< id of the shortcut that performs it; empty: it has none
+    std::optional<Action> then{};    ///< performed after `action`
 };
 
-/// Returns entries, best match first: a typed action or setting, shortcuts, then possible completions of the text.
+/// Returns entries, best match first: a typed action or setting, shortcuts and panels, settings with a typed value,
+/// items of the scan, then possible completions of the text. No text: all shortcuts.
 std::vector<PaletteEntry> palette_entries(const Model& model, std::string_view text);
 
 /// Returns whether each word of `text` occurs in `where`, ignoring case.

@@ -9,6 +9,7 @@
 
 #include "engine/session/session_patch.h"
 #include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/appearance/layout.h"
 #include "engine/workbench/bindings/palette.h"
 #include "engine/workbench/bindings/tools.h"
 #include "engine/workbench/edits/group_steps.h"
@@ -502,6 +503,33 @@ TEST_CASE("the palette finds shortcuts by words, actions by their text and setti
     CHECK(first("look_f").completion == "look_from ");
     CHECK(first("paint while").why_not == "goes on while its key is held");
     CHECK(palette_entries(world.model, "no such thing at all").empty());
+}
+
+TEST_CASE("the palette finds panels and settings by words, values behind words, and what a scan lists")
+{
+    World world;
+    world.model.is_open = true;
+    const auto found = [&](const char* text, const std::string& name) {
+        const std::vector<PaletteEntry> entries = palette_entries(world.model, text);
+        const auto it = std::ranges::find(entries, name, &PaletteEntry::name);
+        REQUIRE_MESSAGE(it != entries.end(), text, " does not find ", name);
+        return *it;
+    };
+    CHECK(found("undo", "Undo").shortcut == "undo");
+    for (const PanelRow& row : panel_rows()) {
+        const PaletteEntry entry = found(row.title, row.title);
+        CHECK(entry.action->as<Prefer>()->patch.find(row.id) != std::string::npos);
+        CHECK(entry.action->as<Prefer>()->patch.find("\"folded\":false") != std::string::npos);
+    }
+    CHECK(found("ambient", "light.ambient").completion == "light.ambient=");
+    CHECK(found("ambient 0.4", "light.ambient=0.4").action->as<Set>()->patch == R"({"light":{"ambient":0.4}})");
+    for (const PaletteEntry& entry : palette_entries(world.model, "ambient 70"))
+        CHECK_MESSAGE(entry.name != "light.ambient=70", "a value out of range is offered");
+    CHECK(found("top", "Look from top").action->as<LookFrom>()->camera == "top");
+    world.session.groups[4].name = "leaf trace";
+    CHECK(found("leaf", "Group 4 leaf trace").action->is<Set>());
+    for (const PaletteEntry& entry : palette_entries(world.model, "trans"))
+        CHECK_MESSAGE(entry.name.find(".N") == std::string::npos, entry.name, " cannot be completed");
 }
 
 TEST_CASE("Groups are stepped through with those in use, and a new one is the first without anything")

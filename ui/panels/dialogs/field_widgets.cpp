@@ -1,11 +1,14 @@
 #include "ui/panels/dialogs/field_widgets.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>
 
 #include "ui/panels/dialogs/file_chooser.h"
+#include "ui/panels/field_keys.h"
+#include "ui/panels/imgui_keys.h"
 #include "ui/panels/widgets.h"
 
 namespace shvr::ui {
@@ -28,6 +31,7 @@ FileChooser chooser({.title = "Choose a file or a folder",
                      .note = "A new name can be typed, too.",
                      .wanted = FileChooser::Wanted::any});
 ImGuiID chooser_of = 0;
+FieldKeys first_keys;  ///< passes the keyboard to a dialog's first path
 
 constexpr float NAME_COLUMN = 9.0f, VALUE_WIDTH = 26.0f;  ///< in font sizes
 
@@ -52,7 +56,7 @@ std::string first_ending(std::string_view meaning)
 
 class Widgets : public Fields {
 public:
-    explicit Widgets(const std::filesystem::path& beside) : beside_(beside) {}
+    Widgets(const std::filesystem::path& beside, bool begins) : beside_(beside), begins_(begins) {}
     using Fields::choice;
     using Fields::color;
     using Fields::number;
@@ -108,7 +112,10 @@ public:
         const float button = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x;
         const float width = VALUE_WIDTH * ImGui::GetFontSize() - button;
         ImGui::SetNextItemWidth(width);
+        const bool is_first = std::exchange(is_before_paths_, false);
+        if (is_first) first_keys.before_field(begins_);
         if (ImGui::InputTextWithHint("##path", words_for(about, width).c_str(), &shown)) value = shown;
+        if (is_first) first_keys.after_field();
         tell(about);
         ImGui::SameLine(0.0f, ImGui::GetStyle().ItemInnerSpacing.x);
         const ImGuiID id = ImGui::GetID("##path");
@@ -189,14 +196,22 @@ private:
     }
 
     std::filesystem::path beside_;
+    bool begins_ = false, is_before_paths_ = true;
 };
 
 }  // namespace
 
-bool draw_fields(const Fields::Visit& visit, const std::filesystem::path& beside)
+bool enter_confirms()
+{
+    if (!ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows)) return false;
+    return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false) ||
+           ImGui::IsKeyPressed(ImGui::GetKeyIndex(KEYPAD_ENTER), false);
+}
+
+bool draw_fields(const Fields::Visit& visit, const std::filesystem::path& beside, bool begins)
 {
     const bool has_chooser = chooser.is_open();
-    Widgets widgets(beside);
+    Widgets widgets(beside, begins);
     visit(widgets);
     return has_chooser;
 }

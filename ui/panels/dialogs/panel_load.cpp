@@ -12,6 +12,7 @@
 #include "engine/workbench/actions/action_rows.h"
 #include "engine/workbench/lists/load_form.h"
 #include "engine/workbench/models/preferences.h"
+#include "ui/panels/dialogs/field_widgets.h"
 #include "ui/panels/dialogs/file_chooser.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/widgets.h"
@@ -230,7 +231,7 @@ void spacing_dialog(const Model& model, Actions& actions)
     const CorrectSpacing action{correcting.spacing, correcting.unit};
     const ImVec2 button{8.0f * ImGui::GetFontSize(), 0.0f};
     ImGui::BeginDisabled(!why_not(model, action).empty());
-    if (ImGui::Button("Correct", button)) {
+    if (ImGui::Button("Correct", button) || (enter_confirms() && why_not(model, action).empty())) {
         actions.push_back(action);
         ImGui::CloseCurrentPopup();
     }

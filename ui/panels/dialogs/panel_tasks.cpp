@@ -53,6 +53,7 @@ Verdict verdict_on(const Task& task)
 template <class Task>
 constexpr bool WRITES_FILES = !std::is_same_v<Task, EvaluateTask>;
 
+constexpr const char* WAITS = "Waiting for the disk";
 int waits_in_frame = -1;  ///< last frame in which a dialog waited for the disk
 
 /// A dialog with the options of a task; the options are kept for the next time with the same scan.
@@ -63,10 +64,11 @@ struct TaskDialog {
 
     void draw(const Model& model, const char* verb, Actions& actions)
     {
-        if (std::exchange(is_asked_for, false)) ImGui::OpenPopup(Task::TITLE);
+        const bool begins = std::exchange(is_asked_for, false);
+        if (begins) ImGui::OpenPopup(Task::TITLE);
         ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
         if (!ImGui::BeginPopupModal(Task::TITLE, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
-        const bool has_chooser = draw_fields([&](Fields& f) { fields(f, task); }, beside(model));
+        const bool has_chooser = draw_fields([&](Fields& f) { fields(f, task); }, beside(model), begins);
         const std::string why = refusal(model);
         if (why.empty() && !known_.replacement.empty()) {
             ImGui::PushStyleColor(ImGuiCol_Text, WARNING);
@@ -76,8 +78,12 @@ struct TaskDialog {
             ImGui::TextDisabled("%s", why.empty() ? " " : why.c_str());
         }
         const ImVec2 button{6.0f * ImGui::GetFontSize(), 0.0f};
+        // Enter waits for the disk's answer to what was typed before it.
+        if (begins) is_entered_ = false;
+        if (!has_chooser && enter_confirms()) is_entered_ = true;
+        const bool confirms = std::exchange(is_entered_, is_entered_ && why == WAITS) && why.empty();
         ImGui::BeginDisabled(!why.empty());
-        if (ImGui::Button(verb, button)) {
+        if (ImGui::Button(verb, button) || confirms) {
             actions.push_back(task);
             ImGui::CloseCurrentPopup();
         }
@@ -107,7 +113,7 @@ private:
         if (!why.empty()) return why;
         ask_disk();
         if (is_known_) return known_.refusal;
-        return asked_.is_pending() ? "Waiting for the disk" : "";
+        return asked_.is_pending() ? WAITS : "";
     }
     /// Checks files in the background: after each change, and again now and then, since files come and go.
     void ask_disk()
@@ -130,7 +136,8 @@ private:
 
     Asked<Verdict> asked_;
     Verdict known_;
-    bool is_known_ = false;  ///< `known_` answers for the current task
+    bool is_entered_ = false;  ///< Enter was pressed, and what it confirms is not known yet
+    bool is_known_ = false;    ///< `known_` answers for the current task
     std::string asked_of_;
     double asked_s_ = 0.0;
 };

@@ -1,0 +1,92 @@
+#include "engine/workbench/bindings/palette_lists.h"
+
+#include <charconv>
+
+#include "engine/base/text.h"
+#include "engine/session/transfer_presets.h"
+#include "engine/workbench/actions/action_rows.h"
+#include "engine/workbench/appearance/layout.h"
+#include "engine/workbench/bindings/preferences_file.h"
+#include "engine/workbench/edits/edit.h"
+#include "engine/workbench/edits/group_steps.h"
+#include "engine/workbench/models/preferences.h"
+
+namespace shvr::ui {
+
+namespace {
+
+constexpr size_t MAX_OF_A_KIND = 20;
+
+/// Collects the entries of one kind.
+class Listing {
+public:
+    Listing(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
+        : entries_(entries), model_(model), text_(text)
+    {}
+    void add(const std::string& name, const std::string& group, const Action& action,
+             const std::optional<Action>& then = {})
+    {
+        if (left_ == 0 || !has_words(name + ' ' + group, text_)) return;
+        --left_;
+        entries_.push_back(
+            {.name = name, .group = group, .why_not = why_not(model_, action), .action = action, .then = then});
+    }
+
+private:
+    std::vector<PaletteEntry>& entries_;
+    const Model& model_;
+    std::string_view text_;
+    size_t left_ = MAX_OF_A_KIND;
+};
+
+/// Shows a panel, unfolded. One that floats goes on floating.
+Action shown_panel(const PanelRow& row, const WindowLayout& layout)
+{
+    const PanelPlace place = layout.place_of(row);
+    const std::string patch =
+        patch_of_panel(row.id, {.place = place == PanelPlace::hidden ? PanelPlace::side : place, .folded = false});
+    if (place == PanelPlace::floating || layout.shows_side) return Prefer{patch};
+    return Prefer{R"({"layout":{"shows_side":true,)" + patch.substr(std::string_view(R"({"layout":{)").size())};
+}
+
+/// Adds the node whose number is the text's last word: "node 12".
+void add_node(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
+{
+    const std::string_view last = text.substr(text.rfind(' ') + 1);
+    uint32_t number = 0;
+    const auto [end, error] = std::from_chars(last.data(), last.data() + last.size(), number);
+    if (error != std::errc() || end != last.data() + last.size() || !model.trace.nodes().contains(number)) return;
+    Listing(entries, model, text)
+        .add(sentence("Node ", number), "Trace: selects it and looks at it",
+             SelectOp{.near = {}, .number = number, .within_voxels = {}},
+             GoTo{model.trace.node(number).position / model.volume.spacing});
+}
+
+}  // namespace
+
+void add_listed(std::vector<PaletteEntry>& entries, const Model& model, std::string_view text)
+{
+    Listing recent(entries, model, text);
+    for (const std::filesystem::path& path : model.preferences.recent)
+        recent.add("Open " + path.filename().string(), "Recent: " + path.parent_path().string(), Open{path});
+    if (!model.is_open) return;
+    Listing panels(entries, model, text);
+    for (const PanelRow& row : panel_rows())
+        panels.add(row.title, sentence("Panel: ", row.hint), shown_panel(row, model.preferences.layout));
+    Listing groups(entries, model, text);
+    for (const uint8_t group : known_groups(model))
+        groups.add(sentence("Group ", int(group), ' ', group_of(model.session.groups, group).name),
+                   "Groups: paints and traces with it",
+                   edited(model.session, [&](Session& s) { s.probe.brush.group = group; }));
+    Listing views(entries, model, text);
+    for (const std::string& camera : camera_names(model.session))
+        views.add("Look from " + camera, "Views", LookFrom{camera});
+    Listing functions(entries, model, text);
+    for (const TransferPreset& preset : model.presets)
+        functions.add(preset.name, "Transfer function: preset", edited(model.session, [&](Session& s) {
+                          s.transfer_function = transfer_function_of(preset, model.statistics);
+                      }));
+    add_node(entries, model, text);
+}
+
+}  // namespace shvr::ui
