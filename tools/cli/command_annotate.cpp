@@ -132,8 +132,9 @@ public:
                 work.show(done + share * fraction, {}, -1.0);
                 if (!work.is_asked_to_stop()) return;
                 bench.flush();
-                throw Stopped("stopped during this save; no file is left half written, and the journal has all "
-                              "commands");
+                throw Stopped(
+                    "stopped during this save; no file is left half written, and the journal has all "
+                    "commands");
             });
         });
         warn(saved.notices, options.common);
