@@ -16,8 +16,6 @@ namespace shvr {
 
 namespace {
 
-constexpr StudyTask TASKS[] = {StudyTask::paint, StudyTask::trace};
-
 std::string verdict_of(const PairedDifference& paired, int better)
 {
     if (paired.difference.count == 0) return "no pair";
@@ -90,7 +88,7 @@ std::string robustness_row(const std::string& hand, std::span<const StudyRow> ro
                            const Verdicts* expected, Verdicts& found)
 {
     std::string markup = "<tr>" + cell(hand);
-    for (const StudyTask task : TASKS) {
+    for (const StudyTask task : REPORTED_TASKS) {
         const auto comparison = comparison_of(rows, centre_of(report, task));
         found[task] = comparison ? comparison->verdict : "no pair";
         const bool is_confirmed = !expected || found[task] == expected->at(task);
@@ -126,7 +124,7 @@ std::string main_table_of(const StudyReport& report, StudyTask task)
 std::string limits_of(const StudyReport& report)
 {
     std::string markup;
-    for (const StudyTask task : TASKS) {
+    for (const StudyTask task : REPORTED_TASKS) {
         std::string words;
         for (const MainComparison& each : comparisons_of(report, task)) {
             const size_t pairs = each.paired.difference.count;
@@ -181,10 +179,10 @@ std::string robustness_table_of(const StudyReport& report)
     for (const HandVariation& each : report.variations) {
         lines += robustness_row(sentence(each.parameter, " x ", short_digits(each.factor)), each.rows, report, &stated,
                                 found);
-        for (const StudyTask task : TASKS) ++counts[task][found[task]];
+        for (const StudyTask task : REPORTED_TASKS) ++counts[task][found[task]];
     }
     std::string words;
-    for (const StudyTask task : TASKS)
+    for (const StudyTask task : REPORTED_TASKS)
         words += sentence(name_of(task), ", ", report.variations.size(), " changed hands: ", counts[task]["better"],
                           " better, ", counts[task]["undecided"], " undecided, ", counts[task]["worse"], " worse. ");
     return sentence("<p>", words, "</p>\n") +

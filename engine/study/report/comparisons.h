@@ -8,6 +8,9 @@
 
 namespace shvr {
 
+/// The tasks in the order of the report.
+inline constexpr StudyTask REPORTED_TASKS[] = {StudyTask::paint, StudyTask::trace};
+
 /// The main outcome of a task: a line for each condition with touch, compared with no touch in the same pairs.
 std::string main_table_of(const StudyReport& report, StudyTask task);
 /// Where touch does not help: pairs that are worse at the centre, conditions without a better main outcome, and the

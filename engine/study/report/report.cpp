@@ -16,8 +16,6 @@ namespace shvr {
 
 namespace {
 
-constexpr StudyTask TASKS[] = {StudyTask::paint, StudyTask::trace};
-
 constexpr char STYLE[] = R"(.plot{display:block;margin:.6em 0}
 .plot text{fill:var(--ink);font:12px sans-serif}.plot text.title{font-weight:bold}.plot text.faint{fill:var(--faint)}
 .plot .grid{stroke:var(--line)}.plot .reference{stroke:var(--faint);stroke-dasharray:5 4}
@@ -88,7 +86,7 @@ std::string differences_plot(const StudyReport& report, StudyTask task)
 std::string beginning(const StudyReport& report)
 {
     std::string claims;
-    for (const StudyTask task : TASKS)
+    for (const StudyTask task : REPORTED_TASKS)
         if (const std::string claim = claim_of(report, task); !claim.empty())
             claims += sentence("<p><strong>", report::escaped(claim), "</strong></p>\n");
     return sentence(
@@ -127,7 +125,7 @@ red worse.</p>
 std::string results_of(const StudyReport& report)
 {
     std::string markup;
-    for (const StudyTask task : TASKS) {
+    for (const StudyTask task : REPORTED_TASKS) {
         const std::string plot = values_plot(report, task);
         if (plot.empty()) continue;
         markup += sentence("<h2>", name_of(task), "</h2>\n", plot, differences_plot(report, task),
