@@ -42,7 +42,7 @@ struct Finding {
 /// Describes the servo's state and its causes, one sentence each, most severe first. Omits force if it is not wanted.
 std::vector<Finding> findings_of(const HandView& hand, const ServoState& servo, bool is_guided);
 
-/// Returns a text like "1000 times a second, half of them within 12 us".
+/// Returns a text such as "60000 steps, 0.02 % of them late".
 std::string rhythm_in_words(const ServoState& servo);
 /// Describes whether the servo has realtime priority, and how to get it if not.
 Finding realtime_in_words(bool is_realtime, uint64_t allowed_priority);
