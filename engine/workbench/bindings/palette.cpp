@@ -89,8 +89,7 @@ void add_shortcuts(std::vector<PaletteEntry>& entries, const Model& model, std::
                            .group = shortcut.group,
                            .keys = keys,
                            .why_not = is_held ? "goes on while its key is held" : why_not(model, shortcut),
-                           .action = shortcut.action(model, 1.0),
-                           .shortcut = shortcut.id});
+                           .action = shortcut.action(model, 1.0)});
     }
 }
 

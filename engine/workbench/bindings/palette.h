@@ -19,7 +19,6 @@ struct PaletteEntry {
     std::string why_not{};           ///< reason why the entry is unavailable now; empty: available
     std::optional<Action> action{};  ///< action that the entry performs
     std::string completion{};        ///< text that continues the input; if set, the entry has no action
-    std::string shortcut{};          ///< id of the shortcut that performs it; empty: it has none
     std::optional<Action> then{};    ///< performed after `action`
 };
 
