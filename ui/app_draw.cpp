@@ -64,7 +64,7 @@ bool App::draw_ui()
         drawn_probe_voxel_ = document.probe_voxel();
     }
     viewport_.set_layout(layout);
-    // On a software device the wait would include the work submitted here, and grow with it.
+    // Submits more work while presentation waits. Not on a software device, where that work would prolong the wait.
     std::function<void(double)> go_on;
     if (is_open && !renderer_->device().traits().is_cpu)
         go_on = [this](double wait_ms) { bench_->screen().submit_ahead(wait_ms); };

@@ -101,7 +101,7 @@ void tell_imgui_key(GLFWwindow* window, int key, bool pressed, int mods)
     if (!is_alt(key)) ImGui_ImplGlfw_KeyCallback(window, key, 0, pressed ? GLFW_PRESS : GLFW_RELEASE, mods);
 }
 
-/// Bypasses the event queue: code that reads or clears typed text between frames would not find the character there.
+/// Adds the character to the frame's text at once: a queued event would be invisible to code that reads that text.
 void tell_imgui_character(GLFWwindow*, unsigned character)
 {
     if (character == 0) return;

@@ -30,7 +30,7 @@ public:
         const gpu::Storage* cells;
         glm::uvec3 cell;
     };
-    /// Adds the brick to the next batch; may wait for the batch before the last one.
+    /// Adds the brick to the current batch; may wait for the batch before the last, whose buffer it takes.
     void stage(const Target& target, const BrickTexels& texels);
     /// Begins to upload the staged bricks.
     void flush();

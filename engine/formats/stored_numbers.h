@@ -25,8 +25,8 @@ float float_of_half(uint16_t half);
 /// The nearest 16-bit float; null if `value` is too large.
 std::optional<uint16_t> half_of(double value);
 
-/// Converts integers of 64 bits, given as their bits, into doubles, in place. Fails, naming `file`, at the first value
-/// beyond 2^53, which doubles cannot represent.
+/// Converts 64-bit integers to doubles in place. Fails, naming `file`, at the first value beyond 2^53, from where
+/// doubles do not represent each integer.
 void widen_integers(StoredNumber number, std::span<std::byte> voxels, const std::string& file);
 
 /// Returns `source` for `plain`; otherwise a source of its numbers as float64 (float32 for float16), with a warning.

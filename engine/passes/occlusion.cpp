@@ -35,7 +35,7 @@ const double TURN = std::numbers::pi * (3.0 - std::sqrt(5.0));
 
 namespace {
 
-/// The extent, in places of gpu::scratch_place, of an image for this many jobs.
+/// The size of the scratch image for this many jobs; gpu::scratch_place maps a job to its texels.
 glm::uvec3 scratch_places(uint32_t jobs)
 {
     const uint32_t columns = (jobs + gpu::OCCLUSION_COLUMN - 1) / gpu::OCCLUSION_COLUMN;

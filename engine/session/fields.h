@@ -106,7 +106,7 @@ public:
         };
         items(name, values.size(), most, visit, about);
     }
-    /// An object of objects. `about` describes each of them; `placeholder` stands for their keys in the table.
+    /// An object whose members are objects. `about` describes each member; the table of keys shows `placeholder`.
     virtual void entries(std::string_view name, std::vector<std::string> keys, std::string_view placeholder,
                          const VisitEntry& visit, const About& about) = 0;
 

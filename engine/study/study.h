@@ -49,10 +49,10 @@ struct StudyPlan {
 };
 /// The condition around which one factor at a time is varied.
 StudyCondition study_centre(StudyTask task);
-/// `standard`: `none` and the centre 30 times; each other touch, law, probe radius and noise 10 times; both, with
-/// each trait of the hand halved and doubled, 10 times; 10 pairs of each kind. `small`: a few of these, on
-/// small phantoms. `full`: all combinations, 30 times. Painting and tracing. Other probe radii and noises are compared
-/// with `none` under the same ones.
+/// Lists the conditions of painting and tracing. `standard`: 30 repeats of `none` and of the centre; 10 of each other
+/// touch, law, probe radius and noise; 10 of `none` and of the centre with each trait of the hand halved and doubled;
+/// 10 pairs for repeatability within and between annotators. `small`: a few of these, on small phantoms. `full`: 30
+/// repeats of all combinations. A varied probe radius or noise is compared with `none` at the same radius and noise.
 StudyPlan plan_study(const StudyChoice& choice);
 /// Reads conditions: a CSV file with the columns task, touch, law, probe_radii, noise. Fails with a sentence that names
 /// file, line and column.

@@ -29,7 +29,7 @@ std::string form_of(const fs::path& path)
     return is_in_project ? ".zarr" : lower_case(plain.extension().string());
 }
 
-/// Returns the folder of an output. For a project, "labels" may not exist yet.
+/// Returns the folder that must exist before output: the parent of `path`, or the project if that is its "labels".
 fs::path folder_of(const fs::path& path)
 {
     fs::path folder = fs::absolute(path).lexically_normal();

@@ -127,8 +127,8 @@ vec3 gradient_between(const Density d, const Beyond there)
     return vec3(along_x, along_y, along_z);
 }
 
-/// The gradient, in codes per voxel along each axis. The six taps of a central difference share all but twelve codes
-/// with the eight corners.
+/// The gradient, in codes per voxel along each axis. The six interpolated taps of the central difference need twelve
+/// codes in addition to the eight corners.
 vec3 gradient_of(const Density d)
 {
     return gradient_between(d, beyond(d));

@@ -146,7 +146,7 @@ struct Surface {
     float strength;
     vec3 place;     // start of rays, in voxels from the block's corner
     vec3 heights;   // direction in which densities fall fastest, in voxels
-    vec3 scale;     // part of a cell's columns along each axis behind the surface: base - scale * height in cells
+    vec3 scale;     // share of a cell's columns that lies behind the surface, per axis: base - scale * height in cells
     vec3 base;
     float height;   // distance of the surface, as dot(heights, position) in cells
     float wall;     // opacity of the half-space behind the surface over the stretch of a tap

@@ -73,7 +73,7 @@ uint near_of(const OcclusionGatherParams params, const OcclusionJob job, ivec3 v
     const vec3 behind = vec3(code_at(texel + ivec3(1, 0, 0)), code_at(texel + ivec3(0, 1, 0)),
                              code_at(texel + ivec3(0, 0, 1)));
     const vec3 slope = (behind - before) / (2.0 * side);
-    // A voxel of a coarse brick covers several of this level; this is the offset of the present one from its centre.
+    // A voxel of a coarse brick covers several voxels of this level; this one lies so far from its centre.
     const vec3 beside = vec3(voxel & int((1u << above) - 1u)) + 0.5 - 0.5 * side;
     // Densities curve within a voxel, so their mean in it differs from the density at its centre by this much.
     const float bend = dot(before + behind - 2.0 * middle, vec3(0.125 / side));

@@ -138,7 +138,7 @@ vec3 slope_at(const RaycastParams params, const Stretch stretch, float x)
     return gradient_between(there, stretch.there) * params.inverse_spacing;
 }
 
-// Whether light changes too much between two slopes for a single piece.
+// Whether the lighting differs too much between two gradients to integrate the stretch as a single piece.
 bool turns_much(const RaycastParams params, const Ray ray, vec3 a, vec3 b)
 {
     const float both = dot(a, b);

@@ -271,7 +271,7 @@ Block block_of(const RaycastParams params, const Lattice lattice)
     return block;
 }
 
-// Returns whether the device has cut the march short by aborting the loop. The last block may end before the ray does.
+// Returns whether the device ended the loop before the march was done. The last block counts to the end of the ray.
 bool is_cut_short(const RaycastParams params, const Lattice lattice, const Block block, const March march)
 {
     return march.i < (block.is_last ? step_count(lattice) : block.end) && march.sum.a < params.opacity_limit &&

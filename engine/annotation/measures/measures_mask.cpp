@@ -162,7 +162,7 @@ private:
     uint64_t pattern_;
 };
 
-/// Bricks with the same y and z, ascending along x; none if the row only follows a painted one (cells end there).
+/// Bricks with the same y and z, by ascending x. A row without bricks ends the cells of the painted row before it.
 struct BrickRow {
     int64_t y = 0;
     std::vector<std::pair<int64_t, const MaskBrick*>> bricks;  ///< x of the first voxel

@@ -23,7 +23,7 @@ std::vector<const VeinLink*> adaxial_veins(const Head& head)
     return veins;
 }
 
-/// The receptacle's tangent plane at a distance from the axis; across the axis where the surface is not known.
+/// The receptacle's tangent plane at the distance of `at` from the axis; perpendicular to the axis without a surface.
 struct TangentPlane {
     glm::dvec3 outwards, normal;
 };

@@ -1,8 +1,8 @@
 #pragma once
 // Finds the parts of a Zarr image that are not stored, so that sparse volumes of other programs are skipped unread.
 //
-// In the files of other programs, a coarse level need not hold the means of the finer one, so a part of a coarse level
-// is a gap only if everything that it covers, down to level 0, is a gap.
+// Other programs need not store the mean of the finer level in a coarse one, so a part of a coarse level is a gap only
+// if all parts of the finer levels that it covers, down to level 0, are gaps.
 //
 // The chunks of a level are listed once, on the first query (ZarrChunks::list), and kept as 8 bytes each. If a query
 // needs only a few chunks, they are probed one by one instead, which is faster; so no level is listed in dense images,

@@ -139,7 +139,7 @@ private:
 
     const Window<T>& window_of(int level) const { return windows_[size_t(level - 1)]; }
 
-    /// Fills every row with `put`, and with the fill value outside the extent.
+    /// Fills the rows within `extent` with `put`, and all voxels outside it with the fill value.
     template <class Put>
     void fill(ImportCube<T>& cube, const Size3& extent, const Put& put) const
     {

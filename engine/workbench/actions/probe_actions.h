@@ -13,7 +13,7 @@ inline constexpr double MIN_RADIUS_VOXELS = 0.5, MAX_RADIUS_VOXELS = 60.0;
 struct ProbeTo {  ///< moves the probe with the mouse, in the plane that contains the probe
     size_t pane = 0;
     glm::dvec2 pixel{0.0};
-    bool jumps = false;  ///< not a motion of the hand: an open stroke does not paint along the jump
+    bool jumps = false;  ///< the probe moves at once: an open stroke does not paint between the two places
 };
 
 /// Moves the probe onto the visible structure: to the steepest rise of opacity along the ray (Renderer::pick).

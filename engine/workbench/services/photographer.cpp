@@ -89,7 +89,7 @@ Figure Photographer::figure_of_picture(uint32_t scale) const
     return figure_of(model(), panes, units_ * scale, options_.draw_texts);
 }
 
-/// Returns texts whose session states the picture's size; a picture larger than the window shows no probe.
+/// Makes the texts stored in a picture. Their session states the size; a picture larger than the window has no probe.
 Screenshots::Texts Photographer::texts_of_picture(const glm::uvec2& pixels, bool shows_probe) const
 {
     return [this, pixels, shows_probe](const std::filesystem::path& picture) {
