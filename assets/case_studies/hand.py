@@ -2,16 +2,20 @@
 """Stands in for a hand: writes the strokes, nodes or stylus positions of a person who follows the veins of a phantom.
 
     hand.py paint TRACE --group G --threshold T --radius R     strokes, as lines of `shvr annotate --script`
+    hand.py florets TRACE --section G --threshold T            strokes through the florets above their veins
     hand.py trace TRACE --group G --radius R                   nodes and internodes, as such lines
     hand.py stylus TRACE --chain N                             a recording for the action `follow_stylus`
     hand.py specks TRACE --size N --group G --threshold T      one stroke of the speckle brush all over the volume
     hand.py box --crop X,Y,Z --to X,Y,Z --size N               not a hand: the edges of a box, as surfaces
-    hand.py mask RAW --size N --crop X,Y,Z --to X,Y,Z          not a hand: the part of a true mask inside a crop
+    hand.py mask RAW --size N --crop X,Y,Z --to X,Y,Z          not a hand: a true mask, cropped and downscaled
 
 TRACE is the GraphML file of `shvr phantom`. A real scan has no such file: there a person does the same in the window,
 and `shvr view --log FILE` writes it down. Strokes follow each chain of the section, from branch to branch. Positions
-are those of the phantom, less --crop, divided by --shrink, as `shvr import` was told to crop and to downscale; with
---to, the upper corner of the crop, nodes outside it are left out.
+are those of the phantom, less --crop, divided by --shrink, as `shvr import` was told to crop and to downscale. With
+--to, the upper corner of the crop, strokes end at its faces, and nodes outside it are left out.
+
+Where a scan is darker towards its axis z, a person lowers the paint threshold there: with --on-axis it changes from
+--threshold at the faces of the scan, of --size voxels a side, to that value on the axis, by the square of the distance.
 """
 
 import argparse
@@ -65,12 +69,68 @@ def runs_inside(chain, nodes, lower, upper):
     return [run for run in runs if len(run) > 1]
 
 
+def inside(a, b, lower, upper):
+    """The part of the straight line from a to b in a box, as its two ends, or None."""
+    first, last = 0.0, 1.0
+    for p, q, low, high in zip(a, b, lower, upper):
+        if p == q:
+            if not low <= p <= high:
+                return None
+            continue
+        enters, leaves = sorted(((low - p) / (q - p), (high - p) / (q - p)))
+        first, last = max(first, enters), min(last, leaves)
+    if first > last:
+        return None
+    return [b if t == 1.0 else tuple(p + t * (q - p) for p, q in zip(a, b)) for t in (first, last)]
+
+
+def threshold_at(place, options):
+    """Of a place in the scan, which is darker towards its axis."""
+    if options.on_axis is None:
+        return options.threshold
+    middle = options.size / 2
+    away = min(1.0, sum((place[axis] - middle) ** 2 for axis in (0, 1)) / middle ** 2)
+    return round(options.on_axis + away * (options.threshold - options.on_axis), 1)
+
+
+def stroke(places, group, options):
+    """One stroke, of places in the scan, or several where the threshold changes on the way."""
+    pieces = [places] if options.on_axis is None else [places[i:i + 2] for i in range(len(places) - 1)]
+    for piece in pieces:
+        middle = [sum(axis) / len(piece) for axis in zip(*piece)]
+        print(json.dumps({"op": "paint", "brush": options.brush, "region": "ball", "group": group,
+                          "threshold": threshold_at(middle, options), "radius": options.radius,
+                          "only_unpainted": options.only_unpainted,
+                          "path": [options.place(place) for place in piece]}))
+
+
 def paint(nodes, found, options):
     for chain in found:
-        print(json.dumps({"op": "paint", "brush": options.brush, "region": "ball",
-                          "group": nodes[chain[-1]][1] if options.group is None else options.group,
-                          "threshold": options.threshold, "radius": options.radius,
-                          "path": [options.place(nodes[node][0]) for node in chain]}))
+        # A vein may end at a node of another section.
+        group = next(each for each in (options.group, options.section, nodes[chain[-1]][1]) if each is not None)
+        places, runs = [nodes[node][0] for node in chain], []
+        for a, b in zip(places, places[1:]):
+            part = inside(a, b, options.crop, options.upper) if options.to else [a, b]
+            if part and runs and runs[-1][-1] == part[0]:
+                runs[-1].append(part[1])
+            elif part:
+                runs.append(part)
+        for run in runs:
+            stroke(run, group, options)
+
+
+def florets(nodes, links, options):
+    """A stroke through each floret: from --from to --up voxels of the scan above the upper end of its vein."""
+    beside = {}
+    for a, b in links:
+        beside.setdefault(a, []).append(b)
+        beside.setdefault(b, []).append(a)
+    for node, others in beside.items():
+        x, y, z = nodes[node][0]
+        if nodes[node][1] != options.section or len(others) != 1 or nodes[others[0]][0][2] >= z:
+            continue
+        if part := inside((x, y, z + options.low), (x, y, z + options.high), options.crop, options.upper):
+            stroke(part, nodes[node][1], options)
 
 
 def trace(nodes, found, options):
@@ -110,7 +170,7 @@ def specks(options):
 
 def box(options):
     """A rod along each of the twelve edges."""
-    ends = (options.crop, [int(x) for x in options.to.split(",")])
+    ends = (options.crop, options.upper)
     corners = [[ends[i >> axis & 1][axis] for axis in range(3)] for i in range(8)]
     rods = [{"from": corners[i], "to": corners[i | 1 << axis], "radius": options.size / 160, "color": "#203060"}
             for i in range(8) for axis in range(3) if not i >> axis & 1]
@@ -118,24 +178,37 @@ def box(options):
 
 
 def write_part(options):
-    """The voxels of a mask of --size voxels a side from --crop up to --to, as a bare mask on standard output."""
-    voxels, side = pathlib.Path(options.file).read_bytes(), options.size
-    lower, upper = options.crop, [int(x) for x in options.to.split(",")]
-    for z in range(lower[2], upper[2]):
-        for y in range(lower[1], upper[1]):
-            row = (z * side + y) * side
-            sys.stdout.buffer.write(voxels[row + lower[0]:row + upper[0]])
+    """The voxels of a mask of --size voxels a side from --crop up to --to, as a bare mask on standard output. With
+    --shrink N each is the most frequent of N^3, if at least half of them are in a group."""
+    voxels, side, step = pathlib.Path(options.file).read_bytes(), options.size, int(options.shrink)
+    lower, upper = options.crop, options.upper
+    for z in range(lower[2], upper[2], step):
+        for y in range(lower[1], upper[1], step):
+            rows = [voxels[begin + lower[0]:begin + upper[0]] for begin in
+                    ((side * (z + k // step) + y + k % step) * side for k in range(step * step))]
+            if not any(map(any, rows)):
+                sys.stdout.buffer.write(bytes((upper[0] - lower[0]) // step))
+                continue
+            for x in range(0, upper[0] - lower[0], step):
+                block = b"".join(row[x:x + step] for row in rows)
+                groups = [group for group in block if group]
+                is_structure = 2 * len(groups) >= len(block)
+                sys.stdout.buffer.write(bytes([max(set(groups), key=groups.count) if is_structure else 0]))
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("what", choices=("paint", "trace", "stylus", "specks", "mask", "box"))
+    parser.add_argument("what", choices=("paint", "florets", "trace", "stylus", "specks", "mask", "box"))
     parser.add_argument("file", nargs="?")
     parser.add_argument("--crop", default="0,0,0")
     parser.add_argument("--shrink", type=float, default=1.0)
     parser.add_argument("--section", type=int, help="the group of the chains in TRACE; all without it")
     parser.add_argument("--group", type=int, help="to paint or trace with; the section's own without it")
     parser.add_argument("--threshold", type=float, default=110)
+    parser.add_argument("--on-axis", type=float, help="the threshold on the scan's axis")
+    parser.add_argument("--only-unpainted", action="store_true", help="take no voxel from another group")
+    parser.add_argument("--from", type=float, default=0, dest="low", help="of florets: where strokes begin")
+    parser.add_argument("--up", type=float, default=0, dest="high", help="of florets: where strokes end")
     parser.add_argument("--radius", type=float, default=3)
     parser.add_argument("--brush", default="flood")
     parser.add_argument("--first-node", type=int, default=0)
@@ -147,6 +220,7 @@ def main():
     parser.add_argument("--to")
     options = parser.parse_args()
     options.crop = [int(x) for x in options.crop.split(",")]
+    options.upper = [int(x) for x in options.to.split(",")] if options.to else [1e9] * 3
     if options.what in ("mask", "specks", "box"):
         {"mask": write_part, "specks": specks, "box": box}[options.what](options)
         return
@@ -155,9 +229,11 @@ def main():
     if options.section is not None:
         links = [link for link in links if nodes[link[1]][1] == options.section]
     found = [chain[:-1:options.skip] + chain[-1:] for chain in chains(links)]
-    if options.to:
-        upper = [int(x) for x in options.to.split(",")]
-        found = [run for chain in found for run in runs_inside(chain, nodes, options.crop, upper)]
+    if options.what == "florets":
+        florets(nodes, links, options)
+        return
+    if options.to and options.what != "paint":
+        found = [run for chain in found for run in runs_inside(chain, nodes, options.crop, options.upper)]
     found = found[:options.chains] if options.chain is None else found[options.chain:options.chain + 1]
     {"paint": paint, "trace": trace, "stylus": stylus}[options.what](nodes, found, options)
 
